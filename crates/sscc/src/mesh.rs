@@ -1,0 +1,71 @@
+//! A triangle mesh at rest, and which of its triangles are adjacent.
+
+use glam::DVec3;
+
+use crate::{Error, limits};
+
+/// A triangle mesh: rest positions (V, model unit) and faces (N, three vertex indices each).
+///
+/// Any triangle soup is accepted: closed, open, or with edges of more than two triangles. What the
+/// odd cases mean:
+/// - a vertex that no face uses is no part of the shape: it never collides and never counts in a box;
+/// - two faces with the same three vertices are adjacent (they share a vertex), so they never collide;
+/// - a face of zero area (a repeated index, or collinear corners) is the closed segment or point
+///   that its corners span, and collides as such.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriMesh {
+    rest_positions: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl TriMesh {
+    /// Takes rest positions (model unit) and faces (indices into them).
+    ///
+    /// # Errors
+    /// When there is no face, a face names a vertex that does not exist, a coordinate is not finite or
+    /// larger than [`limits::LARGEST`], or there are more than `u32::MAX` vertices or faces.
+    pub fn new(rest_positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, Error> {
+        if faces.is_empty() {
+            return Err(Error::NoFaces);
+        }
+        for (what, count) in [("vertices", rest_positions.len()), ("faces", faces.len())] {
+            if u32::try_from(count).is_err() {
+                return Err(Error::TooMany { what, count });
+            }
+        }
+        if let Some(vertex) = rest_positions.iter().position(|p| !limits::contains(*p)) {
+            return Err(Error::Position { vertex, position: rest_positions[vertex].to_array() });
+        }
+        for (face, corners) in faces.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= rest_positions.len()) {
+                return Err(Error::FaceIndex { face, vertex, vertices: rest_positions.len() });
+            }
+        }
+        Ok(Self { rest_positions, faces })
+    }
+
+    /// Rest positions, one for each vertex of the file, unused ones included (model unit).
+    pub fn rest_positions(&self) -> &[DVec3] {
+        &self.rest_positions
+    }
+
+    /// Faces: three vertex indices each, in the file's order.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Whether two faces share a vertex. Adjacent faces are never a self-collision (paper, section 3).
+    pub fn are_adjacent(&self, face_a: u32, face_b: u32) -> bool {
+        let (a, b) = (self.faces[face_a as usize], self.faces[face_b as usize]);
+        a.iter().any(|v| b.contains(v))
+    }
+
+    /// The vertices that at least one face uses, ascending.
+    pub fn used_vertices(&self) -> Vec<u32> {
+        let mut used = vec![false; self.rest_positions.len()];
+        for &v in self.faces.iter().flatten() {
+            used[v as usize] = true;
+        }
+        (0..used.len() as u32).filter(|&v| used[v as usize]).collect()
+    }
+}

@@ -1,0 +1,82 @@
+//! Deformation modes U, and the one shape that every answer speaks of.
+
+use glam::DVec3;
+
+use crate::{Error, limits};
+
+/// Deformation modes `U` (3V x r): the displacement of each vertex for a unit of each reduced
+/// coordinate (model unit per unit of q). Any rank r >= 1; modes may vanish, repeat or depend on each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    rank: usize,
+    /// `displacements[vertex * rank + mode]`
+    displacements: Vec<DVec3>,
+}
+
+impl Modes {
+    /// Takes displacements in vertex-major order: `displacements[vertex * rank + mode]`.
+    ///
+    /// # Errors
+    /// When `rank` is 0, the length is no multiple of it, or an entry is not finite or larger than
+    /// [`limits::LARGEST`].
+    pub fn new(rank: usize, displacements: Vec<DVec3>) -> Result<Self, Error> {
+        if rank == 0 {
+            return Err(Error::RankZero);
+        }
+        if !displacements.len().is_multiple_of(rank) {
+            return Err(Error::ModesLength { len: displacements.len(), rank });
+        }
+        if let Some(at) = displacements.iter().position(|u| !limits::contains(*u)) {
+            return Err(Error::ModeEntry { vertex: at / rank, mode: at % rank });
+        }
+        Ok(Self { rank, displacements })
+    }
+
+    /// Takes a matrix by its entry function: `entry(3 * vertex + component, mode)`.
+    ///
+    /// # Errors
+    /// As [`Modes::new`].
+    pub fn from_matrix(
+        vertices: usize,
+        rank: usize,
+        entry: impl Fn(usize, usize) -> f64,
+    ) -> Result<Self, Error> {
+        let displacements = (0..vertices)
+            .flat_map(|v| (0..rank).map(move |k| (v, k)))
+            .map(|(v, k)| DVec3::new(entry(3 * v, k), entry(3 * v + 1, k), entry(3 * v + 2, k)))
+            .collect();
+        Self::new(rank, displacements)
+    }
+
+    /// Number of modes r.
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// Number of vertices V.
+    pub fn vertices(&self) -> usize {
+        self.displacements.len() / self.rank
+    }
+
+    /// The r displacements of one vertex, mode 0 first.
+    pub fn of_vertex(&self, vertex: u32) -> &[DVec3] {
+        &self.displacements[vertex as usize * self.rank..][..self.rank]
+    }
+
+    /// All displacements in vertex-major order: `[vertex * rank + mode]`.
+    pub fn displacements(&self) -> &[DVec3] {
+        &self.displacements
+    }
+}
+
+/// The deformed position of one vertex: `x = p`, then `x += U_k q_k` for k = 0 .. r-1 in this order, each
+/// product and sum rounded once (no fused multiply-add). This function **is** the shape: every
+/// method, test and certificate speaks of these f64 positions and no others.
+#[inline]
+pub fn deformed_position(rest: DVec3, modes: &[DVec3], q: &[f64]) -> DVec3 {
+    let mut x = rest;
+    for (u, &q_k) in modes.iter().zip(q) {
+        x += *u * q_k;
+    }
+    x
+}
