@@ -1,0 +1,122 @@
+//! A double-helix spring, in place of the paper's (Table 1: 16,000 triangles; Figure 13).
+//!
+//! One closed tube. It runs up as one helix and down as a second one, half a turn behind, so that the
+//! strands alternate along the axis. At either end the two strands swing inward and join in an S across
+//! the axis. In cylinder coordinates the centreline is `(rho, phi, h phi)` where, along the loop, phi is a
+//! triangle wave with rounded peaks and rho a square wave with smooth steps at those peaks.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use super::tube::Tube;
+
+/// Radius of the tube (metre).
+const TUBE_RADIUS: f64 = 0.03;
+
+/// Radius of the helices: the tube's centreline is this far from the axis (metre).
+const COIL_RADIUS: f64 = 0.18;
+
+/// Rise of a strand in one turn (metre). The other strand passes half way, so neighbouring coils are 0.091
+/// apart along the axis and 0.0898 square to the strands: the gap is 0.0298, about one tube radius.
+const PITCH: f64 = 0.182;
+
+/// Turns of each strand, joins included.
+const TURNS: f64 = 5.0;
+
+/// The angle (radian) over which a strand swings from the coil to the axis: long enough that the S
+/// bends with a radius of more than two tube radii everywhere.
+const JOIN_ANGLE: f64 = 0.6 * PI;
+
+/// Rings along the tube, and vertices of each: 16,000 triangles, about twice as long as wide.
+const RINGS: usize = 500;
+const AROUND: usize = 16;
+
+/// The embedded spring: 16,000 triangles, 8,000 vertices, metres. One closed component (a torus),
+/// oriented outward, free of self-intersections, its axis along z and its centre at the origin.
+///
+/// About 0.42 wide and 0.93 high. Neighbouring coils are about one tube radius (0.03) apart, so a
+/// modest deformation brings them together. Takes a millisecond or so.
+pub fn spring() -> TriMesh {
+    Tube { radius: TUBE_RADIUS, rings: RINGS, around: AROUND }.along(centreline)
+}
+
+/// The centreline: `t` from 0 (bottom, on the axis) up to 1/2 (top, on the axis) and down to 1.
+fn centreline(t: f64) -> DVec3 {
+    let half = PI * TURNS; // phi goes from -half to half and back
+    let from_top = 4.0 * half * (t - 0.5); // negative on the way up
+    let (sign, down) = (if from_top < 0.0 { 1.0 } else { -1.0 }, from_top.abs());
+    // Both ends look the same: measure from the nearer one. Beyond the bottom the strand is the other one.
+    let from_bottom = 2.0 * half - down;
+    let from_end = down.min(from_bottom);
+    let phi_from_end = half - rounded(from_end);
+    let phi = if down < from_bottom { phi_from_end } else { -phi_from_end };
+    let rho = sign * COIL_RADIUS * step(from_end);
+    DVec3::new(rho * libm::cos(phi), rho * libm::sin(phi), PITCH / (2.0 * PI) * phi)
+}
+
+/// `|x|`, made round within the join angle (two continuous derivatives).
+fn rounded(x: f64) -> f64 {
+    let s = x / JOIN_ANGLE;
+    if s.abs() >= 1.0 { x.abs() } else { JOIN_ANGLE * (3.0 + s * s * (6.0 - s * s)) / 8.0 }
+}
+
+/// The sign of x, made a smooth odd step within the join angle (two continuous derivatives).
+fn step(x: f64) -> f64 {
+    let s = (x / JOIN_ANGLE).clamp(-1.0, 1.0);
+    s * (15.0 + s * s * (3.0 * s * s - 10.0)) / 8.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAMPLES: usize = 4000;
+
+    fn samples() -> Vec<DVec3> {
+        (0..SAMPLES).map(|i| centreline(i as f64 / SAMPLES as f64)).collect()
+    }
+
+    #[test]
+    fn the_tube_never_bends_onto_itself() {
+        let p = samples();
+        for i in 0..SAMPLES {
+            let [a, b, c] = [0, 1, 2].map(|k| p[(i + k) % SAMPLES]);
+            // The radius of the circle through three points is (product of the sides) / (4 area).
+            let radius = (b - a).length() * (c - b).length() * (c - a).length()
+                / (2.0 * (b - a).cross(c - a).length()).max(1e-300);
+            assert!(radius > 2.0 * TUBE_RADIUS, "sample {i}: {}", radius / TUBE_RADIUS);
+        }
+    }
+
+    #[test]
+    fn coils_are_one_tube_radius_apart() {
+        let p = samples();
+        // Half a turn along the strand leads to the other side of the coil, nearer than that is the same coil.
+        let same_coil = SAMPLES / (4.0 * TURNS) as usize;
+        for (i, a) in p.iter().enumerate() {
+            let apart = (same_coil..=SAMPLES - same_coil)
+                .map(|k| (*a - p[(i + k) % SAMPLES]).length())
+                .fold(f64::INFINITY, f64::min);
+            let gap = (apart - 2.0 * TUBE_RADIUS) / TUBE_RADIUS;
+            assert!(gap > 0.98, "sample {i}: {gap}");
+            let in_a_join = i % (SAMPLES / 2) < same_coil || i % (SAMPLES / 2) > SAMPLES / 2 - same_coil;
+            assert!(in_a_join || gap < 1.02, "sample {i}: {gap}");
+        }
+    }
+
+    #[test]
+    fn both_ends_and_both_strands_are_alike() {
+        for i in 0..100 {
+            let t = i as f64 / 200.0;
+            let a = centreline(t);
+            // Half a turn about the axis takes one strand to the other,
+            let b = centreline(1.0 - t);
+            assert!((a - DVec3::new(-b.x, -b.y, b.z)).length() < 1e-13, "{t}");
+            // and half a turn about x takes one end to the other.
+            let c = centreline(0.5 - t);
+            assert!((a - DVec3::new(c.x, -c.y, -c.z)).length() < 1e-13, "{t}");
+        }
+    }
+}
