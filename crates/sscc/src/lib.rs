@@ -1,14 +1,20 @@
 //! Proven self-collision detection for reduced deformable models.
 
+mod bounds;
+mod certificates;
 mod error;
+pub mod hierarchy;
 pub mod limits;
 mod mesh;
 mod metric;
 mod model;
 mod modes;
+mod progress;
 
+pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, metric_names};
 pub use error::Error;
 pub use mesh::TriMesh;
 pub use metric::{Metric, MetricKind, vertex_areas};
 pub use model::ReducedModel;
 pub use modes::{Modes, deformed_position};
+pub use progress::Progress;

@@ -1,0 +1,191 @@
+//! The affine-residual bound: for parts that are close and move almost as one, such as triangles two
+//! rings apart, where the separating direction turns with q and a fixed one is weak.
+//!
+//! Take any affine map of the modes, `A_v = A_0 + G (p_v - p_0) + E_v` with residuals E_v. For two points at
+//! rest distance `|d| >= delta` and `u = d / |d|`: `|B'u| <= |d| g + e`, with `g >= max over unit u of |G(u)'u|` and
+//! `e >= |E_b - E_a|_2` over all pairs of corners. Hence
+//!
+//! ```text
+//! R(X, Y) >= (delta - e0) / (g delta + e + e1)
+//! ```
+//!
+//! (it grows with delta, so a lower bound of the distance serves). Only the symmetric part of each mode's
+//! gradient enters g: a local infinitesimal rotation costs nothing.
+
+use glam::{DMat3, DVec3};
+
+use super::cone::cone_rate;
+use super::direction::TrianglePair;
+use super::lanes::{LANES, padded};
+use super::scaled::{GapError, UP, norm_up, radius};
+
+/// Scratch for one fit: the nine gradient entries and the residuals of six corners, one row each.
+pub(crate) struct AffineScratch {
+    row: usize,
+    gradient: Vec<f64>,
+    residuals: Vec<f64>,
+}
+
+impl AffineScratch {
+    pub(crate) fn new(row: usize) -> Self {
+        debug_assert_eq!(row, padded(row));
+        Self { row, gradient: vec![0.0; 9 * row], residuals: vec![0.0; 18 * row] }
+    }
+}
+
+/// The bound for two triangles whose rest distance is at least `delta`.
+pub(crate) fn affine_bound(
+    pair: &TrianglePair<'_>,
+    differences: &[DVec3; 9],
+    delta: f64,
+    enough: f64,
+    error: &GapError,
+    scratch: &mut AffineScratch,
+) -> f64 {
+    let row = scratch.row;
+    let corners = [pair.x[0], pair.x[1], pair.x[2], pair.y[0], pair.y[1], pair.y[2]];
+    let [x0, x1, x2] = pair.modes_x;
+    let [y0, y1, y2] = pair.modes_y;
+    let modes = [x0, x1, x2, y0, y1, y2];
+    let origin = corners[0];
+    let offsets = corners.map(|p| p - origin);
+    let Some(fit) = fit_weights(&offsets) else { return 0.0 };
+
+    // Gradient: G[c][j] = sum_v fit_v[j] (A_v - A_0)[c], a row over the modes for each of 3 x 3 entries.
+    scratch.gradient.fill(0.0);
+    for v in 1..6 {
+        for c in 0..3 {
+            let a = &modes[v][c * row..][..row];
+            let a0 = &modes[0][c * row..][..row];
+            let rows = &mut scratch.gradient[3 * c * row..][..3 * row];
+            let (g0, rest) = rows.split_at_mut(row);
+            let (g1, g2) = rest.split_at_mut(row);
+            for k in 0..row {
+                let difference = a[k] - a0[k];
+                g0[k] += fit[v].x * difference;
+                g1[k] += fit[v].y * difference;
+                g2[k] += fit[v].z * difference;
+            }
+        }
+    }
+    // Residuals: E_v = (A_v - A_0) - G (p_v - p_0); that of the origin is 0.
+    scratch.residuals[..3 * row].fill(0.0);
+    for v in 1..6 {
+        let offset = offsets[v];
+        for c in 0..3 {
+            let a = &modes[v][c * row..][..row];
+            let a0 = &modes[0][c * row..][..row];
+            let g = &scratch.gradient[3 * c * row..][..3 * row];
+            let e = &mut scratch.residuals[(3 * v + c) * row..][..row];
+            for k in 0..row {
+                let affine = offset.x * g[k] + offset.y * g[row + k] + offset.z * g[2 * row + k];
+                e[k] = (a[k] - a0[k]) - affine;
+            }
+        }
+    }
+    let mut largest = 0.0_f64;
+    for a in 0..3 {
+        for b in 3..6 {
+            let (ea, eb) = (&scratch.residuals[3 * a * row..], &scratch.residuals[3 * b * row..]);
+            largest = largest.max(super::lanes::squared_distance(&ea[..3 * row], &eb[..3 * row]));
+        }
+    }
+    let frobenius = norm_up(scratch.gradient.iter().map(|g| g * g).sum(), 9 * row);
+    let longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
+    let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
+    // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
+    // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`.
+    let residual_error = 16.0 * f64::EPSILON * frobenius * longest;
+    let e = norm_up(largest, 3 * row) + residual_error;
+    let rest_error = error.rest(axes);
+    let slack = (e + 2.0 * error.rate(axes)) * UP;
+    let rounding = 8.0 * f64::EPSILON * frobenius;
+    let gram = strain_gram(&scratch.gradient, row);
+    let bound = |rate: f64| radius(delta - rest_error, ((rate * UP + rounding) * delta + slack) * UP);
+    let all = bound(largest_rate(&gram, row));
+    if all >= enough {
+        return all;
+    }
+    // The rate that would do.
+    let wanted = ((delta - rest_error) / enough - slack) / delta - rounding;
+    if wanted.is_nan() || wanted <= 0.0 {
+        return all;
+    }
+    all.max(bound(cone_rate(differences, &gram, row, wanted * (1.0 - 1e-9))))
+}
+
+/// Weights with which a regularised least-squares fit turns values at the six corners into a gradient:
+/// `G = sum_v value_v fit_v'`. The offsets are relative to corner 0, about which no constant is fitted but
+/// removed by centring. None where all corners coincide.
+fn fit_weights(offsets: &[DVec3; 6]) -> Option<[DVec3; 6]> {
+    let mean = offsets.iter().sum::<DVec3>() / 6.0;
+    let mut moment = DMat3::ZERO;
+    for d in offsets {
+        let d = *d - mean;
+        moment += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+    }
+    let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+    // Corners that nearly lie in a plane say nothing about the gradient across it; the regularisation
+    // keeps that part small instead of fitting noise.
+    let ridge = 1e-4 * trace;
+    let inverse = (moment + DMat3::from_diagonal(DVec3::splat(ridge))).inverse();
+    let fit = offsets.map(|d| inverse * (d - mean));
+    fit.iter().all(|f| f.is_finite()).then_some(fit)
+}
+
+/// Gram matrix of the 6 x r matrix whose column k holds the Mandel components of the symmetric part of mode
+/// k's gradient (scaled so that `|u u'|` has norm 1 for a unit vector u).
+pub(super) type StrainGram = [[f64; 6]; 6];
+
+fn strain_gram(gradient: &[f64], row: usize) -> StrainGram {
+    let g = |c: usize, j: usize| &gradient[(3 * c + j) * row..][..row];
+    let half_root = std::f64::consts::FRAC_1_SQRT_2;
+    let mut gram = [[0.0; 6]; 6];
+    let (xx, yy, zz) = (g(0, 0), g(1, 1), g(2, 2));
+    let shears = [(g(1, 2), g(2, 1)), (g(0, 2), g(2, 0)), (g(0, 1), g(1, 0))];
+    for start in (0..row).step_by(LANES) {
+        let mut m = [[0.0; LANES]; 6];
+        for i in 0..LANES {
+            let k = start + i;
+            (m[0][i], m[1][i], m[2][i]) = (xx[k], yy[k], zz[k]);
+            for (slot, (a, b)) in m[3..].iter_mut().zip(shears) {
+                slot[i] = (a[k] + b[k]) * half_root;
+            }
+        }
+        for i in 0..6 {
+            for j in i..6 {
+                gram[i][j] += (0..LANES).map(|l| m[i][l] * m[j][l]).sum::<f64>();
+            }
+        }
+    }
+    for i in 0..6 {
+        for j in 0..i {
+            gram[i][j] = gram[j][i];
+        }
+    }
+    gram
+}
+
+/// An upper bound of `max over unit u of |G(u)'u|`: the root of the largest eigenvalue, bounded from above by
+/// `(sum of eigenvalues^8)^(1/8)` through two squarings; power iteration would approach from below.
+fn largest_rate(gram: &StrainGram, row: usize) -> f64 {
+    let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
+    if trace == 0.0 {
+        return VANISHED; // infinite or NaN traces fall through: their bound becomes 0
+    }
+    // In units of the trace: eigenvalues at most 1, the largest at least 1/6.
+    let unit = gram.map(|r| r.map(|x| x / trace));
+    let square = |m: &[[f64; 6]; 6]| -> [[f64; 6]; 6] {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| m[i][k] * m[k][j]).sum()))
+    };
+    let fourth = square(&square(&unit));
+    let eighth: f64 = fourth.iter().flatten().map(|x| x * x).sum();
+    // Entries are wrong by at most (row + 8) eps of the trace, those of the two squares by 8 eps more. On an
+    // eigenvalue of at least 1/6 of the trace, its fourth power at least 6^-4, this adds up to less than
+    // (row + 64) 512 eps of the result.
+    let largest = eighth.sqrt().sqrt().sqrt() * trace;
+    largest.sqrt() * (1.0 + (row as f64 + 64.0) * 512.0 * f64::EPSILON) + VANISHED
+}
+
+/// Covers gradient entries whose squares underflow.
+const VANISHED: f64 = 1e-150;

@@ -1,0 +1,19 @@
+//! Lower bounds of the distance, in reduced coordinates, at which two parts of a model can first meet
+//! (paper, section 5), and how they are rounded.
+//!
+//! Every bound here is *certified*: it is at most the exact minimum of `|z|` over all z at which the
+//! **computed** f64 positions of the two parts meet. Directions, affine maps and mean modes may come from
+//! any heuristic in any precision; only the last evaluation is rounded with care.
+
+mod affine;
+mod cluster;
+mod cone;
+mod direction;
+mod lanes;
+mod min_norm;
+mod scaled;
+mod triangle_pair;
+
+pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use scaled::ScaledModel;
+pub(crate) use triangle_pair::{PairRefiner, Target};

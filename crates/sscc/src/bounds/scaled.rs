@@ -1,0 +1,120 @@
+//! The model in scaled coordinates, `A = U S^-1`, and the error terms of its computed positions.
+
+use glam::DVec3;
+
+use super::lanes::padded;
+use crate::{Metric, ReducedModel};
+
+/// Bounds, for two points of the shape and a direction n, by how much the computed gap along n may
+/// fall short of `n.(d + B z)` in exact arithmetic: at most `rest(n) + rate(n) |z|`.
+///
+/// Two things add up. The positions are computed with r products and r sums, each rounded once: at most
+/// `gamma_(r+1) sum_c |n_c| ((|p_x| + |p_y|)_c + sum_k (|A_x| + |A_y|)_ck |z_k|)`, plus underflow. And the bounds
+/// evaluate `n.d`, `B'n`, scaled modes, midpoints and box corners with a few more roundings of the same
+/// magnitudes. One gamma with room for both is used for all points of the model:
+/// Cauchy-Schwarz over k turns the sum into `|z|` times the 2-norm of a row of A.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GapError {
+    rest: DVec3,
+    rate: DVec3,
+}
+
+/// Roundings granted beside the r of the positions: those of scaling, differences, midpoints, dot products
+/// and norms in the bounds, none of which chains more than a third of this many.
+const EXTRA_ROUNDINGS: usize = 96;
+
+impl GapError {
+    pub(crate) fn new(rest_reach: DVec3, rate_reach: DVec3, rank: usize) -> Self {
+        let n = (2 * rank + EXTRA_ROUNDINGS) as f64 * (f64::EPSILON / 2.0);
+        let gamma = n / (1.0 - n);
+        let underflow = (rank + EXTRA_ROUNDINGS) as f64 * 4.0 * f64::from_bits(1);
+        Self { rest: rest_reach * (2.0 * gamma) + DVec3::splat(underflow), rate: rate_reach * (2.0 * gamma) }
+    }
+
+    /// The part of the error that does not depend on z, for a direction n, rounded up.
+    pub(crate) fn rest(&self, n: DVec3) -> f64 {
+        n.abs().dot(self.rest) * UP + f64::MIN_POSITIVE
+    }
+
+    /// The part of the error per unit of `|z|`, for a direction n, rounded up; 0 only when no mode moves
+    /// anything.
+    pub(crate) fn rate(&self, n: DVec3) -> f64 {
+        n.abs().dot(self.rate) * UP
+    }
+}
+
+/// Covers a handful of roundings of a sum or product of non-negative numbers.
+pub(crate) const UP: f64 = 1.0 + 16.0 * f64::EPSILON;
+
+/// Rounds a quotient of certified parts down.
+pub(crate) const DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
+
+/// A direction scaled so that its largest component is 1 (none when it is 0 or not finite). Every direction
+/// passes through here before it is evaluated: the error terms assume that its products do not underflow.
+pub(crate) fn direction(n: DVec3) -> Option<DVec3> {
+    let n = n / n.abs().max_element();
+    n.is_finite().then_some(n)
+}
+
+/// A quotient `numerator / denominator` as a radius: 0 unless the numerator is positive (NaN included),
+/// infinite where nothing moves.
+#[inline]
+pub(crate) fn radius(numerator: f64, denominator: f64) -> f64 {
+    if numerator > 0.0 && denominator >= 0.0 { numerator / denominator * DOWN } else { 0.0 }
+}
+
+/// The root of a sum of squares over at most `terms` numbers, rounded up.
+#[inline]
+pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
+    sum_of_squares.sqrt() * (1.0 + (terms as f64 + 16.0) * f64::EPSILON)
+}
+
+/// Rest positions and scaled modes of a model, laid out for the bounds.
+pub(crate) struct ScaledModel {
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) faces: Vec<[u32; 3]>,
+    /// Modes in one row: the rank, padded to whole lanes.
+    pub(crate) row: usize,
+    /// For each vertex three rows (x, y, z).
+    modes: Vec<f64>,
+    pub(crate) error: GapError,
+}
+
+impl ScaledModel {
+    pub(crate) fn new(model: &ReducedModel, metric: &Metric) -> Self {
+        let mesh = model.mesh();
+        let positions = mesh.rest_positions().to_vec();
+        let row = padded(model.rank());
+        let mut modes = vec![0.0; positions.len() * 3 * row];
+        let mut rest_reach = DVec3::ZERO;
+        let mut rate_reach = DVec3::ZERO;
+        for v in mesh.used_vertices() {
+            let rows = &mut modes[v as usize * 3 * row..][..3 * row];
+            for (k, (u, s)) in model.modes().of_vertex(v).iter().zip(metric.scales()).enumerate() {
+                let a = *u / *s;
+                [rows[k], rows[row + k], rows[2 * row + k]] = a.to_array();
+            }
+            rest_reach = rest_reach.max(positions[v as usize].abs());
+            let norm = |c: usize| norm_up(rows[c * row..][..row].iter().map(|a| a * a).sum(), row);
+            rate_reach = rate_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
+        }
+        // A component that never moves beside others that do still needs an error above what squares
+        // lose to underflow (checked modes are largest above 2^-200, squares vanish below 2^-537).
+        let floor = rate_reach.max_element() * f64::EPSILON;
+        let rate_reach = rate_reach.max(DVec3::splat(floor));
+        let error = GapError::new(rest_reach, rate_reach, model.rank());
+        Self { positions, faces: mesh.faces().to_vec(), row, modes, error }
+    }
+
+    /// The modes of a vertex: three rows.
+    #[inline]
+    pub(crate) fn modes(&self, vertex: u32) -> &[f64] {
+        let width = 3 * self.row;
+        &self.modes[vertex as usize * width..][..width]
+    }
+
+    pub(crate) fn are_adjacent(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.faces[a as usize], self.faces[b as usize]);
+        a.iter().any(|v| b.contains(v))
+    }
+}

@@ -1,0 +1,302 @@
+//! The certified bound for two triangles: cheap bounds first, subdivision only as far as it is needed.
+//!
+//! Replaces the constant-mode bound of the paper's section 5.1 and keeps its scheme: a lower and an upper
+//! bound, and midpoint subdivision until they are close enough.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use glam::{DMat3, DVec3};
+
+use super::affine::{AffineScratch, affine_bound};
+use super::direction::{TrianglePair, direction_bound, rest_distance};
+use super::lanes::{add_scaled, gram};
+use super::min_norm::nearest_to_origin;
+use super::scaled::{ScaledModel, direction};
+
+/// Subdivisions of one triangle pair at the most. When they are used up the best lower bound so far
+/// stands: still certified, only less tight. Hit in practice only by modes of rank 1 and 2.
+const SUBDIVISIONS: usize = 500;
+
+/// Triangles are halved at most this often in each direction, so corner weights stay exact.
+const DEPTH: u8 = 20;
+
+/// What a search still needs to know of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    /// Radii of at least this change nothing.
+    pub(crate) cap: f64,
+    /// The smallest upper bound found so far.
+    pub(crate) upper: f64,
+    /// Relative error allowed.
+    pub(crate) epsilon: f64,
+}
+
+impl Target {
+    /// A lower bound of at least this needs no refinement.
+    pub(crate) fn enough(&self) -> f64 {
+        self.cap.min(self.upper * (1.0 - self.epsilon))
+    }
+
+    fn found(&mut self, upper: f64) {
+        if upper < self.upper {
+            self.upper = upper;
+        }
+    }
+}
+
+/// Corner weights of a sub-triangle over the corners of its triangle: multiples of 2^-20, exact.
+type Weights = [DVec3; 3];
+
+const WHOLE: Weights = [DVec3::X, DVec3::Y, DVec3::Z];
+
+/// A part of a triangle pair that is not refined yet.
+struct Part {
+    lower: f64,
+    serial: u32,
+    x: Weights,
+    y: Weights,
+    depth_x: u8,
+    depth_y: u8,
+}
+
+/// Smallest lower bound first, then first made first.
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.lower.total_cmp(&self.lower).then(other.serial.cmp(&self.serial))
+    }
+}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+/// Bounds triangle pairs; owns the scratch memory for it.
+pub(crate) struct PairRefiner<'a> {
+    model: &'a ScaledModel,
+    corner_modes: Vec<f64>,
+    projections: Vec<f64>,
+    mean: Vec<f64>,
+    affine: AffineScratch,
+    parts: BinaryHeap<Part>,
+}
+
+impl<'a> PairRefiner<'a> {
+    pub(crate) fn new(model: &'a ScaledModel) -> Self {
+        let row = model.row;
+        Self {
+            model,
+            corner_modes: vec![0.0; 6 * 3 * row],
+            projections: vec![0.0; 6 * row],
+            mean: vec![0.0; 3 * row],
+            affine: AffineScratch::new(row),
+            parts: BinaryHeap::new(),
+        }
+    }
+
+    /// A cheap certified lower bound: the direction between the centroids.
+    pub(crate) fn estimate(&mut self, face_x: u32, face_y: u32) -> f64 {
+        let pair = self.pair(face_x, face_y);
+        let differences = pair.differences();
+        match direction(differences.iter().sum()) {
+            Some(n) => direction_bound(&pair, &differences, n, &self.model.error, &mut self.projections),
+            None => 0.0,
+        }
+    }
+
+    fn pair(&self, face_x: u32, face_y: u32) -> TrianglePair<'a> {
+        let model = self.model;
+        let (x, y) = (model.faces[face_x as usize], model.faces[face_y as usize]);
+        TrianglePair {
+            x: x.map(|v| model.positions[v as usize]),
+            y: y.map(|v| model.positions[v as usize]),
+            modes_x: x.map(|v| model.modes(v)),
+            modes_y: y.map(|v| model.modes(v)),
+        }
+    }
+
+    /// A certified lower bound for two triangles, refined until it is at least `target.enough()` or certain
+    /// to be as good as asked; upper bounds met on the way lower `target.upper`.
+    pub(crate) fn refine(&mut self, face_x: u32, face_y: u32, target: &mut Target) -> f64 {
+        let pair = self.pair(face_x, face_y);
+        let lower = self.bound(&pair, target);
+        if lower >= target.enough() || lower <= 0.0 {
+            return lower;
+        }
+        self.subdivide(&pair, lower, target)
+    }
+
+    /// Best-first subdivision. The result is the smallest lower bound of the parts that remain.
+    fn subdivide(&mut self, whole: &TrianglePair<'_>, lower: f64, target: &mut Target) -> f64 {
+        let mut parts = std::mem::take(&mut self.parts);
+        let mut corner_modes = std::mem::take(&mut self.corner_modes);
+        parts.clear();
+        parts.push(Part { lower, serial: 0, x: WHOLE, y: WHOLE, depth_x: 0, depth_y: 0 });
+        let mut serial = 0;
+        // Parts that can be halved no further.
+        let mut settled = f64::INFINITY;
+        for _ in 0..SUBDIVISIONS {
+            let Some(part) = parts.pop() else { break };
+            if part.lower >= target.enough().min(settled) || part.lower <= 0.0 {
+                parts.push(part);
+                break;
+            }
+            // Halve the part whose modes vary more, so that both shrink alike.
+            let spread = |corners: &[&[f64]; 3], depth: u8| {
+                let d = |a: usize, b: usize| super::lanes::squared_distance(corners[a], corners[b]);
+                d(0, 1).max(d(1, 2)).max(d(0, 2)) * 0.25_f64.powi(i32::from(depth))
+            };
+            let split_x = spread(&whole.modes_x, part.depth_x) >= spread(&whole.modes_y, part.depth_y);
+            let depth = if split_x { part.depth_x } else { part.depth_y };
+            if depth >= DEPTH {
+                settled = settled.min(part.lower);
+                continue;
+            }
+            for quarter in quarters(if split_x { &part.x } else { &part.y }) {
+                let (x, y) = if split_x { (quarter, part.y) } else { (part.x, quarter) };
+                let bound = {
+                    let (modes_x, modes_y) = corner_modes.split_at_mut(9 * self.model.row);
+                    let sub = TrianglePair {
+                        x: x.map(|w| combine(&whole.x, w)),
+                        y: y.map(|w| combine(&whole.y, w)),
+                        modes_x: combine_modes(&whole.modes_x, &x, modes_x),
+                        modes_y: combine_modes(&whole.modes_y, &y, modes_y),
+                    };
+                    self.bound(&sub, target)
+                };
+                serial += 1;
+                parts.push(Part {
+                    lower: bound.max(part.lower),
+                    serial,
+                    x,
+                    y,
+                    depth_x: part.depth_x + u8::from(split_x),
+                    depth_y: part.depth_y + u8::from(!split_x),
+                });
+            }
+        }
+        let lower = parts.peek().map_or(settled, |part| part.lower.min(settled));
+        self.parts = parts;
+        self.corner_modes = corner_modes;
+        lower
+    }
+
+    /// The best of the cheap bounds for one pair of (sub-)triangles.
+    fn bound(&mut self, pair: &TrianglePair<'_>, target: &mut Target) -> f64 {
+        let error = self.model.error;
+        let differences = pair.differences();
+        // The rest gap, from the Euclidean closest points.
+        let closest = nearest_to_origin(&differences);
+        let Some(n) = direction(closest.point) else { return 0.0 };
+        let delta = rest_distance(&differences, n, &error);
+        if delta <= 0.0 {
+            return 0.0;
+        }
+        let mut lower = direction_bound(pair, &differences, n, &error, &mut self.projections);
+        if lower >= target.enough() {
+            return lower;
+        }
+        lower = lower.max(affine_bound(pair, &differences, delta, target.enough(), &error, &mut self.affine));
+        if lower >= target.enough() {
+            return lower;
+        }
+        // Re-centre: the closest points in the metric that the modes at the last ones induce.
+        let mut weights = closest.weights;
+        for _ in 0..3 {
+            let gram = self.gram_at(pair, &weights);
+            let spread = 1e-6 * (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z);
+            let metric = gram + DMat3::from_diagonal(DVec3::splat(spread));
+            let Some(factor) = inverse_factor(metric) else { break };
+            let stretched = differences.map(|d| factor * d);
+            let nearest = nearest_to_origin(&stretched);
+            weights = nearest.weights;
+            let Some(n) = direction(factor.transpose() * nearest.point) else { break };
+            let better = direction_bound(pair, &differences, n, &error, &mut self.projections);
+            target.found(self.reach(pair, &differences, &weights));
+            let gained = better > lower * 1.001;
+            lower = lower.max(better);
+            if lower >= target.enough() || !gained {
+                break;
+            }
+        }
+        lower
+    }
+
+    /// The Gram matrix of the relative modes at the points with the given weights.
+    fn gram_at(&mut self, pair: &TrianglePair<'_>, weights: &[f64; 9]) -> DMat3 {
+        self.mean.fill(0.0);
+        for i in 0..3 {
+            let x: f64 = weights[3 * i..3 * i + 3].iter().sum();
+            let y: f64 = weights[i..].iter().step_by(3).sum();
+            if x != 0.0 {
+                add_scaled(&mut self.mean, -x, pair.modes_x[i]);
+            }
+            if y != 0.0 {
+                add_scaled(&mut self.mean, y, pair.modes_y[i]);
+            }
+        }
+        let [xx, xy, xz, yy, yz, zz] = gram(&self.mean);
+        DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz))
+    }
+
+    /// An upper bound: the smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`.
+    /// Infinite where the modes cannot move them in all directions (then upper bounds come from elsewhere).
+    fn reach(&mut self, pair: &TrianglePair<'_>, differences: &[DVec3; 9], weights: &[f64; 9]) -> f64 {
+        let gram = self.gram_at(pair, weights);
+        let d: DVec3 = differences.iter().zip(weights).map(|(d, w)| *d * *w).sum();
+        let scale = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
+        if gram.determinant() <= 1e-18 * scale * scale * scale {
+            return f64::INFINITY;
+        }
+        let square = d.dot(gram.inverse() * d);
+        if square > 0.0 { square.sqrt() } else { f64::INFINITY }
+    }
+}
+
+/// `L^-1` of the Cholesky factor of a 3 x 3 matrix, or none when it is not positive definite.
+fn inverse_factor(m: DMat3) -> Option<DMat3> {
+    let l00 = m.x_axis.x.sqrt();
+    let l10 = m.x_axis.y / l00;
+    let l20 = m.x_axis.z / l00;
+    let l11 = (m.y_axis.y - l10 * l10).sqrt();
+    let l21 = (m.y_axis.z - l20 * l10) / l11;
+    let l22 = (m.z_axis.z - l20 * l20 - l21 * l21).sqrt();
+    let factor =
+        DMat3::from_cols(DVec3::new(l00, l10, l20), DVec3::new(0.0, l11, l21), DVec3::new(0.0, 0.0, l22));
+    let inverse = factor.inverse();
+    (inverse.is_finite() && l00 > 0.0 && l11 > 0.0 && l22 > 0.0).then_some(inverse)
+}
+
+/// The four quarters of a triangle by edge midpoints, as corner weights.
+fn quarters(w: &Weights) -> [Weights; 4] {
+    let [a, b, c] = *w;
+    let (ab, bc, ca) = ((a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5);
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+}
+
+fn combine(corners: &[DVec3; 3], w: DVec3) -> DVec3 {
+    corners[0] * w.x + corners[1] * w.y + corners[2] * w.z
+}
+
+/// The modes at three points of a triangle, written to `out` (nine rows).
+fn combine_modes<'b>(corners: &[&[f64]; 3], weights: &Weights, out: &'b mut [f64]) -> [&'b [f64]; 3] {
+    let (first, rest) = out.split_at_mut(out.len() / 3);
+    let (second, third) = rest.split_at_mut(first.len());
+    for (out, w) in [&mut *first, &mut *second, &mut *third].into_iter().zip(weights) {
+        let corners = corners[0].iter().zip(corners[1]).zip(corners[2]);
+        for (out, ((a, b), c)) in out.iter_mut().zip(corners) {
+            *out = a * w.x + b * w.y + c * w.z;
+        }
+    }
+    [first, second, third]
+}

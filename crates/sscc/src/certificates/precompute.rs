@@ -1,0 +1,154 @@
+//! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
+//! pairs)` (paper, section 5.2).
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::global::global_radius;
+use super::search::Search;
+use super::{CertificateParts, CertifyOptions, Digest};
+use crate::bounds::{ClusterBounds, ScaledModel};
+use crate::hierarchy::{Hierarchy, Node};
+use crate::metric::check_scaled_modes;
+use crate::{Error, Progress, ReducedModel};
+
+pub(super) fn compute(
+    model: &ReducedModel,
+    options: &CertifyOptions,
+    progress: &dyn Progress,
+) -> Result<CertificateParts, Error> {
+    if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
+        return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
+    }
+    let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
+    check_scaled_modes(model.mesh(), model.modes(), &metric)?;
+    let scaled = ScaledModel::new(model, &metric);
+    let hierarchy = Hierarchy::build(model, &metric);
+    let clusters = ClusterBounds::new(&scaled, &hierarchy);
+    let global_radius = global_radius(model, &metric);
+    let work = Work { scaled: &scaled, hierarchy: &hierarchy, clusters: &clusters, options, global_radius };
+    let threads = options.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let (node_radii, root_pair_radii) = match pool {
+        Ok(pool) => pool.install(|| work.run(progress))?,
+        Err(_) => work.run(progress)?, // no more threads to be had: the global pool serves as well
+    };
+    Ok(CertificateParts {
+        digest: Digest::of(model, &metric),
+        rest_collisions: 0,
+        hierarchy,
+        metric,
+        epsilon: options.epsilon,
+        global_radius,
+        node_radii,
+        root_pair_radii,
+    })
+}
+
+struct Work<'a> {
+    scaled: &'a ScaledModel,
+    hierarchy: &'a Hierarchy,
+    clusters: &'a ClusterBounds,
+    options: &'a CertifyOptions,
+    global_radius: f64,
+}
+
+impl Work<'_> {
+    /// Nodes of one level are independent of each other: level by level from the leaves, each result
+    /// depends only on the model, whatever the number of threads.
+    fn run(&self, progress: &dyn Progress) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let nodes = self.hierarchy.nodes();
+        let mut radii = vec![self.global_radius; nodes.len()];
+        let tally = Tally::new(progress, nodes.len() + 5);
+        for level in self.hierarchy.levels().into_iter().rev() {
+            if level.start == 0 {
+                break;
+            }
+            let computed: Vec<f64> = level
+                .clone()
+                .into_par_iter()
+                .map_init(
+                    || self.search(),
+                    |search, n| tally.step(|| self.node(search, n as u32, &nodes[n], &radii)),
+                )
+                .collect();
+            radii[level].copy_from_slice(&computed);
+        }
+        let root = &nodes[0];
+        let mut pair_radii = Vec::new();
+        if root.is_leaf() {
+            radii[0] = self.node(&mut self.search(), 0, root, &radii);
+        } else {
+            // Between the children of the root each pair has a radius of its own.
+            pair_radii = child_pairs(root)
+                .collect::<Vec<_>>()
+                .into_par_iter()
+                .map(|pair| tally.step(|| self.search().between([pair], self.global_radius)))
+                .collect();
+            radii[0] = self.least_child(root, &radii);
+            radii[0] = pair_radii.iter().copied().fold(radii[0], f64::min);
+        }
+        tally.finish()?;
+        Ok((radii, pair_radii))
+    }
+
+    fn search(&self) -> Search<'_> {
+        Search::new(self.scaled, self.hierarchy, self.clusters, self.options.epsilon)
+    }
+
+    fn least_child(&self, node: &Node, radii: &[f64]) -> f64 {
+        node.children().map(|child| radii[child as usize]).fold(self.global_radius, f64::min)
+    }
+
+    fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64]) -> f64 {
+        let cap = self.least_child(node, radii);
+        if cap <= 0.0 {
+            return 0.0;
+        }
+        if node.is_leaf() { search.within_leaf(n, cap) } else { search.between(child_pairs(node), cap) }
+    }
+}
+
+/// All pairs of children, in the order (0,1), (0,2), ..., (2,3).
+fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
+    let children = node.children();
+    children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
+}
+
+/// Counts finished steps, reports them, and skips the rest once the caller has cancelled.
+struct Tally<'a> {
+    progress: &'a dyn Progress,
+    done: AtomicUsize,
+    total: usize,
+    cancelled: AtomicBool,
+}
+
+impl<'a> Tally<'a> {
+    fn new(progress: &'a dyn Progress, total: usize) -> Self {
+        Self { progress, done: AtomicUsize::new(0), total, cancelled: AtomicBool::new(false) }
+    }
+
+    fn step(&self, work: impl FnOnce() -> f64) -> f64 {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return 0.0;
+        }
+        let result = work();
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(256) || done == self.total {
+            self.progress.report(done, self.total);
+        }
+        if self.progress.is_cancelled() {
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
+        result
+    }
+
+    fn finish(&self) -> Result<(), Error> {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return Err(Error::Cancelled);
+        }
+        self.progress.report(self.total, self.total);
+        Ok(())
+    }
+}

@@ -1,0 +1,179 @@
+//! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::bounds::{ClusterBounds, ClusterScratch, PairRefiner, ScaledModel, Target, cluster_pair};
+use crate::hierarchy::Hierarchy;
+
+/// Candidates waiting at the most, beside those of the pair at hand. Beyond it the search goes on depth
+/// first, in constant memory.
+const WAITING: usize = 1 << 20;
+
+/// Two sets of triangles whose pairs are still to be looked at, or one triangle pair.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Candidate {
+    Triangles(u32, u32),
+    Nodes(u32, u32),
+}
+
+struct Entry {
+    lower: f64,
+    candidate: Candidate,
+}
+
+/// Smallest lower bound first; triangle pairs before nodes; then by index, so that the order is the same in
+/// every run.
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.lower.total_cmp(&self.lower).then_with(|| other.candidate.cmp(&self.candidate))
+    }
+}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Entry {}
+
+/// Searches triangle pairs of one model; owns its scratch memory.
+pub(super) struct Search<'a> {
+    model: &'a ScaledModel,
+    hierarchy: &'a Hierarchy,
+    clusters: &'a ClusterBounds,
+    refiner: PairRefiner<'a>,
+    scratch: ClusterScratch,
+    waiting: BinaryHeap<Entry>,
+    epsilon: f64,
+    target: Target,
+    /// The smallest certified radius among the pairs that are settled.
+    settled: f64,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        model: &'a ScaledModel,
+        hierarchy: &'a Hierarchy,
+        clusters: &'a ClusterBounds,
+        epsilon: f64,
+    ) -> Self {
+        Self {
+            model,
+            hierarchy,
+            clusters,
+            refiner: PairRefiner::new(model),
+            scratch: ClusterScratch::new(model.row),
+            waiting: BinaryHeap::new(),
+            epsilon,
+            target: Target { cap: 0.0, upper: 0.0, epsilon },
+            settled: 0.0,
+        }
+    }
+
+    /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
+    pub(super) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
+        self.start(cap);
+        for (n, m) in pairs {
+            self.consider(Candidate::Nodes(n, m), 0.0);
+        }
+        self.run()
+    }
+
+    /// A certified radius, at most `cap`, for all triangle pairs within a leaf.
+    pub(super) fn within_leaf(&mut self, leaf: u32, cap: f64) -> f64 {
+        self.start(cap);
+        let triangles = self.hierarchy.triangles(&self.hierarchy.nodes()[leaf as usize]);
+        for (i, &x) in triangles.iter().enumerate() {
+            for &y in &triangles[i + 1..] {
+                self.consider(Candidate::Triangles(x, y), 0.0);
+            }
+        }
+        self.run()
+    }
+
+    fn start(&mut self, cap: f64) {
+        self.waiting.clear();
+        self.target = Target { cap, upper: f64::INFINITY, epsilon: self.epsilon };
+        self.settled = cap;
+    }
+
+    /// Takes the candidate with the smallest lower bound until none can lower the result by more than epsilon.
+    fn run(&mut self) -> f64 {
+        while let Some(entry) = self.waiting.pop() {
+            if entry.lower >= self.enough() {
+                return entry.lower.min(self.settled);
+            }
+            self.open(entry.candidate, entry.lower);
+            if self.settled <= 0.0 {
+                return 0.0;
+            }
+        }
+        self.settled
+    }
+
+    /// Candidates whose radius is at least this cannot change the result beyond epsilon.
+    fn enough(&self) -> f64 {
+        self.target.enough().min(self.settled)
+    }
+
+    /// Bounds a candidate, part of one with the bound `inherited`, and keeps it if it matters.
+    fn consider(&mut self, candidate: Candidate, inherited: f64) {
+        let enough = self.enough();
+        let lower = match candidate {
+            Candidate::Nodes(n, m) => {
+                cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
+            }
+            Candidate::Triangles(x, y) if self.model.are_adjacent(x, y) => return,
+            Candidate::Triangles(x, y) => self.refiner.estimate(x, y),
+        };
+        let lower = lower.max(inherited);
+        if lower >= self.settled {
+            return;
+        }
+        if self.waiting.len() < WAITING {
+            self.waiting.push(Entry { lower, candidate });
+        } else if lower < self.enough() {
+            self.open(candidate, lower);
+        } else {
+            self.settled = lower;
+        }
+    }
+
+    fn open(&mut self, candidate: Candidate, lower: f64) {
+        match candidate {
+            Candidate::Triangles(x, y) => {
+                let refined = self.refiner.refine(x, y, &mut self.target);
+                self.settled = self.settled.min(refined.max(lower));
+            }
+            Candidate::Nodes(n, m) => self.open_nodes(n, m, lower),
+        }
+    }
+
+    /// Splits the larger of two nodes, or two leaves into their triangle pairs.
+    fn open_nodes(&mut self, n: u32, m: u32, lower: f64) {
+        let hierarchy = self.hierarchy;
+        let (node_n, node_m) = (&hierarchy.nodes()[n as usize], &hierarchy.nodes()[m as usize]);
+        if node_n.is_leaf() && node_m.is_leaf() {
+            for &x in hierarchy.triangles(node_n) {
+                for &y in hierarchy.triangles(node_m) {
+                    self.consider(Candidate::Triangles(x, y), lower);
+                }
+            }
+            return;
+        }
+        let larger = self.clusters.size(n) >= self.clusters.size(m);
+        if node_m.is_leaf() || (!node_n.is_leaf() && larger) {
+            node_n.children().for_each(|child| self.consider(Candidate::Nodes(child, m), lower));
+        } else {
+            node_m.children().for_each(|child| self.consider(Candidate::Nodes(n, child), lower));
+        }
+    }
+}
