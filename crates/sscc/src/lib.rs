@@ -1,6 +1,7 @@
 //! Proven self-collision detection for reduced deformable models.
 
 mod error;
+mod intersect;
 pub mod limits;
 mod mesh;
 mod metric;
@@ -8,6 +9,7 @@ mod model;
 mod modes;
 
 pub use error::Error;
+pub use intersect::intersect_triangle_triangle;
 pub use mesh::TriMesh;
 pub use metric::{Metric, MetricKind, vertex_areas};
 pub use model::ReducedModel;
