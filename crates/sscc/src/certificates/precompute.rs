@@ -1,6 +1,7 @@
 //! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
 //! pairs)` (paper, section 5.2).
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -11,7 +12,7 @@ use super::{CertificateParts, CertifyOptions, Digest};
 use crate::bounds::{ClusterBounds, ScaledModel};
 use crate::hierarchy::{Hierarchy, Node};
 use crate::metric::check_scaled_modes;
-use crate::{Error, Progress, ReducedModel};
+use crate::{Error, Method, Progress, Query, ReducedModel};
 
 pub(super) fn compute(
     model: &ReducedModel,
@@ -34,9 +35,13 @@ pub(super) fn compute(
         Ok(pool) => pool.install(|| work.run(progress))?,
         Err(_) => work.run(progress)?, // no more threads to be had: the global pool serves as well
     };
+    let rest_collisions = {
+        let mut rest = Query::on_hierarchy(model, Cow::Borrowed(&hierarchy), Method::Traditional);
+        rest.discrete(&vec![0.0; model.rank()])?.len() as u64
+    };
     Ok(CertificateParts {
         digest: Digest::of(model, &metric),
-        rest_collisions: 0,
+        rest_collisions,
         hierarchy,
         metric,
         epsilon: options.epsilon,

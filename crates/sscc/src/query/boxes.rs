@@ -1,0 +1,137 @@
+//! Positions and boxes at the current q, each computed at most once for a query.
+
+use glam::DVec3;
+
+use super::Method;
+use super::bd_tree::BdTree;
+use crate::ReducedModel;
+use crate::hierarchy::Hierarchy;
+
+/// An axis-aligned box: lower and upper corner.
+pub(super) type Aabb = (DVec3, DVec3);
+
+/// Whether two boxes have no point in common. NaN counts as overlap.
+#[inline]
+pub(super) fn disjoint(a: &Aabb, b: &Aabb) -> bool {
+    (a.0.cmpgt(b.1) | b.0.cmpgt(a.1)).any()
+}
+
+/// Vertex positions, triangle boxes and node boxes. Lazily (BD-tree) each entry carries the number of the query
+/// it was computed for; the traditional method computes all of them first.
+pub(super) struct Boxes {
+    bd_tree: Option<BdTree>,
+    query: u32,
+    margin: f64,
+    positions: Vec<DVec3>,
+    position_query: Vec<u32>,
+    triangles: Vec<Aabb>,
+    leaf_query: Vec<u32>,
+    nodes: Vec<Aabb>,
+    node_query: Vec<u32>,
+}
+
+impl Boxes {
+    pub(super) fn new(model: &ReducedModel, hierarchy: &Hierarchy, method: Method) -> Self {
+        let (vertices, triangles, nodes) = match method {
+            Method::BruteForce => (0, 0, 0),
+            _ => (model.mesh().rest_positions().len(), model.mesh().faces().len(), hierarchy.nodes().len()),
+        };
+        let lazy = matches!(method, Method::Certified | Method::BdTree);
+        Self {
+            bd_tree: lazy.then(|| BdTree::new(model, hierarchy)),
+            query: 0,
+            margin: 0.0,
+            positions: vec![DVec3::ZERO; vertices],
+            position_query: vec![0; vertices],
+            triangles: vec![(DVec3::ZERO, DVec3::ZERO); triangles],
+            leaf_query: vec![0; nodes],
+            nodes: vec![(DVec3::ZERO, DVec3::ZERO); nodes],
+            node_query: vec![0; nodes],
+        }
+    }
+
+    /// Starts a new q: forgets all boxes, or (traditional) refits all of them.
+    pub(super) fn update(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, q: &[f64], reach: f64) {
+        if self.bd_tree.is_some() {
+            self.margin = reach * ((4 * q.len() + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE;
+            self.query = match self.query.checked_add(1) {
+                Some(next) => next,
+                None => {
+                    [&mut self.position_query, &mut self.leaf_query, &mut self.node_query]
+                        .into_iter()
+                        .for_each(|stamps| stamps.fill(0));
+                    1
+                }
+            };
+            return;
+        }
+        for (v, x) in self.positions.iter_mut().enumerate() {
+            *x = model.position(v as u32, q);
+        }
+        for (corners, aabb) in model.mesh().faces().iter().zip(&mut self.triangles) {
+            *aabb = triangle_box(corners.map(|v| self.positions[v as usize]));
+        }
+        for n in (0..self.nodes.len()).rev() {
+            let node = &hierarchy.nodes()[n];
+            self.nodes[n] = if node.is_leaf() {
+                union(hierarchy.triangles(node).iter().map(|&t| self.triangles[t as usize]))
+            } else {
+                let children = node.children().start as usize..node.children().end as usize;
+                union(self.nodes[children].iter().copied())
+            };
+        }
+    }
+
+    /// The box of a node at the current q.
+    #[inline]
+    pub(super) fn node(&mut self, n: u32, q: &[f64]) -> Aabb {
+        if let Some(bd_tree) = &self.bd_tree
+            && self.node_query[n as usize] != self.query
+        {
+            self.nodes[n as usize] = bd_tree.at(n, q, self.margin);
+            self.node_query[n as usize] = self.query;
+        }
+        self.nodes[n as usize]
+    }
+
+    /// Makes the positions and boxes of a leaf's triangles current.
+    #[inline]
+    pub(super) fn open_leaf(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, leaf: u32, q: &[f64]) {
+        if self.bd_tree.is_none() || self.leaf_query[leaf as usize] == self.query {
+            return;
+        }
+        self.leaf_query[leaf as usize] = self.query;
+        for &t in hierarchy.triangles(&hierarchy.nodes()[leaf as usize]) {
+            let corners = model.mesh().faces()[t as usize].map(|v| {
+                let i = v as usize;
+                if self.position_query[i] != self.query {
+                    self.positions[i] = model.position(v, q);
+                    self.position_query[i] = self.query;
+                }
+                self.positions[i]
+            });
+            self.triangles[t as usize] = triangle_box(corners);
+        }
+    }
+
+    /// The box of a triangle of an open leaf.
+    #[inline]
+    pub(super) fn triangle(&self, t: u32) -> &Aabb {
+        &self.triangles[t as usize]
+    }
+
+    /// The corners of a triangle of an open leaf.
+    #[inline]
+    pub(super) fn corners(&self, face: [u32; 3]) -> [DVec3; 3] {
+        face.map(|v| self.positions[v as usize])
+    }
+}
+
+/// The box of three points.
+pub(super) fn triangle_box([a, b, c]: [DVec3; 3]) -> Aabb {
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+fn union(boxes: impl Iterator<Item = Aabb>) -> Aabb {
+    boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)))
+}

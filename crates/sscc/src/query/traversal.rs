@@ -1,0 +1,105 @@
+//! Algorithm 1 of the paper: the hierarchy against itself, with certificates where there are some.
+
+use super::boxes::disjoint;
+use super::{Method, Query};
+use crate::intersect_triangle_triangle;
+
+impl Query<'_> {
+    /// Appends all colliding pairs at q. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for
+    /// two nodes without common triangles.
+    pub(super) fn traverse(&mut self, q: &[f64]) {
+        self.stack.clear();
+        self.stack.push((0, 0));
+        while let Some((n, m)) = self.stack.pop() {
+            if n == m { self.intra(n, q) } else { self.inter(n, m, q) }
+        }
+    }
+
+    /// The certificates, if this method uses them.
+    fn used_certificates(&self) -> Option<&crate::CertificateParts> {
+        self.certificates.filter(|_| self.method == Method::Certified).map(crate::Certificates::parts)
+    }
+
+    /// Lines 1 to 14: a node against itself.
+    fn intra(&mut self, n: u32, q: &[f64]) {
+        if self.used_certificates().is_some_and(|c| self.norm < c.node_radii[n as usize]) {
+            return;
+        }
+        self.statistics.opened += 1;
+        let node = self.hierarchy.nodes()[n as usize];
+        if node.is_leaf() {
+            self.boxes.open_leaf(self.model, &self.hierarchy, n, q);
+            let first = node.first_triangle as usize;
+            for i in first..first + node.triangle_count as usize {
+                for j in i + 1..first + node.triangle_count as usize {
+                    self.test(i, j);
+                }
+            }
+            return;
+        }
+        // Only the root's children have certificates as pairs.
+        let mut pair = 0;
+        for a in node.children() {
+            self.stack.push((a, a));
+            for b in a + 1..node.children().end {
+                let certified =
+                    n == 0 && self.used_certificates().is_some_and(|c| self.norm < c.root_pair_radii[pair]);
+                if !certified {
+                    self.stack.push((a, b));
+                }
+                pair += 1;
+            }
+        }
+    }
+
+    /// Lines 15 to 30: two nodes against each other.
+    fn inter(&mut self, n: u32, m: u32, q: &[f64]) {
+        self.statistics.box_tests += 1;
+        let (box_n, box_m) = (self.boxes.node(n, q), self.boxes.node(m, q));
+        if disjoint(&box_n, &box_m) {
+            return;
+        }
+        self.statistics.opened += 1;
+        let (node_n, node_m) = (self.hierarchy.nodes()[n as usize], self.hierarchy.nodes()[m as usize]);
+        if node_n.is_leaf() && node_m.is_leaf() {
+            self.boxes.open_leaf(self.model, &self.hierarchy, n, q);
+            self.boxes.open_leaf(self.model, &self.hierarchy, m, q);
+            let first = node_m.first_triangle as usize;
+            for i in node_n.first_triangle as usize..(node_n.first_triangle + node_n.triangle_count) as usize
+            {
+                // Most triangles of a leaf stay clear of the whole other leaf.
+                let t = self.hierarchy.order()[i];
+                if disjoint(self.boxes.triangle(t), &box_m) {
+                    continue;
+                }
+                for j in first..first + node_m.triangle_count as usize {
+                    self.test(i, j);
+                }
+            }
+        } else if node_m.is_leaf() || (!node_n.is_leaf() && node_n.triangle_count >= node_m.triangle_count) {
+            node_n.children().for_each(|child| self.stack.push((child, m)));
+        } else {
+            node_m.children().for_each(|child| self.stack.push((n, child)));
+        }
+    }
+
+    /// Two triangles of open leaves, by their places in the hierarchy's order.
+    #[inline]
+    fn test(&mut self, i: usize, j: usize) {
+        let (a, b) = (self.hierarchy.order()[i], self.hierarchy.order()[j]);
+        self.statistics.box_tests += 1;
+        if disjoint(self.boxes.triangle(a), self.boxes.triangle(b)) {
+            return;
+        }
+        let mesh = self.model.mesh();
+        if mesh.are_adjacent(a, b) {
+            return;
+        }
+        self.statistics.triangle_tests += 1;
+        let faces = mesh.faces();
+        let (x, y) = (self.boxes.corners(faces[a as usize]), self.boxes.corners(faces[b as usize]));
+        if intersect_triangle_triangle(&x, &y) {
+            self.pairs.push((a.min(b), a.max(b)));
+        }
+    }
+}
