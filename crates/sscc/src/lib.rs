@@ -4,6 +4,7 @@ mod bounds;
 mod certificates;
 mod error;
 pub mod hierarchy;
+mod intersect;
 pub mod limits;
 mod mesh;
 mod metric;
@@ -13,6 +14,7 @@ mod progress;
 
 pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, metric_names};
 pub use error::Error;
+pub use intersect::intersect_triangle_triangle;
 pub use mesh::TriMesh;
 pub use metric::{Metric, MetricKind, vertex_areas};
 pub use model::ReducedModel;

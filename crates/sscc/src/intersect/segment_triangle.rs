@@ -1,0 +1,30 @@
+//! A closed segment and a closed triangle in space.
+
+use glam::DVec3;
+
+use super::orientation::{Plane, orient3d, strictly_one_side};
+use super::planar::{injective_projection, intersect_segment_triangle_2d, project};
+
+/// Whether a closed segment, which may be a point, and a closed triangle that is not degenerate have a
+/// point in common.
+pub(super) fn intersect_segment_triangle(segment: [DVec3; 2], triangle: &[DVec3; 3]) -> bool {
+    let plane = Plane::through(triangle);
+    let [p, q] = segment;
+    let sides = [plane.side(p), plane.side(q)];
+    if strictly_one_side(&sides) {
+        return false;
+    }
+    if sides == [0, 0] {
+        return injective_projection(triangle).is_some_and(|axis| {
+            let project = |x| project(x, axis);
+            intersect_segment_triangle_2d(segment.map(project), triangle.map(project))
+        });
+    }
+    // The line crosses the plane at one point x, which is on the segment. The volume of p, q and an edge is
+    // (q - p) . ((start - x) x (end - x)): the barycentric coordinate of x opposite to that edge, times
+    // (q - p) . normal, which is not 0. So the coordinates are all >= 0 (as their sum is 1, they cannot be
+    // all <= 0) exactly if the volumes do not have both signs.
+    let [a, b, c] = *triangle;
+    let volumes = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    volumes.iter().all(|v| *v >= 0) || volumes.iter().all(|v| *v <= 0)
+}
