@@ -231,6 +231,19 @@ mod tests {
         assert!(counts[0] > 500 && counts[2] > 500, "one-sided: {counts:?}");
     }
 
+    /// In exact arithmetic the first product is the smaller one. Rounded, its difference of coordinates goes up
+    /// and those of the second go down, to the two sides of half the smallest denormal number.
+    #[test]
+    fn underflow_does_not_deceive_the_planar_filter() {
+        let power = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
+        let a = DVec2::new(-(power(-591) + power(-598)), -(power(-591) - power(-598)));
+        let b = DVec2::splat(power(-538));
+        let c = DVec2::new(power(-537), power(-537).next_down());
+        assert!((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0);
+        assert_eq!(orient2d(a, b, c), -1);
+        assert_eq!(naive_2d(a, b, c), -1);
+    }
+
     /// Cancellation of very different numbers, with zeros.
     #[test]
     fn signs_are_exact_for_mixed_magnitudes() {

@@ -28,3 +28,21 @@ pub(super) fn intersect_segment_triangle(segment: [DVec3; 2], triangle: &[DVec3;
     let volumes = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
     volumes.iter().all(|v| *v >= 0) || volumes.iter().all(|v| *v <= 0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The caller has ruled out segments strictly on one side, but this test must not rely on it.
+    #[test]
+    fn segment_that_ends_before_the_plane() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let from = DVec3::new(0.25, 0.25, 1.0);
+        for (z, expected) in
+            [(-1.0, true), (0.0, true), (f64::from_bits(1), false), (0.5, false), (2.0, false)]
+        {
+            let segment = [from, DVec3::new(0.25, 0.25, z)];
+            assert_eq!(intersect_segment_triangle(segment, &triangle), expected, "{z}");
+        }
+    }
+}

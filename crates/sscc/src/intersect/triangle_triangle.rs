@@ -85,17 +85,8 @@ fn apex(sides: [i8; 3]) -> (usize, bool) {
     } else if s0 == s1 {
         2
     } else {
-        // -1, 0, 1 in some order: the greatest and the least are both alone.
-        return (
-            if s0 > 0 {
-                0
-            } else if s1 > 0 {
-                1
-            } else {
-                2
-            },
-            true,
-        );
+        // -1, 0, 1 in some order: the greatest and the least are both alone. The greatest.
+        usize::from(s1 > 0) + 2 * usize::from(s2 > 0)
     };
     (corner, sides[corner] > sides[(corner + 1) % 3])
 }
