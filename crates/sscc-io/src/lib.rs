@@ -1,1 +1,17 @@
-//! Placeholder.
+//! Every reader and writer of sscc: meshes, modes, arrays and the sealed containers.
+//!
+//! All readers take hostile bytes: they answer with an error of one line that names the file, the place in
+//! it and the cause. They never panic, and never allocate by a number that the file's size does not bear out.
+//! Files are read whole (a mapped file that is replaced while in use kills the process), and written
+//! whole or not at all.
+//!
+//! Each format can also be parsed from bytes ([`mesh::obj::parse`], ...), without a file.
+
+mod error;
+mod file;
+pub mod mesh;
+mod text;
+
+pub use error::{FormatError, IoError, Place};
+pub use file::{read_whole, write_whole};
+pub use mesh::read_mesh;
