@@ -5,13 +5,19 @@
 //! Files are read whole (a mapped file that is replaced while in use kills the process), and written
 //! whole or not at all.
 //!
-//! Each format can also be parsed from bytes ([`mesh::obj::parse`], ...), without a file.
+//! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 
 mod error;
 mod file;
 pub mod mesh;
+pub mod modes;
+pub mod npy;
+mod numbers;
 mod text;
 
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use mesh::read_mesh;
+pub use modes::read_modes;
+pub use npy::write_npy;
+pub use numbers::{Rows, read_rows, read_vector};
