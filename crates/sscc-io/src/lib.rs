@@ -7,16 +7,20 @@
 //!
 //! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 
+pub mod container;
 mod error;
 mod file;
+mod load;
 pub mod mesh;
 pub mod modes;
 pub mod npy;
 mod numbers;
 mod text;
 
+pub use container::{ModelInfo, read_model, write_model};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
+pub use load::load_model;
 pub use mesh::read_mesh;
 pub use modes::read_modes;
 pub use npy::write_npy;
