@@ -1,0 +1,117 @@
+//! The header of a container, in the one form that is written.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use safetensors::Dtype;
+
+use crate::FormatError;
+
+/// The header of any container begins so; the digest's 64 digits follow. They are always at the same place.
+pub(super) const PREFIX: &str = r#"{"__metadata__":{"blake3":""#;
+
+/// Bytes of the length in front of the header.
+pub(super) const LENGTH: usize = 8;
+
+/// Where the digest is in the file.
+pub(super) const DIGEST: std::ops::Range<usize> = LENGTH + PREFIX.len()..LENGTH + PREFIX.len() + 64;
+
+/// The key of the digest.
+pub(super) const DIGEST_KEY: &str = "blake3";
+
+/// Longer headers are refused on both sides: parsed JSON takes many times the memory of its text.
+pub(super) const LARGEST_HEADER: usize = 1 << 20;
+
+/// The types of entries in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Item {
+    F64,
+    U64,
+    U32,
+    U8,
+}
+
+impl Item {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "F64",
+            Self::U64 => "U64",
+            Self::U32 => "U32",
+            Self::U8 => "U8",
+        }
+    }
+
+    pub fn size(self) -> usize {
+        match self {
+            Self::F64 | Self::U64 => 8,
+            Self::U32 => 4,
+            Self::U8 => 1,
+        }
+    }
+
+    pub fn from_dtype(dtype: Dtype) -> Option<Self> {
+        Some(match dtype {
+            Dtype::F64 => Self::F64,
+            Dtype::U64 => Self::U64,
+            Dtype::U32 => Self::U32,
+            Dtype::U8 => Self::U8,
+            _ => return None,
+        })
+    }
+}
+
+/// What the header says of one tensor, apart from its place.
+pub(super) struct Entry {
+    pub name: String,
+    pub item: Item,
+    pub shape: Vec<usize>,
+    /// Bytes of its data.
+    pub size: usize,
+}
+
+/// Brings entries into the order of the file: large items first, so that all are aligned, then by name.
+pub(super) fn sort(entries: &mut [Entry]) {
+    entries.sort_by(|a, b| (Reverse(a.item.size()), &a.name).cmp(&(Reverse(b.item.size()), &b.name)));
+}
+
+/// The header of these entries (sorted) and text entries, padded to a multiple of 8.
+pub(super) fn to_text(
+    digest: &str,
+    texts: &BTreeMap<String, String>,
+    entries: &[Entry],
+) -> Result<String, FormatError> {
+    let json = |text: &str| serde_json::to_string(text).map_err(|e| FormatError::whole(e.to_string()));
+    let mut header = format!("{PREFIX}{digest}\"");
+    for (key, text) in texts {
+        header += &format!(",{}:{}", json(key)?, json(text)?);
+    }
+    header.push('}');
+    let mut begin = 0;
+    for Entry { name, item, shape, size } in entries {
+        let axes: Vec<String> = shape.iter().map(ToString::to_string).collect();
+        let (name, item, axes, end) = (json(name)?, item.name(), axes.join(","), begin + size);
+        // Writing to a String never fails.
+        let _ =
+            write!(header, r#",{name}:{{"dtype":"{item}","shape":[{axes}],"data_offsets":[{begin},{end}]}}"#);
+        begin = end;
+    }
+    header.push('}');
+    let padded = header.len().next_multiple_of(8);
+    header.extend(std::iter::repeat_n(' ', padded - header.len()));
+    if header.len() > LARGEST_HEADER {
+        return Err(FormatError::whole(format!("a header of {} bytes is too long", header.len())));
+    }
+    Ok(header)
+}
+
+/// The digest of a file: its BLAKE3 with the digits of the digest taken as zeros.
+///
+/// The file must be long enough to hold them.
+pub(super) fn digest(bytes: &[u8]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&bytes[..DIGEST.start]);
+    hasher.update(&[b'0'; 64]);
+    hasher.update(&bytes[DIGEST.end..]);
+    hasher.finalize().to_hex().to_string()
+}

@@ -1,0 +1,19 @@
+//! Containers: safetensors files sealed with a digest of themselves.
+//!
+//! A container is an ordinary safetensors file (NumPy and others read it): a JSON header with named tensors
+//! and text, then the data. Its first text entry, `blake3`, is the BLAKE3 of the whole file with this
+//! entry's own 64 digits taken as zeros, so that any flipped byte is refused: of the data, the header or
+//! the seal. The bytes are a function of the content: the same content gives the same file.
+
+mod header;
+mod kind;
+mod model;
+mod sealed;
+mod tensor;
+mod writer;
+
+pub use kind::{CERTIFICATES, Kind, MODEL};
+pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
+pub use sealed::Sealed;
+pub use tensor::{ANY, Tensor};
+pub use writer::SealedWriter;

@@ -1,0 +1,93 @@
+use super::*;
+
+/// Two triangles, three modes, numbers of all sizes and signs.
+fn model() -> ReducedModel {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1e-300, -0.0, 0.1), DVec3::ONE];
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [4, 3, 2]]).unwrap();
+    let modes = Modes::from_matrix(5, 3, |row, k| (row as f64 - 7.3) * 0.1_f64.powi(k as i32)).unwrap();
+    let metric = Metric::from_scales(MetricKind::Given, vec![0.1, 1.0, 1e3]).unwrap();
+    ReducedModel::with_metric(mesh, modes, metric).unwrap()
+}
+
+fn sample() -> Vec<u8> {
+    model_to_bytes(&model(), &ModelInfo::new("cm", "by hand")).unwrap()
+}
+
+/// A model file with one thing replaced.
+fn with(change: impl Fn(&str) -> Option<(Vec<usize>, Vec<f64>)>, faces: &[u32], metric: &str) -> Vec<u8> {
+    let mut writer = SealedWriter::new(MODEL);
+    writer.text("metric", metric).text("units", "").text("provenance", "");
+    writer.u32("faces", &[faces.len() / 3, 3], faces);
+    for (name, shape) in
+        [("rest_positions", vec![3, 3]), ("modes", vec![3, 3, 2]), ("metric_scales", vec![2])]
+    {
+        let size = shape.iter().product();
+        let (shape, values) =
+            change(name).unwrap_or_else(|| (shape, (0..size).map(|i| 1.0 + i as f64).collect()));
+        writer.f64(name, &shape, &values);
+    }
+    writer.finish().unwrap()
+}
+
+#[test]
+fn round_trip_is_exact() {
+    let model = model();
+    let (read, info) = model_from_bytes(&sample()).unwrap();
+    assert_eq!(info, ModelInfo::new("cm", "by hand"));
+    assert_eq!((read.mesh(), read.modes(), read.metric()), (model.mesh(), model.modes(), model.metric()));
+    let bits = |m: &ReducedModel| m.mesh().rest_positions().iter().map(|p| p.y.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&read), bits(&model), "-0 stays -0");
+    assert_eq!(model_to_bytes(&read, &info).unwrap(), sample());
+}
+
+#[test]
+fn modes_are_laid_out_for_numpy() {
+    let bytes = sample();
+    let modes = Sealed::parse(&bytes, MODEL).unwrap().f64("modes").unwrap();
+    assert_eq!(modes.shape, [5, 3, 3]);
+    // U[3 v + c, k] of the 15 x 3 matrix
+    assert_eq!(modes.values[(3 * 4 + 1) * 3 + 2], model().modes().of_vertex(4)[2].y);
+}
+
+#[test]
+fn every_flipped_byte_and_truncation_is_refused() {
+    let bytes = sample();
+    for at in 0..bytes.len() {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        assert!(model_from_bytes(&flipped).is_err(), "byte {at}");
+        assert!(model_from_bytes(&bytes[..at]).is_err(), "length {at}");
+    }
+}
+
+#[test]
+fn content_is_checked_under_any_seal() {
+    let message = |bytes: Vec<u8>| model_from_bytes(&bytes).unwrap_err().to_string();
+    let tensor = |name: &'static str, shape: &[usize], values: &[f64]| {
+        let (shape, values) = (shape.to_vec(), values.to_vec());
+        message(with(move |n| (n == name).then(|| (shape.clone(), values.clone())), &[0, 1, 2], "given"))
+    };
+    assert!(model_from_bytes(&with(|_| None, &[0, 1, 2], "given")).is_ok());
+    assert!(message(with(|_| None, &[0, 1, 3], "given")).contains("names vertex 3"));
+    assert!(message(with(|_| None, &[], "given")).contains("no triangles"));
+    assert_eq!(message(with(|_| None, &[0, 1, 2], "gold")), "metadata 'metric': unknown metric 'gold'");
+    assert!(
+        tensor("rest_positions", &[9], &[0.0; 9])
+            .starts_with("tensor 'rest_positions': it has the shape [9]")
+    );
+    assert!(tensor("modes", &[2, 3, 2], &[0.0; 12]).contains("[3, 3, any] was expected"));
+    assert!(tensor("modes", &[3, 3, 0], &[]).contains("it has the shape [2], [0] was expected"));
+    assert!(tensor("metric_scales", &[3], &[1.0; 3]).contains("[2] was expected"));
+    assert!(tensor("metric_scales", &[2], &[1.0, -1.0]).contains("metric weight 1"));
+    assert!(tensor("metric_scales", &[2], &[1e-300, 1.0]).contains("rescale the metric"));
+    assert!(tensor("rest_positions", &[3, 3], &[f64::NAN; 9]).starts_with("vertex 0"));
+    assert!(tensor("modes", &[3, 3, 2], &[f64::INFINITY; 18]).starts_with("mode 0 of vertex 0"));
+}
+
+#[test]
+fn unknown_tensors_are_refused() {
+    let mut writer = SealedWriter::new(MODEL);
+    writer.u8("weld", &[1], &[1]);
+    let message = model_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string();
+    assert_eq!(message, "tensor 'weld': not known in this version of the format");
+}

@@ -1,0 +1,113 @@
+//! Writing a container.
+
+use std::collections::BTreeMap;
+
+use super::Kind;
+use super::header::{self, DIGEST, DIGEST_KEY, Entry, Item};
+use crate::{FormatError, Place};
+
+/// Collects the tensors and texts of a container.
+///
+/// ```
+/// use sscc_io::container::{MODEL, Sealed, SealedWriter};
+///
+/// let mut writer = SealedWriter::new(MODEL);
+/// writer.text("units", "metres").f64("points", &[2, 3], &[0.0; 6]);
+/// let bytes = writer.finish()?;
+/// let file = Sealed::parse(&bytes, MODEL)?;
+/// assert_eq!(file.text("units")?, "metres");
+/// assert_eq!(file.f64("points")?.shape, [2, 3]);
+/// # Ok::<(), sscc_io::FormatError>(())
+/// ```
+#[derive(Debug)]
+pub struct SealedWriter {
+    texts: BTreeMap<String, String>,
+    tensors: BTreeMap<String, (Item, Vec<usize>, Vec<u8>)>,
+    /// The first thing that no file can hold, told at the end.
+    refused: Option<FormatError>,
+}
+
+impl SealedWriter {
+    /// A container of that kind and its newest version, with nothing in it.
+    pub fn new(kind: Kind) -> Self {
+        let mut writer = Self { texts: BTreeMap::new(), tensors: BTreeMap::new(), refused: None };
+        writer.text("format", kind.format).text("version", &kind.version.to_string());
+        writer
+    }
+
+    /// Adds a text entry.
+    pub fn text(&mut self, key: &str, text: &str) -> &mut Self {
+        if key == DIGEST_KEY || self.texts.insert(key.into(), text.into()).is_some() {
+            self.refuse(Place::Key(key.into()), "there already is such an entry".into());
+        }
+        self
+    }
+
+    /// Adds an array of f64 (C order).
+    pub fn f64(&mut self, name: &str, shape: &[usize], values: &[f64]) -> &mut Self {
+        self.tensor(name, Item::F64, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    /// Adds an array of u64 (C order).
+    pub fn u64(&mut self, name: &str, shape: &[usize], values: &[u64]) -> &mut Self {
+        self.tensor(name, Item::U64, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    /// Adds an array of u32 (C order).
+    pub fn u32(&mut self, name: &str, shape: &[usize], values: &[u32]) -> &mut Self {
+        self.tensor(name, Item::U32, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    /// Adds an array of u8 (C order).
+    pub fn u8(&mut self, name: &str, shape: &[usize], values: &[u8]) -> &mut Self {
+        self.tensor(name, Item::U8, shape, values.to_vec())
+    }
+
+    fn tensor(&mut self, name: &str, item: Item, shape: &[usize], data: Vec<u8>) -> &mut Self {
+        let size = shape.iter().try_fold(item.size(), |size, n| size.checked_mul(*n));
+        if size != Some(data.len()) {
+            let cause = format!("{} values do not fill the shape {shape:?}", data.len() / item.size());
+            self.refuse(Place::Tensor(name.into()), cause);
+        } else if name == "__metadata__" || self.tensors.contains_key(name) {
+            self.refuse(Place::Tensor(name.into()), "the name is taken".into());
+        } else {
+            self.tensors.insert(name.into(), (item, shape.into(), data));
+        }
+        self
+    }
+
+    fn refuse(&mut self, place: Place, cause: String) {
+        self.refused.get_or_insert_with(|| FormatError::new(place, cause));
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// When a name was used twice, values did not fill their shape, or names and texts are beyond 1 MiB in
+    /// all.
+    pub fn finish(self) -> Result<Vec<u8>, FormatError> {
+        if let Some(refused) = self.refused {
+            return Err(refused);
+        }
+        let mut entries: Vec<Entry> = self
+            .tensors
+            .iter()
+            .map(|(name, (item, shape, data))| Entry {
+                name: name.clone(),
+                item: *item,
+                shape: shape.clone(),
+                size: data.len(),
+            })
+            .collect();
+        header::sort(&mut entries);
+        let text = header::to_text(&"0".repeat(64), &self.texts, &entries)?;
+        let mut bytes = (text.len() as u64).to_le_bytes().to_vec();
+        bytes.extend(text.bytes());
+        for entry in &entries {
+            bytes.extend(&self.tensors[&entry.name].2);
+        }
+        let digest = header::digest(&bytes);
+        bytes[DIGEST].copy_from_slice(digest.as_bytes());
+        Ok(bytes)
+    }
+}

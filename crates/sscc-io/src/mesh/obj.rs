@@ -1,0 +1,197 @@
+//! Wavefront OBJ.
+//!
+//! A reader of our own: general ones renumber vertices by first use and drop unused ones, after which
+//! modes given for the file's `v` lines no longer fit.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use super::polygons::Polygons;
+use crate::error::quoted;
+use crate::text::{Lines, decoded, number, split_word, without_comment};
+use crate::{FormatError, Place};
+
+/// Parses an OBJ file: `v` and `f` lines; everything else (normals, texture coordinates, groups, materials,
+/// lines, points) is skipped.
+///
+/// `v x y z`, with an optional weight or colour behind, which is skipped. `f` with corners `a`, `a/b`,
+/// `a//c`, `a/b/c`: `a` from 1, or from -1 backwards from the last vertex so far. A `v` or `f` line that ends
+/// in a backslash goes on in the next.
+///
+/// # Errors
+/// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there
+/// are no vertices or no faces, or [`TriMesh::new`] refuses the mesh.
+pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
+    let mut positions = Vec::new();
+    let mut polygons = Polygons::new(1);
+    let mut corners = Vec::new();
+    let mut lines = Lines::new(bytes)?;
+    while let Some((line, text)) = lines.next() {
+        let text = without_comment(text).trim_ascii_end();
+        let (keyword, _) = split_word(text.strip_suffix(b"\\").unwrap_or(text));
+        match keyword {
+            b"v" => {
+                let statement = joined(text, &mut lines);
+                positions.push(position(decoded(arguments(&statement), line)?, line)?);
+            }
+            b"f" => {
+                let statement = joined(text, &mut lines);
+                corners.clear();
+                for word in decoded(arguments(&statement), line)?.split_ascii_whitespace() {
+                    corners.push(corner(word, positions.len(), line)?);
+                }
+                polygons.push(&corners, Place::Line(line))?;
+            }
+            _ => {}
+        }
+    }
+    polygons.finish(positions)
+}
+
+/// A line with those that continue it. Only `v` and `f` lines are joined: a comment or a material's path may
+/// well end in a backslash, and must not swallow the vertex in the line below.
+fn joined<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
+    let Some(start) = text.strip_suffix(b"\\") else {
+        return Cow::Borrowed(text);
+    };
+    let mut all = start.to_vec();
+    for (_, next) in lines {
+        let next = without_comment(next).trim_ascii_end();
+        all.push(b' ');
+        match next.strip_suffix(b"\\") {
+            Some(part) => all.extend(part),
+            None => {
+                all.extend(next);
+                break;
+            }
+        }
+    }
+    Cow::Owned(all)
+}
+
+/// What follows the keyword.
+fn arguments(statement: &[u8]) -> &[u8] {
+    split_word(statement).1
+}
+
+fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
+    let mut values = [0.0; 7];
+    let mut found = 0;
+    for word in text.split_ascii_whitespace() {
+        if let Some(value) = values.get_mut(found) {
+            *value = number(word, line)?;
+        }
+        found += 1;
+    }
+    // x y z, then nothing, a weight, a colour, or both.
+    if !matches!(found, 3 | 4 | 6 | 7) {
+        let cause = format!("a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one {found}");
+        return Err(FormatError::line(line, cause));
+    }
+    Ok(DVec3::new(values[0], values[1], values[2]))
+}
+
+/// The vertex of a corner, from 0. `vertices` are known so far.
+fn corner(word: &str, vertices: usize, line: usize) -> Result<u64, FormatError> {
+    let refused = |cause: &str| Err(FormatError::line(line, format!("corner {}: {cause}", quoted(word))));
+    let mut parts = word.split('/');
+    let Some(Ok(index)) = parts.next().map(str::parse::<i64>) else {
+        return refused("not a vertex number");
+    };
+    let mut others = 0;
+    for part in parts {
+        others += 1;
+        if others > 2 || !(part.is_empty() || part.parse::<i64>().is_ok()) {
+            return refused("not of the form a, a/b, a//c or a/b/c");
+        }
+    }
+    match index {
+        0 => refused("vertices are counted from 1"),
+        1.. => Ok(index as u64 - 1),
+        _ => match (vertices as u64).checked_sub(index.unsigned_abs()) {
+            Some(vertex) => Ok(vertex),
+            None => refused(&format!("only {vertices} vertices come before it")),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+    fn faces(text: &str) -> Vec<[u32; 3]> {
+        parse(format!("{SQUARE}{text}").as_bytes()).unwrap().faces().to_vec()
+    }
+
+    fn message(text: &str) -> String {
+        parse(format!("{SQUARE}{text}").as_bytes()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn all_forms_of_corners() {
+        for line in ["f 1 2 3 4", "f 1/9 2/9 3/9 4/9", "f 1//7 2//7 3//7 4//7", "f 1/1/1 2/2/2 3/3/3 4/4/4"] {
+            assert_eq!(faces(line), [[0, 1, 2], [0, 2, 3]], "{line}");
+        }
+        assert_eq!(faces("f -4 -3 -2\nf 4/-1 -4 3\n"), [[0, 1, 2], [3, 0, 2]]);
+        assert_eq!(faces("f\t1 2   3 # comment\r\n"), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn other_lines_are_skipped() {
+        let text = b"# caf\xe9 C:\\dir\\\nmtllib \xff\\\nvn 0 0 1\nvt 0 0\nv 0 0 0 1\nv 1 0 0 .5 .5 .5\n\
+            g a\nv 0 1 0\ns off\nl 1 2\nf 1 2 3";
+        let mesh = parse(text).unwrap();
+        assert_eq!((mesh.rest_positions().len(), mesh.faces()), (3, &[[0, 1, 2]][..]));
+    }
+
+    #[test]
+    fn unused_vertices_are_kept_and_may_come_last() {
+        let mesh = parse(b"v 9 9 9\nf 2 3 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap();
+        assert_eq!(mesh.rest_positions()[0], DVec3::splat(9.0));
+        assert_eq!(mesh.faces(), [[1, 2, 3]]);
+    }
+
+    #[test]
+    fn backslash_continues_a_line() {
+        assert_eq!(faces("f 1 \\\n2 \\ # comment\n 3\nf\\\n1 3 4"), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(faces("f 1 2 3\\\n"), [[0, 1, 2]]);
+        // The next statement keeps its own line number.
+        assert!(message("f 1 2 \\\n3\nf 1 2\n").starts_with("line 7: "));
+    }
+
+    #[test]
+    fn bad_lines_are_named() {
+        assert_eq!(message("f 1 2 0"), "line 5: corner '0': vertices are counted from 1");
+        assert_eq!(message("f 1 2 5"), "line 5: names vertex 5 (counted from 1), but there are 4");
+        assert_eq!(message("f 1 2 -5"), "line 5: corner '-5': only 4 vertices come before it");
+        assert_eq!(message("f 1 2"), "line 5: a face needs at least 3 corners, this one has 2");
+        assert_eq!(message("f"), "line 5: a face needs at least 3 corners, this one has 0");
+        assert_eq!(
+            message("v 1 2"),
+            "line 5: a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one 2"
+        );
+        assert_eq!(message("v 1 nan 2"), "line 5: 'nan' is not a finite number");
+        assert_eq!(message("v 1 1e999 2"), "line 5: '1e999' is not a finite number");
+        assert_eq!(message("v 1 x 2"), "line 5: 'x' is not a number");
+        for line in ["f 1 2 3/a", "f 1 2 3/1/1/1", "f 1 2 x", "f 1 2 3.0", "f 1 2 99999999999999999999"] {
+            assert!(message(line).starts_with("line 5: corner "), "{line}");
+        }
+        assert_eq!(message(""), "the mesh has no triangles");
+        assert!(message("v 1e61 0 0\nf 1 2 3").contains("vertex 4 (counted from 0)"));
+        assert_eq!(parse(b"hello").unwrap_err().to_string(), "the mesh has no vertices");
+        assert_eq!(parse(b"v 1 \xff 2").unwrap_err().to_string(), "line 1: not UTF-8 text");
+        assert!(message("f -9223372036854775808 1 2").contains("only 4"));
+    }
+
+    #[test]
+    fn no_truncation_panics() {
+        let text = format!("{SQUARE}f 1/1/1 2//2 3/3 \\\n -1\nf 1 2 3\n");
+        for len in 0..text.len() {
+            let _ = parse(&text.as_bytes()[..len]);
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The rows of a PLY file, number by number.
+
+use super::header::{Element, Encoding, Header, Kind, Number};
+use crate::error::quoted;
+use crate::text::decoded;
+use crate::{FormatError, Place};
+
+/// Reads the numbers behind the header, and knows where it is.
+pub(super) struct Values<'a> {
+    bytes: &'a [u8],
+    /// The next byte to read.
+    at: usize,
+    encoding: Encoding,
+    /// The line of that byte, for text.
+    line: usize,
+}
+
+impl<'a> Values<'a> {
+    pub fn new(bytes: &'a [u8], header: &Header) -> Self {
+        Self { bytes, at: header.body, encoding: header.encoding, line: header.lines + 1 }
+    }
+
+    /// Where the next number is.
+    pub fn place(&mut self) -> Place {
+        match self.encoding {
+            Encoding::Text => {
+                self.skip_space();
+                Place::Line(self.line)
+            }
+            _ => Place::Byte(self.at),
+        }
+    }
+
+    /// Refuses an element that cannot fit into what is left of the file, before any of it is read.
+    pub fn check_room(&self, element: &Element) -> Result<(), FormatError> {
+        let number = |n: Number| if self.encoding == Encoding::Text { 2 } else { n.size() };
+        let row: usize = element
+            .properties
+            .iter()
+            .map(|p| match p.kind {
+                Kind::Number(n) | Kind::List { count: n, .. } => number(n),
+            })
+            .sum();
+        // The last number of a text has no space behind it.
+        let left = self.bytes.len() - self.at + 1;
+        if element.count.checked_mul(row).is_some_and(|size| size <= left) {
+            return Ok(());
+        }
+        let Element { name, count, line, .. } = element;
+        let cause = format!("{count} rows of {} do not fit into the file: is it cut off?", quoted(name));
+        Err(FormatError::line(*line, cause))
+    }
+
+    /// The next number. Of a text it has the value it would have in a binary file.
+    pub fn number(&mut self, kind: Number) -> Result<f64, FormatError> {
+        if self.encoding == Encoding::Text {
+            return self.word(kind);
+        }
+        let little = self.encoding == Encoding::LittleEndian;
+        Ok(match kind {
+            Number::I8 => i8::from_le_bytes(self.take(little)?).into(),
+            Number::U8 => u8::from_le_bytes(self.take(little)?).into(),
+            Number::I16 => i16::from_le_bytes(self.take(little)?).into(),
+            Number::U16 => u16::from_le_bytes(self.take(little)?).into(),
+            Number::I32 => i32::from_le_bytes(self.take(little)?).into(),
+            Number::U32 => u32::from_le_bytes(self.take(little)?).into(),
+            Number::F32 => f32::from_le_bytes(self.take(little)?).into(),
+            Number::F64 => f64::from_le_bytes(self.take(little)?),
+        })
+    }
+
+    /// The next number, which must be an integer from 0.
+    pub fn integer(&mut self, kind: Number) -> Result<u64, FormatError> {
+        let place = self.place();
+        let value = self.number(kind)?;
+        if kind.range().is_none() {
+            return Err(FormatError::new(place, "vertex numbers must be of an integer type"));
+        }
+        if value < 0.0 {
+            return Err(FormatError::new(place, format!("{value} is negative")));
+        }
+        Ok(value as u64) // exact: integer types have at most 32 bits
+    }
+
+    /// The length of the list that comes next; its items are still to be read.
+    pub fn list(&mut self, count: Number, item: Number) -> Result<usize, FormatError> {
+        let place = self.place();
+        let length = self.integer(count)? as usize;
+        let size = if self.encoding == Encoding::Text { 1 } else { item.size() };
+        if length.checked_mul(size).is_none_or(|size| size > self.bytes.len() - self.at) {
+            let cause = format!("a list of {length} items does not fit into the file");
+            return Err(FormatError::new(place, cause));
+        }
+        Ok(length)
+    }
+
+    /// Reads past a list.
+    pub fn skip_list(&mut self, count: Number, item: Number) -> Result<(), FormatError> {
+        for _ in 0..self.list(count, item)? {
+            self.number(item)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses anything behind the last row (of a text: but space).
+    pub fn finish(mut self) -> Result<(), FormatError> {
+        let place = self.place();
+        match self.bytes.len() - self.at {
+            0 => Ok(()),
+            left => Err(FormatError::new(place, format!("{left} bytes more than the header promises"))),
+        }
+    }
+
+    /// The next N bytes, turned to little endian.
+    fn take<const N: usize>(&mut self, little: bool) -> Result<[u8; N], FormatError> {
+        let Some(bytes) = self.bytes[self.at..].first_chunk::<N>() else {
+            return Err(FormatError::new(Place::Byte(self.at), "the file is cut off here"));
+        };
+        self.at += N;
+        let mut bytes = *bytes;
+        if !little {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    fn skip_space(&mut self) {
+        while let Some(byte) = self.bytes.get(self.at).filter(|b| b.is_ascii_whitespace()) {
+            self.line += usize::from(*byte == b'\n');
+            self.at += 1;
+        }
+    }
+
+    fn word(&mut self, kind: Number) -> Result<f64, FormatError> {
+        self.skip_space();
+        let rest = &self.bytes[self.at..];
+        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        let line = self.line;
+        if end == 0 {
+            return Err(FormatError::line(line, "the file is cut off here"));
+        }
+        self.at += end;
+        let word = decoded(&rest[..end], line)?;
+        let value = match (kind, kind.range()) {
+            (_, Some((smallest, largest))) => {
+                word.parse::<i64>().ok().filter(|v| (smallest..=largest).contains(v)).map(|v| v as f64)
+            }
+            (Number::F32, _) => word.parse::<f32>().ok().map(f64::from),
+            _ => word.parse::<f64>().ok(),
+        };
+        value.ok_or_else(|| {
+            FormatError::line(line, format!("{} is not a number of the declared type", quoted(word)))
+        })
+    }
+}

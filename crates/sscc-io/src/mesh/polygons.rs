@@ -1,0 +1,88 @@
+//! Polygons collected as fans of triangles.
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use crate::{FormatError, Place};
+
+/// Triangles of the polygons seen so far. Indices may come before the vertices they name (OBJ allows it),
+/// so they are checked at the end.
+pub(super) struct Polygons {
+    triangles: Vec<[u32; 3]>,
+    /// The largest index, from 0, and where it is.
+    largest: Option<(u64, Place)>,
+    /// What the format calls its first vertex: 0 or 1. Only for messages.
+    first: u64,
+}
+
+impl Polygons {
+    pub fn new(first: u64) -> Self {
+        Self { triangles: Vec::new(), largest: None, first }
+    }
+
+    /// Adds one polygon (indices from 0), fanned from its first corner.
+    pub fn push(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
+        let (Some(&largest), [first, rest @ ..]) = (corners.iter().max(), corners) else {
+            return Err(too_few(0, place));
+        };
+        if rest.len() < 2 {
+            return Err(too_few(corners.len(), place));
+        }
+        if self.largest.as_ref().is_none_or(|(known, _)| largest > *known) {
+            self.largest = Some((largest, place));
+        }
+        // An index beyond 32 bits is cut here, but it is also `largest`, which `finish` refuses.
+        self.triangles.extend(rest.windows(2).map(|pair| [*first as u32, pair[0] as u32, pair[1] as u32]));
+        Ok(())
+    }
+
+    /// The mesh of these polygons.
+    pub fn finish(self, positions: Vec<DVec3>) -> Result<TriMesh, FormatError> {
+        if positions.is_empty() {
+            return Err(FormatError::whole("the mesh has no vertices"));
+        }
+        match self.largest {
+            Some((index, place)) if index >= positions.len() as u64 => {
+                let (index, first) = (index.saturating_add(self.first), self.first);
+                let there = positions.len();
+                let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
+                Err(FormatError::new(place, cause))
+            }
+            _ => Ok(TriMesh::new(positions, self.triangles)?),
+        }
+    }
+}
+
+fn too_few(corners: usize, place: Place) -> FormatError {
+    FormatError::new(place, format!("a face needs at least 3 corners, this one has {corners}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fans_go_around_the_first_corner() {
+        let mut polygons = Polygons::new(0);
+        polygons.push(&[4, 1, 2, 3, 0], Place::Line(1)).unwrap();
+        let mesh = polygons.finish(vec![DVec3::ZERO; 5]).unwrap();
+        assert_eq!(mesh.faces(), [[4, 1, 2], [4, 2, 3], [4, 3, 0]]);
+    }
+
+    #[test]
+    fn indices_are_checked_against_all_vertices() {
+        for index in [3, u64::from(u32::MAX), 1 << 32, u64::MAX] {
+            let mut polygons = Polygons::new(1);
+            polygons.push(&[0, 1, index], Place::Line(7)).unwrap();
+            let error = polygons.finish(vec![DVec3::ZERO; 3]).unwrap_err();
+            assert_eq!(*error.place(), Place::Line(7));
+        }
+    }
+
+    #[test]
+    fn two_corners_are_no_face() {
+        for corners in [&[][..], &[0], &[0, 1]] {
+            assert!(Polygons::new(0).push(corners, Place::Whole).is_err());
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Deformation modes from files: NumPy arrays and VegaFEM modal matrices.
+
+pub mod array;
+pub mod vega;
+
+use std::path::Path;
+
+use sscc::Modes;
+
+use crate::file::{ending, read_whole};
+use crate::{FormatError, IoError};
+
+/// The endings that [`read_modes`] knows.
+const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32)";
+
+/// Reads the modes of a mesh with that many vertices (unused ones included); the format goes by the file
+/// name's ending, in any case: `.npy` ([`mod@array`]), or a VegaFEM modal matrix ([`vega`]).
+///
+/// # Errors
+/// When the ending is unknown, the file cannot be read or is malformed, the modes are of a mesh with another
+/// number of vertices, or there are none.
+pub fn read_modes(path: &Path, vertices: usize) -> Result<Modes, IoError> {
+    let parse = match ending(path).as_str() {
+        "npy" => |bytes: &[u8], vertices| array::from_array(&crate::npy::parse(bytes)?, vertices),
+        "float" => |bytes: &[u8], vertices| vega::parse(bytes, vega::Precision::Single, vertices),
+        "u" | "ulinear" | "unonlinear" | "urendering" => {
+            |bytes: &[u8], vertices| vega::parse(bytes, vega::Precision::Double, vertices)
+        }
+        _ => {
+            return Err(IoError::Unsupported { path: path.to_owned(), what: "modes", supported: SUPPORTED });
+        }
+    };
+    parse(&read_whole(path)?, vertices).map_err(|error| error.of(path))
+}
+
+/// The refusal of modes that have `rows` rows (3 for each vertex).
+fn other_mesh(rows: usize, vertices: usize) -> FormatError {
+    let of = match rows % 3 {
+        0 => format!("{} vertices", rows / 3),
+        _ => format!("{rows} rows (no multiple of 3)"),
+    };
+    FormatError::whole(format!("the modes are for {of}, the mesh has {vertices}: are they of another mesh?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_decides() {
+        let directory = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| {
+            let path = directory.path().join(name);
+            std::fs::write(&path, bytes).unwrap();
+            path
+        };
+        let vega = [&3i32.to_le_bytes()[..], &1i32.to_le_bytes(), &[0; 12]].concat();
+        assert_eq!(read_modes(&write("a.U.FLOAT", &vega), 1).unwrap().rank(), 1);
+        let npy = crate::npy::to_bytes(&[3, 2], &[0.0; 6]).unwrap();
+        assert_eq!(read_modes(&write("a.npy", &npy), 1).unwrap().rank(), 2);
+        let message = |name, bytes| read_modes(&write(name, bytes), 1).unwrap_err().to_string();
+        assert!(message("a.U", &vega).contains("rename it to end in .float"));
+        assert!(message("a.npz", &npy).contains("unknown kind of modes file; supported: .npy, .U"));
+    }
+}

@@ -1,0 +1,167 @@
+//! The header of a `.npy` file: a Python dictionary with the keys `descr`, `fortran_order` and `shape`.
+
+use crate::error::quoted;
+use crate::{FormatError, Place};
+
+const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// More axes than any array here has; NumPy itself stops at 64.
+const LARGEST_DIMENSION: usize = 32;
+
+/// A type of entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Item {
+    F64Little,
+    F64Big,
+    F32Little,
+    F32Big,
+}
+
+#[derive(Debug, PartialEq)]
+pub(super) struct Header {
+    pub item: Item,
+    pub fortran: bool,
+    /// Not yet checked against the file.
+    pub shape: Vec<usize>,
+    /// The byte after the header.
+    pub body: usize,
+}
+
+impl Item {
+    /// Bytes of one entry.
+    pub fn size(self) -> usize {
+        match self {
+            Self::F64Little | Self::F64Big => 8,
+            Self::F32Little | Self::F32Big => 4,
+        }
+    }
+
+    fn from_descr(descr: &str) -> Option<Self> {
+        Some(match descr {
+            "<f8" => Self::F64Little,
+            ">f8" => Self::F64Big,
+            "<f4" => Self::F32Little,
+            ">f4" => Self::F32Big,
+            _ => return None,
+        })
+    }
+}
+
+impl Header {
+    pub fn parse(bytes: &[u8]) -> Result<Self, FormatError> {
+        let at_byte = |at, cause: &str| FormatError::new(Place::Byte(at), cause);
+        let Some(rest) = bytes.strip_prefix(MAGIC) else {
+            return Err(at_byte(0, "not a NumPy array: a .npy file begins with '\\x93NUMPY'"));
+        };
+        let cut = || at_byte(bytes.len(), "the file ends within the header");
+        let [major, minor] = *rest.first_chunk::<2>().ok_or_else(cut)?;
+        let (length, start) = match (major, minor) {
+            (1, 0) => {
+                let length = rest[2..].first_chunk::<2>().ok_or_else(cut)?;
+                (usize::from(u16::from_le_bytes(*length)), 10)
+            }
+            (2 | 3, 0) => {
+                let length = rest[2..].first_chunk::<4>().ok_or_else(cut)?;
+                (u32::from_le_bytes(*length) as usize, 12)
+            }
+            _ => return Err(at_byte(6, &format!("version {major}.{minor} of the format is not supported"))),
+        };
+        let body = usize::checked_add(start, length).filter(|end| *end <= bytes.len()).ok_or_else(cut)?;
+        let text =
+            std::str::from_utf8(&bytes[start..body]).map_err(|_| at_byte(start, "the header is no text"))?;
+        let (item, fortran, shape) =
+            dictionary(text).map_err(|cause| at_byte(start, &format!("header: {cause}")))?;
+        Ok(Self { item, fortran, shape, body })
+    }
+}
+
+fn dictionary(text: &str) -> Result<(Item, bool, Vec<usize>), String> {
+    let (mut item, mut fortran, mut shape) = (None, None, None);
+    let mut scan = Scan(text);
+    scan.expect("{")?;
+    while !scan.take("}") {
+        let key = scan.string()?;
+        scan.expect(":")?;
+        let known = match key {
+            "descr" => item.replace(scan.item()?).is_some(),
+            "fortran_order" => fortran.replace(scan.boolean()?).is_some(),
+            "shape" => shape.replace(scan.shape()?).is_some(),
+            _ => return Err(format!("unknown key {}", quoted(key))),
+        };
+        if known {
+            return Err(format!("two entries {}", quoted(key)));
+        }
+        if !scan.take(",") {
+            scan.expect("}")?;
+            break;
+        }
+    }
+    scan.end()?;
+    match (item, fortran, shape) {
+        (Some(item), Some(fortran), Some(shape)) => Ok((item, fortran, shape)),
+        _ => Err("one of 'descr', 'fortran_order', 'shape' is missing".into()),
+    }
+}
+
+/// What is left of the header's text.
+struct Scan<'a>(&'a str);
+
+impl<'a> Scan<'a> {
+    fn take(&mut self, token: &str) -> bool {
+        let rest = self.0.trim_ascii_start().strip_prefix(token);
+        self.0 = rest.unwrap_or(self.0);
+        rest.is_some()
+    }
+
+    fn expect(&mut self, token: &str) -> Result<(), String> {
+        if self.take(token) { Ok(()) } else { Err(format!("'{token}' expected before {}", quoted(self.0))) }
+    }
+
+    fn end(&self) -> Result<(), String> {
+        match self.0.trim_ascii() {
+            "" => Ok(()),
+            rest => Err(format!("unexpected text {}", quoted(rest))),
+        }
+    }
+
+    fn string(&mut self) -> Result<&'a str, String> {
+        let quote = if self.take("'") { '\'' } else { self.expect("\"").map(|()| '"')? };
+        let (text, rest) = self.0.split_once(quote).ok_or("a string without end")?;
+        self.0 = rest;
+        Ok(text)
+    }
+
+    fn item(&mut self) -> Result<Item, String> {
+        const ADVICE: &str = "save the array as float64 or float32";
+        if self.0.trim_ascii_start().starts_with('[') {
+            return Err(format!("a structured array: {ADVICE}"));
+        }
+        let descr = self.string()?;
+        Item::from_descr(descr).ok_or_else(|| format!("numbers of type {}: {ADVICE}", quoted(descr)))
+    }
+
+    fn boolean(&mut self) -> Result<bool, String> {
+        if self.take("True") { Ok(true) } else { self.expect("False").map(|()| false) }
+    }
+
+    fn shape(&mut self) -> Result<Vec<usize>, String> {
+        let mut shape = Vec::new();
+        self.expect("(")?;
+        while !self.take(")") {
+            let rest = self.0.trim_ascii_start();
+            let (digits, rest) = rest.split_at(rest.bytes().take_while(u8::is_ascii_digit).count());
+            let length = digits.parse().map_err(|_| format!("no length of an axis: {}", quoted(rest)))?;
+            shape.push(length);
+            // Python 2 wrote long integers as 3L.
+            self.0 = rest.strip_prefix('L').unwrap_or(rest);
+            if shape.len() > LARGEST_DIMENSION {
+                return Err(format!("more than {LARGEST_DIMENSION} axes"));
+            }
+            if !self.take(",") {
+                self.expect(")")?;
+                break;
+            }
+        }
+        Ok(shape)
+    }
+}

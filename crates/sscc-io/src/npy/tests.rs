@@ -1,0 +1,143 @@
+use npyz::WriterBuilder;
+use proptest::prelude::*;
+
+use super::*;
+
+/// A `.npy` file with any header.
+fn file(version: u8, header: &str, body: &[u8]) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY".to_vec();
+    bytes.extend([version, 0]);
+    match version {
+        1 => bytes.extend((header.len() as u16).to_le_bytes()),
+        _ => bytes.extend((header.len() as u32).to_le_bytes()),
+    }
+    bytes.extend(header.bytes());
+    bytes.extend(body);
+    bytes
+}
+
+fn header(descr: &str, order: &str, shape: &str) -> String {
+    format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n")
+}
+
+fn body(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+const SIX: [f64; 6] = [0.0, 1.0, -2.5, 3e-300, 1e300, -0.0];
+
+#[test]
+fn orders_types_and_versions() {
+    let c = parse(&file(1, &header("<f8", "False", "(2, 3)"), &body(&SIX))).unwrap();
+    assert_eq!((c.shape(), c.at([0, 2]), c.at([1, 0])), (&[2, 3][..], -2.5, 3e-300));
+    let f = parse(&file(2, &header("<f8", "True", "(3, 2)"), &body(&SIX))).unwrap();
+    assert_eq!((f.at([2, 0]), f.at([0, 1])), (-2.5, 3e-300));
+    assert_eq!(f.to_c_order(), [0.0, 3e-300, 1.0, 1e300, -2.5, -0.0]);
+    let big: Vec<u8> = SIX.iter().flat_map(|v| v.to_be_bytes()).collect();
+    assert_eq!(parse(&file(3, &header(">f8", "False", "(2, 3)"), &big)).unwrap(), c);
+    let small: Vec<u8> = [0.1f32, -2.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let small = parse(&file(1, &header("<f4", "False", "(2,)"), &small)).unwrap();
+    assert_eq!(small.to_c_order(), [f64::from(0.1f32), -2.0]);
+    let big: Vec<u8> = [0.1f32, -2.0].iter().flat_map(|v| v.to_be_bytes()).collect();
+    assert_eq!(parse(&file(1, &header(">f4", "True", "(2L,)"), &big)).unwrap(), small);
+    let other = "{\"shape\":(2,3),\"descr\":\"<f8\",\"fortran_order\":False}";
+    assert_eq!(parse(&file(1, other, &body(&SIX))).unwrap(), c);
+}
+
+#[test]
+fn bad_files_are_named() {
+    let message = |header: &str| parse(&file(1, header, &body(&SIX))).unwrap_err().to_string();
+    let good = header("<f8", "False", "(2, 3)");
+    assert!(
+        message(&header("<i8", "False", "(2, 3)"))
+            .contains("type '<i8': save the array as float64 or float32")
+    );
+    assert!(message(&good.replace("'<f8'", "[('a', '<f8')]")).contains("a structured array"));
+    assert!(message(&good.replace("False", "Maybe")).contains("'False' expected before ' Maybe"));
+    assert!(message(&good.replace("shape", "form")).contains("unknown key 'form'"));
+    assert!(message(&good.replace("'shape': (2, 3)", "'descr': '<f8'")).contains("two entries 'descr'"));
+    assert!(message("{}").contains("is missing"));
+    assert!(message(&good.replace("}\n", "} x")).contains("unexpected text 'x'"));
+    for shape in ["(-1, 3)", "2", "(2 3)", "(99999999999999999999999,)", "(2.0, 3)", "((2,), 3)"] {
+        assert!(parse(&file(1, &header("<f8", "False", shape), &body(&SIX))).is_err(), "{shape}");
+    }
+    for shape in ["(2, 4)", "(2, 2)", "(6, 1099511627776)", "(9223372036854775808, 2)", "()", "(0,)"] {
+        let message = message(&header("<f8", "False", shape));
+        assert!(message.contains("bytes follow: is the file cut off?"), "{shape}: {message}");
+    }
+    assert!(
+        message(&header("<f8", "False", &format!("({})", "1,".repeat(40)))).contains("more than 32 axes")
+    );
+    assert_eq!(
+        parse(b"hello").unwrap_err().to_string(),
+        "byte 0: not a NumPy array: a .npy file begins with '\\x93NUMPY'"
+    );
+    assert_eq!(
+        parse(b"\x93NUMPY\x04\x00\x00").unwrap_err().to_string(),
+        "byte 6: version 4.0 of the format is not supported"
+    );
+    let huge = [&b"\x93NUMPY\x02\x00"[..], &u32::MAX.to_le_bytes(), b"{"].concat();
+    assert_eq!(parse(&huge).unwrap_err().to_string(), "byte 13: the file ends within the header");
+}
+
+#[test]
+fn open_brackets_take_no_time() {
+    for bracket in ["{", "[", "(", "{'shape':("] {
+        assert!(parse(&file(1, &bracket.repeat(6000), &[])).is_err());
+    }
+}
+
+#[test]
+fn every_truncation_and_any_extra_is_refused() {
+    let bytes = to_bytes(&[2, 3], &SIX).unwrap();
+    for len in 0..bytes.len() {
+        assert!(parse(&bytes[..len]).is_err(), "{len}");
+    }
+    assert!(parse(&[&bytes[..], b"\0"].concat()).is_err());
+}
+
+#[test]
+fn written_files_are_numpys() {
+    let bytes = to_bytes(&[2, 3], &SIX).unwrap();
+    assert!(bytes.starts_with(
+        b"\x93NUMPY\x01\x00\x76\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }"
+    ));
+    assert_eq!(bytes.len(), 128 + 48);
+    assert!(to_bytes(&[2, 2], &SIX).is_none());
+    assert!(to_bytes(&[usize::MAX, 2], &SIX).is_none());
+}
+
+proptest! {
+    #[test]
+    fn agrees_with_npyz(shape in prop::collection::vec(0_usize..5, 0..4), fortran: bool, narrow: bool) {
+        let count: usize = shape.iter().product();
+        let values: Vec<f64> = (0..count).map(|i| i as f64 - 1.5).collect();
+
+        // What npyz writes, we read.
+        let lengths: Vec<u64> = shape.iter().map(|n| *n as u64).collect();
+        let order = if fortran { npyz::Order::Fortran } else { npyz::Order::C };
+        let mut bytes = Vec::new();
+        if narrow {
+            let options = npyz::WriteOptions::<f32>::new().shape(&lengths).order(order).default_dtype();
+            let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+            writer.extend(values.iter().map(|v| *v as f32)).unwrap();
+            writer.finish().unwrap();
+        } else {
+            let options = npyz::WriteOptions::<f64>::new().shape(&lengths).order(order).default_dtype();
+            let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+            writer.extend(values.iter().copied()).unwrap();
+            writer.finish().unwrap();
+        }
+        let array = parse(&bytes).unwrap();
+        prop_assert_eq!(array.shape(), &shape[..]);
+        prop_assert_eq!(&array.data, &values);
+
+        // What we write, npyz and we read.
+        let c_order = array.to_c_order();
+        let bytes = to_bytes(&shape, &c_order).unwrap();
+        let theirs = npyz::NpyFile::new(&bytes[..]).unwrap();
+        prop_assert_eq!(theirs.shape(), &lengths[..]);
+        prop_assert_eq!(theirs.into_vec::<f64>().unwrap(), c_order.clone());
+        prop_assert_eq!(parse(&bytes).unwrap().to_c_order(), c_order);
+    }
+}

@@ -1,0 +1,115 @@
+//! Plain numbers: trajectories of q, and vectors such as the weights of a metric.
+
+use std::path::Path;
+
+use crate::file::{ending, read_whole};
+use crate::text::{Lines, decoded, number, without_comment};
+use crate::{FormatError, IoError, npy};
+
+/// A table of numbers, row after row: for a trajectory one q in each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// Number of rows, at least 1.
+    pub rows: usize,
+    /// Numbers in each row, at least 1.
+    pub columns: usize,
+    /// `data[row * columns + column]`
+    pub data: Vec<f64>,
+}
+
+impl Rows {
+    /// The rows in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+        self.data.chunks_exact(self.columns)
+    }
+}
+
+/// Reads a trajectory: a `.npy` array of shape (T, r), one q in each row, or (r), a single q. Its numbers are
+/// not looked at: a query refuses a q of another length, or one that is not finite.
+///
+/// # Errors
+/// When the file is no `.npy`, cannot be read or is malformed, or the array is empty or of another dimension.
+pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
+    if ending(path) != "npy" {
+        return Err(IoError::Unsupported { path: path.to_owned(), what: "trajectory", supported: ".npy" });
+    }
+    parse_rows(&read_whole(path)?).map_err(|error| error.of(path))
+}
+
+/// Reads a vector: a `.npy` array of shape (r), or text with numbers between white space (`.txt`, or any
+/// other ending), where `#` begins a comment.
+///
+/// # Errors
+/// When the file cannot be read or is malformed, or there is no number in it.
+pub fn read_vector(path: &Path) -> Result<Vec<f64>, IoError> {
+    let bytes = read_whole(path)?;
+    let parse = if ending(path) == "npy" { parse_vector } else { parse_text };
+    parse(&bytes).map_err(|error| error.of(path))
+}
+
+fn parse_rows(bytes: &[u8]) -> Result<Rows, FormatError> {
+    let array = npy::parse(bytes)?;
+    match *array.shape() {
+        [rows, columns] if rows > 0 && columns > 0 => Ok(Rows { rows, columns, data: array.to_c_order() }),
+        [columns] if columns > 0 => Ok(Rows { rows: 1, columns, data: array.to_c_order() }),
+        ref other => {
+            Err(FormatError::whole(format!("shape {other:?}: (T, r) or (r) was expected, not empty")))
+        }
+    }
+}
+
+fn parse_vector(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    let array = npy::parse(bytes)?;
+    match *array.shape() {
+        [length] if length > 0 => Ok(array.to_c_order()),
+        ref other => Err(FormatError::whole(format!("shape {other:?}: (r) was expected, not empty"))),
+    }
+}
+
+fn parse_text(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    let mut values = Vec::new();
+    for (line, text) in Lines::new(bytes)? {
+        for word in decoded(without_comment(text), line)?.split_ascii_whitespace() {
+            values.push(number(word, line)?);
+        }
+    }
+    if values.is_empty() { Err(FormatError::whole("there are no numbers in it")) } else { Ok(values) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_and_vectors() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("q.npy");
+        npy::write_npy(&path, &[2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
+        let rows = read_rows(&path).unwrap();
+        assert_eq!((rows.rows, rows.columns), (2, 3));
+        assert_eq!(rows.iter().collect::<Vec<_>>(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        assert!(read_vector(&path).unwrap_err().to_string().ends_with("(r) was expected, not empty"));
+        npy::write_npy(&path, &[3], &[1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(read_rows(&path).unwrap(), Rows { rows: 1, columns: 3, data: vec![1.0, 2.0, 3.0] });
+        assert_eq!(read_vector(&path).unwrap(), [1.0, 2.0, 3.0]);
+        for shape in [&[0, 3][..], &[3, 0], &[0], &[1, 1, 0]] {
+            npy::write_npy(&path, shape, &[]).unwrap();
+            assert!(read_rows(&path).is_err() && read_vector(&path).is_err(), "{shape:?}");
+        }
+        npy::write_npy(&path, &[], &[1.0]).unwrap();
+        assert!(read_rows(&path).is_err() && read_vector(&path).is_err());
+        assert!(npy::write_npy(&path, &[2], &[1.0]).is_err());
+        assert!(
+            read_rows(Path::new("q.csv")).unwrap_err().to_string().contains("unknown kind of trajectory")
+        );
+    }
+
+    #[test]
+    fn vectors_as_text() {
+        assert_eq!(parse_text(b"1 2e-3 # weights\r\n\n-4\n").unwrap(), [1.0, 2e-3, -4.0]);
+        assert_eq!(parse_text(b"1\nx").unwrap_err().to_string(), "line 2: 'x' is not a number");
+        assert_eq!(parse_text(b"1\nnan").unwrap_err().to_string(), "line 2: 'nan' is not a finite number");
+        assert_eq!(parse_text(b" # \n").unwrap_err().to_string(), "there are no numbers in it");
+        assert_eq!(parse_text(b"1 \xff").unwrap_err().to_string(), "line 1: not UTF-8 text");
+    }
+}
