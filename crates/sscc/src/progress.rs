@@ -2,10 +2,11 @@
 
 /// Told how far long work has come; may stop it. Called from several threads.
 pub trait Progress: Sync {
-    /// `done` of `total` steps are finished (never decreasing within one call of the library).
+    /// `done` of `total` steps are finished. Threads may report a little out of order.
     fn report(&self, done: usize, total: usize);
 
-    /// Whether the work should stop soon, with [`Error::Cancelled`](crate::Error::Cancelled).
+    /// Whether the work should stop soon, with [`Error::Cancelled`](crate::Error::Cancelled). Once true it
+    /// must stay true.
     fn is_cancelled(&self) -> bool {
         false
     }

@@ -2,7 +2,7 @@
 //! pairs)` (paper, section 5.2).
 
 use std::borrow::Cow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
@@ -28,12 +28,19 @@ pub(super) fn compute(
     let hierarchy = Hierarchy::build(model, &metric);
     let clusters = ClusterBounds::new(&scaled, &hierarchy);
     let global_radius = global_radius(model, &metric);
-    let work = Work { scaled: &scaled, hierarchy: &hierarchy, clusters: &clusters, options, global_radius };
+    let work = Work {
+        scaled: &scaled,
+        hierarchy: &hierarchy,
+        clusters: &clusters,
+        options,
+        global_radius,
+        progress,
+    };
     let threads = options.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let (node_radii, root_pair_radii) = match pool {
-        Ok(pool) => pool.install(|| work.run(progress))?,
-        Err(_) => work.run(progress)?, // no more threads to be had: the global pool serves as well
+        Ok(pool) => pool.install(|| work.run())?,
+        Err(_) => work.run()?, // no more threads to be had: the global pool serves as well
     };
     let rest_collisions = {
         let mut rest = Query::on_hierarchy(model, Cow::Borrowed(&hierarchy), Method::Traditional);
@@ -57,15 +64,16 @@ struct Work<'a> {
     clusters: &'a ClusterBounds,
     options: &'a CertifyOptions,
     global_radius: f64,
+    progress: &'a dyn Progress,
 }
 
 impl Work<'_> {
     /// Nodes of one level are independent of each other: level by level from the leaves, each result
     /// depends only on the model, whatever the number of threads.
-    fn run(&self, progress: &dyn Progress) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    fn run(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let nodes = self.hierarchy.nodes();
         let mut radii = vec![self.global_radius; nodes.len()];
-        let tally = Tally::new(progress, nodes.len() + 5);
+        let tally = Tally::new(self.progress, nodes.len() + child_pairs(&nodes[0]).count());
         for level in self.hierarchy.levels().into_iter().rev() {
             if level.start == 0 {
                 break;
@@ -99,7 +107,7 @@ impl Work<'_> {
     }
 
     fn search(&self) -> Search<'_> {
-        Search::new(self.scaled, self.hierarchy, self.clusters, self.options.epsilon)
+        Search::new(self.scaled, self.hierarchy, self.clusters, self.options.epsilon, self.progress)
     }
 
     fn least_child(&self, node: &Node, radii: &[f64]) -> f64 {
@@ -116,7 +124,7 @@ impl Work<'_> {
 }
 
 /// All pairs of children, in the order (0,1), (0,2), ..., (2,3).
-fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
+pub(crate) fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
     let children = node.children();
     children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
 }
@@ -126,31 +134,27 @@ struct Tally<'a> {
     progress: &'a dyn Progress,
     done: AtomicUsize,
     total: usize,
-    cancelled: AtomicBool,
 }
 
 impl<'a> Tally<'a> {
     fn new(progress: &'a dyn Progress, total: usize) -> Self {
-        Self { progress, done: AtomicUsize::new(0), total, cancelled: AtomicBool::new(false) }
+        Self { progress, done: AtomicUsize::new(0), total }
     }
 
     fn step(&self, work: impl FnOnce() -> f64) -> f64 {
-        if self.cancelled.load(Ordering::Relaxed) {
+        if self.progress.is_cancelled() {
             return 0.0;
         }
         let result = work();
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        if done.is_multiple_of(256) || done == self.total {
+        if done.is_multiple_of(64) || done == self.total {
             self.progress.report(done, self.total);
-        }
-        if self.progress.is_cancelled() {
-            self.cancelled.store(true, Ordering::Relaxed);
         }
         result
     }
 
     fn finish(&self) -> Result<(), Error> {
-        if self.cancelled.load(Ordering::Relaxed) {
+        if self.progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
         self.progress.report(self.total, self.total);

@@ -1,8 +1,9 @@
 //! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
 
-use std::cmp::Ordering;
+use std::cmp;
 use std::collections::BinaryHeap;
 
+use crate::Progress;
 use crate::bounds::{ClusterBounds, ClusterScratch, PairRefiner, ScaledModel, Target, cluster_pair};
 use crate::hierarchy::Hierarchy;
 
@@ -25,27 +26,27 @@ struct Entry {
 /// Smallest lower bound first; triangle pairs before nodes; then by index, so that the order is the same in
 /// every run.
 impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> Ordering {
+    fn cmp(&self, other: &Self) -> cmp::Ordering {
         other.lower.total_cmp(&self.lower).then_with(|| other.candidate.cmp(&self.candidate))
     }
 }
 
 impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
+        self.cmp(other) == cmp::Ordering::Equal
     }
 }
 
 impl Eq for Entry {}
 
 /// Searches triangle pairs of one model; owns its scratch memory.
-pub(super) struct Search<'a> {
+pub(crate) struct Search<'a> {
     model: &'a ScaledModel,
     hierarchy: &'a Hierarchy,
     clusters: &'a ClusterBounds,
@@ -56,14 +57,18 @@ pub(super) struct Search<'a> {
     target: Target,
     /// The smallest certified radius among the pairs that are settled.
     settled: f64,
+    /// The pair for which the smallest upper bound was found.
+    hottest: Option<(u32, u32)>,
+    progress: &'a dyn Progress,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         model: &'a ScaledModel,
         hierarchy: &'a Hierarchy,
         clusters: &'a ClusterBounds,
         epsilon: f64,
+        progress: &'a dyn Progress,
     ) -> Self {
         Self {
             model,
@@ -75,11 +80,18 @@ impl<'a> Search<'a> {
             epsilon,
             target: Target { cap: 0.0, upper: 0.0, epsilon },
             settled: 0.0,
+            hottest: None,
+            progress,
         }
     }
 
+    /// The pair of triangles for which the last search found its smallest upper bound.
+    pub(crate) fn hottest(&self) -> Option<(u32, u32)> {
+        self.hottest
+    }
+
     /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
-    pub(super) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
+    pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
         self.start(cap);
         for (n, m) in pairs {
             self.consider(Candidate::Nodes(n, m), 0.0);
@@ -88,7 +100,7 @@ impl<'a> Search<'a> {
     }
 
     /// A certified radius, at most `cap`, for all triangle pairs within a leaf.
-    pub(super) fn within_leaf(&mut self, leaf: u32, cap: f64) -> f64 {
+    pub(crate) fn within_leaf(&mut self, leaf: u32, cap: f64) -> f64 {
         self.start(cap);
         let triangles = self.hierarchy.triangles(&self.hierarchy.nodes()[leaf as usize]);
         for (i, &x) in triangles.iter().enumerate() {
@@ -103,11 +115,16 @@ impl<'a> Search<'a> {
         self.waiting.clear();
         self.target = Target { cap, upper: f64::INFINITY, epsilon: self.epsilon };
         self.settled = cap;
+        self.hottest = None;
     }
 
     /// Takes the candidate with the smallest lower bound until none can lower the result by more than epsilon.
+    /// A cancelled search gives 0, the radius that promises nothing.
     fn run(&mut self) -> f64 {
         while let Some(entry) = self.waiting.pop() {
+            if self.progress.is_cancelled() {
+                return 0.0;
+            }
             if entry.lower >= self.enough() {
                 return entry.lower.min(self.settled);
             }
@@ -150,7 +167,11 @@ impl<'a> Search<'a> {
     fn open(&mut self, candidate: Candidate, lower: f64) {
         match candidate {
             Candidate::Triangles(x, y) => {
+                let upper = self.target.upper;
                 let refined = self.refiner.refine(x, y, &mut self.target);
+                if self.target.upper < upper {
+                    self.hottest = Some((x, y));
+                }
                 self.settled = self.settled.min(refined.max(lower));
             }
             Candidate::Nodes(n, m) => self.open_nodes(n, m, lower),
