@@ -1,5 +1,6 @@
 //! Proven self-collision detection for reduced deformable models.
 
+mod audit;
 mod bounds;
 mod certificates;
 mod error;
@@ -13,6 +14,7 @@ mod modes;
 mod progress;
 mod query;
 
+pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, metric_names};
 pub use error::Error;
 pub use intersect::intersect_triangle_triangle;

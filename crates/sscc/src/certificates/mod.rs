@@ -10,6 +10,8 @@ use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, MetricKind, Progress, ReducedModel};
 
 pub use digest::Digest;
+pub(crate) use precompute::child_pairs;
+pub(crate) use search::Search;
 
 /// How certificates are computed.
 #[derive(Clone, Debug)]

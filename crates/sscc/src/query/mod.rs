@@ -132,8 +132,20 @@ impl<'a> Query<'a> {
             brute_force::collide(self.model, q, &mut self.pairs, &mut self.statistics);
         } else {
             self.boxes.update(self.model, &self.hierarchy, q, reach);
-            self.traverse(q);
+            self.traverse((0, 0), q);
         }
+        self.pairs.sort_unstable();
+        Ok(&self.pairs)
+    }
+
+    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node
+    /// (n = m), found without certificates: for audits.
+    pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[(u32, u32)], Error> {
+        let reach = self.model.check_coordinates(q)?;
+        self.pairs.clear();
+        self.norm = self.metric().norm(q);
+        self.boxes.update(self.model, &self.hierarchy, q, reach);
+        self.traverse((n, m), q);
         self.pairs.sort_unstable();
         Ok(&self.pairs)
     }

@@ -5,11 +5,11 @@ use super::{Method, Query};
 use crate::intersect_triangle_triangle;
 
 impl Query<'_> {
-    /// Appends all colliding pairs at q. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for
+    /// Appends all colliding pairs at q between the nodes of `start`. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for
     /// two nodes without common triangles.
-    pub(super) fn traverse(&mut self, q: &[f64]) {
+    pub(super) fn traverse(&mut self, start: (u32, u32), q: &[f64]) {
         self.stack.clear();
-        self.stack.push((0, 0));
+        self.stack.push(start);
         while let Some((n, m)) = self.stack.pop() {
             if n == m { self.intra(n, q) } else { self.inter(n, m, q) }
         }

@@ -1,0 +1,180 @@
+//! The closest collision of two triangles that a search can find: an upper bound of the true radius.
+
+use glam::{DMat3, DVec3};
+
+use super::random::Random;
+use crate::bounds::ScaledModel;
+use crate::{Metric, ReducedModel, intersect_triangle_triangle};
+
+/// A configuration at which two triangles really collide.
+#[derive(Clone, Debug)]
+pub(super) struct Collision {
+    pub(super) faces: (u32, u32),
+    pub(super) q: Vec<f64>,
+    /// `|S q|`, rounded up.
+    pub(super) norm: f64,
+}
+
+/// Barycentric grid: this many steps along each edge.
+const GRID: usize = 6;
+
+/// Steps of the local search.
+const STEPS: usize = 400;
+
+/// Searches the smallest `|z|` at which two triangles meet: over point pairs, whose smallest z is known in
+/// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
+/// rays. Every result is confirmed by the exact test on the computed positions.
+pub(super) fn closest_collision(
+    model: &ReducedModel,
+    metric: &Metric,
+    scaled: &ScaledModel,
+    faces: (u32, u32),
+    random: &mut Random,
+) -> Option<Collision> {
+    let pair = PointPairs { scaled, x: scaled.faces[faces.0 as usize], y: scaled.faces[faces.1 as usize] };
+    let mut best = (f64::INFINITY, [DVec3::X; 2]);
+    for x in grid() {
+        for y in grid() {
+            let radius = pair.radius([x, y]);
+            if radius < best.0 {
+                best = (radius, [x, y]);
+            }
+        }
+    }
+    let mut width = 1.0 / GRID as f64;
+    for _ in 0..if best.0.is_finite() { STEPS } else { 0 } {
+        let mut step = |w: DVec3| {
+            let moved = w + DVec3::new(random.normal(), random.normal(), random.normal()) * width;
+            let clamped = moved.max(DVec3::ZERO);
+            clamped / (clamped.x + clamped.y + clamped.z).max(f64::MIN_POSITIVE)
+        };
+        let trial = best.1.map(&mut step);
+        let radius = pair.radius(trial);
+        if radius < best.0 {
+            best = (radius, trial);
+        } else {
+            width = (width * 0.98).max(1e-9);
+        }
+    }
+    let confirm = |z: &[f64]| {
+        [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.0 + 1e-4].into_iter().find_map(|factor| {
+            let q: Vec<f64> = z.iter().zip(metric.scales()).map(|(z, s)| factor * z / s).collect();
+            collides(model, faces, &q).then(|| Collision { faces, norm: metric.norm(&q), q })
+        })
+    };
+    let mut found = if best.0.is_finite() { confirm(&pair.solution(best.1)) } else { None };
+    if found.is_none() {
+        found = along_rays(model, metric, &pair, faces, random);
+    }
+    found
+}
+
+/// Whether two triangles collide at q, on the computed positions.
+pub(super) fn collides(model: &ReducedModel, faces: (u32, u32), q: &[f64]) -> bool {
+    let corners = |face: u32| model.mesh().faces()[face as usize].map(|v| model.position(v, q));
+    model.check_coordinates(q).is_ok() && intersect_triangle_triangle(&corners(faces.0), &corners(faces.1))
+}
+
+/// Looks for collisions along rays: along each mode, and along the ways in which points of the pair approach.
+fn along_rays(
+    model: &ReducedModel,
+    metric: &Metric,
+    pair: &PointPairs<'_>,
+    faces: (u32, u32),
+    random: &mut Random,
+) -> Option<Collision> {
+    let rank = metric.scales().len();
+    let mut rays: Vec<Vec<f64>> = Vec::new();
+    for k in 0..rank.min(8) {
+        for sign in [1.0, -1.0] {
+            rays.push((0..rank).map(|j| if j == k { sign } else { 0.0 }).collect());
+        }
+    }
+    for _ in 0..24 {
+        let weights = [(); 2].map(|()| {
+            let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
+            w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
+        });
+        let (d, b) = pair.relative(weights);
+        rays.push((0..rank).map(|k| -b[k].dot(d)).collect());
+    }
+    let mut best: Option<Collision> = None;
+    for ray in rays {
+        let length = ray.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            continue;
+        }
+        // The gap closes at about this |z|, if ever; look on both sides of it.
+        let (d, b) = pair.relative([DVec3::ONE / 3.0; 2]);
+        let rate: f64 = (0..rank).map(|k| b[k].dot(d) * ray[k]).sum::<f64>() / length;
+        let guess = if rate < 0.0 { -d.length_squared() / rate } else { continue };
+        for step in 1..200 {
+            let t = guess * f64::from(step) * 0.02;
+            let q: Vec<f64> = ray.iter().zip(metric.scales()).map(|(x, s)| x * (t / length) / s).collect();
+            if collides(model, faces, &q) {
+                let norm = metric.norm(&q);
+                if best.as_ref().is_none_or(|b| norm < b.norm) {
+                    best = Some(Collision { faces, q, norm });
+                }
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// Points of two triangles, given by barycentric weights.
+struct PointPairs<'a> {
+    scaled: &'a ScaledModel,
+    x: [u32; 3],
+    y: [u32; 3],
+}
+
+impl PointPairs<'_> {
+    /// `d` and the columns of `B` for the pair of points with the given weights.
+    fn relative(&self, [wx, wy]: [DVec3; 2]) -> (DVec3, Vec<DVec3>) {
+        let row = self.scaled.row;
+        let mut d = DVec3::ZERO;
+        let mut b = vec![DVec3::ZERO; row];
+        for (corners, weights, sign) in [(self.x, wx, -1.0), (self.y, wy, 1.0)] {
+            for (&v, w) in corners.iter().zip(weights.to_array()) {
+                let modes = self.scaled.modes(v);
+                d += self.scaled.positions[v as usize] * (w * sign);
+                for (k, b) in b.iter_mut().enumerate() {
+                    *b += DVec3::new(modes[k], modes[row + k], modes[2 * row + k]) * (w * sign);
+                }
+            }
+        }
+        (d, b)
+    }
+
+    /// `(B B')^-1 d`, where B has full rank.
+    fn multiplier(d: DVec3, b: &[DVec3]) -> Option<DVec3> {
+        let mut gram = DMat3::ZERO;
+        for b in b {
+            gram += DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z);
+        }
+        let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
+        (gram.determinant() > 1e-15 * trace * trace * trace).then(|| gram.inverse() * d)
+    }
+
+    /// The smallest `|z|` that brings the two points together; infinite where modes do not reach.
+    fn radius(&self, weights: [DVec3; 2]) -> f64 {
+        let (d, b) = self.relative(weights);
+        Self::multiplier(d, &b).map_or(f64::INFINITY, |y| d.dot(y).max(0.0).sqrt())
+    }
+
+    /// That z.
+    fn solution(&self, weights: [DVec3; 2]) -> Vec<f64> {
+        let (d, b) = self.relative(weights);
+        let y = Self::multiplier(d, &b).unwrap_or(DVec3::ZERO);
+        b.iter().map(|b| -b.dot(y)).collect()
+    }
+}
+
+/// Barycentric weights on a regular grid.
+fn grid() -> impl Iterator<Item = DVec3> {
+    (0..=GRID).flat_map(|i| {
+        (0..=GRID - i).map(move |j| DVec3::new(i as f64, j as f64, (GRID - i - j) as f64) / GRID as f64)
+    })
+}

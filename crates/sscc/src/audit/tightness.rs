@@ -1,0 +1,103 @@
+//! How close radii are to the truth: radius over the closest collision found.
+
+use rayon::prelude::*;
+
+use super::minimum::{Collision, closest_collision};
+use super::random::Random;
+use crate::bounds::{ClusterBounds, ScaledModel};
+use crate::certificates::{Search, child_pairs};
+use crate::{Certificates, Progress, ReducedModel};
+
+/// Nodes measured beside the root and the pairs of its children.
+const NODES: usize = 200;
+
+/// Closest collisions found, and what follows from them.
+pub(super) struct Tightness {
+    pub(super) root: Option<f64>,
+    pub(super) quotients: Vec<f64>,
+    pub(super) violations: Vec<String>,
+    /// The collisions themselves: directions worth attacking.
+    pub(super) hot: Vec<Collision>,
+}
+
+/// A claim: no pair of these nodes collides below the radius.
+#[derive(Clone, Copy)]
+enum Claim {
+    Node(u32),
+    RootPair(u32, u32),
+}
+
+/// Measures the root, the pairs of its children, and nodes spread evenly over the tree.
+pub(super) fn measure(
+    model: &ReducedModel,
+    certificates: &Certificates,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Tightness {
+    let parts = certificates.parts();
+    let nodes = parts.hierarchy.nodes();
+    let scaled = ScaledModel::new(model, &parts.metric);
+    let clusters = ClusterBounds::new(&scaled, &parts.hierarchy);
+    let open = |radius: f64| radius > 0.0 && radius < parts.global_radius;
+    let mut claims = vec![(Claim::Node(0), parts.node_radii[0])];
+    claims.extend(
+        child_pairs(&nodes[0]).zip(&parts.root_pair_radii).map(|((n, m), r)| (Claim::RootPair(n, m), *r)),
+    );
+    let stride = nodes.len().div_ceil(NODES);
+    claims.extend((1..nodes.len()).step_by(stride).map(|n| (Claim::Node(n as u32), parts.node_radii[n])));
+    let found: Vec<(bool, f64, Option<Collision>)> = claims
+        .par_iter()
+        .enumerate()
+        .filter(|(_, (_, radius))| open(*radius))
+        .map(|(i, &(claim, radius))| {
+            let mut search = Search::new(&scaled, &parts.hierarchy, &clusters, parts.epsilon, progress);
+            match claim {
+                Claim::RootPair(n, m) => search.between([(n, m)], parts.global_radius),
+                Claim::Node(n) => {
+                    let n = responsible(certificates, n);
+                    let node = &nodes[n as usize];
+                    if node.is_leaf() {
+                        search.within_leaf(n, parts.global_radius)
+                    } else {
+                        search.between(child_pairs(node), parts.global_radius)
+                    }
+                }
+            };
+            let mut random = Random::new(seed, i as u64);
+            let collision = search
+                .hottest()
+                .and_then(|faces| closest_collision(model, &parts.metric, &scaled, faces, &mut random));
+            (i == 0, radius, collision)
+        })
+        .collect();
+    let mut result = Tightness { root: None, quotients: vec![], violations: vec![], hot: vec![] };
+    for (is_root, radius, collision) in found {
+        let Some(collision) = collision else { continue };
+        let quotient = radius / collision.norm;
+        result.quotients.push(quotient);
+        if is_root {
+            result.root = Some(quotient);
+        }
+        if collision.norm < radius {
+            result.violations.push(format!(
+                "triangles {} and {} collide at |z| = {:e}, below the radius {radius:e}; q = {:?}",
+                collision.faces.0, collision.faces.1, collision.norm, collision.q
+            ));
+        }
+        result.hot.push(collision);
+    }
+    result
+}
+
+/// The node below n whose own search gave the radius of n.
+fn responsible(certificates: &Certificates, mut n: u32) -> u32 {
+    let parts = certificates.parts();
+    loop {
+        let radius = parts.node_radii[n as usize];
+        let mut children = parts.hierarchy.nodes()[n as usize].children();
+        match children.find(|&child| parts.node_radii[child as usize] <= radius) {
+            Some(child) => n = child,
+            None => return n,
+        }
+    }
+}
