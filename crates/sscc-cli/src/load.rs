@@ -51,16 +51,20 @@ pub fn threads(typed: &args::Threads) -> usize {
     }
 }
 
-/// Computes certificates.
-pub fn certify(model: &ReducedModel, files: &args::Model, options: &args::Options) -> Result<Certificates> {
-    let options = CertifyOptions {
-        epsilon: options.epsilon.unwrap_or(CertifyOptions::default().epsilon),
-        metric: metric(model, options.metric.as_deref())?,
-        threads: Some(threads(&options.threads)),
-    };
-    let computed = Certificates::compute(model, &options, &Bar::new("certifying"));
+/// What was typed about computing certificates.
+pub fn options(model: &ReducedModel, typed: &args::Options) -> Result<CertifyOptions> {
+    Ok(CertifyOptions {
+        epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
+        metric: metric(model, typed.metric.as_deref())?,
+        threads: Some(threads(&typed.threads)),
+    })
+}
+
+/// Computes certificates; errors name the model's file.
+pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> Result<Certificates> {
+    let computed = Certificates::compute(model, options, &Bar::new("certifying"));
     interrupt::check()?;
-    computed.with_context(|| files.path.display().to_string())
+    computed.with_context(|| path.display().to_string())
 }
 
 /// Reads certificates, and refuses those of another model, or other than the options typed say.

@@ -36,8 +36,9 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
             .collect();
     load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
     let (model, _) = load::model(&args.model)?;
+    let options = load::options(&model, &args.options)?;
     let start = Instant::now();
-    let certificates = load::certify(&model, &args.model, &args.options)?;
+    let certificates = load::certify(&model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();
     let bytes = certificates_to_bytes(&certificates).context("certificates")?;
     interrupt::check()?;

@@ -37,10 +37,11 @@ pub fn run(args: &Check) -> Result<Outcome> {
     let certificates = match &args.certificates {
         Some(path) => Some(load::certificates(path, &model, &args.options)?),
         None if args.method == args::Method::Certified => {
+            let options = load::options(&model, &args.options)?;
             eprintln!(
-                "note: no --certificates given, so they are computed first; `sscc certify` keeps them in a file"
+                "note: no --certificates given: computing them first (sscc certify keeps them in a file)"
             );
-            Some(load::certify(&model, &args.model, &args.options)?)
+            Some(load::certify(&model, &args.model.path, &options)?)
         }
         None => {
             if let Some(metric) = load::metric(&model, args.options.metric.as_deref())? {

@@ -5,16 +5,16 @@ mod frames;
 mod report;
 mod save;
 
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, ensure};
-use sscc::{Certificates, CertifyOptions, ReducedModel};
+use sscc::{CertifyOptions, ReducedModel};
 use sscc_modes::{polynomial_modes, shapes::spring};
 
 use crate::args::{Demo, Threads};
 use crate::output::Output;
-use crate::progress::Bar;
-use crate::{Outcome, interrupt, load};
+use crate::{Outcome, load};
 use frames::Frames;
 use report::Report;
 
@@ -29,9 +29,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     let threads = load::threads(&Threads { threads: None });
     let start = Instant::now();
     let options = CertifyOptions { threads: Some(threads), ..CertifyOptions::default() };
-    let certified = Certificates::compute(&model, &options, &Bar::new("certifying"));
-    interrupt::check()?;
-    let certificates = certified?;
+    let certificates = load::certify(&model, Path::new("the embedded spring"), &options)?;
     let certify_seconds = start.elapsed().as_secs_f64();
 
     let animation = animation::animate(&model);

@@ -40,13 +40,15 @@ pub fn save(
 pub fn what_next(folder: &Path) -> Vec<String> {
     let file = |name: &str| folder.join(name).display().to_string();
     let (model, certificates) = (file(MODEL), file(CERTIFICATES));
+    // As it was called this time: not everyone has it on the path.
+    let sscc = std::env::args().next().unwrap_or_else(|| "sscc".into());
     vec![
         String::new(),
         format!("Written to {}: {MESH}, {MODEL}, {CERTIFICATES}, {ANIMATION}. Next:", folder.display()),
-        format!("  sscc info {certificates}"),
-        format!("  sscc check {model} --certificates {certificates} --trajectory {}", file(ANIMATION)),
-        format!("  sscc audit {model} --certificates {certificates} --samples 1000"),
-        format!("  sscc modes {} -o {} --kind polynomial", file(MESH), file("again.model.safetensors")),
+        format!("  {sscc} info {certificates}"),
+        format!("  {sscc} check {model} --certificates {certificates} --trajectory {}", file(ANIMATION)),
+        format!("  {sscc} audit {model} --certificates {certificates} --samples 1000"),
+        format!("  {sscc} modes {} -o {} --kind polynomial", file(MESH), file("again.model.safetensors")),
     ]
 }
 
