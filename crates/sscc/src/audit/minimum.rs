@@ -6,13 +6,19 @@ use super::random::Random;
 use crate::bounds::ScaledModel;
 use crate::{Metric, ReducedModel, intersect_triangle_triangle};
 
-/// A configuration at which two triangles really collide.
+/// A configuration at which two points of two triangles meet, up to rounding.
+///
+/// Triangles that close up within their surface touch at that q alone and miss each other beyond it, so the exact
+/// test may not see it. It is an upper bound of the true radius all the same; only a collision that the
+/// exact test confirms at a smaller norm than a radius proves that radius wrong.
 #[derive(Clone, Debug)]
 pub(super) struct Collision {
     pub(super) faces: (u32, u32),
     pub(super) q: Vec<f64>,
     /// `|S q|`, rounded up.
     pub(super) norm: f64,
+    /// Whether the triangles collide at q on the computed positions.
+    pub(super) confirmed: bool,
 }
 
 /// Barycentric grid: this many steps along each edge.
@@ -23,7 +29,7 @@ const STEPS: usize = 400;
 
 /// Searches the smallest `|z|` at which two triangles meet: over point pairs, whose smallest z is known in
 /// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
-/// rays. Every result is confirmed by the exact test on the computed positions.
+/// rays.
 pub(super) fn closest_collision(
     model: &ReducedModel,
     metric: &Metric,
@@ -56,17 +62,16 @@ pub(super) fn closest_collision(
             width = (width * 0.98).max(1e-9);
         }
     }
-    let confirm = |z: &[f64]| {
-        [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.0 + 1e-4].into_iter().find_map(|factor| {
-            let q: Vec<f64> = z.iter().zip(metric.scales()).map(|(z, s)| factor * z / s).collect();
-            collides(model, faces, &q).then(|| Collision { faces, norm: metric.norm(&q), q })
-        })
-    };
-    let mut found = if best.0.is_finite() { confirm(&pair.solution(best.1)) } else { None };
-    if found.is_none() {
-        found = along_rays(model, metric, &pair, faces, random);
+    if !best.0.is_finite() {
+        return along_rays(model, metric, &pair, faces, random);
     }
-    found
+    let z = pair.solution(best.1);
+    let at =
+        |factor: f64| -> Vec<f64> { z.iter().zip(metric.scales()).map(|(z, s)| factor * z / s).collect() };
+    let factors = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6];
+    let confirmed = factors.into_iter().map(at).find(|q| collides(model, faces, q));
+    let q = confirmed.clone().unwrap_or_else(|| at(1.0));
+    Some(Collision { faces, norm: metric.norm(&q), q, confirmed: confirmed.is_some() })
 }
 
 /// Whether two triangles collide at q, on the computed positions.
@@ -114,7 +119,7 @@ fn along_rays(
             if collides(model, faces, &q) {
                 let norm = metric.norm(&q);
                 if best.as_ref().is_none_or(|b| norm < b.norm) {
-                    best = Some(Collision { faces, q, norm });
+                    best = Some(Collision { faces, q, norm, confirmed: true });
                 }
                 break;
             }

@@ -78,7 +78,7 @@ pub(super) fn measure(
         if is_root {
             result.root = Some(quotient);
         }
-        if collision.norm < radius {
+        if collision.confirmed && collision.norm < radius {
             result.violations.push(format!(
                 "triangles {} and {} collide at |z| = {:e}, below the radius {radius:e}; q = {:?}",
                 collision.faces.0, collision.faces.1, collision.norm, collision.q
