@@ -168,12 +168,15 @@ pub(crate) fn check_scaled_modes(mesh: &TriMesh, modes: &Modes, metric: &Metric)
         return Err(Error::MetricLength { found: metric.scales.len(), rank: modes.rank() });
     }
     let mut largest = 0.0_f64;
+    let mut moves = false;
     for v in mesh.used_vertices() {
         for (u, s) in modes.of_vertex(v).iter().zip(&metric.scales) {
             largest = largest.max((*u / *s).abs().max_element());
+            moves |= *u != DVec3::ZERO;
         }
     }
-    if largest == 0.0 || (limits::SMALLEST..=limits::LARGEST).contains(&largest) {
+    // Modes that move something must not vanish when scaled: a radius would become infinite.
+    if !moves || (limits::SMALLEST..=limits::LARGEST).contains(&largest) {
         Ok(largest)
     } else {
         Err(Error::MetricRange { largest })

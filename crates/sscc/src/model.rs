@@ -100,7 +100,9 @@ impl ReducedModel {
             let index = q.iter().position(|x| !x.is_finite()).unwrap_or(0);
             return Err(Error::CoordinatesValue { index, value: q[index] });
         }
-        if reach > limits::LARGEST {
+        // Rounding may carry a position a little beyond the exact reach.
+        let rounding = 1.0 + (2 * q.len() + 8) as f64 * f64::EPSILON;
+        if reach * rounding > limits::LARGEST {
             return Err(Error::CoordinatesRange);
         }
         Ok(reach)

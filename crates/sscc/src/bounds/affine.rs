@@ -92,11 +92,12 @@ pub(crate) fn affine_bound(
     }
     let frobenius = norm_up(scratch.gradient.iter().map(|g| g * g).sum(), 9 * row);
     let longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
-    let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
     // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
-    // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`.
-    let residual_error = 16.0 * f64::EPSILON * frobenius * longest;
+    // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
+    // sub-triangles are themselves rounded, which moves both the offsets here and the directions below.
+    let residual_error = (16.0 * f64::EPSILON * longest + 4.0 * error.rest(DVec3::ONE)) * frobenius;
     let e = norm_up(largest, 3 * row) + residual_error;
+    let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
     let rest_error = error.rest(axes);
     let slack = (e + 2.0 * error.rate(axes)) * UP;
     let rounding = 8.0 * f64::EPSILON * frobenius;

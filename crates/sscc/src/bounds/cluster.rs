@@ -195,22 +195,23 @@ fn corner_bound(
         }
     }
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
-    let lost = (row as f64 + 256.0) * f64::EPSILON * size * size;
+    // Each of the 63 flips below adds at most 4 (63 + 7) eps |row| |all rows|, the products themselves row eps.
+    let lost = (row as f64 + 20_000.0) * f64::EPSILON * size * size;
     let slack = n.abs().dot(x.residual + y.residual) + 2.0 * model.error.rate(n);
     let rest_error = 2.0 * model.error.rest(n);
     let mut signs = [1.0; 6];
-    let mut gap = n.dot(y.centre - x.centre) + steps.iter().sum::<f64>();
+    let gap = n.dot(y.centre - x.centre);
     // Inner products of B'n with the seven rows, kept up to date while signs flip in Gray code order.
     let mut inner: [f64; 7] = std::array::from_fn(|i| products[i].iter().sum());
     let mut square: f64 = inner.iter().sum();
     let mut bound = f64::INFINITY;
     for corner in 1..=64_u32 {
+        let gap = gap + signs.iter().zip(steps).map(|(sign, step)| sign * step).sum::<f64>();
         bound = bound.min(radius(gap - rest_error, ((square.max(0.0) + lost).sqrt() + slack) * UP));
         let flip = corner.trailing_zeros() as usize;
         if flip < 6 {
             let change = -2.0 * signs[flip];
             signs[flip] = -signs[flip];
-            gap += change * steps[flip];
             square += change * (2.0 * inner[flip + 1] + change * products[flip + 1][flip + 1]);
             for i in 0..7 {
                 inner[i] += change * products[flip + 1][i];

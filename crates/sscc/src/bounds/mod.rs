@@ -8,6 +8,7 @@
 mod affine;
 mod cluster;
 mod cone;
+mod contact;
 mod direction;
 mod lanes;
 mod min_norm;

@@ -9,8 +9,9 @@ use std::collections::BinaryHeap;
 use glam::{DMat3, DVec3};
 
 use super::affine::{AffineScratch, affine_bound};
+use super::contact::first_contact;
 use super::direction::{TrianglePair, direction_bound, rest_distance};
-use super::lanes::{add_scaled, gram};
+use super::lanes::{add_scaled, dot, gram, project};
 use super::min_norm::nearest_to_origin;
 use super::scaled::{ScaledModel, direction};
 
@@ -145,11 +146,15 @@ impl<'a> PairRefiner<'a> {
         let mut serial = 0;
         // Parts that can be halved no further.
         let mut settled = f64::INFINITY;
-        for _ in 0..SUBDIVISIONS {
+        for step in 1..=SUBDIVISIONS {
             let Some(part) = parts.pop() else { break };
             if part.lower >= target.enough().min(settled) || part.lower <= 0.0 {
                 parts.push(part);
                 break;
+            }
+            // Where the modes reach all directions, the bounds themselves meet better upper bounds.
+            if step.is_power_of_two() && !self.reaches_everywhere(whole) {
+                self.reach_along_ray(whole, &part, target, &mut corner_modes);
             }
             // Halve the part whose modes vary more, so that both shrink alike.
             let spread = |corners: &[&[f64]; 3], depth: u8| {
@@ -164,16 +169,7 @@ impl<'a> PairRefiner<'a> {
             }
             for quarter in quarters(if split_x { &part.x } else { &part.y }) {
                 let (x, y) = if split_x { (quarter, part.y) } else { (part.x, quarter) };
-                let bound = {
-                    let (modes_x, modes_y) = corner_modes.split_at_mut(9 * self.model.row);
-                    let sub = TrianglePair {
-                        x: x.map(|w| combine(&whole.x, w)),
-                        y: y.map(|w| combine(&whole.y, w)),
-                        modes_x: combine_modes(&whole.modes_x, &x, modes_x),
-                        modes_y: combine_modes(&whole.modes_y, &y, modes_y),
-                    };
-                    self.bound(&sub, target)
-                };
+                let bound = self.bound(&sub_pair(whole, &x, &y, &mut corner_modes), target);
                 serial += 1;
                 parts.push(Part {
                     lower: bound.max(part.lower),
@@ -189,6 +185,43 @@ impl<'a> PairRefiner<'a> {
         self.parts = parts;
         self.corner_modes = corner_modes;
         lower
+    }
+
+    /// Whether the relative modes at the centroids move in all three directions.
+    fn reaches_everywhere(&mut self, pair: &TrianglePair<'_>) -> bool {
+        self.reach(pair, &pair.differences(), &[1.0 / 9.0; 9]).is_finite()
+    }
+
+    /// An upper bound where point pairs give none (rank 1 or 2, or modes that do not reach all directions): a z
+    /// along which the part's closest points approach and at which the whole triangles first touch.
+    fn reach_along_ray(
+        &mut self,
+        whole: &TrianglePair<'_>,
+        part: &Part,
+        target: &mut Target,
+        corner_modes: &mut [f64],
+    ) {
+        let sub = sub_pair(whole, &part.x, &part.y, corner_modes);
+        let differences = sub.differences();
+        let closest = nearest_to_origin(&differences);
+        self.gram_at(&sub, &closest.weights);
+        let z = &mut self.projections[..self.model.row];
+        project(&self.mean, closest.point, z);
+        // As far as the triangles may move: to the cap, or well beyond the lower bound.
+        let length = dot(z, z).sqrt();
+        let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * part.lower };
+        let velocities = |modes: &[&[f64]; 3]| {
+            modes.map(|modes| {
+                let along = |c: usize| dot(&modes[c * z.len()..][..z.len()], z) * (-farthest / length);
+                DVec3::new(along(0), along(1), along(2))
+            })
+        };
+        let (vx, vy) = (velocities(&whole.modes_x), velocities(&whole.modes_y));
+        let at = |p: &[DVec3; 3], v: &[DVec3; 3], t: f64| std::array::from_fn(|i| p[i] + v[i] * t);
+        let contact = first_contact(|t| (at(&whole.x, &vx, t), at(&whole.y, &vy, t)));
+        if let Some(t) = contact {
+            target.found(t * farthest);
+        }
     }
 
     /// The best of the cheap bounds for one pair of (sub-)triangles.
@@ -260,6 +293,22 @@ impl<'a> PairRefiner<'a> {
         }
         let square = d.dot(gram.inverse() * d);
         if square > 0.0 { square.sqrt() } else { f64::INFINITY }
+    }
+}
+
+/// The part of a pair with the given corner weights; its modes are written to `corner_modes` (18 rows).
+fn sub_pair<'b>(
+    whole: &TrianglePair<'_>,
+    x: &Weights,
+    y: &Weights,
+    corner_modes: &'b mut [f64],
+) -> TrianglePair<'b> {
+    let (modes_x, modes_y) = corner_modes.split_at_mut(corner_modes.len() / 2);
+    TrianglePair {
+        x: x.map(|w| combine(&whole.x, w)),
+        y: y.map(|w| combine(&whole.y, w)),
+        modes_x: combine_modes(&whole.modes_x, x, modes_x),
+        modes_y: combine_modes(&whole.modes_y, y, modes_y),
     }
 }
 
