@@ -95,7 +95,7 @@ pub fn random_mesh(random: &mut Random) -> Soup {
         faces.iter_mut().flatten().for_each(|v| *v += 1);
     }
     let (scale, offset) = match random.below(8) {
-        0 => (random.power(-30.0, 30.0), DVec3::ZERO),
+        0 => (random.power(-20.0, 20.0), DVec3::ZERO),
         1 => (1.0, random.vector() * random.power(0.0, 8.0)),
         _ => (1.0, DVec3::ZERO),
     };
