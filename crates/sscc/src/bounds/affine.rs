@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 
 use super::cone::cone_rate;
 use super::direction::TrianglePair;
-use super::lanes::{LANES, padded};
+use super::lanes::{LANES, dot, padded};
 use super::scaled::{GapError, UP, norm_up, radius};
 
 /// Scratch for one fit: the nine gradient entries and the residuals of six corners, one row each.
@@ -90,7 +90,7 @@ pub(crate) fn affine_bound(
             largest = largest.max(super::lanes::squared_distance(&ea[..3 * row], &eb[..3 * row]));
         }
     }
-    let frobenius = norm_up(scratch.gradient.iter().map(|g| g * g).sum(), 9 * row);
+    let frobenius = norm_up(dot(&scratch.gradient, &scratch.gradient), 9 * row);
     let longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
     // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
     // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
