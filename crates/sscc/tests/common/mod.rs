@@ -1,5 +1,4 @@
 //! Small random models, with every kind of odd mesh and odd modes.
-#![allow(dead_code)]
 
 use glam::{DMat3, DVec3};
 use sscc::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
@@ -62,7 +61,7 @@ impl Random {
 /// Vertices and faces.
 pub type Soup = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// A mesh of 4 to about 80 triangles.
+/// A mesh of 4 to 64 triangles, and a few more.
 pub fn random_mesh(random: &mut Random) -> Soup {
     let (mut p, mut faces) = match random.below(7) {
         0 => soup(random),
@@ -105,7 +104,7 @@ pub fn random_mesh(random: &mut Random) -> Soup {
 
 /// Triangles without common vertices.
 fn soup(random: &mut Random) -> Soup {
-    let count = 4 + random.below(30);
+    let count = 4 + random.below(14);
     let size = random.power(-3.0, -0.3);
     let mut p = Vec::new();
     for _ in 0..count {
@@ -138,7 +137,7 @@ fn sphere(random: &mut Random) -> Soup {
         let p = p.map(|c: [i32; 3]| DVec3::from_array(c.map(f64::from)).normalize()).to_vec();
         (p, vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
     };
-    for _ in 0..1 + usize::from(!octahedron && random.below(2) == 0) {
+    for _ in 0..1 + usize::from(!octahedron && random.below(4) == 0) {
         let mut next = Vec::new();
         for [a, b, c] in faces {
             let mut middle = |a: u32, b: u32| {
@@ -163,7 +162,7 @@ fn sphere(random: &mut Random) -> Soup {
 
 /// An open strip, a little uneven.
 fn strip(random: &mut Random) -> Soup {
-    let steps = 3 + random.below(25);
+    let steps = 3 + random.below(10);
     let noise = random.power(-9.0, -1.0);
     let p = (0..=steps)
         .flat_map(|i| [0.0, 1.0].map(|y| DVec3::new(i as f64, y, 0.0)))
@@ -179,7 +178,7 @@ fn strip_faces(steps: usize) -> Vec<[u32; 3]> {
 
 /// A strip bent almost into a ring: its ends are close.
 fn curled_strip(random: &mut Random) -> Soup {
-    let steps = 6 + random.below(25);
+    let steps = 6 + random.below(14);
     let gap = random.power(-6.0, -0.5);
     let p = (0..=steps)
         .flat_map(|i| {
@@ -207,7 +206,7 @@ fn fan(random: &mut Random) -> Soup {
 
 /// Two sheets with a narrow gap.
 fn sheets(random: &mut Random) -> Soup {
-    let n = 2 + random.below(3) as u32;
+    let n = 2 + u32::from(random.below(4) == 0);
     let gap = random.power(-9.0, -0.5);
     let mut p = Vec::new();
     let mut faces = Vec::new();
