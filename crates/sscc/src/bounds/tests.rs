@@ -1,5 +1,7 @@
 //! Every bound against the true minimum, or what a slow search finds of it.
 
+#![allow(clippy::print_stdout)] // statistics for those who tune the bounds
+
 use glam::DVec3;
 
 use super::affine::{AffineScratch, StrainGram, affine_bound};
@@ -458,8 +460,9 @@ fn piercing_at_rest_needs_its_own_test() {
 #[test]
 fn the_last_of_too_few_singular_values_is_not_conservative() {
     let still: &[[f64; 3]] = &[[0.0; 3]];
-    let (down, up, level): (&[[f64; 3]], &[[f64; 3]], &[[f64; 3]]) =
-        (&[[0.1, 0.0, -2.0]], &[[0.1, 0.0, 2.0]], &[[0.1, 0.0, 0.0]]);
+    let down: &[[f64; 3]] = &[[0.1, 0.0, -2.0]];
+    let up: &[[f64; 3]] = &[[0.1, 0.0, 2.0]];
+    let level: &[[f64; 3]] = &[[0.1, 0.0, 0.0]];
     let pair = pair(STACKED, [still, still, still, down, up, level]);
     let truth = pair.true_minimum(8, &mut Random::new(1)).unwrap();
     assert!(truth < 1.0, "{truth}");
