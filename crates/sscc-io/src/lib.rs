@@ -17,7 +17,7 @@ pub mod npy;
 mod numbers;
 mod text;
 
-pub use container::{ModelInfo, read_model, write_model};
+pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use load::load_model;

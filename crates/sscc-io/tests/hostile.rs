@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use sscc_io::container::{CERTIFICATES, MODEL, Sealed, model_from_bytes};
+use sscc_io::container::{CERTIFICATES, MODEL, Sealed, certificates_from_bytes, model_from_bytes};
 use sscc_io::mesh::{obj, off, ply};
 use sscc_io::modes::{array, vega};
 use sscc_io::npy;
@@ -22,6 +22,7 @@ fn parse_all(bytes: &[u8]) {
         }
     }
     one_line(&model_from_bytes(bytes));
+    one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
         one_line(&Sealed::parse(bytes, kind));
     }
