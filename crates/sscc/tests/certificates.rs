@@ -1,4 +1,5 @@
 //! Properties of certificates and queries, through the public interface.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
