@@ -1,5 +1,7 @@
 //! Every bound against the true minimum, or what a slow search finds of it.
 
+#![allow(clippy::print_stdout)] // statistics for those who tune the bounds
+
 use glam::DVec3;
 
 use super::affine::{AffineScratch, StrainGram, affine_bound};
@@ -214,6 +216,33 @@ fn no_bound_exceeds_the_true_minimum() {
     let mut plain: Vec<f64> = ratios.iter().filter(|r| r.1 < 2).map(|r| r.0).collect();
     plain.sort_by(f64::total_cmp);
     assert!(plain[plain.len() / 2] >= 0.8, "median tightness {}", plain[plain.len() / 2]);
+}
+
+/// Powers of two times positions and modes change nothing but the exponent of the true minimum: bounds hold
+/// near the ends of the range of numbers, where squares overflow or vanish.
+#[test]
+fn bounds_hold_for_extreme_sizes() {
+    for case in 0..900_u64 {
+        let random = &mut Random::new(case + 50_000);
+        let model = random_pair(case as usize % (KINDS - 1), random);
+        let Some(truth) = reference(&model, [0, 1]).true_minimum(3, random) else { continue };
+        let (size, speed) = (150 - random.below(1000) as i32, 150 - random.below(300) as i32);
+        let (mesh, modes) = (model.mesh(), model.modes());
+        let grow = |x: &[DVec3], power: i32| x.iter().map(|x| *x * 2.0_f64.powi(power)).collect::<Vec<_>>();
+        let mesh = TriMesh::new(grow(mesh.rest_positions(), size), mesh.faces().to_vec()).unwrap();
+        let modes = Modes::new(modes.rank(), grow(modes.displacements(), speed)).unwrap();
+        let large = ReducedModel::with_metric(mesh, modes, model.metric().clone()).unwrap();
+        let truth =
+            truth * 2.0_f64.powi((size - speed) / 2) * 2.0_f64.powi((size - speed) - (size - speed) / 2);
+        for (name, bound) in all_bounds(&large, random) {
+            assert!(
+                bound <= truth * ROOM,
+                "case {case}, 2^{size} 2^{speed}: {name} {bound:e} above {truth:e}"
+            );
+        }
+        let bound = cluster_bound(&large, 1);
+        assert!(bound <= truth * ROOM, "case {case}, 2^{size} 2^{speed}: cluster {bound:e} above {truth:e}");
+    }
 }
 
 #[test]
@@ -458,8 +487,9 @@ fn piercing_at_rest_needs_its_own_test() {
 #[test]
 fn the_last_of_too_few_singular_values_is_not_conservative() {
     let still: &[[f64; 3]] = &[[0.0; 3]];
-    let (down, up, level): (&[[f64; 3]], &[[f64; 3]], &[[f64; 3]]) =
-        (&[[0.1, 0.0, -2.0]], &[[0.1, 0.0, 2.0]], &[[0.1, 0.0, 0.0]]);
+    let down: &[[f64; 3]] = &[[0.1, 0.0, -2.0]];
+    let up: &[[f64; 3]] = &[[0.1, 0.0, 2.0]];
+    let level: &[[f64; 3]] = &[[0.1, 0.0, 0.0]];
     let pair = pair(STACKED, [still, still, still, down, up, level]);
     let truth = pair.true_minimum(8, &mut Random::new(1)).unwrap();
     assert!(truth < 1.0, "{truth}");
