@@ -40,6 +40,10 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
             Metric::from_weights(&weights).with_context(|| wanted.display().to_string())?
         }
     };
+    // Refused here rather than later, where the flag is no longer known.
+    let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
+    let fits = ReducedModel::with_metric(mesh, modes, metric.clone());
+    fits.with_context(|| format!("--metric {}", wanted.display()))?;
     Ok(Some(metric))
 }
 

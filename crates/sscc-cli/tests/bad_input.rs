@@ -170,6 +170,7 @@ fn metrics_that_do_not_fit() {
         ("zero", "zero: metric weight 1 (counted from 0) is 0: weights must be positive"),
         ("negative", "negative: metric weight 1 "),
         ("nan", "nan: line 1: 'nan' is not a finite number"),
+        ("tiny", "--metric tiny: the modes divided by the metric's scales reach "),
         ("inf.npy", "inf.npy: metric weight 1 (counted from 0) is inf"),
     ] {
         refused(folder, &["certify", STRIPS, "-o", "out.sscc.safetensors", "--metric", metric], &[named]);

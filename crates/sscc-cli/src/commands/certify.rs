@@ -74,10 +74,10 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
 impl Report {
     fn lines(&self, metric: &str, output: &Path) -> Vec<String> {
         let promise = if self.root_radius > 0.0 {
-            format!("root radius    {} : below it the whole shape is free", length(self.root_radius))
+            format!("root radius    {}: below it the whole shape is free", length(self.root_radius))
         } else {
             format!(
-                "root radius    0 : the shape collides with itself at rest ({}); the parts that do not are certified",
+                "root radius    0: the shape collides with itself at rest ({}); the parts that do not are certified",
                 counted(self.rest_collisions, "pair")
             )
         };

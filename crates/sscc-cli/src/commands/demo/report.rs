@@ -50,7 +50,7 @@ impl Report {
             pairs: frames.traditional.pairs.iter().map(Vec::len).sum(),
             frames: vec![
                 Group::new("free by the root's certificate", frames, root),
-                Group::new("free by further certificates", frames, |i| free(i) && !root(i)),
+                Group::new("free, root's certificate fails", frames, |i| free(i) && !root(i)),
                 Group::new("colliding", frames, |i| !free(i)),
                 Group::new("all", frames, |_| true),
             ],
@@ -90,7 +90,10 @@ impl Report {
             ),
             n => format!("DEFECT: the methods differ in {n} frames."),
         });
-        lines.push("(traditional: all boxes refitted for every q; speed-up: traditional / sscc)".into());
+        lines.push(
+            "Traditional: all boxes refitted for every q. BD-tree: boxes updated where they are looked at."
+                .into(),
+        );
         lines
     }
 
