@@ -116,6 +116,7 @@ impl Metric {
     ///
     /// `q` must have one finite entry for each scale (checked by every query before it comes here).
     pub fn norm(&self, q: &[f64]) -> f64 {
+        debug_assert_eq!(q.len(), self.scales.len());
         // Squares of numbers in this range neither overflow nor lose anything that counts: the largest
         // is at least 1e-280, and what underflows in the others is at most r 2^-1074.
         const FAST: std::ops::Range<f64> = 1e-140..1e140;

@@ -6,7 +6,7 @@ use super::AuditOptions;
 use super::minimum::Collision;
 use super::random::Random;
 use crate::certificates::child_pairs;
-use crate::{Certificates, Method, Progress, Query, ReducedModel};
+use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};
 
 /// One in this many attacks goes at the root, another at a pair of its children: they cost as much as
 /// a traditional query of the whole model.
@@ -25,47 +25,69 @@ pub(super) struct Attack<'a> {
 }
 
 impl Attack<'_> {
-    /// Every attack that succeeded.
-    pub(super) fn run(&self) -> Vec<String> {
+    /// How many attacks could be made, and every one that succeeded.
+    pub(super) fn run(&self) -> Result<(usize, Vec<String>), Error> {
+        let attackable = self.certificates.parts().node_radii.iter().any(|r| *r > 0.0);
+        if !attackable {
+            return Ok((0, Vec::new())); // nothing is claimed anywhere
+        }
         let blocks = self.options.samples.div_ceil(64);
-        (0..blocks)
+        let results: Vec<Result<(usize, Vec<String>), Error>> = (0..blocks)
             .into_par_iter()
             .map_init(
-                // The traditional method, or for parts of the model the same boxes without certificates.
+                // The traditional method, or for parts of the model lazy boxes without certificates.
                 || {
-                    let with = |method| Query::with_method(self.model, self.certificates, method).ok();
-                    (with(Method::Traditional), with(Method::BdTree))
+                    let with = |method| Query::with_method(self.model, self.certificates, method);
+                    with(Method::Traditional).and_then(|whole| Ok((whole, with(Method::BdTree)?)))
                 },
-                |(whole, part), block| {
+                |queries, block| {
+                    let (whole, part) = queries.as_mut().map_err(|error| error.clone())?;
+                    let mut made = 0;
                     let mut violations = Vec::new();
                     for sample in block * 64..self.options.samples.min(block * 64 + 64) {
                         if self.progress.is_cancelled() {
                             break;
                         }
-                        if let (Some(whole), Some(part)) = (whole.as_mut(), part.as_mut()) {
-                            violations.extend(self.attack(sample, whole, part));
-                        }
+                        let attack = self.attack(sample, whole, part);
+                        made += usize::from(attack.is_some());
+                        violations.extend(attack.flatten());
                     }
                     self.progress.report(block, blocks);
-                    violations
+                    Ok((made, violations))
                 },
             )
-            .flatten()
-            .collect()
+            .collect();
+        let mut total = (0, Vec::new());
+        for result in results {
+            let (made, violations) = result?;
+            total.0 += made;
+            total.1.extend(violations);
+        }
+        Ok(total)
     }
 
-    fn attack(&self, sample: usize, whole: &mut Query<'_>, part: &mut Query<'_>) -> Option<String> {
+    /// One attack: none where the claim drawn cannot be attacked (a q out of range), else its violation if any.
+    fn attack(&self, sample: usize, whole: &mut Query<'_>, part: &mut Query<'_>) -> Option<Option<String>> {
         let parts = self.certificates.parts();
         let nodes = parts.hierarchy.nodes();
         let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
         let pairs: Vec<(u32, u32)> = child_pairs(&nodes[0]).collect();
-        let (what, radius, target) = if sample.is_multiple_of(WHOLE) {
+        // Claims of radius 0 promise nothing: those attacks go at a node that promises something.
+        let open_pair = |i: usize| parts.root_pair_radii[i] > 0.0;
+        let pair = random.below(pairs.len());
+        let (what, radius, target) = if sample.is_multiple_of(WHOLE) && parts.node_radii[0] > 0.0 {
             ("the root".to_owned(), parts.node_radii[0], None)
-        } else if sample % WHOLE == 1 && !pairs.is_empty() {
-            let i = random.below(pairs.len());
-            (format!("the nodes {:?}", pairs[i]), parts.root_pair_radii[i], Some(pairs[i]))
+        } else if sample % WHOLE == 1 && !pairs.is_empty() && open_pair(pair) {
+            (format!("the nodes {:?}", pairs[pair]), parts.root_pair_radii[pair], Some(pairs[pair]))
         } else {
+            // Radii grow towards the leaves, and some leaf's is positive: start again until one is found.
             let mut n = random.below(nodes.len());
+            for _ in 0..1000 {
+                if parts.node_radii[n] > 0.0 {
+                    break;
+                }
+                n = random.below(nodes.len());
+            }
             while nodes[n].triangle_count > LARGE && !nodes[n].is_leaf() {
                 n = nodes[n].first_child as usize + random.below(nodes[n].child_count as usize);
             }
@@ -78,11 +100,11 @@ impl Attack<'_> {
         };
         if norm < radius && !pairs.is_empty() {
             let (i, j) = pairs[0];
-            return Some(format!(
+            return Some(Some(format!(
                 "triangles {i} and {j} of {what} collide at |z| = {norm:e}, below its radius {radius:e}; q = {q:?}"
-            ));
+            )));
         }
-        None
+        Some(None)
     }
 
     /// A q with `|z|` just below the radius, in a known hot direction, near one, or in a random one.

@@ -33,7 +33,7 @@ impl Default for AuditOptions {
 /// What the attacks found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of configurations tried.
+    /// Number of configurations really tried: 0 where every radius is 0, for nothing is claimed then.
     pub samples: usize,
     /// Every broken claim, one line each. Empty for sound certificates.
     pub violations: Vec<String>,
@@ -62,12 +62,13 @@ pub fn audit(
         let tightness = tightness::measure(model, certificates, options.seed, progress);
         let attack = attack::Attack { model, certificates, hot: &tightness.hot, options, progress };
         let mut violations = tightness.violations;
-        violations.extend(attack.run());
+        let (samples, broken) = attack.run()?;
+        violations.extend(broken);
         violations.extend(compare::compare(model, certificates, options, progress)?);
         let mut all = tightness.quotients;
         all.sort_by(f64::total_cmp);
         Ok(AuditReport {
-            samples: options.samples,
+            samples,
             violations,
             root_tightness: tightness.root,
             tightness_median: (!all.is_empty()).then(|| all[all.len() / 2]),

@@ -12,7 +12,7 @@
 //!
 //! With mean modes alone (`G = 0`) a pair had to be about 19 times farther apart than it is large before its
 //! bound came within 10% of the truth, because gap and closing rate shrink together towards the near
-//! corners; on the bunny that cost 4 million node pairs where this needs a fraction.
+//! corners: the bunny (24 modes) took 4.1 million node pairs and 6.1 million triangle pairs, with this 0.4 and 0.5.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -41,10 +41,7 @@ pub(crate) struct ClusterBounds {
 impl ClusterBounds {
     pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy) -> Self {
         let cluster = |node| {
-            let triangles = hierarchy.triangles(node);
-            let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| model.faces[t as usize]).collect();
-            vertices.sort_unstable();
-            vertices.dedup();
+            let vertices = hierarchy.vertices(node, &model.faces);
             Cluster::fit(model, &vertices)
         };
         Self { clusters: hierarchy.nodes().par_iter().map(cluster).collect() }

@@ -17,7 +17,7 @@ pub(crate) use search::Search;
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
     /// Relative error allowed for each radius, in (0, 1): a radius is at least `1 - epsilon` times the exact
-    /// one, unless it is capped or a subdivision limit is reached. Paper, section 5.1: 0.1.
+    /// one, unless it is capped or a limit of the search (subdivisions, candidates waiting) is reached. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,
@@ -153,11 +153,13 @@ impl Certificates {
     pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
         let found = Digest::of(model, &self.parts.metric);
         if found == self.parts.digest {
-            return if self.parts.hierarchy.order().len() == model.mesh().faces().len() {
-                Ok(())
-            } else {
-                Err(Error::Certificates("the hierarchy is of another mesh".to_owned()))
-            };
+            if self.parts.hierarchy.order().len() != model.mesh().faces().len() {
+                return Err(Error::Certificates("the hierarchy is of another mesh".to_owned()));
+            }
+            if self.parts.metric.scales().len() != model.rank() {
+                return Err(Error::Certificates("the metric is of another rank".to_owned()));
+            }
+            return Ok(());
         }
         Err(Error::OtherModel { certificates: self.parts.digest.short(), model: found.short() })
     }

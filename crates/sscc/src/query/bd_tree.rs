@@ -3,11 +3,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::boxes::TIGHT_TRIANGLES;
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, Node, bounding_box};
 
-/// For each node of more than [`TIGHT_TRIANGLES`] triangles, how its box moves and grows with q:
+/// For each inner node of more than `tight` triangles, how its box moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 pub(super) struct BdTree {
     rank: usize,
@@ -20,14 +19,11 @@ pub(super) struct BdTree {
 }
 
 impl BdTree {
-    pub(super) fn new(model: &ReducedModel, hierarchy: &Hierarchy) -> Self {
+    pub(super) fn new(model: &ReducedModel, hierarchy: &Hierarchy, tight: u32) -> Self {
         let (mesh, modes) = (model.mesh(), model.modes());
         let rank = modes.rank();
         let node_rates = |node| {
-            let triangles: &[u32] = hierarchy.triangles(node);
-            let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| mesh.faces()[t as usize]).collect();
-            vertices.sort_unstable();
-            vertices.dedup();
+            let vertices = hierarchy.vertices(node, mesh.faces());
             let (lower, upper) = bounding_box(vertices.iter().map(|&v| mesh.rest_positions()[v as usize]));
             let centre = lower * 0.5 + upper * 0.5;
             let rest = (centre, (upper - centre).max(centre - lower));
@@ -44,7 +40,7 @@ impl BdTree {
             }
             (rest, rates)
         };
-        let large = |node: &&Node| node.triangle_count > TIGHT_TRIANGLES;
+        let large = |node: &&Node| !node.is_leaf() && node.triangle_count > tight;
         let all: Vec<_> = hierarchy.nodes().par_iter().filter(large).map(node_rates).collect();
         let mut next = 0..;
         let place = |node| if large(&node) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
@@ -65,5 +61,61 @@ impl BdTree {
         }
         half += DVec3::splat(margin);
         Some((centre - half, centre + half))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Modes, TriMesh};
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
+    }
+
+    /// A wavy strip far from the origin, with modes of very different sizes.
+    fn model(rank: usize, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> =
+            (0..202).map(|i| DVec3::new(1e3 + (i / 2) as f64, (i % 2) as f64, random(state))).collect();
+        let faces = (0..200).map(|i| [i, i + 1, i + 2]).collect();
+        let displacements = (0..202 * rank)
+            .map(|i| {
+                DVec3::new(random(state), random(state), random(state)) * 10.0_f64.powi(i as i32 % 7 - 3)
+            })
+            .collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn boxes_contain_all_computed_positions() {
+        let mut state = 5;
+        for rank in [1, 2, 7, 30] {
+            let model = model(rank, &mut state);
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let tree = BdTree::new(&model, &hierarchy, 0);
+            let mut checked = 0;
+            for case in 0..200 {
+                let size = 10.0_f64.powi(case % 25 - 12);
+                let q: Vec<f64> = (0..rank).map(|_| random(&mut state) * size).collect();
+                let reach = model.check_coordinates(&q).unwrap();
+                for (n, node) in hierarchy.nodes().iter().enumerate() {
+                    let Some((lower, upper)) =
+                        tree.at(n as u32, &q, super::super::boxes::margin(reach, rank))
+                    else {
+                        assert!(node.is_leaf());
+                        continue;
+                    };
+                    for v in hierarchy.vertices(node, model.mesh().faces()) {
+                        let x = model.position(v, &q);
+                        assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "rank {rank}, case {case}");
+                        checked += 1;
+                    }
+                }
+            }
+            assert!(checked > 10_000);
+        }
     }
 }

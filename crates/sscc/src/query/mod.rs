@@ -14,9 +14,10 @@ use boxes::Boxes;
 /// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Certificates, then lazily updated BD-tree boxes (paper, Algorithm 1).
+    /// Certificates, then lazily updated boxes (paper, Algorithm 1): BD-tree boxes for large nodes, tight
+    /// ones for nodes of at most 64 triangles.
     Certified,
-    /// Lazily updated BD-tree boxes without certificates (James and Pai 2004).
+    /// The same boxes without certificates (James and Pai 2004).
     BdTree,
     /// All boxes refitted, no certificates: the paper's "traditional" method.
     Traditional,
@@ -38,7 +39,7 @@ pub struct Statistics {
 }
 
 /// Answers self-collision queries for one model; owns the memory for it, so that repeated queries allocate
-/// nothing. One query serves one thread; make as many as there are threads.
+/// nothing (brute force and the rare exact signs of extreme numbers aside). One query serves one thread; make as many as there are threads.
 ///
 /// "Free" (no pairs) is exact, and so are the pairs: two triangles are listed exactly when they share no vertex
 /// and their closed hulls, at the positions given by [`deformed_position`](crate::deformed_position), have a point
