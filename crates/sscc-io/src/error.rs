@@ -81,6 +81,8 @@ pub enum Place {
     Tensor(String),
     /// A text entry of a container.
     Key(String),
+    /// A part with a name of its own: of a glTF file (`meshes[2]`), or of an archive.
+    Part(String),
 }
 
 impl fmt::Display for Place {
@@ -91,6 +93,7 @@ impl fmt::Display for Place {
             Self::Byte(byte) => write!(f, "byte {byte}: "),
             Self::Tensor(name) => write!(f, "tensor {}: ", quoted(name)),
             Self::Key(name) => write!(f, "metadata {}: ", quoted(name)),
+            Self::Part(name) => write!(f, "{}: ", cut(name, 80)),
         }
     }
 }
@@ -108,6 +111,11 @@ impl FormatError {
     /// Something wrong with a line, counted from 1.
     pub(crate) fn line(line: usize, cause: impl Into<String>) -> Self {
         Self::new(Place::Line(line), cause)
+    }
+
+    /// Something wrong with a named part.
+    pub(crate) fn part(name: impl Into<String>, cause: impl Into<String>) -> Self {
+        Self::new(Place::Part(name.into()), cause)
     }
 
     /// Where it is.
