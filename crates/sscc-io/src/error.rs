@@ -154,7 +154,13 @@ pub(crate) fn quoted(text: &str) -> String {
 
 /// Text that may hold some of a file's, on one line and cut when long.
 pub(crate) fn cut(text: &str, longest: usize) -> String {
-    let mut line: String = text.chars().take(longest).flat_map(char::escape_debug).collect();
+    let mut line = String::new();
+    for c in text.chars().take(longest) {
+        match c {
+            '\'' | '"' => line.push(c), // our own quotes stay as they are
+            _ => line.extend(c.escape_debug()),
+        }
+    }
     if text.chars().nth(longest).is_some() {
         line += "...";
     }
@@ -169,6 +175,8 @@ mod tests {
     fn messages_are_one_line() {
         let error = FormatError::line(3, format!("{} is bad", quoted("a\nb"))).of(Path::new("dir/x\ny.obj"));
         assert_eq!(error.to_string(), r"dir/x\ny.obj: line 3: 'a\nb' is bad");
+        let error = FormatError::part("array 'a\n\"'", "is bad");
+        assert_eq!(error.to_string(), r#"array 'a\n"': is bad"#);
         assert_eq!(quoted(&"x".repeat(50)), format!("'{}...'", "x".repeat(40)));
     }
 }

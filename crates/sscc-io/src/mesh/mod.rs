@@ -43,7 +43,9 @@ pub(crate) fn is_mesh_name(path: &Path) -> bool {
     parser(path).is_some()
 }
 
-fn parser(path: &Path) -> Option<fn(&[u8]) -> Result<Soup, FormatError>> {
+type Parser = fn(&[u8]) -> Result<Soup, FormatError>;
+
+fn parser(path: &Path) -> Option<Parser> {
     match ending(path).as_str() {
         "obj" => Some(obj::soup),
         "off" => Some(off::soup),

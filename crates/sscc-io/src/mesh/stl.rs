@@ -3,8 +3,8 @@
 //! STL has no shared vertices: each triangle brings its own three corners. They stay apart here, corner `c` of
 //! triangle `t` as vertex `3 t + c`; whoever needs adjacency joins vertices of equal position.
 //!
-//! A reader of our own: stl_io joins equal vertices, and takes every file that begins with `solid` for text,
-//! which many binary files do.
+//! A reader of our own: both forms are short, places of errors are named, and stl_io joins equal vertices
+//! on its usual way. Many binary files begin with `solid` too, so their size decides.
 
 use glam::DVec3;
 use sscc::TriMesh;
