@@ -18,6 +18,7 @@ pub mod modes;
 pub mod npy;
 pub mod npz;
 mod numbers;
+mod pose;
 mod text;
 
 pub use container::{ModelInfo, read_model, write_model};
@@ -29,3 +30,4 @@ pub use modes::{read_modes, read_modes_for};
 pub use npy::write_npy;
 pub use npz::read_npz_model;
 pub use numbers::{Rows, read_rows, read_vector};
+pub use pose::{write_obj_pose, write_ply_pose};
