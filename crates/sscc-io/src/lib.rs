@@ -21,7 +21,7 @@ mod numbers;
 mod pose;
 mod text;
 
-pub use container::{ModelInfo, read_model, write_model};
+pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};

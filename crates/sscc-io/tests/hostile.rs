@@ -5,7 +5,7 @@
 use std::io::Write;
 
 use proptest::prelude::*;
-use sscc_io::container::{CERTIFICATES, MODEL, Sealed, model_from_bytes};
+use sscc_io::container::{CERTIFICATES, MODEL, Sealed, certificates_from_bytes, model_from_bytes};
 use sscc_io::mesh::{obj, off, ply, stl};
 use sscc_io::modes::{array, vega};
 use sscc_io::{gltf, npy, npz};
@@ -28,6 +28,7 @@ fn parse_all(bytes: &[u8]) {
     one_line(&gltf::parse(bytes, None));
     one_line(&gltf::parse(bytes, Some("#0")));
     one_line(&model_from_bytes(bytes));
+    one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
         one_line(&Sealed::parse(bytes, kind));
     }

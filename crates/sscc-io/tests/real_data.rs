@@ -1,26 +1,10 @@
 //! Meshes and modes as they are found in the world, against what is known of them.
-//!
-//! They are not part of the project: `SSCC_MODELS` names their folder, else `shared/models` beside the
-//! workspace. Where it is missing, these tests say so and pass.
-#![allow(clippy::print_stderr, clippy::unwrap_used)]
-
-use std::path::{Path, PathBuf};
+#![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
 use sscc_io::gltf::{self, PrimitiveRange};
 use sscc_io::{LoadOptions, load_model, load_model_with, read_mesh, read_modes};
-
-fn models(test: &str) -> Option<PathBuf> {
-    let folder = match std::env::var_os("SSCC_MODELS") {
-        Some(folder) => PathBuf::from(folder),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models"),
-    };
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("SKIPPED: {test}: no real models found; set SSCC_MODELS to their folder");
-    None
-}
+use sscc_testdata::models;
 
 #[test]
 fn meshes_have_their_known_sizes() {

@@ -1,5 +1,7 @@
 //! A query that the root's certificate answers allocates nothing, and neither does a repeated query.
 
+#![allow(clippy::unwrap_used)]
+
 use glam::DVec3;
 use sscc::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
 

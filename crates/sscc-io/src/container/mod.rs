@@ -5,6 +5,7 @@
 //! entry's own 64 digits taken as zeros, so that any flipped byte is refused: of the data, the header or
 //! the seal. The bytes are a function of the content: the same content gives the same file.
 
+mod certificates;
 mod header;
 mod kind;
 mod model;
@@ -12,6 +13,9 @@ mod sealed;
 mod tensor;
 mod writer;
 
+pub use certificates::{
+    certificates_from_bytes, certificates_to_bytes, read_certificates, write_certificates,
+};
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
 pub use sealed::Sealed;

@@ -1,6 +1,15 @@
 //! Example shapes, made in code: the same bits on every machine.
 
+mod capped_tube;
+mod hare;
+mod implicit;
+mod marching;
+mod remesh;
+mod serpent;
 mod spring;
+mod surface;
 mod tube;
 
+pub use hare::hare;
+pub use serpent::serpent;
 pub use spring::spring;

@@ -34,14 +34,10 @@ impl Tube {
     pub fn along(self, curve: impl Fn(f64) -> DVec3) -> TriMesh {
         assert!(self.rings >= 4 && self.rings.is_multiple_of(2) && self.around >= 3);
         let mut vertices = Vec::with_capacity(self.rings * self.around);
-        let circle: Vec<(f64, f64)> = (0..2 * self.around)
-            .map(|k| PI * k as f64 / self.around as f64)
-            .map(|angle| (self.radius * libm::cos(angle), self.radius * libm::sin(angle)))
-            .collect();
+        let circle: Vec<(f64, f64)> =
+            unit_circle(self.around).into_iter().map(|(c, s)| (self.radius * c, self.radius * s)).collect();
         for (ring, t) in even_parameters(&curve, self.rings).into_iter().enumerate() {
-            let forward = (curve(t + HALF_STEP) - curve(t - HALF_STEP)).normalize();
-            let side = DVec3::Z.cross(forward).normalize();
-            let up = forward.cross(side);
+            let [side, up] = frame(&curve, t);
             let centre = curve(t);
             for (c, s) in circle.iter().skip(ring % 2).step_by(2) {
                 vertices.push(centre + side * *c + up * *s);
@@ -52,21 +48,35 @@ impl Tube {
 
     /// Two triangles for each vertex: with the next vertex of its ring, and with the next ring.
     fn faces(self) -> Vec<[u32; 3]> {
-        let index = |ring: usize, k: usize| ((ring % self.rings) * self.around + k % self.around) as u32;
-        let mut faces = Vec::with_capacity(2 * self.rings * self.around);
-        for ring in 0..self.rings {
-            for k in 0..self.around {
-                let [a, a_next] = [index(ring, k), index(ring, k + 1)];
-                let [b, b_next] = [index(ring + 1, k), index(ring + 1, k + 1)];
-                if ring % 2 == 0 {
-                    faces.extend([[a, a_next, b], [a_next, b_next, b]]);
-                } else {
-                    faces.extend([[a, b_next, b], [a, a_next, b_next]]);
-                }
-            }
-        }
-        faces
+        let ring = |ring: usize| (ring % self.rings * self.around) as u32;
+        (0..self.rings).flat_map(|i| band(self.around, i, ring(i), ring(i + 1))).collect()
     }
+}
+
+/// Cosines and sines of `2 around` even angles: the even ones for even rings, the odd ones for odd rings.
+pub(super) fn unit_circle(around: usize) -> Vec<(f64, f64)> {
+    let angles = (0..2 * around).map(|k| PI * k as f64 / around as f64);
+    angles.map(|angle| (libm::cos(angle), libm::sin(angle))).collect()
+}
+
+/// Two unit directions square to the curve at t, the first one level.
+pub(super) fn frame(curve: impl Fn(f64) -> DVec3, t: f64) -> [DVec3; 2] {
+    let forward = (curve(t + HALF_STEP) - curve(t - HALF_STEP)).normalize();
+    let side = DVec3::Z.cross(forward).normalize();
+    [side, forward.cross(side)]
+}
+
+/// The triangles between a ring of `around` vertices that starts with vertex `a` and the next ring, which starts
+/// with `b`. Rings of odd number are turned by half a vertex.
+pub(super) fn band(around: usize, number: usize, a: u32, b: u32) -> impl Iterator<Item = [u32; 3]> {
+    (0..around).flat_map(move |k| {
+        let (k, next) = (k as u32, ((k + 1) % around) as u32);
+        if number.is_multiple_of(2) {
+            [[a + k, a + next, b + k], [a + next, b + next, b + k]]
+        } else {
+            [[a + k, b + next, b + k], [a + k, a + next, b + next]]
+        }
+    })
 }
 
 /// Parameters of `count` points of a closed curve, evenly spaced by arc length, the first at 0.

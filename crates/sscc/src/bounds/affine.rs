@@ -49,7 +49,7 @@ pub(crate) fn affine_bound(
     let modes = [x0, x1, x2, y0, y1, y2];
     let origin = corners[0];
     let offsets = corners.map(|p| p - origin);
-    let Some(fit) = fit_weights(&offsets) else { return 0.0 };
+    let Some(Fit { weights: fit, normal, free }) = fit(&offsets) else { return 0.0 };
 
     // Gradient: G[c][j] = sum_v fit_v[j] (A_v - A_0)[c], a row over the modes for each of 3 x 3 entries.
     scratch.gradient.fill(0.0);
@@ -68,6 +68,7 @@ pub(crate) fn affine_bound(
             }
         }
     }
+    complete_as_rotation(&mut scratch.gradient, row, normal, free);
     // Residuals: E_v = (A_v - A_0) - G (p_v - p_0); that of the origin is 0.
     scratch.residuals[..3 * row].fill(0.0);
     for v in 1..6 {
@@ -115,10 +116,18 @@ pub(crate) fn affine_bound(
     all.max(bound(cone_rate(differences, &gram, row, wanted * (1.0 - 1e-9))))
 }
 
-/// Weights with which a regularised least-squares fit turns values at the six corners into a gradient:
-/// `G = sum_v value_v fit_v'`. The offsets are relative to corner 0, about which no constant is fitted but
-/// removed by centring. None where all corners coincide.
-fn fit_weights(offsets: &[DVec3; 6]) -> Option<[DVec3; 6]> {
+/// How values at the six corners become a gradient.
+struct Fit {
+    /// `G = sum_v value_v weights_v'`
+    weights: [DVec3; 6],
+    /// Unit normal of the plane in which the corners (nearly) lie.
+    normal: DVec3,
+    /// How much the corners leave the gradient across that plane open: 1 in a plane, 0 where they fill space.
+    free: f64,
+}
+
+/// A regularised least-squares fit. None where all corners coincide.
+fn fit(offsets: &[DVec3; 6]) -> Option<Fit> {
     let mean = offsets.iter().sum::<DVec3>() / 6.0;
     let mut moment = DMat3::ZERO;
     for d in offsets {
@@ -130,8 +139,35 @@ fn fit_weights(offsets: &[DVec3; 6]) -> Option<[DVec3; 6]> {
     // keeps that part small instead of fitting noise.
     let ridge = 1e-4 * trace;
     let inverse = (moment + DMat3::from_diagonal(DVec3::splat(ridge))).inverse();
-    let fit = offsets.map(|d| inverse * (d - mean));
-    fit.iter().all(|f| f.is_finite()).then_some(fit)
+    let weights = offsets.map(|d| inverse * (d - mean));
+    // The inverse is largest across the plane; squaring it twice leaves nothing else.
+    let power = inverse * inverse * (1.0 / (inverse.x_axis.length_squared() + f64::MIN_POSITIVE));
+    let power = power * power;
+    let columns = [power.x_axis, power.y_axis, power.z_axis];
+    let largest = columns
+        .into_iter()
+        .fold(DVec3::ZERO, |l, c| if c.length_squared() > l.length_squared() { c } else { l });
+    let normal = largest.try_normalize()?;
+    let thickness = normal.dot(moment * normal);
+    let free = ridge / (thickness + ridge);
+    weights.iter().all(|f| f.is_finite()).then_some(Fit { weights, normal, free })
+}
+
+/// Gives the open part of the gradient, across the plane of the corners, the value that makes the whole as much
+/// of a rotation as it can be: `t' G n = -n' G t` for all t in the plane. Left at zero, every rotation of the plane would
+/// look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
+fn complete_as_rotation(gradient: &mut [f64], row: usize, n: DVec3, free: f64) {
+    for k in 0..row {
+        let entry = |c: usize, j: usize| gradient[(3 * c + j) * row + k];
+        // G' n, without its part along n.
+        let turned = DVec3::from_array(std::array::from_fn(|j| (0..3).map(|c| n[c] * entry(c, j)).sum()));
+        let tilt = (turned - n * turned.dot(n)) * -free;
+        for c in 0..3 {
+            for j in 0..3 {
+                gradient[(3 * c + j) * row + k] += tilt[c] * n[j];
+            }
+        }
+    }
 }
 
 /// Gram matrix of the 6 x r matrix whose column k holds the Mandel components of the symmetric part of mode

@@ -24,9 +24,12 @@ struct Cone {
 
 /// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite where the directions do not fit into a narrow cone.
-pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, wanted: f64) -> f64 {
+pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wanted: f64) -> f64 {
     let Some(corners) = pyramid(d) else { return f64::INFINITY };
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
+    if !trace.is_finite() {
+        return f64::INFINITY;
+    }
     let forms = Forms { gram, error: (row as f64 + 1024.0) * f64::EPSILON * trace };
     let [a, b, c, e] = corners;
     let mut cones: Vec<Cone> = Vec::with_capacity(2 * CONES);
@@ -39,7 +42,8 @@ pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, wanted: f
         if rate <= wanted {
             break;
         }
-        // Halve across the longest edge; give up where a direction that occurs is itself too fast.
+        // Halve across the longest edge. Rounding leaves a gap between the halves about an ulp wide, 48 of them at
+        // most; over it f^2 changes by less than 3e-14 of the trace, which the error of the forms covers.
         let [a, b, c] = cones[worst].directions;
         let edges = [(a, b, c), (b, c, a), (c, a, b)];
         let longest = edges
@@ -47,9 +51,8 @@ pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, wanted: f
             .fold(edges[0], |l, e| if e.0.distance_squared(e.1) > l.0.distance_squared(l.1) { e } else { l });
         let (a, b, c) = longest;
         let middle = (a + b).normalize();
-        if forms.single(middle) > wanted {
-            break;
-        }
+        // Where a direction that occurs is itself too fast, only that much can be had.
+        wanted = wanted.max(forms.single(middle) * 1.05);
         let halves = [[a, middle, c], [middle, b, c]];
         let rates = halves.map(|h| forms.rate(&h));
         cones[worst] = Cone { rate: rates[0].min(rate), directions: halves[0] };

@@ -12,7 +12,11 @@ mod contact;
 mod direction;
 mod lanes;
 mod min_norm;
+#[cfg(test)]
+mod reference;
 mod scaled;
+#[cfg(test)]
+mod tests;
 mod triangle_pair;
 
 pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};

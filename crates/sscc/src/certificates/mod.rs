@@ -96,6 +96,12 @@ impl Certificates {
         if parts.global_radius.is_nan() || parts.global_radius <= 0.0 {
             return damaged("the global radius is not positive");
         }
+        if parts.root_pair_radii.iter().any(|r| *r < parts.node_radii[0]) {
+            return damaged("the root's radius exceeds that of a pair of its children");
+        }
+        if !(parts.epsilon > 0.0 && parts.epsilon < 1.0) {
+            return damaged("epsilon is not between 0 and 1");
+        }
         for (node, radius) in nodes.iter().zip(&parts.node_radii) {
             if node.children().any(|child| parts.node_radii[child as usize] < *radius) {
                 return damaged("a node's radius exceeds that of a child");
@@ -142,11 +148,16 @@ impl Certificates {
     /// Refuses a model that the certificates do not speak of.
     ///
     /// # Errors
-    /// When faces, positions or modes differ in any bit from those that were certified.
+    /// When faces, positions or modes differ in any bit from those that were certified, or the hierarchy is not
+    /// over as many triangles.
     pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
         let found = Digest::of(model, &self.parts.metric);
         if found == self.parts.digest {
-            return Ok(());
+            return if self.parts.hierarchy.order().len() == model.mesh().faces().len() {
+                Ok(())
+            } else {
+                Err(Error::Certificates("the hierarchy is of another mesh".to_owned()))
+            };
         }
         Err(Error::OtherModel { certificates: self.parts.digest.short(), model: found.short() })
     }

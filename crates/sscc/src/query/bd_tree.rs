@@ -3,15 +3,19 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::boxes::TIGHT_TRIANGLES;
 use crate::ReducedModel;
-use crate::hierarchy::{Hierarchy, bounding_box};
+use crate::hierarchy::{Hierarchy, Node, bounding_box};
 
-/// For each node, how its box moves and grows with q:
+/// For each node of more than [`TIGHT_TRIANGLES`] triangles, how its box moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 pub(super) struct BdTree {
     rank: usize,
+    /// For each node its place in the lists below, or `u32::MAX` for a small one.
+    places: Vec<u32>,
+    /// `(c, h)`
     rest: Vec<(DVec3, DVec3)>,
-    /// `[node * rank + mode] = (mean, growth)`
+    /// `[place * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
 }
 
@@ -40,21 +44,26 @@ impl BdTree {
             }
             (rest, rates)
         };
-        let all: Vec<_> = hierarchy.nodes().par_iter().map(node_rates).collect();
+        let large = |node: &&Node| node.triangle_count > TIGHT_TRIANGLES;
+        let all: Vec<_> = hierarchy.nodes().par_iter().filter(large).map(node_rates).collect();
+        let mut next = 0..;
+        let place = |node| if large(&node) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
+        let places = hierarchy.nodes().iter().map(place).collect();
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
-        Self { rank, rest, rates }
+        Self { rank, places, rest, rates }
     }
 
-    /// A box that contains the computed positions of all vertices of a node at q. `margin` covers rounding:
-    /// at least `(4 r + 64)` units of the last place of the shape's reach.
-    pub(super) fn at(&self, node: u32, q: &[f64], margin: f64) -> (DVec3, DVec3) {
-        let (mut centre, mut half) = self.rest[node as usize];
-        for ((mean, growth), &x) in self.rates[node as usize * self.rank..][..self.rank].iter().zip(q) {
+    /// A box that contains the computed positions of all vertices of a node at q, or none for a small node.
+    /// `margin` covers rounding: at least `(4 r + 64)` units of the last place of the shape's reach.
+    pub(super) fn at(&self, node: u32, q: &[f64], margin: f64) -> Option<(DVec3, DVec3)> {
+        let place = self.places[node as usize] as usize;
+        let (mut centre, mut half) = *self.rest.get(place)?;
+        for ((mean, growth), &x) in self.rates[place * self.rank..][..self.rank].iter().zip(q) {
             centre += *mean * x;
             half += *growth * x.abs();
         }
         half += DVec3::splat(margin);
-        (centre - half, centre + half)
+        Some((centre - half, centre + half))
     }
 }

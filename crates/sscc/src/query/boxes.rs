@@ -16,6 +16,11 @@ pub(super) fn disjoint(a: &Aabb, b: &Aabb) -> bool {
     (a.0.cmpgt(b.1) | b.0.cmpgt(a.1)).any()
 }
 
+/// Nodes of at most this many triangles get tight boxes, from their vertices, when they are first met; larger ones
+/// a BD-tree box. BD boxes of small nodes cost as much as moving their vertices, and grow with every mode
+/// whether modes cancel or not: with them alone, queries of the spring made several times as many box tests.
+pub(super) const TIGHT_TRIANGLES: u32 = 64;
+
 /// Vertex positions, triangle boxes and node boxes. Lazily (BD-tree) each entry carries the number of the query
 /// it was computed for; the traditional method computes all of them first.
 pub(super) struct Boxes {
@@ -25,7 +30,6 @@ pub(super) struct Boxes {
     positions: Vec<DVec3>,
     position_query: Vec<u32>,
     triangles: Vec<Aabb>,
-    leaf_query: Vec<u32>,
     nodes: Vec<Aabb>,
     node_query: Vec<u32>,
 }
@@ -44,7 +48,6 @@ impl Boxes {
             positions: vec![DVec3::ZERO; vertices],
             position_query: vec![0; vertices],
             triangles: vec![(DVec3::ZERO, DVec3::ZERO); triangles],
-            leaf_query: vec![0; nodes],
             nodes: vec![(DVec3::ZERO, DVec3::ZERO); nodes],
             node_query: vec![0; nodes],
         }
@@ -57,9 +60,8 @@ impl Boxes {
             self.query = match self.query.checked_add(1) {
                 Some(next) => next,
                 None => {
-                    [&mut self.position_query, &mut self.leaf_query, &mut self.node_query]
-                        .into_iter()
-                        .for_each(|stamps| stamps.fill(0));
+                    self.position_query.fill(0);
+                    self.node_query.fill(0);
                     1
                 }
             };
@@ -82,45 +84,57 @@ impl Boxes {
         }
     }
 
-    /// The box of a node at the current q.
+    /// The box of a node at the current q. After that the triangles of a leaf are current, too.
     #[inline]
-    pub(super) fn node(&mut self, n: u32, q: &[f64]) -> Aabb {
+    pub(super) fn node(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, n: u32, q: &[f64]) -> Aabb {
         if let Some(bd_tree) = &self.bd_tree
             && self.node_query[n as usize] != self.query
         {
-            self.nodes[n as usize] = bd_tree.at(n, q, self.margin);
-            self.node_query[n as usize] = self.query;
+            match bd_tree.at(n, q, self.margin) {
+                Some(aabb) => {
+                    self.nodes[n as usize] = aabb;
+                    self.node_query[n as usize] = self.query;
+                }
+                None => self.refit(model, hierarchy, n, q),
+            }
         }
         self.nodes[n as usize]
     }
 
-    /// Makes the positions and boxes of a leaf's triangles current.
-    #[inline]
-    pub(super) fn open_leaf(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, leaf: u32, q: &[f64]) {
-        if self.bd_tree.is_none() || self.leaf_query[leaf as usize] == self.query {
-            return;
+    /// Tight boxes of a node and all below it (small: its depth is bounded by its size).
+    fn refit(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, n: u32, q: &[f64]) {
+        let node = &hierarchy.nodes()[n as usize];
+        let mut aabb = union(std::iter::empty());
+        if node.is_leaf() {
+            for &t in hierarchy.triangles(node) {
+                let corners = model.mesh().faces()[t as usize].map(|v| {
+                    let i = v as usize;
+                    if self.position_query[i] != self.query {
+                        self.positions[i] = model.position(v, q);
+                        self.position_query[i] = self.query;
+                    }
+                    self.positions[i]
+                });
+                self.triangles[t as usize] = triangle_box(corners);
+                aabb = union([aabb, self.triangles[t as usize]].into_iter());
+            }
+        } else {
+            for child in node.children() {
+                self.refit(model, hierarchy, child, q);
+                aabb = union([aabb, self.nodes[child as usize]].into_iter());
+            }
         }
-        self.leaf_query[leaf as usize] = self.query;
-        for &t in hierarchy.triangles(&hierarchy.nodes()[leaf as usize]) {
-            let corners = model.mesh().faces()[t as usize].map(|v| {
-                let i = v as usize;
-                if self.position_query[i] != self.query {
-                    self.positions[i] = model.position(v, q);
-                    self.position_query[i] = self.query;
-                }
-                self.positions[i]
-            });
-            self.triangles[t as usize] = triangle_box(corners);
-        }
+        self.nodes[n as usize] = aabb;
+        self.node_query[n as usize] = self.query;
     }
 
-    /// The box of a triangle of an open leaf.
+    /// The box of a triangle of a leaf whose box is current.
     #[inline]
     pub(super) fn triangle(&self, t: u32) -> &Aabb {
         &self.triangles[t as usize]
     }
 
-    /// The corners of a triangle of an open leaf.
+    /// The corners of a triangle of such a leaf.
     #[inline]
     pub(super) fn corners(&self, face: [u32; 3]) -> [DVec3; 3] {
         face.map(|v| self.positions[v as usize])

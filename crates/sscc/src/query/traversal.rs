@@ -28,7 +28,7 @@ impl Query<'_> {
         self.statistics.opened += 1;
         let node = self.hierarchy.nodes()[n as usize];
         if node.is_leaf() {
-            self.boxes.open_leaf(self.model, &self.hierarchy, n, q);
+            self.boxes.node(self.model, &self.hierarchy, n, q);
             let first = node.first_triangle as usize;
             for i in first..first + node.triangle_count as usize {
                 for j in i + 1..first + node.triangle_count as usize {
@@ -55,15 +55,14 @@ impl Query<'_> {
     /// Lines 15 to 30: two nodes against each other.
     fn inter(&mut self, n: u32, m: u32, q: &[f64]) {
         self.statistics.box_tests += 1;
-        let (box_n, box_m) = (self.boxes.node(n, q), self.boxes.node(m, q));
+        let box_n = self.boxes.node(self.model, &self.hierarchy, n, q);
+        let box_m = self.boxes.node(self.model, &self.hierarchy, m, q);
         if disjoint(&box_n, &box_m) {
             return;
         }
         self.statistics.opened += 1;
         let (node_n, node_m) = (self.hierarchy.nodes()[n as usize], self.hierarchy.nodes()[m as usize]);
         if node_n.is_leaf() && node_m.is_leaf() {
-            self.boxes.open_leaf(self.model, &self.hierarchy, n, q);
-            self.boxes.open_leaf(self.model, &self.hierarchy, m, q);
             let first = node_m.first_triangle as usize;
             for i in node_n.first_triangle as usize..(node_n.first_triangle + node_n.triangle_count) as usize
             {

@@ -1,0 +1,266 @@
+//! What was typed. What it means is told in [`commands`](crate::commands).
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Proven self-collision detection for deformable models.
+///
+/// Certify a model (a triangle mesh with its deformation modes) once; from then on ask whether the deformed
+/// shape x = p + U q collides with itself. "Free" is proven; "colliding" lists exactly the intersecting pairs of
+/// triangles that share no vertex.
+#[derive(Debug, Parser)]
+#[command(name = "sscc", version, propagate_version = true, after_help = EXAMPLES, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  sscc demo --out demo
+  sscc certify demo/spring.model.safetensors -o spring.sscc.safetensors
+  sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors \\
+      --trajectory demo/spring.npy
+
+Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a violation, 2 error.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Show what this does on an embedded spring: certify, animate, check every frame
+    Demo(Demo),
+    /// Give a mesh deformation modes, and write both as a model file
+    Modes(Modes),
+    /// Compute the certificates of a model, once
+    Certify(Certify),
+    /// Tell whether the model collides with itself at q, and which triangles meet
+    Check(Check),
+    /// Try to prove certificates wrong
+    Audit(Audit),
+    /// Tell what is in a model, certificate or mesh file
+    Info(Info),
+}
+
+/// `sscc demo`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sscc demo\n  sscc demo --out demo")]
+pub struct Demo {
+    /// Also write the spring, its model, its certificates and the animation into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc modes`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial")]
+pub struct Modes {
+    /// A triangle mesh: .obj, .off, .ply
+    #[arg(value_name = "SOURCE")]
+    pub source: PathBuf,
+    /// The model file to write: *.model.safetensors
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Where the modes come from
+    #[arg(long, value_enum)]
+    pub kind: ModesKind,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// Kinds of modes that `sscc modes` makes.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ModesKind {
+    /// The 24 quadratic polynomials of the rest position, rigid motions taken out
+    Polynomial,
+}
+
+/// A model by its files.
+#[derive(Debug, Args)]
+pub struct Model {
+    /// The model: *.model.safetensors, or a mesh (.obj, .off, .ply) with --modes
+    #[arg(value_name = "MODEL")]
+    pub path: PathBuf,
+    /// The modes U of a mesh: .npy (3V x r, V x 3 x r, r x V x 3) or a VegaFEM modal matrix (.U, .float, ...)
+    #[arg(long, value_name = "FILE")]
+    pub modes: Option<PathBuf>,
+}
+
+/// How certificates are computed. All optional, so that contradictions to given certificates can be told.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Relative error allowed for each radius, between 0 and 1 [default: 0.1]
+    #[arg(long, value_name = "E", value_parser = parse_epsilon)]
+    pub epsilon: Option<f64>,
+    /// The metric: displacement, mass, identity, or a file with the diagonal of M (.npy or text), one weight for
+    /// each mode [default: the model's]
+    #[arg(long, value_name = "METRIC")]
+    pub metric: Option<PathBuf>,
+    /// Which certificates are stored; both are the same in this version, and the file records "paper"
+    #[arg(long, value_enum, value_name = "SCHEME")]
+    pub scheme: Option<Scheme>,
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+/// How much the program may use of the machine.
+#[derive(Debug, Args)]
+pub struct Threads {
+    /// Number of threads [default: all cores]; the result is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+}
+
+/// Schemes of certificates.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Scheme {
+    /// A radius for every node, and for each pair of the root's children
+    Paper,
+    /// In this version the same as paper
+    Full,
+}
+
+/// `sscc certify`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc certify bunny.model.safetensors -o bunny.sscc.safetensors
+  sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass")]
+pub struct Certify {
+    #[command(flatten)]
+    pub model: Model,
+    /// The certificate file to write: *.sscc.safetensors
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc check`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy
+  sscc check face.obj --modes face.U.float --method traditional --q=0.5,0,-1.25
+  sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'
+
+The metric and the other options come from the certificates; a flag that contradicts them is refused.
+Exit codes: 0 every q is free, 1 some q collides, 2 error.")]
+pub struct Check {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    #[command(flatten)]
+    pub at: At,
+    /// How to look for collisions; the answer is the same
+    #[arg(long, value_enum, default_value_t = Method::Certified)]
+    pub method: Method,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// Where to look.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub struct At {
+    /// Reduced coordinates, one q in each row: .npy of shape (T, r), or (r)
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: Option<PathBuf>,
+    /// One q: r numbers
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', allow_hyphen_values = true)]
+    pub q: Option<Vec<f64>>,
+}
+
+/// Methods of a query.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Certificates, then lazily updated boxes
+    Certified,
+    /// Lazily updated boxes without certificates
+    #[value(name = "bdtree")]
+    BdTree,
+    /// All boxes refitted
+    Traditional,
+    /// Every pair of triangles
+    BruteForce,
+}
+
+/// `sscc audit`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --samples 2000
+
+Exit codes: 0 nothing found, 1 a certificate promises too much, 2 error.")]
+pub struct Audit {
+    #[command(flatten)]
+    pub model: Model,
+    /// The certificates to attack
+    #[arg(long, value_name = "FILE")]
+    pub certificates: PathBuf,
+    /// Number of configurations to try
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: u32,
+    /// Start of the pseudo-random numbers: the same seed makes the same attacks
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc info`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sscc info spring.sscc.safetensors\n  sscc info bunny.obj --json")]
+pub struct Info {
+    /// A model (*.model.safetensors), certificates (*.sscc.safetensors) or a mesh (.obj, .off, .ply)
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// The form of the result.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Json {
+    /// Print the result alone, as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn parse_epsilon(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(epsilon) if epsilon > 0.0 && epsilon < 1.0 => Ok(epsilon),
+        _ => Err("a number between 0 and 1 was expected".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_q_may_begin_with_a_minus() {
+        let cli = Cli::try_parse_from(["sscc", "check", "m", "--q=-1,2.5e-3"]).unwrap();
+        let Command::Check(check) = cli.command else { panic!("{cli:?}") };
+        assert_eq!(check.at.q.unwrap(), [-1.0, 2.5e-3]);
+        assert!(Cli::try_parse_from(["sscc", "check", "m"]).is_err());
+        assert!(Cli::try_parse_from(["sscc", "check", "m", "--q=1", "--trajectory", "q.npy"]).is_err());
+    }
+}

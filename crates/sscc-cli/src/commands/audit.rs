@@ -1,0 +1,61 @@
+//! `sscc audit`: certificates under attack.
+
+use anyhow::Context;
+use serde::Serialize;
+use sscc::AuditOptions;
+
+use crate::args::Audit;
+use crate::output::{Output, grouped};
+use crate::progress::Bar;
+use crate::{Outcome, interrupt, load};
+
+#[derive(Serialize)]
+struct Report {
+    samples: usize,
+    violations: usize,
+    root_tightness: Option<f64>,
+    tightness_median: Option<f64>,
+    tightness_min: Option<f64>,
+}
+
+pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
+    let (model, _) = load::model(&args.model)?;
+    let certificates = load::certificates(&args.certificates, &model, &args.options)?;
+    let options = AuditOptions {
+        samples: args.samples as usize,
+        seed: args.seed,
+        threads: Some(load::threads(&args.options.threads)),
+    };
+    let audited = sscc::audit(&model, &certificates, &options, &Bar::new("attacking"));
+    interrupt::check()?;
+    let found = audited.with_context(|| args.certificates.display().to_string())?;
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&Report {
+            samples: found.samples,
+            violations: found.violations.len(),
+            root_tightness: found.root_tightness,
+            tightness_median: found.tightness_median,
+            tightness_min: found.tightness_min,
+        })?;
+    } else {
+        for violation in &found.violations {
+            out.line(format_args!("VIOLATION: {violation}"))?;
+        }
+        let samples = grouped(found.samples as u64);
+        match found.violations.len() {
+            0 => out.line(format_args!("{samples} attacks, no violation found"))?,
+            n => {
+                out.line(format_args!("{samples} attacks, {n} VIOLATIONS: do not use these certificates"))?
+            }
+        }
+        out.line("tightness (radius over the closest collision found; 1 is the best possible):")?;
+        let none = "- (radius 0 or capped, or no collision found)";
+        let shown = |value: Option<f64>| value.map_or(none.to_owned(), |v| format!("{v:.4}"));
+        out.line(format_args!("  root     {}", shown(found.root_tightness)))?;
+        out.line(format_args!("  median   {}", shown(found.tightness_median)))?;
+        out.line(format_args!("  least    {}", shown(found.tightness_min)))?;
+    }
+    out.finish()?;
+    Ok(if found.violations.is_empty() { Outcome::Done } else { Outcome::Found })
+}

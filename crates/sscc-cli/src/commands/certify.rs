@@ -1,0 +1,99 @@
+//! `sscc certify`: the certificates of a model, computed once.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::Context;
+use serde::Serialize;
+use sscc_io::container::certificates_to_bytes;
+use sscc_io::write_whole;
+
+use crate::args::Certify;
+use crate::output::{Output, counted, grouped, length};
+use crate::{Outcome, interrupt, load};
+
+#[derive(Serialize)]
+struct Report {
+    triangles: usize,
+    vertices: usize,
+    rank: usize,
+    nodes: usize,
+    pairs: usize,
+    seconds: f64,
+    threads: usize,
+    root_radius: f64,
+    global_radius: f64,
+    bytes: usize,
+    rest_collisions: u64,
+    exceptions: usize,
+}
+
+pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
+    let inputs: Vec<&Path> =
+        [Some(args.model.path.as_path()), args.model.modes.as_deref(), args.options.metric.as_deref()]
+            .into_iter()
+            .flatten()
+            .collect();
+    load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
+    let (model, _) = load::model(&args.model)?;
+    let options = load::options(&model, &args.options)?;
+    let start = Instant::now();
+    let certificates = load::certify(&model, &args.model.path, &options)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let bytes = certificates_to_bytes(&certificates).context("certificates")?;
+    interrupt::check()?;
+    write_whole(&args.output, &bytes)?;
+
+    let report = Report {
+        triangles: model.mesh().faces().len(),
+        vertices: model.mesh().rest_positions().len(),
+        rank: model.rank(),
+        nodes: certificates.hierarchy().nodes().len(),
+        pairs: certificates.parts().root_pair_radii.len(),
+        seconds,
+        threads: load::threads(&args.options.threads),
+        root_radius: certificates.root_radius(),
+        global_radius: certificates.global_radius(),
+        bytes: bytes.len(),
+        rest_collisions: certificates.rest_collisions(),
+        exceptions: 0,
+    };
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&report)?;
+    } else {
+        let metric = certificates.metric().kind().name();
+        for line in report.lines(metric, &args.output) {
+            out.line(line)?;
+        }
+    }
+    out.finish()?;
+    Ok(Outcome::Done)
+}
+
+impl Report {
+    fn lines(&self, metric: &str, output: &Path) -> Vec<String> {
+        let promise = if self.root_radius > 0.0 {
+            format!("root radius    {}: below it the whole shape is free", length(self.root_radius))
+        } else {
+            format!(
+                "root radius    0: the shape collides with itself at rest ({}); the parts that do not are certified",
+                counted(self.rest_collisions, "pair")
+            )
+        };
+        vec![
+            format!(
+                "model          {} triangles, {} vertices, {} modes",
+                grouped(self.triangles as u64),
+                grouped(self.vertices as u64),
+                self.rank
+            ),
+            format!("certificates   {} nodes, {} pairs", grouped(self.nodes as u64), self.pairs),
+            format!("time           {:.2} s on {}", self.seconds, counted(self.threads as u64, "thread")),
+            format!("metric         {metric}"),
+            promise,
+            format!("resolved up to {}", length(self.global_radius)),
+            format!("written        {} ({} bytes)", output.display(), grouped(self.bytes as u64)),
+        ]
+    }
+}

@@ -1,0 +1,75 @@
+//! Every frame by every method, and whether they agree.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use sscc::{Certificates, Error, Method, Progress, Query, ReducedModel};
+use sscc_io::Rows;
+
+use crate::progress::Bar;
+
+/// Root-certified queries are too short for one look at the clock.
+const REPEATS: u32 = 1000;
+
+/// What one method said.
+pub struct Answers {
+    pub pairs: Vec<Vec<(u32, u32)>>,
+    pub root_certified: Vec<bool>,
+    pub microseconds: Vec<f64>,
+}
+
+/// What all methods said, frame by frame.
+pub struct Frames {
+    pub certified: Answers,
+    pub bd_tree: Answers,
+    pub traditional: Answers,
+}
+
+impl Frames {
+    /// Checks every frame by each method in turn, on one thread.
+    pub fn check(model: &ReducedModel, certificates: &Certificates, frames: &Rows) -> Result<Self, Error> {
+        let bar = Bar::new("checking");
+        let answers = |method| {
+            let query = Query::with_method(model, certificates, method)?;
+            Answers::of(query, frames, &bar)
+        };
+        Ok(Self {
+            certified: answers(Method::Certified)?,
+            bd_tree: answers(Method::BdTree)?,
+            traditional: answers(Method::Traditional)?,
+        })
+    }
+
+    /// Frames for which two methods differ.
+    pub fn mismatches(&self) -> usize {
+        let (a, b, c) = (&self.certified.pairs, &self.bd_tree.pairs, &self.traditional.pairs);
+        (0..a.len()).filter(|&i| a[i] != c[i] || b[i] != c[i]).count()
+    }
+}
+
+impl Answers {
+    fn of(mut query: Query<'_>, frames: &Rows, bar: &Bar) -> Result<Self, Error> {
+        let mut answers = Self { pairs: Vec::new(), root_certified: Vec::new(), microseconds: Vec::new() };
+        for (index, q) in frames.iter().enumerate() {
+            if bar.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let start = Instant::now();
+            let pairs = query.discrete(q)?.to_vec();
+            let mut seconds = start.elapsed().as_secs_f64();
+            let root_certified = query.statistics().root_certified;
+            if root_certified {
+                let start = Instant::now();
+                for _ in 0..REPEATS {
+                    black_box(query.discrete(black_box(q))?);
+                }
+                seconds = start.elapsed().as_secs_f64() / f64::from(REPEATS);
+            }
+            answers.pairs.push(pairs);
+            answers.root_certified.push(root_certified);
+            answers.microseconds.push(seconds * 1e6);
+            bar.report(index + 1, frames.rows);
+        }
+        Ok(answers)
+    }
+}

@@ -1,0 +1,56 @@
+//! `sscc demo`: the main job on the embedded spring, in a few seconds and without any file.
+
+mod animation;
+mod frames;
+mod report;
+mod save;
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, ensure};
+use sscc::{CertifyOptions, ReducedModel};
+use sscc_modes::{polynomial_modes, shapes::spring};
+
+use crate::args::{Demo, Threads};
+use crate::output::Output;
+use crate::{Outcome, load};
+use frames::Frames;
+use report::Report;
+
+pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
+    if let Some(folder) = &args.out {
+        save::prepare(folder)?;
+    }
+    let mesh = spring();
+    let modes = polynomial_modes(&mesh).context("the embedded spring")?;
+    let model = ReducedModel::new(mesh, modes).context("the embedded spring")?;
+
+    let threads = load::threads(&Threads { threads: None });
+    let start = Instant::now();
+    let options = CertifyOptions { threads: Some(threads), ..CertifyOptions::default() };
+    let certificates = load::certify(&model, Path::new("the embedded spring"), &options)?;
+    let certify_seconds = start.elapsed().as_secs_f64();
+
+    let animation = animation::animate(&model);
+    let frames = Frames::check(&model, &certificates, &animation)?;
+    let report = Report::new(&model, &certificates, &frames, certify_seconds, threads);
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&report)?;
+    } else {
+        report.lines().into_iter().try_for_each(|line| out.line(line))?;
+    }
+    if let Some(folder) = &args.out {
+        save::save(folder, &model, &certificates, &animation)?;
+        if !args.json.json {
+            save::what_next(folder).into_iter().try_for_each(|line| out.line(line))?;
+        }
+    } else if !args.json.json {
+        out.line("")?;
+        out.line("Next: `sscc demo --out demo` writes these files, to try the other commands on.")?;
+    }
+    out.finish()?;
+    ensure!(report.mismatches == 0, "the methods differ in {} frames: this is a defect", report.mismatches);
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,135 @@
+//! The table of the demo.
+
+use serde::Serialize;
+use sscc::{Certificates, ReducedModel};
+
+use super::frames::Frames;
+use crate::output::{duration, grouped, length};
+
+#[derive(Serialize)]
+pub struct Report {
+    triangles: usize,
+    rank: usize,
+    certify_seconds: f64,
+    threads: usize,
+    root_radius: f64,
+    global_radius: f64,
+    pub mismatches: usize,
+    pairs: usize,
+    frames: Vec<Group>,
+}
+
+/// Frames of one kind, with mean times of one query.
+#[derive(Serialize)]
+struct Group {
+    group: &'static str,
+    frames: usize,
+    certified_microseconds: f64,
+    bdtree_microseconds: f64,
+    traditional_microseconds: f64,
+}
+
+impl Report {
+    pub fn new(
+        model: &ReducedModel,
+        certificates: &Certificates,
+        frames: &Frames,
+        certify_seconds: f64,
+        threads: usize,
+    ) -> Self {
+        let root = |i: usize| frames.certified.root_certified[i];
+        let free = |i: usize| frames.traditional.pairs[i].is_empty();
+        Self {
+            triangles: model.mesh().faces().len(),
+            rank: model.rank(),
+            certify_seconds,
+            threads,
+            root_radius: certificates.root_radius(),
+            global_radius: certificates.global_radius(),
+            mismatches: frames.mismatches(),
+            pairs: frames.traditional.pairs.iter().map(Vec::len).sum(),
+            frames: vec![
+                Group::new("free by the root's certificate", frames, root),
+                Group::new("free, root's certificate fails", frames, |i| free(i) && !root(i)),
+                Group::new("colliding", frames, |i| !free(i)),
+                Group::new("all", frames, |_| true),
+            ],
+        }
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = vec![
+            format!(
+                "A double-helix spring: {} triangles, {} deformation modes.",
+                grouped(self.triangles as u64),
+                self.rank
+            ),
+            format!(
+                "Certified once, in {:.2} s on {} threads. Root radius {}: below it the whole spring is free.",
+                self.certify_seconds,
+                self.threads,
+                length(self.root_radius)
+            ),
+            String::new(),
+            format!(
+                "Shaken ever harder; mean time of one query on one thread, {} frames:",
+                self.all().frames
+            ),
+            String::new(),
+            format!(
+                "  {:<32}{:>6}{:>13}{:>13}{:>13}{:>12}",
+                "", "frames", "sscc", "BD-tree", "traditional", "speed-up"
+            ),
+        ];
+        lines.extend(self.frames.iter().map(Group::line));
+        lines.push(String::new());
+        lines.push(match self.mismatches {
+            0 => format!(
+                "All methods list the same {} colliding pairs of triangles. \"Free\" is proven, never guessed.",
+                grouped(self.pairs as u64)
+            ),
+            n => format!("DEFECT: the methods differ in {n} frames."),
+        });
+        lines.push(
+            "Traditional: all boxes refitted for every q. BD-tree: boxes updated where they are looked at."
+                .into(),
+        );
+        lines
+    }
+
+    fn all(&self) -> &Group {
+        &self.frames[self.frames.len() - 1]
+    }
+}
+
+impl Group {
+    fn new(group: &'static str, frames: &Frames, belongs: impl Fn(usize) -> bool) -> Self {
+        let members: Vec<usize> = (0..frames.traditional.pairs.len()).filter(|i| belongs(*i)).collect();
+        let mean =
+            |times: &[f64]| members.iter().map(|&i| times[i]).sum::<f64>() / members.len().max(1) as f64;
+        Self {
+            group,
+            frames: members.len(),
+            certified_microseconds: mean(&frames.certified.microseconds),
+            bdtree_microseconds: mean(&frames.bd_tree.microseconds),
+            traditional_microseconds: mean(&frames.traditional.microseconds),
+        }
+    }
+
+    fn line(&self) -> String {
+        if self.frames == 0 {
+            return format!("  {:<32}{:>6}", self.group, 0);
+        }
+        let speed_up = self.traditional_microseconds / self.certified_microseconds;
+        let times = [self.certified_microseconds, self.bdtree_microseconds, self.traditional_microseconds];
+        let [certified, bd_tree, traditional] = times.map(duration);
+        let speed_up = match speed_up {
+            s if s < 100.0 => format!("{s:.1} x"),
+            s => format!("{} x", grouped(s.round() as u64)),
+        };
+        format!(
+            "  {:<32}{:>6}{certified:>13}{bd_tree:>13}{traditional:>13}{speed_up:>12}",
+            self.group, self.frames
+        )
+    }
+}

@@ -1,0 +1,65 @@
+//! The demo's files, and what to try on them.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use sscc::{Certificates, ReducedModel, TriMesh};
+use sscc_io::{ModelInfo, Rows, write_certificates, write_model, write_npy, write_whole};
+
+const MESH: &str = "spring.obj";
+const MODEL: &str = "spring.model.safetensors";
+const CERTIFICATES: &str = "spring.sscc.safetensors";
+const ANIMATION: &str = "spring.npy";
+
+/// Makes the folder, and refuses one that cannot be written to before any work is done.
+pub fn prepare(folder: &Path) -> Result<()> {
+    let refused = || format!("{}: no folder that can be written to", folder.display());
+    fs::create_dir_all(folder).with_context(refused)?;
+    tempfile::tempfile_in(folder).with_context(refused)?;
+    Ok(())
+}
+
+/// Writes the four files.
+pub fn save(
+    folder: &Path,
+    model: &ReducedModel,
+    certificates: &Certificates,
+    animation: &Rows,
+) -> Result<()> {
+    write_whole(&folder.join(MESH), to_obj(model.mesh()).as_bytes())?;
+    let info = ModelInfo::new("m", "embedded double-helix spring, polynomial modes");
+    write_model(&folder.join(MODEL), model, &info)?;
+    write_certificates(&folder.join(CERTIFICATES), certificates)?;
+    write_npy(&folder.join(ANIMATION), &[animation.rows, animation.columns], &animation.data)?;
+    Ok(())
+}
+
+/// Commands that work on the files as they are.
+pub fn what_next(folder: &Path) -> Vec<String> {
+    let file = |name: &str| folder.join(name).display().to_string();
+    let (model, certificates) = (file(MODEL), file(CERTIFICATES));
+    // As it was called this time: not everyone has it on the path.
+    let sscc = std::env::args().next().unwrap_or_else(|| "sscc".into());
+    vec![
+        String::new(),
+        format!("Written to {}: {MESH}, {MODEL}, {CERTIFICATES}, {ANIMATION}. Next:", folder.display()),
+        format!("  {sscc} info {certificates}"),
+        format!("  {sscc} check {model} --certificates {certificates} --trajectory {}", file(ANIMATION)),
+        format!("  {sscc} audit {model} --certificates {certificates} --samples 1000"),
+        format!("  {sscc} modes {} -o {} --kind polynomial", file(MESH), file("again.model.safetensors")),
+    ]
+}
+
+/// Numbers are written so that reading them gives the same bits.
+fn to_obj(mesh: &TriMesh) -> String {
+    let mut text = String::new();
+    for p in mesh.rest_positions() {
+        let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+    }
+    for [a, b, c] in mesh.faces() {
+        let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
+    }
+    text
+}

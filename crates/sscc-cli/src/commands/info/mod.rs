@@ -1,0 +1,78 @@
+//! `sscc info`: what is in a file.
+
+mod certified;
+mod model;
+mod surface;
+
+use std::path::Path;
+
+use anyhow::Result;
+use serde::Serialize;
+use sscc_io::{IoError, read_certificates, read_mesh, read_model};
+
+use crate::Outcome;
+use crate::args::Info;
+use crate::output::Output;
+use certified::Certified;
+use model::Model;
+use surface::Surface;
+
+/// What was found.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Report {
+    Mesh(Surface),
+    Model(Model),
+    Certificates(Certified),
+}
+
+pub fn run(args: &Info) -> Result<Outcome> {
+    let report = Report::of(&args.file)?;
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&report)?;
+    } else {
+        report.lines().into_iter().try_for_each(|line| out.line(line))?;
+    }
+    out.finish()?;
+    Ok(Outcome::Done)
+}
+
+impl Report {
+    fn of(path: &Path) -> Result<Self, IoError> {
+        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("safetensors")) {
+            return Ok(Self::Mesh(Surface::of(&read_mesh(path)?)));
+        }
+        // Content decides; the name only says which error is told when it is neither.
+        let by_name = path.file_name().is_some_and(|n| n.to_string_lossy().ends_with(".sscc.safetensors"));
+        Self::read(path, by_name).or_else(|error| Self::read(path, !by_name).or(Err(error)))
+    }
+
+    fn read(path: &Path, as_certificates: bool) -> Result<Self, IoError> {
+        if as_certificates {
+            return Ok(Self::Certificates(Certified::of(&read_certificates(path)?)));
+        }
+        let (model, info) = read_model(path)?;
+        Ok(Self::Model(Model::of(&model, info)))
+    }
+
+    fn lines(&self) -> Vec<String> {
+        match self {
+            Self::Mesh(surface) => surface.lines(),
+            Self::Model(model) => model.lines(),
+            Self::Certificates(certified) => certified.lines(),
+        }
+    }
+}
+
+/// 32 bytes as hexadecimal digits.
+fn hexadecimal(digest: sscc::Digest) -> String {
+    digest.0.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// The least and the largest of a metric's scales, for people.
+fn range(scales: &[f64]) -> String {
+    let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = scales.iter().copied().fold(0.0, f64::max);
+    format!("scales from {} to {}", crate::output::length(least), crate::output::length(largest))
+}

@@ -1,0 +1,50 @@
+//! What is known of a model.
+
+use serde::Serialize;
+use sscc::{Digest, ReducedModel};
+use sscc_io::ModelInfo;
+
+use super::surface::Surface;
+use super::{hexadecimal, range};
+
+#[derive(Serialize)]
+pub struct Model {
+    #[serde(flatten)]
+    surface: Surface,
+    rank: usize,
+    metric: &'static str,
+    metric_scales: Vec<f64>,
+    units: String,
+    provenance: String,
+    /// The digest that certificates in the default metric would have.
+    digest: String,
+}
+
+impl Model {
+    pub fn of(model: &ReducedModel, info: ModelInfo) -> Self {
+        Self {
+            surface: Surface::of(model.mesh()),
+            rank: model.rank(),
+            metric: model.metric().kind().name(),
+            metric_scales: model.metric().scales().to_vec(),
+            units: info.units,
+            provenance: info.provenance,
+            digest: hexadecimal(Digest::of(model, model.metric())),
+        }
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let known = |text: &str| {
+            if text.is_empty() { "not stated".to_owned() } else { crate::output::one_line(text) }
+        };
+        let mut lines = self.surface.lines();
+        lines.extend([
+            format!("modes          {}", self.rank),
+            format!("default metric {}, {}", self.metric, range(&self.metric_scales)),
+            format!("units          {}", known(&self.units)),
+            format!("provenance     {}", known(&self.provenance)),
+            format!("digest         {}", self.digest),
+        ]);
+        lines
+    }
+}

@@ -1,0 +1,23 @@
+//! What the commands mean, one file for each.
+
+mod audit;
+mod certify;
+mod check;
+mod demo;
+mod info;
+mod modes;
+
+use crate::Outcome;
+use crate::args::{Cli, Command};
+
+/// Runs one command to its end.
+pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
+    match cli.command {
+        Command::Demo(args) => demo::run(&args),
+        Command::Modes(args) => modes::run(&args),
+        Command::Certify(args) => certify::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Audit(args) => audit::run(&args),
+        Command::Info(args) => info::run(&args),
+    }
+}

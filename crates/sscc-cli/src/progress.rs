@@ -1,0 +1,66 @@
+//! A progress bar on standard error, for people, for work that takes more than a second.
+
+use std::io::{IsTerminal, stderr};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use sscc::Progress;
+
+use crate::interrupt;
+
+/// Work shorter than this shows no bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Shows progress, and stops the work on Ctrl-C.
+pub struct Bar {
+    message: &'static str,
+    start: Instant,
+    visible: bool,
+    bar: OnceLock<ProgressBar>,
+}
+
+impl Bar {
+    /// A bar that appears when standard error is a terminal and the work takes long.
+    pub fn new(message: &'static str) -> Self {
+        Self { message, start: Instant::now(), visible: stderr().is_terminal(), bar: OnceLock::new() }
+    }
+
+    /// The same, but only if `condition` holds.
+    pub fn only_if(mut self, condition: bool) -> Self {
+        self.visible &= condition;
+        self
+    }
+
+    fn draw(&self, done: usize, total: usize) {
+        let bar = self.bar.get_or_init(|| {
+            let bar =
+                ProgressBar::new(total as u64).with_message(self.message).with_elapsed(self.start.elapsed());
+            let style = ProgressStyle::with_template("{msg} [{wide_bar}] {percent}% {elapsed_precise}");
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        });
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+    }
+}
+
+impl Progress for Bar {
+    fn report(&self, done: usize, total: usize) {
+        if self.visible && self.start.elapsed() > PATIENCE {
+            self.draw(done, total);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        interrupt::happened()
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = self.bar.get() {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Real models with known answers: exactly the listed pairs.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use sscc::{Certificates, CertifyOptions, Method, Query, ReducedModel};
+use sscc_testdata::models;
+
+type Pairs = Vec<(u32, u32)>;
+
+struct Case {
+    q: Vec<f64>,
+    pairs: Pairs,
+}
+
+/// The model and the cases of a `*_selfcollision_cases.json`.
+fn cases(file: &Path) -> (ReducedModel, Vec<Case>) {
+    let json: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+    let beside = |key: &str| file.with_file_name(json[key].as_str().unwrap());
+    let (model, _) = sscc_io::load_model(&beside("mesh"), Some(&beside("modes"))).unwrap();
+    let cases = json["cases"].as_array().unwrap().iter();
+    let cases = cases.map(|case| Case {
+        q: serde_json::from_value(case["q"].clone()).unwrap(),
+        pairs: serde_json::from_value(case["pairs"].clone()).unwrap(),
+    });
+    (model, cases.collect())
+}
+
+fn every_method_gives_the_listed_pairs(file: &Path, count: usize) {
+    let (model, cases) = cases(file);
+    assert_eq!(cases.len(), count);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    for method in [Method::Certified, Method::BdTree, Method::Traditional] {
+        let mut query = Query::with_method(&model, &certificates, method).unwrap();
+        for (i, case) in cases.iter().enumerate() {
+            assert_eq!(query.discrete(&case.q).unwrap(), case.pairs, "case {i} by {method:?}");
+        }
+    }
+}
+
+#[test]
+fn vega_letter() {
+    let Some(folder) = models("vega_letter") else { return };
+    every_method_gives_the_listed_pairs(&folder.join("vega_A/A_selfcollision_cases.json"), 17);
+}
+
+#[test]
+fn face() {
+    let Some(folder) = models("face") else { return };
+    every_method_gives_the_listed_pairs(&folder.join("ict_face/ict_face_selfcollision_cases.json"), 12);
+}
+
+/// The whole way by the command: certify, then check a trajectory of all cases.
+#[test]
+fn vega_letter_by_the_command() {
+    let Some(folder) = models("vega_letter_by_the_command") else { return };
+    let file = folder.join("vega_A/A_selfcollision_cases.json");
+    let (model, cases) = cases(&file);
+    let directory = tempfile::tempdir().unwrap();
+    let q: Vec<f64> = cases.iter().flat_map(|case| case.q.clone()).collect();
+    sscc_io::write_npy(&directory.path().join("q.npy"), &[cases.len(), model.rank()], &q).unwrap();
+    let [mesh, modes] =
+        ["A.obj", "A.URendering.float"].map(|name| file.with_file_name(name).to_str().unwrap().to_owned());
+    let run = |args: &[&str]| {
+        let [command, rest @ ..] = args else { unreachable!() };
+        common::sscc(directory.path(), &[&[*command, &mesh, "--modes", &modes], rest].concat())
+    };
+    assert_eq!(run(&["certify", "-o", "a.sscc.safetensors"]).code, Some(0));
+    let checked = run(&["check", "--certificates", "a.sscc.safetensors", "--trajectory", "q.npy", "--json"]);
+    assert_eq!(checked.code, Some(1), "{}", checked.stderr);
+    let found: Vec<Pairs> = checked
+        .json()
+        .into_iter()
+        .map(|mut line| serde_json::from_value(line["pairs"].take()).unwrap())
+        .collect();
+    assert_eq!(found, cases.into_iter().map(|case| case.pairs).collect::<Vec<_>>());
+}
+
+/// A mesh that intersects itself as it is, with modes that move nothing.
+#[test]
+fn double_loop() {
+    let Some(folder) = models("double_loop") else { return };
+    let folder = folder.join("selfintersecting");
+    let text = fs::read_to_string(folder.join("doubleLoopWithCube.pairs.txt")).unwrap();
+    let listed: Pairs = text
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            let mut numbers = line.split_whitespace().map(|word| word.parse().unwrap());
+            (numbers.next().unwrap(), numbers.next().unwrap())
+        })
+        .collect();
+    assert_eq!(listed.len(), 792);
+    let directory = tempfile::tempdir().unwrap();
+    let path = folder.join("doubleLoopWithCube.obj");
+    let vertices = sscc_io::read_mesh(&path).unwrap().rest_positions().len();
+    let still = directory.path().join("still.npy");
+    sscc_io::write_npy(&still, &[3 * vertices, 1], &vec![0.0; 3 * vertices]).unwrap();
+    for method in ["certified", "bdtree", "traditional", "brute-force"] {
+        let args = [
+            "check",
+            path.to_str().unwrap(),
+            "--modes",
+            still.to_str().unwrap(),
+            "--q=1",
+            "--json",
+            "--method",
+            method,
+        ];
+        let run = common::sscc(directory.path(), &args);
+        assert_eq!(run.code, Some(1), "{}", run.stderr);
+        let found: Pairs = serde_json::from_value(run.json()[0]["pairs"].take()).unwrap();
+        assert_eq!(found, listed, "{method}");
+    }
+}

@@ -1,0 +1,137 @@
+use std::sync::LazyLock;
+
+use super::super::MODEL;
+use super::*;
+use glam::DVec3;
+use sscc::{CertifyOptions, Modes, ReducedModel, TriMesh};
+
+/// A strip of triangles folded over itself, with three modes, one of which moves nothing.
+fn model() -> ReducedModel {
+    let positions: Vec<DVec3> = (0..24)
+        .map(|i| {
+            let (s, side) = ((i / 2) as f64 * 0.5, (i % 2) as f64);
+            DVec3::new(fold(s), side, 0.3 * s)
+        })
+        .collect();
+    let faces = (0..22).map(|i| [i, i + 1, i + 2]).collect();
+    let modes =
+        Modes::from_matrix(24, 3, |row, k| if k == 2 { 0.0 } else { ((row * (k + 3)) % 7) as f64 - 3.0 });
+    ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes.unwrap()).unwrap()
+}
+
+/// Something like a cosine: the tests need a fold, not a circle.
+fn fold(x: f64) -> f64 {
+    1.0 - x * x / 2.0 + x.powi(4) / 24.0 - x.powi(6) / 720.0
+}
+
+fn certificates() -> Certificates {
+    static ONCE: LazyLock<Certificates> =
+        LazyLock::new(|| Certificates::compute(&model(), &CertifyOptions::default(), &()).unwrap());
+    ONCE.clone()
+}
+
+fn sample() -> Vec<u8> {
+    certificates_to_bytes(&certificates()).unwrap()
+}
+
+/// A good file with one thing replaced, under a good seal.
+fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
+    let bytes = sample();
+    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
+    let mut writer = SealedWriter::new(CERTIFICATES);
+    for key in ["metric", "scheme", "pairs", "neighbours", "weld"].iter().filter(|key| **key != name) {
+        writer.text(key, file.text(key).unwrap());
+    }
+    for tensor in TENSORS.iter().filter(|tensor| **tensor != name) {
+        if let Ok(t) = file.f64(tensor) {
+            writer.f64(tensor, &t.shape, &t.values);
+        } else if let Ok(t) = file.u32(tensor) {
+            writer.u32(tensor, &t.shape, &t.values);
+        } else if let Ok(t) = file.u64(tensor) {
+            writer.u64(tensor, &t.shape, &t.values);
+        } else {
+            let t = file.u8(tensor).unwrap();
+            writer.u8(tensor, &t.shape, &t.values);
+        }
+    }
+    change(&mut writer);
+    certificates_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string()
+}
+
+#[test]
+fn round_trip_is_exact() {
+    let (model, certificates) = (model(), certificates());
+    let read = certificates_from_bytes(&sample()).unwrap();
+    assert_eq!(read, certificates);
+    read.check_model(&model).unwrap();
+    assert_eq!(certificates_to_bytes(&read).unwrap(), sample());
+}
+
+#[test]
+fn infinite_radii_are_kept() {
+    let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+    let still = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::ZERO; 3]).unwrap()).unwrap();
+    let certificates = Certificates::compute(&still, &CertifyOptions::default(), &()).unwrap();
+    assert_eq!(certificates.global_radius(), f64::INFINITY);
+    let read = certificates_from_bytes(&certificates_to_bytes(&certificates).unwrap()).unwrap();
+    assert_eq!(read, certificates);
+}
+
+#[test]
+fn every_flipped_byte_and_truncation_is_refused() {
+    let bytes = sample();
+    for at in 0..bytes.len() {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        assert!(certificates_from_bytes(&flipped).is_err(), "byte {at}");
+        assert!(certificates_from_bytes(&bytes[..at]).is_err(), "length {at}");
+    }
+    assert!(certificates_from_bytes(&[&bytes[..], b"\0"].concat()).is_err());
+}
+
+#[test]
+fn other_kinds_and_newer_versions_are_refused() {
+    let model_file = SealedWriter::new(MODEL).finish().unwrap();
+    let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
+    assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
+    let newer = SealedWriter::new(super::super::Kind { version: 2, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 2"));
+}
+
+#[test]
+fn what_this_version_does_not_know_is_refused() {
+    let unknown = "is not known in this version of the format";
+    for key in ["scheme", "pairs", "neighbours", "weld"] {
+        assert!(with(key, |w| _ = w.text(key, "other")).ends_with(unknown), "{key}");
+    }
+    assert!(with("", |w| _ = w.u8("kinetic", &[1], &[0])).starts_with("tensor 'kinetic': not known"));
+    assert!(with("center", |w| _ = w.f64("center", &[3], &[0.0, 1.0, 0.0])).contains("is not zero"));
+    assert!(
+        with("exceptions", |w| _ = w.u32("exceptions", &[1, 2], &[0, 5])).contains("[0, 2] was expected")
+    );
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    let nodes = certificates().hierarchy().nodes().len();
+    let order = |values: Vec<u32>| with("order", |w| _ = w.u32("order", &[values.len()], &values));
+    assert!(order((0..21).collect()).contains("hierarchy: "));
+    assert!(order(vec![0; 22]).contains("hierarchy: a triangle is listed twice"));
+    assert!(with("nodes", |w| _ = w.u32("nodes", &[0, 4], &[])).contains("hierarchy: it has no nodes"));
+    assert!(with("nodes", |w| _ = w.u32("nodes", &[1, 4], &[0, 22, 1, 4])).contains("hierarchy: "));
+    assert!(with("nodes", |w| _ = w.u32("nodes", &[1, 4], &[0, 22, 0, 0])).contains("was expected"));
+    for bad in [f64::NAN, -1.0] {
+        let message = with("node_radii", |w| _ = w.f64("node_radii", &[nodes], &vec![bad; nodes]));
+        assert!(message.contains("it does not agree") || message.contains("negative"), "{message}");
+        assert!(with("epsilon", |w| _ = w.f64("epsilon", &[1], &[bad])).ends_with("between 0 and 1"));
+        let limit = with("limit", |w| _ = w.f64("limit", &[1], &[bad]));
+        assert!(limit.contains("does not agree") || limit.contains("not positive"), "{limit}");
+    }
+    assert!(with("node_states", |w| _ = w.u8("node_states", &[nodes], &vec![2; nodes])).contains("agree"));
+    assert!(
+        with("metric_scales", |w| _ = w.f64("metric_scales", &[2], &[1.0; 2])).contains("[2] was expected")
+    );
+    assert!(with("metric_scales", |w| _ = w.f64("metric_scales", &[0], &[])).contains("no modes"));
+    assert!(with("metric", |w| _ = w.text("metric", "gold")).ends_with("unknown metric 'gold'"));
+    assert!(with("model_digest", |w| _ = w.u8("model_digest", &[3], &[0; 3])).contains("[32] was expected"));
+}

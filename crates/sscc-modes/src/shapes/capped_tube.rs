@@ -1,0 +1,92 @@
+//! A tube of varying thickness along an open curve, closed at its ends.
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use super::tube::{band, frame, unit_circle};
+
+/// Steps for each ring when lengths along the tube are added up.
+const LENGTH_STEPS: usize = 16;
+
+/// Where the tube is thinner than this share of its thickest place, at the ends, one ring is enough.
+const THIN: f64 = 0.03;
+
+/// How a capped tube is cut into triangles.
+#[derive(Clone, Copy)]
+pub(super) struct CappedTube {
+    /// Number of rings between the two end points. Their distance follows the tube's thickness, so that
+    /// triangles are alike. Every second ring is turned by half a vertex.
+    pub rings: usize,
+    /// Vertices of each ring.
+    pub around: usize,
+}
+
+impl CappedTube {
+    /// Sweeps the tube along `curve` (parameter 0 to 1, and a little beyond; smooth and nowhere vertical). `section`
+    /// gives half the width (level) and half the height (square to it) at a share of the curve's length, both 0
+    /// at its ends. Closed, `2 rings around` triangles, oriented outward, genus 0.
+    ///
+    /// # Panics
+    /// When the curve gives a position that is not finite.
+    pub fn along(self, curve: impl Fn(f64) -> DVec3, section: impl Fn(f64) -> [f64; 2]) -> TriMesh {
+        let circle = unit_circle(self.around);
+        let mut vertices = Vec::with_capacity(self.rings * self.around + 2);
+        for (ring, [t, share]) in self.places(&curve, &section).into_iter().enumerate() {
+            let [side, up] = frame(&curve, t);
+            let [width, height] = section(share);
+            let centre = curve(t);
+            for (c, s) in circle.iter().skip(ring % 2).step_by(2) {
+                vertices.push(centre + side * (width * *c) + up * (height * *s));
+            }
+        }
+        vertices.extend([curve(0.0), curve(1.0)]);
+        TriMesh::new(vertices, self.faces()).expect("a tube along a finite curve is a valid mesh")
+    }
+
+    /// Bands between the rings, and a fan at either end.
+    fn faces(self) -> Vec<[u32; 3]> {
+        let around = self.around as u32;
+        let ring = |i: usize| i as u32 * around;
+        let (last, [start, end]) = (ring(self.rings - 1), [0, 1].map(|k| ring(self.rings) + k));
+        let bands = (0..self.rings - 1).flat_map(|i| band(self.around, i, ring(i), ring(i + 1)));
+        let next = |k: u32| (k + 1) % around;
+        let start_fan = (0..around).map(|k| [next(k), k, start]);
+        let end_fan = (0..around).map(|k| [last + k, last + next(k), end]);
+        bands.chain(start_fan).chain(end_fan).collect()
+    }
+
+    /// Parameter and share of the curve's length for each ring. Rings are evenly spaced in length along the
+    /// surface over thickness.
+    fn places(self, curve: impl Fn(f64) -> DVec3, section: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+        let steps = self.rings * LENGTH_STEPS;
+        let parameter = |i: usize| i as f64 / steps as f64;
+        let mut lengths = vec![0.0];
+        for i in 0..steps {
+            lengths.push(lengths[i] + curve(parameter(i)).distance(curve(parameter(i + 1))));
+        }
+        let length = lengths[steps];
+        let radius = |share: f64| 0.5 * section(share).iter().sum::<f64>();
+        let radii: Vec<f64> = lengths.iter().map(|l| radius(l / length)).collect();
+        let thin = THIN * radii.iter().copied().fold(0.0, f64::max);
+
+        let mut rings = vec![0.0]; // the number of rings up to each step, times a constant
+        for i in 0..steps {
+            let (step, change) = (lengths[i + 1] - lengths[i], radii[i + 1] - radii[i]);
+            let middle = 0.5 * (radii[i] + radii[i + 1]);
+            // From the end to where the tube is no longer thin: as much as a ring as wide as a triangle.
+            let scale = if middle < thin { thin * self.around as f64 / 6.0 } else { middle };
+            rings.push(rings[i] + (step * step + change * change).sqrt() / scale);
+        }
+        (1..=self.rings)
+            .map(|ring| {
+                let wanted = rings[steps] * ring as f64 / (self.rings + 1) as f64;
+                let i = rings.partition_point(|w| *w <= wanted).clamp(1, steps) - 1;
+                let part = (wanted - rings[i]) / (rings[i + 1] - rings[i]);
+                [
+                    (i as f64 + part) / steps as f64,
+                    (lengths[i] + part * (lengths[i + 1] - lengths[i])) / length,
+                ]
+            })
+            .collect()
+    }
+}
