@@ -81,6 +81,8 @@ pub enum Place {
     Tensor(String),
     /// A text entry of a container.
     Key(String),
+    /// A part with a name of its own: of a glTF file (`meshes[2]`), or of an archive.
+    Part(String),
 }
 
 impl fmt::Display for Place {
@@ -91,6 +93,7 @@ impl fmt::Display for Place {
             Self::Byte(byte) => write!(f, "byte {byte}: "),
             Self::Tensor(name) => write!(f, "tensor {}: ", quoted(name)),
             Self::Key(name) => write!(f, "metadata {}: ", quoted(name)),
+            Self::Part(name) => write!(f, "{}: ", cut(name, 80)),
         }
     }
 }
@@ -108,6 +111,11 @@ impl FormatError {
     /// Something wrong with a line, counted from 1.
     pub(crate) fn line(line: usize, cause: impl Into<String>) -> Self {
         Self::new(Place::Line(line), cause)
+    }
+
+    /// Something wrong with a named part.
+    pub(crate) fn part(name: impl Into<String>, cause: impl Into<String>) -> Self {
+        Self::new(Place::Part(name.into()), cause)
     }
 
     /// Where it is.
@@ -146,7 +154,13 @@ pub(crate) fn quoted(text: &str) -> String {
 
 /// Text that may hold some of a file's, on one line and cut when long.
 pub(crate) fn cut(text: &str, longest: usize) -> String {
-    let mut line: String = text.chars().take(longest).flat_map(char::escape_debug).collect();
+    let mut line = String::new();
+    for c in text.chars().take(longest) {
+        match c {
+            '\'' | '"' => line.push(c), // our own quotes stay as they are
+            _ => line.extend(c.escape_debug()),
+        }
+    }
     if text.chars().nth(longest).is_some() {
         line += "...";
     }
@@ -161,6 +175,8 @@ mod tests {
     fn messages_are_one_line() {
         let error = FormatError::line(3, format!("{} is bad", quoted("a\nb"))).of(Path::new("dir/x\ny.obj"));
         assert_eq!(error.to_string(), r"dir/x\ny.obj: line 3: 'a\nb' is bad");
+        let error = FormatError::part("array 'a\n\"'", "is bad");
+        assert_eq!(error.to_string(), r#"array 'a\n"': is bad"#);
         assert_eq!(quoted(&"x".repeat(50)), format!("'{}...'", "x".repeat(40)));
     }
 }

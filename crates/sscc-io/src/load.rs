@@ -2,37 +2,121 @@
 
 use std::path::Path;
 
-use sscc::ReducedModel;
+use sscc::{Modes, ReducedModel, TriMesh};
 
 use crate::file::ending;
-use crate::{IoError, ModelInfo, read_mesh, read_model, read_modes};
+use crate::{IoError, ModelInfo, gltf, read_mesh, read_model, read_modes_for, read_npz_model};
 
-/// Loads a model: a `*.model.safetensors` alone, or a mesh file with a file of its modes (default metric:
-/// displacement).
+/// What beside the model's own file is needed.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct LoadOptions<'a> {
+    /// The modes of a mesh file: a file, or a folder of target meshes.
+    pub modes: Option<&'a Path>,
+    /// The mesh of a glTF file with several.
+    pub mesh_name: Option<&'a str>,
+}
+
+impl<'a> LoadOptions<'a> {
+    /// With these.
+    pub fn new(modes: Option<&'a Path>, mesh_name: Option<&'a str>) -> Self {
+        Self { modes, mesh_name }
+    }
+}
+
+/// A model with what its files say beside it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct LoadedModel {
+    /// The model.
+    pub model: ReducedModel,
+    /// Units and provenance.
+    pub info: ModelInfo,
+    /// The q that a glTF file shows when nothing moves it (r).
+    pub default_q: Option<Vec<f64>>,
+    /// Names of the modes (r), or none where the files have none.
+    pub mode_names: Vec<String>,
+    /// One number for each mode from a `.npz` file (r), such as variances.
+    pub mode_weights: Option<Vec<f64>>,
+}
+
+/// Loads a model and drops what is known beside it: [`load_model_with`] with modes alone.
 ///
 /// # Errors
-/// When modes are missing for a mesh, or given for a model that has its own; when a file cannot be read or
-/// is malformed; when the modes are of another mesh.
+/// As [`load_model_with`].
 pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, ModelInfo), IoError> {
-    let refused = |at: &Path, cause: &str| IoError::Request { path: at.to_owned(), cause: cause.into() };
-    match (ending(path).as_str(), modes) {
-        ("safetensors", None) => read_model(path),
-        ("safetensors", Some(_)) => Err(refused(path, "a model file has its own modes: leave out --modes")),
+    let loaded = load_model_with(path, &LoadOptions::new(modes, None))?;
+    Ok((loaded.model, loaded.info))
+}
+
+/// Loads a model: a `*.model.safetensors`; a `.glb` or `.gltf` with morph targets; a complete `.npz`; or a
+/// mesh file with its modes ([`read_modes_for`]). Its metric is the file's own, else displacement.
+///
+/// # Errors
+/// When modes are missing for a mesh, or given for a model that has its own; when a mesh is named for a file
+/// other than glTF; when a file cannot be read or is malformed; when the modes are of another mesh.
+pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedModel, IoError> {
+    let refused = |cause: &str| IoError::Request { path: path.to_owned(), cause: cause.into() };
+    let format = ending(path);
+    let is_gltf = matches!(format.as_str(), "glb" | "gltf");
+    if options.mesh_name.is_some() && !is_gltf {
+        return Err(refused("only a glTF file has meshes to choose from: leave out --mesh-name"));
+    }
+    match (format.as_str(), options.modes) {
+        ("safetensors", None) => {
+            let (model, info) = read_model(path)?;
+            Ok(LoadedModel { model, info, default_q: None, mode_names: Vec::new(), mode_weights: None })
+        }
+        ("glb" | "gltf", None) => {
+            let read = gltf::read(path, options.mesh_name)?;
+            let provenance = format!("mesh {:?} of {}", read.mesh_name, name(path));
+            let loaded = assemble(path, read.mesh, read.modes, provenance, read.target_names)?;
+            Ok(LoadedModel { default_q: Some(read.default_weights), ..loaded })
+        }
+        ("npz", None) => {
+            let (mesh, modes, mode_weights) = read_npz_model(path)?;
+            let loaded = assemble(path, mesh, modes, format!("arrays of {}", name(path)), Vec::new())?;
+            Ok(LoadedModel { mode_weights, ..loaded })
+        }
+        ("safetensors" | "glb" | "gltf" | "npz", Some(_)) => {
+            Err(refused("a model file has its own modes: leave out --modes"))
+        }
         (_, None) => {
             // A file that is missing or no mesh at all is told first: modes would not help.
             read_mesh(path)?;
-            Err(refused(path, "a mesh has no modes: add --modes FILE"))
+            Err(refused("a mesh has no modes: add --modes FILE"))
         }
         (_, Some(modes_path)) => {
             let mesh = read_mesh(path)?;
-            let modes = read_modes(modes_path, mesh.rest_positions().len())?;
-            let model =
-                ReducedModel::new(mesh, modes).map_err(|error| refused(modes_path, &error.to_string()))?;
-            let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let (modes, names) = read_modes_for(modes_path, &mesh, path)?;
             let provenance = format!("mesh {}, modes {}", name(path), name(modes_path));
-            Ok((model, ModelInfo::new("", provenance)))
+            assemble(modes_path, mesh, modes, provenance, names)
         }
     }
+}
+
+/// Whether the format of a file splits vertices along seams, so that triangles that belong together share
+/// none: STL and glTF. There vertices of equal position and equal modes should count as one for adjacency.
+pub fn splits_vertices(path: &Path) -> bool {
+    matches!(ending(path).as_str(), "stl" | "glb" | "gltf")
+}
+
+/// `at` is the file to blame when mesh and modes make no model.
+fn assemble(
+    at: &Path,
+    mesh: TriMesh,
+    modes: Modes,
+    provenance: String,
+    mode_names: Vec<String>,
+) -> Result<LoadedModel, IoError> {
+    let model = ReducedModel::new(mesh, modes)
+        .map_err(|error| IoError::Request { path: at.to_owned(), cause: error.to_string() })?;
+    let info = ModelInfo::new("", provenance);
+    Ok(LoadedModel { model, info, default_q: None, mode_names, mode_weights: None })
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 #[cfg(test)]
@@ -65,5 +149,52 @@ mod tests {
         assert!(load_model(&mesh, Some(&modes)).is_ok());
         write_npy(&modes, &[12, 1], &[0.0; 12]).unwrap();
         assert!(message(&mesh, Some(&modes)).contains("a.npy: the modes are for 4 vertices, the mesh has 3"));
+    }
+
+    #[test]
+    fn each_kind_of_model_is_loaded() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::fs::write(path("a.obj"), obj).unwrap();
+        let stl =
+            "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid";
+        std::fs::write(path("a.STL"), stl).unwrap();
+        std::fs::create_dir(path("targets")).unwrap();
+        std::fs::write(path("targets/smile.obj"), obj.replace("v 1 0 0", "v 1 0 2")).unwrap();
+        let mut moved = [0.0; 9];
+        moved[5] = 2.0;
+        write_npy(&path("a.npy"), &[9, 1], &moved).unwrap();
+        let mut npz = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        npz.start_file("components.npy", zip::write::SimpleFileOptions::default()).unwrap();
+        std::io::Write::write_all(&mut npz, &crate::npy::to_bytes(&[1, 9], &moved).unwrap()).unwrap();
+        std::fs::write(path("a.npz"), npz.finish().unwrap().into_inner()).unwrap();
+
+        let load = |mesh: &str, modes: &str| {
+            load_model_with(&path(mesh), &LoadOptions::new(Some(&path(modes)), None)).unwrap()
+        };
+        let first = load("a.obj", "a.npy");
+        for (mesh, modes) in
+            [("a.obj", "a.npz"), ("a.obj", "targets"), ("a.STL", "a.npy"), ("a.STL", "targets")]
+        {
+            let other = load(mesh, modes);
+            assert_eq!((other.model.mesh(), other.model.modes()), (first.model.mesh(), first.model.modes()));
+            assert_eq!(other.info.provenance, format!("mesh {mesh}, modes {modes}"));
+            let names: &[&str] = if modes == "targets" { &["smile"] } else { &[] };
+            assert_eq!(other.mode_names, names);
+        }
+        let message = |name: &str, options: LoadOptions<'_>| {
+            load_model_with(&path(name), &options).unwrap_err().to_string()
+        };
+        let npz = message("a.npz", LoadOptions::default());
+        assert!(npz.contains("a.npz: there is no array of mean"), "{npz}");
+        let named = message("a.obj", LoadOptions::new(None, Some("x")));
+        assert!(named.ends_with("leave out --mesh-name"), "{named}");
+        for own in ["a.npz", "b.glb", "b.gltf"] {
+            let modes = path("a.npy");
+            assert!(message(own, LoadOptions::new(Some(&modes), None)).ends_with("leave out --modes"));
+        }
+        assert!(splits_vertices(Path::new("a.STL")) && splits_vertices(Path::new("a.glb")));
+        assert!(!splits_vertices(Path::new("a.obj")));
     }
 }

@@ -2,14 +2,16 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::io::Write;
+
 use proptest::prelude::*;
 use sscc_io::container::{CERTIFICATES, MODEL, Sealed, certificates_from_bytes, model_from_bytes};
-use sscc_io::mesh::{obj, off, ply};
+use sscc_io::mesh::{obj, off, ply, stl};
 use sscc_io::modes::{array, vega};
-use sscc_io::npy;
+use sscc_io::{gltf, npy, npz};
 
 fn parse_all(bytes: &[u8]) {
-    for mesh in [obj::parse(bytes), off::parse(bytes), ply::parse(bytes)] {
+    for mesh in [obj::parse(bytes), off::parse(bytes), ply::parse(bytes), stl::parse(bytes)] {
         one_line(&mesh);
     }
     for vertices in [0, 1, 3] {
@@ -21,6 +23,10 @@ fn parse_all(bytes: &[u8]) {
             Err(error) => one_line(&Err::<(), _>(error)),
         }
     }
+    one_line(&npy::parse_integers(bytes));
+    one_line(&npz::parse_model(bytes));
+    one_line(&gltf::parse(bytes, None));
+    one_line(&gltf::parse(bytes, Some("#0")));
     one_line(&model_from_bytes(bytes));
     one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
@@ -51,7 +57,36 @@ fn seeds() -> Vec<Vec<u8>> {
         npy::to_bytes(&[9, 2], &[0.5; 18]).unwrap(),
         npy::to_bytes(&[3, 3, 3], &[0.5; 27]).unwrap(),
         [&[9, 0, 0, 0, 2, 0, 0, 0][..], &[0; 72]].concat(),
+        b"solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid"
+            .to_vec(),
+        [&[0; 80][..], &[1, 0, 0, 0], &[0; 50]].concat(),
+        GLTF.as_bytes().to_vec(),
+        npz(zip::CompressionMethod::Stored),
+        npz(zip::CompressionMethod::Deflated),
     ]
+}
+
+/// A triangle with a plain and a sparse target.
+const GLTF: &str = r#"{"asset":{"version":"2.0"},
+"buffers":[{"byteLength":60,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAQAAAAAAAAAAAAAAAACAPwAAAQIAAAAA"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":16},{"buffer":0,"byteOffset":52,"byteLength":4}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5125},
+"values":{"bufferView":1,"byteOffset":4}}},{"bufferView":2,"byteOffset":1,"componentType":5121,"count":3,"type":"SCALAR"}],
+"meshes":[{"name":"a","primitives":[{"attributes":{"POSITION":0},"indices":2,"targets":[{"POSITION":0},{"POSITION":1}]}]}]}"#;
+
+fn npz(method: zip::CompressionMethod) -> Vec<u8> {
+    let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default().compression_method(method);
+    let mut faces = npy::to_bytes(&[1, 3], &[0.0; 3]).unwrap();
+    let descr = faces.windows(3).position(|w| w == b"<f8").unwrap();
+    faces[descr..descr + 3].copy_from_slice(b"<i8");
+    let arrays = [("mean", npy::to_bytes(&[3, 3], &[0.5; 9]).unwrap()), ("faces", faces)];
+    for (name, array) in arrays.into_iter().chain([("U", npy::to_bytes(&[9, 2], &[0.5; 18]).unwrap())]) {
+        writer.start_file(format!("{name}.npy"), options).unwrap();
+        writer.write_all(&array).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
 }
 
 #[test]
@@ -61,9 +96,52 @@ fn seeds_are_good() {
     assert!(ply::parse(&seeds[2]).is_ok() && ply::parse(&seeds[3]).is_ok());
     assert!(npy::parse(&seeds[4]).is_ok() && npy::parse(&seeds[5]).is_ok());
     assert!(vega::parse(&seeds[6], vega::Precision::Single, 3).is_ok());
+    assert!(stl::parse(&seeds[7]).is_ok() && stl::parse(&seeds[8]).is_ok());
+    assert_eq!(gltf::parse(&seeds[9], None).unwrap().modes.rank(), 2);
+    assert!(npz::parse_model(&seeds[10]).is_ok() && npz::parse_model(&seeds[11]).is_ok());
+}
+
+/// Numbers and names of a good glTF file exchanged: what a parser of JSON lets through.
+fn swapped_gltf() -> impl Strategy<Value = String> {
+    let numbers = prop::sample::select(vec![
+        "0",
+        "1",
+        "2",
+        "3",
+        "4",
+        "35",
+        "36",
+        "60",
+        "5121",
+        "5126",
+        "18446744073709551615",
+    ]);
+    prop::collection::vec((any::<prop::sample::Index>(), numbers), 1..5).prop_map(|changes| {
+        // Words of digits and the text between them take turns.
+        let mut words: Vec<String> = Vec::new();
+        for c in GLTF.chars() {
+            match words.last_mut() {
+                Some(last) if last.ends_with(|l: char| l.is_ascii_digit()) == c.is_ascii_digit() => {
+                    last.push(c)
+                }
+                _ => words.push(c.into()),
+            }
+        }
+        for (at, number) in changes {
+            let digits: Vec<_> =
+                (0..words.len()).filter(|i| words[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
+            words[digits[at.index(digits.len())]] = number.into();
+        }
+        words.concat()
+    })
 }
 
 proptest! {
+    #[test]
+    fn exchanged_numbers(text in swapped_gltf()) {
+        one_line(&gltf::parse(text.as_bytes(), None));
+    }
+
     #[test]
     fn random_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         parse_all(&bytes);
@@ -75,7 +153,7 @@ proptest! {
             prop::sample::select(vec![
                 "v", "f", "OFF", "ply", "format", "ascii", "1.0", "element", "vertex", "face", "property", "list",
                 "float", "int", "uchar", "x", "y", "z", "vertex_index", "end_header", "0", "1", "2", "3", "-1", "1/2",
-                "18446744073709551615", "1e999", "nan", "\\", "#", "\n", "\n", "\n", "\r\n", "\u{e9}",
+                "18446744073709551615", "1e999", "solid", "facet", "outer", "endloop", "endfacet", "endsolid", "nan", "\\", "#", "\n", "\n", "\n", "\r\n", "\u{e9}",
             ]),
             0..80,
         ),
@@ -86,7 +164,7 @@ proptest! {
 
     #[test]
     fn damaged_files(
-        seed in 0_usize..7,
+        seed in 0_usize..12,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         cut in any::<prop::sample::Index>(),
         whole: bool,

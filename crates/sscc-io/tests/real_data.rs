@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
-use sscc_io::{load_model, read_mesh, read_modes};
+use sscc_io::gltf::{self, PrimitiveRange};
+use sscc_io::{LoadOptions, load_model, load_model_with, read_mesh, read_modes};
 use sscc_testdata::models;
 
 #[test]
@@ -105,5 +106,93 @@ fn modal_matrices_fit_their_meshes() {
             whole += of(f[0]).length() + of(f[1]).length();
         }
         assert!(along < 0.25 * whole, "mode {k}: {along} of {whole}");
+    }
+}
+
+#[test]
+fn morph_targets_have_their_known_sizes() {
+    let Some(folder) = models("morph_targets_have_their_known_sizes") else { return };
+    // Vertices, distinct positions and triangles of each primitive.
+    for (file, rank, primitives) in [
+        ("AnimatedMorphSphere.gltf", 2, &[(1876, 482, 960)][..]),
+        ("MorphStressTest.gltf", 8, &[(24, 8, 12), (1504, 1216, 2400)]),
+        ("RobotExpressive.glb", 3, &[(302, 96, 154), (876, 345, 460), (564, 106, 196)]),
+    ] {
+        let path = folder.join("morph").join(file);
+        let model = gltf::read(&path, None).unwrap();
+        assert_eq!(
+            (model.modes.rank(), model.target_names.len(), model.default_weights.len()),
+            (rank, rank, rank)
+        );
+        let positions = model.mesh.rest_positions();
+        let size = |range: &std::ops::Range<u32>| range.len();
+        let distinct = |p: &PrimitiveRange| {
+            let of = &positions[p.vertices.start as usize..p.vertices.end as usize];
+            // +0 and -0 are one position.
+            let bits = |p: &DVec3| (*p + DVec3::ZERO).to_array().map(f64::to_bits);
+            of.iter().map(bits).collect::<std::collections::BTreeSet<_>>().len()
+        };
+        let found: Vec<_> =
+            model.primitives.iter().map(|p| (size(&p.vertices), distinct(p), size(&p.triangles))).collect();
+        assert_eq!(found, primitives, "{file}");
+        let sum = |of: fn(&(usize, usize, usize)) -> usize| primitives.iter().map(of).sum::<usize>();
+        assert_eq!((positions.len(), model.mesh.faces().len()), (sum(|p| p.0), sum(|p| p.2)), "{file}");
+        // No triangle leaves its primitive.
+        for p in &model.primitives {
+            let faces = &model.mesh.faces()[p.triangles.start as usize..p.triangles.end as usize];
+            assert!(faces.as_flattened().iter().all(|v| p.vertices.contains(v)));
+        }
+        // Vertices that were split along seams move together.
+        let mut seen = std::collections::BTreeMap::new();
+        for (p, v) in
+            model.primitives.iter().enumerate().flat_map(|(i, p)| p.vertices.clone().map(move |v| (i, v)))
+        {
+            let bits = (positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+            let modes = model.modes.of_vertex(v);
+            assert_eq!(*seen.entry((p, bits)).or_insert(modes), modes, "{file}: vertex {v}");
+        }
+    }
+    let robot = folder.join("morph/RobotExpressive.glb");
+    let names: Vec<_> = gltf::list_meshes(&robot).unwrap();
+    assert_eq!((names.len(), names[2].name.as_str(), names[2].targets), (14, "Head", 3));
+    let loaded = load_model_with(&robot, &LoadOptions::new(None, Some("Head"))).unwrap();
+    assert_eq!(loaded.mode_names, ["Angry", "Surprised", "Sad"]);
+    assert_eq!(loaded.default_q, Some(vec![0.0; 3]));
+    let message =
+        |name| load_model_with(&robot, &LoadOptions::new(None, Some(name))).unwrap_err().to_string();
+    assert!(message("Torso").ends_with("the mesh 'Torso' has no morph targets; 'Head' have morph targets"));
+}
+
+/// Single vertices as unpacked by hand with another tool: position, and displacement of the last target.
+#[test]
+fn morph_targets_are_those_of_the_files() {
+    let Some(folder) = models("morph_targets_are_those_of_the_files") else { return };
+    for (file, primitive, vertex, position, moved) in [
+        (
+            "AnimatedMorphSphere.gltf",
+            0,
+            1234,
+            [0.007681776769459248, -0.00513280276209116, -0.003826834261417389],
+            [0.007138815708458424, 0.0, 0.0],
+        ),
+        (
+            "MorphStressTest.gltf",
+            1,
+            777,
+            [0.142187237739563, 0.017187274992465973, 0.2186185121536255],
+            [0.0, 0.0, 0.0],
+        ),
+        (
+            "RobotExpressive.glb",
+            2,
+            321,
+            [0.007592475973069668, -0.010716657154262066, -0.003983969800174236],
+            [8.903681737137958e-05, -0.00010337352432543412, 0.0018026435282081366],
+        ),
+    ] {
+        let model = gltf::read(&folder.join("morph").join(file), None).unwrap();
+        let vertex = model.primitives[primitive].vertices.start + vertex;
+        assert_eq!(model.mesh.rest_positions()[vertex as usize].to_array(), position, "{file}");
+        assert_eq!(model.modes.of_vertex(vertex).last().unwrap().to_array(), moved, "{file}");
     }
 }

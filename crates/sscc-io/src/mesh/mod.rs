@@ -1,4 +1,4 @@
-//! Triangle meshes from files: OBJ, OFF and PLY.
+//! Triangle meshes from files: OBJ, OFF, PLY and STL.
 //!
 //! Every vertex of the file is kept, in the file's order, used by a face or not, so that modes given for
 //! the file's vertices fit. Polygons become fans of triangles around their first corner, in file order.
@@ -7,31 +7,52 @@ pub mod obj;
 pub mod off;
 pub mod ply;
 mod polygons;
+mod soup;
+pub mod stl;
 
 use std::path::Path;
 
 use sscc::TriMesh;
 
-use crate::IoError;
 use crate::file::{ending, read_whole};
+use crate::{FormatError, IoError};
+
+pub(crate) use soup::Soup;
 
 /// The endings that [`read_mesh`] knows.
-const SUPPORTED: &str = ".obj, .off, .ply";
+const SUPPORTED: &str = ".obj, .off, .ply, .stl";
 
 /// Reads a triangle mesh; the format goes by the file name's ending, in any case.
 ///
 /// # Errors
-/// When the ending is none of `.obj`, `.off`, `.ply`, or the file cannot be read or is no such mesh.
+/// When the ending is none of `.obj`, `.off`, `.ply`, `.stl`, or the file cannot be read or is no such mesh.
 pub fn read_mesh(path: &Path) -> Result<TriMesh, IoError> {
-    let parse = match ending(path).as_str() {
-        "obj" => obj::parse,
-        "off" => off::parse,
-        "ply" => ply::parse,
-        _ => {
-            return Err(IoError::Unsupported { path: path.to_owned(), what: "mesh", supported: SUPPORTED });
-        }
+    read_soup(path)?.into_mesh().map_err(|error| error.of(path))
+}
+
+/// The same, with or without triangles.
+pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
+    let Some(parse) = parser(path) else {
+        return Err(IoError::Unsupported { path: path.to_owned(), what: "mesh", supported: SUPPORTED });
     };
     parse(&read_whole(path)?).map_err(|error| error.of(path))
+}
+
+/// Whether the name is one of a mesh file.
+pub(crate) fn is_mesh_name(path: &Path) -> bool {
+    parser(path).is_some()
+}
+
+type Parser = fn(&[u8]) -> Result<Soup, FormatError>;
+
+fn parser(path: &Path) -> Option<Parser> {
+    match ending(path).as_str() {
+        "obj" => Some(obj::soup),
+        "off" => Some(off::soup),
+        "ply" => Some(ply::soup),
+        "stl" => Some(stl::soup),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -51,7 +72,9 @@ mod tests {
         let message = |name, text| read_mesh(&write(name, text)).unwrap_err().to_string();
         assert!(message("a.ply", obj).contains("a.ply: line 1: a PLY file begins with 'ply'"));
         assert!(message("a.off", obj).contains("a.off: line 1: an OFF file begins with 'OFF'"));
-        assert!(message("a.fbx", obj).ends_with("unknown kind of mesh file; supported: .obj, .off, .ply"));
+        assert!(
+            message("a.fbx", obj).ends_with("unknown kind of mesh file; supported: .obj, .off, .ply, .stl")
+        );
         assert!(message("plain", obj).contains("supported: .obj"));
     }
 }

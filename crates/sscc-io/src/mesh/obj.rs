@@ -8,6 +8,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 use sscc::TriMesh;
 
+use super::Soup;
 use super::polygons::Polygons;
 use crate::error::quoted;
 use crate::text::{Lines, decoded, number, split_word, without_comment};
@@ -24,6 +25,10 @@ use crate::{FormatError, Place};
 /// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there
 /// are no vertices or no faces, or [`TriMesh::new`] refuses the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
+    soup(bytes)?.into_mesh()
+}
+
+pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let mut positions = Vec::new();
     let mut polygons = Polygons::new(1);
     let mut corners = Vec::new();

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
+use super::Soup;
 use super::polygons::Polygons;
 use crate::error::quoted;
 use crate::text::{Lines, count, decoded, number, without_comment};
@@ -16,6 +17,10 @@ use crate::{FormatError, Place};
 /// When the file is binary or of another dimension (`4OFF`, `nOFF`), has fewer or more lines than its counts
 /// say, a line is malformed, an index names no vertex, or [`TriMesh::new`] refuses the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
+    soup(bytes)?.into_mesh()
+}
+
+pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let mut lines = Statements(Lines::new(bytes)?);
     let (line, header) = lines.required("the header")?;
     let mut words = header.split_ascii_whitespace();

@@ -1,8 +1,8 @@
 //! Polygons collected as fans of triangles.
 
 use glam::DVec3;
-use sscc::TriMesh;
 
+use super::Soup;
 use crate::{FormatError, Place};
 
 /// Triangles of the polygons seen so far. Indices may come before the vertices they name (OBJ allows it),
@@ -36,8 +36,8 @@ impl Polygons {
         Ok(())
     }
 
-    /// The mesh of these polygons.
-    pub fn finish(self, positions: Vec<DVec3>) -> Result<TriMesh, FormatError> {
+    /// The triangles of these polygons, with the vertices they name.
+    pub fn finish(self, positions: Vec<DVec3>) -> Result<Soup, FormatError> {
         if positions.is_empty() {
             return Err(FormatError::whole("the mesh has no vertices"));
         }
@@ -48,7 +48,7 @@ impl Polygons {
                 let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
                 Err(FormatError::new(place, cause))
             }
-            _ => Ok(TriMesh::new(positions, self.triangles)?),
+            _ => Ok(Soup { positions, faces: self.triangles }),
         }
     }
 }
@@ -65,8 +65,8 @@ mod tests {
     fn fans_go_around_the_first_corner() {
         let mut polygons = Polygons::new(0);
         polygons.push(&[4, 1, 2, 3, 0], Place::Line(1)).unwrap();
-        let mesh = polygons.finish(vec![DVec3::ZERO; 5]).unwrap();
-        assert_eq!(mesh.faces(), [[4, 1, 2], [4, 2, 3], [4, 3, 0]]);
+        let soup = polygons.finish(vec![DVec3::ZERO; 5]).unwrap();
+        assert_eq!(soup.faces, [[4, 1, 2], [4, 2, 3], [4, 3, 0]]);
     }
 
     #[test]
@@ -74,7 +74,7 @@ mod tests {
         for index in [3, u64::from(u32::MAX), 1 << 32, u64::MAX] {
             let mut polygons = Polygons::new(1);
             polygons.push(&[0, 1, index], Place::Line(7)).unwrap();
-            let error = polygons.finish(vec![DVec3::ZERO; 3]).unwrap_err();
+            let Err(error) = polygons.finish(vec![DVec3::ZERO; 3]) else { panic!("{index}") };
             assert_eq!(*error.place(), Place::Line(7));
         }
     }

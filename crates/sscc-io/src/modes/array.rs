@@ -50,6 +50,29 @@ pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> 
     Ok(modes?)
 }
 
+/// The modes in an array whose first axis counts them, as scikit-learn's `components_`. Where no such shape
+/// fits, the modes may be along the last axis. By the first line that fits:
+///
+/// | shape | entry of vertex v, component c, mode k |
+/// | --- | --- |
+/// | (r, 3V) | `[k, 3 v + c]` |
+/// | (r, V, 3) | `[k, v, c]` |
+/// | others | as [`from_array`] |
+///
+/// # Errors
+/// As [`from_array`].
+pub fn from_rows(array: &Array, vertices: usize) -> Result<Modes, FormatError> {
+    match *array.shape() {
+        [rank, n] if n == vertices.saturating_mul(3) && n > 0 => {
+            Ok(Modes::from_matrix(vertices, rank, |row, k| array.at([k, row]))?)
+        }
+        [rank, n, 3] if n == vertices && n > 0 => {
+            Ok(Modes::from_matrix(vertices, rank, |row, k| array.at([k, row / 3, row % 3]))?)
+        }
+        _ => from_array(array, vertices),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +103,22 @@ mod tests {
     fn the_ambiguous_shape_is_vertices_first() {
         let modes = from_array(&array(&[3, 3, 3]), 3).unwrap();
         assert_eq!(modes.of_vertex(1)[2], DVec3::new(11.0, 14.0, 17.0));
+    }
+
+    #[test]
+    fn rows_may_be_modes() {
+        let mode_1_of_vertex_1 = |shape: &[usize]| from_rows(&array(shape), 2).unwrap().of_vertex(1)[1];
+        assert_eq!(mode_1_of_vertex_1(&[4, 6]), DVec3::new(9.0, 10.0, 11.0));
+        assert_eq!(mode_1_of_vertex_1(&[4, 2, 3]), DVec3::new(9.0, 10.0, 11.0));
+        assert_eq!(mode_1_of_vertex_1(&[6, 6]), DVec3::new(9.0, 10.0, 11.0));
+        assert_eq!(mode_1_of_vertex_1(&[6, 4]), DVec3::new(13.0, 17.0, 21.0));
+        assert_eq!(mode_1_of_vertex_1(&[2, 3, 4]), DVec3::new(13.0, 17.0, 21.0));
+        let square = from_rows(&array(&[3, 3, 3]), 3).unwrap();
+        assert_eq!(square.of_vertex(1)[2], DVec3::new(21.0, 22.0, 23.0));
+        for shape in [&[0, 6][..], &[6, 0], &[0, 2, 3], &[5, 5]] {
+            assert!(from_rows(&array(shape), 2).is_err(), "{shape:?}");
+        }
+        assert!(from_rows(&array(&[1, 0]), 0).is_err());
     }
 
     #[test]

@@ -1,17 +1,37 @@
-//! Deformation modes from files: NumPy arrays and VegaFEM modal matrices.
+//! Deformation modes from files: NumPy arrays and archives, VegaFEM modal matrices, folders of target meshes.
 
 pub mod array;
+pub mod folder;
 pub mod vega;
 
 use std::path::Path;
 
-use sscc::Modes;
+use sscc::{Modes, TriMesh};
 
 use crate::file::{ending, read_whole};
-use crate::{FormatError, IoError};
+use crate::{FormatError, IoError, npz};
 
-/// The endings that [`read_modes`] knows.
-const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32)";
+/// What [`read_modes_for`] knows. Of these, [`read_modes`] reads those that need no mesh.
+const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32); \
+                         with their mesh also .npz and a folder of target meshes";
+
+/// Reads the modes of a mesh, with names where the files have some (r, else none): as [`read_modes`], and also
+/// from a `.npz` archive ([`npz`]) or a folder of target meshes ([`folder`]). `mesh_path` is the mesh's own file.
+///
+/// # Errors
+/// As [`read_modes`], [`npz::parse_modes`] and [`folder::read`].
+pub fn read_modes_for(
+    path: &Path,
+    mesh: &TriMesh,
+    mesh_path: &Path,
+) -> Result<(Modes, Vec<String>), IoError> {
+    let modes = match ending(path).as_str() {
+        _ if path.is_dir() => return folder::read(path, mesh, mesh_path),
+        "npz" => npz::parse_modes(&read_whole(path)?, mesh).map_err(|error| error.of(path)),
+        _ => read_modes(path, mesh.rest_positions().len()),
+    };
+    Ok((modes?, Vec::new()))
+}
 
 /// Reads the modes of a mesh with that many vertices (unused ones included); the format goes by the file
 /// name's ending, in any case: `.npy` ([`mod@array`]), or a VegaFEM modal matrix ([`vega`]).

@@ -8,13 +8,28 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// More axes than any array here has; NumPy itself stops at 64.
 const LARGEST_DIMENSION: usize = 32;
 
+/// A kind of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Class {
+    Float,
+    Signed,
+    Unsigned,
+}
+
 /// A type of entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Item {
-    F64Little,
-    F64Big,
-    F32Little,
-    F32Big,
+pub(super) struct Item {
+    pub class: Class,
+    /// Bytes of one entry: 4 or 8 of floats, 1, 2, 4 or 8 of integers.
+    pub size: usize,
+    pub big: bool,
+}
+
+/// What a caller can use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Floats,
+    Integers,
 }
 
 #[derive(Debug, PartialEq)]
@@ -27,28 +42,38 @@ pub(super) struct Header {
     pub body: usize,
 }
 
-impl Item {
-    /// Bytes of one entry.
-    pub fn size(self) -> usize {
+impl Wanted {
+    fn advice(self) -> &'static str {
         match self {
-            Self::F64Little | Self::F64Big => 8,
-            Self::F32Little | Self::F32Big => 4,
+            Self::Floats => "save the array as float64 or float32",
+            Self::Integers => "save the array as integers",
         }
     }
+}
 
-    fn from_descr(descr: &str) -> Option<Self> {
-        Some(match descr {
-            "<f8" => Self::F64Little,
-            ">f8" => Self::F64Big,
-            "<f4" => Self::F32Little,
-            ">f4" => Self::F32Big,
+impl Item {
+    fn from_descr(descr: &str, wanted: Wanted) -> Option<Self> {
+        let [order, kind, digit] = *descr.as_bytes() else {
+            return None;
+        };
+        let (class, sizes) = match (kind, wanted) {
+            (b'f', Wanted::Floats) => (Class::Float, &b"48"[..]),
+            (b'i', Wanted::Integers) => (Class::Signed, &b"1248"[..]),
+            (b'u', Wanted::Integers) => (Class::Unsigned, &b"1248"[..]),
             _ => return None,
-        })
+        };
+        let order_fits = match order {
+            b'<' | b'>' => true,
+            b'|' => digit == b'1', // one byte has no order
+            _ => false,
+        };
+        let known = order_fits && sizes.contains(&digit);
+        known.then(|| Self { class, size: (digit - b'0').into(), big: order == b'>' })
     }
 }
 
 impl Header {
-    pub fn parse(bytes: &[u8]) -> Result<Self, FormatError> {
+    pub fn parse(bytes: &[u8], wanted: Wanted) -> Result<Self, FormatError> {
         let at_byte = |at, cause: &str| FormatError::new(Place::Byte(at), cause);
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
             return Err(at_byte(0, "not a NumPy array: a .npy file begins with '\\x93NUMPY'"));
@@ -70,12 +95,12 @@ impl Header {
         let text =
             std::str::from_utf8(&bytes[start..body]).map_err(|_| at_byte(start, "the header is no text"))?;
         let (item, fortran, shape) =
-            dictionary(text).map_err(|cause| at_byte(start, &format!("header: {cause}")))?;
+            dictionary(text, wanted).map_err(|cause| at_byte(start, &format!("header: {cause}")))?;
         Ok(Self { item, fortran, shape, body })
     }
 }
 
-fn dictionary(text: &str) -> Result<(Item, bool, Vec<usize>), String> {
+fn dictionary(text: &str, wanted: Wanted) -> Result<(Item, bool, Vec<usize>), String> {
     let (mut item, mut fortran, mut shape) = (None, None, None);
     let mut scan = Scan(text);
     scan.expect("{")?;
@@ -83,7 +108,7 @@ fn dictionary(text: &str) -> Result<(Item, bool, Vec<usize>), String> {
         let key = scan.string()?;
         scan.expect(":")?;
         let known = match key {
-            "descr" => item.replace(scan.item()?).is_some(),
+            "descr" => item.replace(scan.item(wanted)?).is_some(),
             "fortran_order" => fortran.replace(scan.boolean()?).is_some(),
             "shape" => shape.replace(scan.shape()?).is_some(),
             _ => return Err(format!("unknown key {}", quoted(key))),
@@ -131,13 +156,13 @@ impl<'a> Scan<'a> {
         Ok(text)
     }
 
-    fn item(&mut self) -> Result<Item, String> {
-        const ADVICE: &str = "save the array as float64 or float32";
+    fn item(&mut self, wanted: Wanted) -> Result<Item, String> {
+        let advice = wanted.advice();
         if self.0.trim_ascii_start().starts_with('[') {
-            return Err(format!("a structured array: {ADVICE}"));
+            return Err(format!("a structured array: {advice}"));
         }
         let descr = self.string()?;
-        Item::from_descr(descr).ok_or_else(|| format!("numbers of type {}: {ADVICE}", quoted(descr)))
+        Item::from_descr(descr, wanted).ok_or_else(|| format!("numbers of type {}: {advice}", quoted(descr)))
     }
 
     fn boolean(&mut self) -> Result<bool, String> {

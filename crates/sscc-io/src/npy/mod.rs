@@ -1,4 +1,4 @@
-//! NumPy arrays (`.npy`) of floating point numbers.
+//! NumPy arrays (`.npy`) of numbers.
 //!
 //! A reader of our own. The npyz crate hands the header to a general parser of Python literals whose time is
 //! exponential in the number of open brackets: a file of 60 bytes keeps it busy for years. Here the header can
@@ -8,17 +8,17 @@ mod header;
 mod write;
 
 use crate::{FormatError, Place};
-use header::{Header, Item};
+use header::{Class, Header, Item, Wanted};
 
 pub use write::{to_bytes, write_npy};
 
-/// An array of f64 or f32 numbers, widened to f64.
+/// An array of numbers: f64 or f32, widened to f64; or integers, widened to i64.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Array {
+pub struct Array<T = f64> {
     shape: Vec<usize>,
     /// How far apart in `data` neighbours along each axis are.
     strides: Vec<usize>,
-    data: Vec<f64>,
+    data: Vec<T>,
 }
 
 /// Parses a `.npy` file, versions 1 to 3: numbers of type f8 or f4, of either byte order, in C or
@@ -27,21 +27,37 @@ pub struct Array {
 /// # Errors
 /// When the header is malformed or of another type, or the data is not exactly as long as the header says.
 pub fn parse(bytes: &[u8]) -> Result<Array, FormatError> {
-    let Header { item, fortran, shape, body } = Header::parse(bytes)?;
+    array(bytes, Wanted::Floats, floats)
+}
+
+/// Parses a `.npy` file of integers of 1, 2, 4 or 8 bytes, signed or not; else as [`parse`].
+///
+/// # Errors
+/// As [`parse`], and when a number is beyond i64.
+pub fn parse_integers(bytes: &[u8]) -> Result<Array<i64>, FormatError> {
+    array(bytes, Wanted::Integers, integers)
+}
+
+fn array<T>(
+    bytes: &[u8],
+    wanted: Wanted,
+    decode: impl Fn(Item, &[u8]) -> Result<Vec<T>, FormatError>,
+) -> Result<Array<T>, FormatError> {
+    let Header { item, fortran, shape, body } = Header::parse(bytes, wanted)?;
     let body_bytes = &bytes[body..];
-    let size = shape.iter().try_fold(item.size(), |size, n| size.checked_mul(*n));
+    let size = shape.iter().try_fold(item.size, |size, n| size.checked_mul(*n));
     if size != Some(body_bytes.len()) {
         let cause = format!(
             "the header says shape {shape:?} of {}-byte numbers, but {} bytes follow: is the file cut off?",
-            item.size(),
+            item.size,
             body_bytes.len()
         );
         return Err(FormatError::new(Place::Byte(body), cause));
     }
-    Ok(Array { strides: strides(&shape, fortran), data: item.decode(body_bytes), shape })
+    Ok(Array { strides: strides(&shape, fortran), data: decode(item, body_bytes)?, shape })
 }
 
-impl Array {
+impl<T: Copy> Array<T> {
     /// The length of each axis. Their product is the number of entries.
     pub fn shape(&self) -> &[usize] {
         &self.shape
@@ -51,12 +67,12 @@ impl Array {
     ///
     /// # Panics
     /// When the index is beyond the shape.
-    pub fn at<const N: usize>(&self, index: [usize; N]) -> f64 {
+    pub fn at<const N: usize>(&self, index: [usize; N]) -> T {
         self.data[index.iter().zip(&self.strides).map(|(i, stride)| i * stride).sum::<usize>()]
     }
 
     /// All entries in C order (last axis fastest).
-    pub fn to_c_order(&self) -> Vec<f64> {
+    pub fn to_c_order(&self) -> Vec<T> {
         if self.strides == strides(&self.shape, false) {
             return self.data.clone();
         }
@@ -96,17 +112,29 @@ fn strides(shape: &[usize], fortran: bool) -> Vec<usize> {
     strides
 }
 
-impl Item {
-    fn decode(self, bytes: &[u8]) -> Vec<f64> {
-        let eights = || bytes.as_chunks::<8>().0.iter().copied();
-        let fours = || bytes.as_chunks::<4>().0.iter().copied();
-        match self {
-            Self::F64Little => eights().map(f64::from_le_bytes).collect(),
-            Self::F64Big => eights().map(f64::from_be_bytes).collect(),
-            Self::F32Little => fours().map(|b| f32::from_le_bytes(b).into()).collect(),
-            Self::F32Big => fours().map(|b| f32::from_be_bytes(b).into()).collect(),
+fn floats(item: Item, bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    let eights = || bytes.as_chunks::<8>().0.iter().copied();
+    let fours = || bytes.as_chunks::<4>().0.iter().copied();
+    Ok(match (item.size, item.big) {
+        (8, false) => eights().map(f64::from_le_bytes).collect(),
+        (8, true) => eights().map(f64::from_be_bytes).collect(),
+        (_, false) => fours().map(|b| f32::from_le_bytes(b).into()).collect(),
+        (_, true) => fours().map(|b| f32::from_be_bytes(b).into()).collect(),
+    })
+}
+
+fn integers(item: Item, bytes: &[u8]) -> Result<Vec<i64>, FormatError> {
+    let widened = |bytes: &[u8]| {
+        let most_first = |at: usize| bytes[if item.big { at } else { bytes.len() - 1 - at }];
+        let magnitude = (0..bytes.len()).fold(0_u64, |value, at| value << 8 | u64::from(most_first(at)));
+        match item.class {
+            // The sign is at the top of the item's own bytes: brought to the top of 64 bits and back.
+            Class::Signed => Ok((magnitude << (64 - 8 * bytes.len())) as i64 >> (64 - 8 * bytes.len())),
+            _ => i64::try_from(magnitude)
+                .map_err(|_| FormatError::whole(format!("the integer {magnitude} is too large"))),
         }
-    }
+    };
+    bytes.chunks_exact(item.size).map(widened).collect()
 }
 
 #[cfg(test)]

@@ -45,6 +45,32 @@ fn orders_types_and_versions() {
 }
 
 #[test]
+fn integers_of_all_sizes() {
+    let wide = |descr: &str, body: &[u8]| {
+        parse_integers(&file(1, &header(descr, "False", "(2,)"), body)).unwrap().to_c_order()
+    };
+    assert_eq!(wide("|i1", &[7, 0xff]), [7, -1]);
+    assert_eq!(wide("|u1", &[7, 0xff]), [7, 255]);
+    assert_eq!(wide("<i2", &[0, 0x80, 2, 1]), [-32768, 258]);
+    assert_eq!(wide(">u2", &[0x80, 0, 1, 2]), [32768, 258]);
+    let both = |little: [&[u8]; 2]| little.map(|b| b.iter().rev().copied().collect::<Vec<u8>>()).concat();
+    let four = [(-5_i32).to_le_bytes(), i32::MAX.to_le_bytes()];
+    assert_eq!(wide("<i4", &four.concat()), [-5, i32::MAX.into()]);
+    assert_eq!(wide(">i4", &both([&four[0], &four[1]])), [-5, i32::MAX.into()]);
+    assert_eq!(wide("<u4", &four.concat()), [4294967291, i32::MAX.into()]);
+    let eight = [i64::MIN.to_le_bytes(), i64::MAX.to_le_bytes()];
+    assert_eq!(wide("<i8", &eight.concat()), [i64::MIN, i64::MAX]);
+    assert_eq!(wide(">i8", &both([&eight[0], &eight[1]])), [i64::MIN, i64::MAX]);
+    let message = |descr: &str, body: &[u8]| {
+        parse_integers(&file(1, &header(descr, "False", "(2,)"), body)).unwrap_err().to_string()
+    };
+    assert_eq!(message("<u8", &eight.concat()), "the integer 9223372036854775808 is too large");
+    for descr in ["<f8", "|i4", "=i4", "<i3", "<b1", "<i16", "i4", "", "\u{e9}4"] {
+        assert!(message(descr, &[0; 8]).contains("save the array as integers"), "{descr}");
+    }
+}
+
+#[test]
 fn bad_files_are_named() {
     let message = |header: &str| parse(&file(1, header, &body(&SIX))).unwrap_err().to_string();
     let good = header("<f8", "False", "(2, 3)");

@@ -13,6 +13,7 @@ use sscc::TriMesh;
 
 use self::header::{Element, Header, Kind};
 use self::values::Values;
+use super::Soup;
 use super::polygons::Polygons;
 use crate::FormatError;
 
@@ -25,6 +26,10 @@ use crate::FormatError;
 /// When the header is malformed, lacks one of these, or promises more than the file holds; when bytes are
 /// left over; when an index names no vertex, or [`TriMesh::new`] refuses the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
+    soup(bytes)?.into_mesh()
+}
+
+pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let header = Header::parse(bytes)?;
     let mut values = Values::new(bytes, &header);
     let mut positions = Vec::new();

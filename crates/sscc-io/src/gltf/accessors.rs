@@ -1,0 +1,161 @@
+//! Numbers of a glTF file: accessors, plain, strided and sparse.
+
+use super::buffers::Buffers;
+use super::component::Component;
+use super::json::{Accessor, Kind, Root};
+use crate::FormatError;
+use crate::allowance::Allowance;
+
+/// What an accessor is read for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Positions or displacements: three floating point numbers, or quantised ones.
+    Positions,
+    /// Vertex numbers.
+    Indices,
+}
+
+/// Reads accessors, and watches how much memory they take.
+pub(super) struct Accessors<'a> {
+    root: &'a Root,
+    buffers: Buffers<'a>,
+    pub allowance: Allowance,
+}
+
+impl<'a> Accessors<'a> {
+    /// Reads the buffers of those accessors. `size` is that of the glTF file itself.
+    pub fn new(
+        root: &'a Root,
+        mut buffers: Buffers<'a>,
+        accessors: impl Iterator<Item = usize>,
+        size: u64,
+    ) -> Result<Self, FormatError> {
+        for accessor in accessors.filter_map(|index| root.accessors.get(index)) {
+            let sparse = accessor.sparse.iter().flat_map(|s| [s.indices.buffer_view, s.values.buffer_view]);
+            for view in accessor.buffer_view.into_iter().chain(sparse) {
+                if let Some(view) = root.buffer_views.get(view) {
+                    buffers.load(view.buffer)?;
+                }
+            }
+        }
+        let allowance = Allowance::new(size.saturating_add(buffers.read_beside()), u64::MAX);
+        Ok(Self { root, buffers, allowance })
+    }
+
+    /// How many items an accessor has. Not yet checked against the file.
+    pub fn count(&self, index: usize) -> Result<usize, FormatError> {
+        Ok(self.accessor(index)?.count)
+    }
+
+    /// All numbers of an accessor, item after item.
+    pub fn read(&mut self, index: usize, role: Role) -> Result<Vec<f64>, FormatError> {
+        let refused = |cause| FormatError::part(format!("accessors[{index}]"), cause);
+        let accessor = self.accessor(index)?;
+        let (kind, width) = match role {
+            Role::Positions => (Kind::Vec3, 3),
+            Role::Indices => (Kind::Scalar, 1),
+        };
+        let component = Component::from_code(accessor.component_type)
+            .filter(|component| match role {
+                Role::Positions => component.is_position(),
+                Role::Indices => component.is_index() && !accessor.normalized,
+            })
+            .filter(|_| accessor.kind == kind);
+        let Some(component) = component else {
+            let expected = match role {
+                Role::Positions => "positions must be VEC3 of float32 (or of 8 or 16 bit integers)",
+                Role::Indices => "vertex numbers must be SCALAR of unsigned integers",
+            };
+            return Err(refused(expected.into()));
+        };
+        if accessor.count == 0 {
+            return Err(refused("it has no items".into()));
+        }
+        self.allowance.take(accessor.count as u64, 8 * width as u64).map_err(refused)?;
+        let layout = Layout { component, width, normalized: accessor.normalized };
+        let mut values = match accessor.buffer_view {
+            Some(view) => self.numbers(view, accessor.byte_offset, accessor.count, layout)?,
+            None => vec![0.0; accessor.count * width],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let Some(of_index) = Component::from_code(sparse.indices.component_type).filter(|c| c.is_index())
+            else {
+                return Err(refused("sparse indices must be unsigned integers".into()));
+            };
+            if sparse.count > accessor.count {
+                return Err(refused("more sparse items than items".into()));
+            }
+            let plain = Layout { component: of_index, width: 1, normalized: false };
+            let (indices, items) = (&sparse.indices, &sparse.values);
+            let indices = self.numbers(indices.buffer_view, indices.byte_offset, sparse.count, plain)?;
+            let items = self.numbers(items.buffer_view, items.byte_offset, sparse.count, layout)?;
+            if indices.windows(2).any(|pair| pair[0] >= pair[1])
+                || indices.last().is_some_and(|last| *last >= accessor.count as f64)
+            {
+                return Err(refused("sparse indices must ascend and be below the count".into()));
+            }
+            for (at, item) in indices.iter().zip(items.chunks_exact(width)) {
+                values[*at as usize * width..][..width].copy_from_slice(item);
+            }
+        }
+        Ok(values)
+    }
+
+    fn accessor(&self, index: usize) -> Result<&'a Accessor, FormatError> {
+        let missing = || FormatError::part(format!("accessors[{index}]"), "there is no such accessor");
+        self.root.accessors.get(index).ok_or_else(missing)
+    }
+
+    /// `count` items in a view, from that offset on. They are in the view's bytes, so they are no more than
+    /// the file bears out.
+    fn numbers(
+        &self,
+        index: usize,
+        offset: usize,
+        count: usize,
+        layout: Layout,
+    ) -> Result<Vec<f64>, FormatError> {
+        let part = || format!("bufferViews[{index}]");
+        let refused = |cause: String| Err(FormatError::part(part(), cause));
+        let Some(view) = self.root.buffer_views.get(index) else {
+            return refused("there is no such view".into());
+        };
+        view.extensions.check(part)?;
+        let buffer = self.buffers.get(view.buffer);
+        let end = view.byte_offset.checked_add(view.byte_length);
+        let Some(bytes) = end.and_then(|end| buffer.get(view.byte_offset..end)) else {
+            return refused(format!(
+                "{} bytes from byte {} on are not within buffers[{}] of {} bytes",
+                view.byte_length,
+                view.byte_offset,
+                view.buffer,
+                buffer.len()
+            ));
+        };
+        let size = layout.component.size() * layout.width;
+        let stride = view.byte_stride.unwrap_or(size);
+        if stride < size {
+            return refused(format!("a stride of {stride} bytes for items of {size}"));
+        }
+        // The last item may end before its stride does.
+        let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size));
+        let Some(bytes) =
+            bytes.get(offset..).filter(|rest| needed.is_some_and(|needed| needed <= rest.len()))
+        else {
+            return refused(format!(
+                "{count} items of {size} bytes with a stride of {stride} do not fit into it from byte {offset} on"
+            ));
+        };
+        let item = |item: usize| bytes[item * stride..][..size].chunks_exact(layout.component.size());
+        let value = |bytes| layout.component.decode(bytes, layout.normalized);
+        Ok((0..count).flat_map(|n| item(n).map(value)).collect())
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Layout {
+    component: Component,
+    /// Numbers in one item.
+    width: usize,
+    normalized: bool,
+}

@@ -1,0 +1,182 @@
+//! The bytes behind a glTF file's numbers: in the file itself, or in files beside it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_PAD_INDIFFERENT as BASE64;
+
+use super::json;
+use crate::error::quoted;
+use crate::{FormatError, read_whole};
+
+/// Buffers, read when they are first needed.
+pub(super) struct Buffers<'a> {
+    declared: &'a [json::Buffer],
+    /// The binary chunk of a GLB.
+    chunk: Option<&'a [u8]>,
+    /// Where files of numbers are; none may be read without it.
+    folder: Option<&'a Path>,
+    sources: BTreeMap<usize, Source>,
+    files: BTreeMap<PathBuf, Vec<u8>>,
+}
+
+enum Source {
+    Chunk,
+    Embedded(Vec<u8>),
+    File(PathBuf),
+}
+
+impl<'a> Buffers<'a> {
+    pub fn new(declared: &'a [json::Buffer], chunk: Option<&'a [u8]>, folder: Option<&'a Path>) -> Self {
+        Self { declared, chunk, folder, sources: BTreeMap::new(), files: BTreeMap::new() }
+    }
+
+    /// Reads a buffer, once.
+    pub fn load(&mut self, index: usize) -> Result<(), FormatError> {
+        let refused = |cause: String| FormatError::part(format!("buffers[{index}]"), cause);
+        if self.sources.contains_key(&index) {
+            return Ok(());
+        }
+        let buffer = self.declared.get(index).ok_or_else(|| refused("there is no such buffer".into()))?;
+        let source = match &buffer.uri {
+            None if index == 0 && self.chunk.is_some() => Source::Chunk,
+            None => return Err(refused("it has no uri, and is not in the file".into())),
+            Some(uri) if has_scheme(uri, "data:") => Source::Embedded(embedded(uri).map_err(refused)?),
+            Some(uri) => {
+                let path = beside(uri).map_err(refused)?;
+                let Some(folder) = self.folder else {
+                    return Err(refused(format!("the file {} is needed beside this one", quoted(uri))));
+                };
+                if !self.files.contains_key(&path) {
+                    let bytes =
+                        read_whole(&folder.join(&path)).map_err(|error| refused(error.to_string()))?;
+                    self.files.insert(path.clone(), bytes);
+                }
+                Source::File(path)
+            }
+        };
+        self.sources.insert(index, source);
+        let there = self.all_of(index).len();
+        if buffer.byte_length > there {
+            let cause = format!("{} bytes are promised, {there} are there", buffer.byte_length);
+            return Err(refused(cause));
+        }
+        Ok(())
+    }
+
+    /// The bytes of a buffer that has been loaded; else none.
+    pub fn get(&self, index: usize) -> &[u8] {
+        let length = self.declared.get(index).map_or(0, |buffer| buffer.byte_length);
+        self.all_of(index).get(..length).unwrap_or_default()
+    }
+
+    /// The size of all files that were read.
+    pub fn read_beside(&self) -> u64 {
+        self.files.values().map(|file| file.len() as u64).sum()
+    }
+
+    fn all_of(&self, index: usize) -> &[u8] {
+        match self.sources.get(&index) {
+            Some(Source::Chunk) => self.chunk.unwrap_or_default(),
+            Some(Source::Embedded(bytes)) => bytes,
+            Some(Source::File(path)) => self.files.get(path).map(Vec::as_slice).unwrap_or_default(),
+            None => &[],
+        }
+    }
+}
+
+fn has_scheme(uri: &str, scheme: &str) -> bool {
+    uri.get(..scheme.len()).is_some_and(|start| start.eq_ignore_ascii_case(scheme))
+}
+
+/// The bytes within a `data:` URI.
+fn embedded(uri: &str) -> Result<Vec<u8>, String> {
+    let Some((media_type, text)) = uri.split_once(',') else {
+        return Err("a data URI without a comma".into());
+    };
+    if !media_type.ends_with(";base64") {
+        return Err("a data URI that is not in base64".into());
+    }
+    BASE64.decode(text).map_err(|error| format!("not base64: {error}"))
+}
+
+/// The path that a URI names, in or below the glTF file's own folder: a file from elsewhere must not make us
+/// read what is none of its business.
+fn beside(uri: &str) -> Result<PathBuf, String> {
+    let refused = |cause: &str| Err(format!("{} {cause}", quoted(uri)));
+    let Some(name) = percent_decoded(uri) else {
+        return refused("has a malformed % escape");
+    };
+    if name.contains("://") {
+        return refused("is a URL: only files in the folder of the glTF file are read");
+    }
+    if name.starts_with('/') || name.contains([':', '\\']) || name.split('/').any(|part| part == "..") {
+        return refused("leads out of the folder: only files in the folder of the glTF file are read");
+    }
+    let path: PathBuf = name.split('/').filter(|part| !matches!(*part, "" | ".")).collect();
+    if path.as_os_str().is_empty() || name.contains('\0') {
+        refused("is no name of a file")
+    } else {
+        Ok(path)
+    }
+}
+
+fn percent_decoded(uri: &str) -> Option<String> {
+    let mut parts = uri.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        let digits = part.get(..2).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+        bytes.push(u8::from_str_radix(digits, 16).ok()?);
+        bytes.extend(part[2..].bytes());
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_beside_are_named() {
+        for (uri, path) in [("a.bin", "a.bin"), ("./b/c%20d.bin", "b/c d.bin"), ("b//a%C3%A9", "b/a\u{e9}")] {
+            assert_eq!(beside(uri).unwrap(), Path::new(path));
+        }
+        for uri in [
+            "/etc/passwd",
+            "../a.bin",
+            "b/../../a.bin",
+            "%2e%2E/a.bin",
+            "%2Fetc",
+            "http://x/a.bin",
+            "file:a.bin",
+            "file:///a.bin",
+            "C:\\a.bin",
+            "C:a.bin",
+            "..\\a.bin",
+            "a%5c..",
+            "",
+            ".",
+            "./",
+            "a%0",
+            "a%zz",
+            "a%",
+            "%ff",
+            "a%00b",
+            "%+1",
+            "//x/y",
+        ] {
+            assert!(beside(uri).is_err(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn data_uris() {
+        assert_eq!(embedded("data:application/octet-stream;base64,AAEC/w==").unwrap(), [0, 1, 2, 255]);
+        assert_eq!(embedded("data:;base64,AAEC/w").unwrap(), [0, 1, 2, 255]);
+        assert!(embedded("data:;base64,A").unwrap_err().starts_with("not base64"));
+        assert!(embedded("data:;base64,A\n=").is_err());
+        assert!(embedded("data:text/plain,AAAA").unwrap_err().contains("not in base64"));
+        assert!(embedded("data:").unwrap_err().contains("without a comma"));
+    }
+}

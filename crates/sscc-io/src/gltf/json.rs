@@ -1,0 +1,206 @@
+//! The parts of a glTF file's JSON that speak of meshes.
+//!
+//! What the format requires is required here too. Beside being right it keeps hostile text from growing: a
+//! list of empty entries would take a hundred times its bytes in memory.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use crate::FormatError;
+use crate::error::{cut, quoted};
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Root {
+    #[serde(default)]
+    pub extensions_required: Vec<String>,
+    #[serde(default)]
+    pub buffers: Vec<Buffer>,
+    #[serde(default)]
+    pub buffer_views: Vec<BufferView>,
+    #[serde(default)]
+    pub accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub meshes: Vec<Mesh>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    pub uri: Option<String>,
+    pub byte_length: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct BufferView {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub byte_length: usize,
+    pub byte_stride: Option<usize>,
+    #[serde(default)]
+    pub extensions: Extensions,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub buffer_view: Option<usize>,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+    #[serde(default)]
+    pub normalized: bool,
+    pub count: usize,
+    #[serde(rename = "type")]
+    pub kind: Kind,
+    pub sparse: Option<Sparse>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub(super) enum Kind {
+    #[serde(rename = "SCALAR")]
+    Scalar,
+    #[serde(rename = "VEC3")]
+    Vec3,
+    #[serde(other)]
+    Other,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Sparse {
+    pub count: usize,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Mesh {
+    pub name: Option<String>,
+    pub primitives: Vec<Primitive>,
+    #[serde(default)]
+    pub weights: Vec<f64>,
+    #[serde(default)]
+    pub extras: Option<Extras>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Primitive {
+    pub attributes: Attributes,
+    pub indices: Option<usize>,
+    pub mode: Option<u32>,
+    #[serde(default)]
+    pub targets: Vec<Attributes>,
+    #[serde(default)]
+    pub extensions: Extensions,
+}
+
+/// Accessors of a primitive, or of one of its morph targets.
+#[derive(Deserialize)]
+pub(super) struct Attributes {
+    #[serde(rename = "POSITION")]
+    pub position: Option<usize>,
+}
+
+/// Extras may be anything; the names of the targets by the custom of all exporters.
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub(super) enum Extras {
+    Names {
+        #[serde(rename = "targetNames")]
+        target_names: Vec<String>,
+    },
+    #[allow(dead_code, reason = "serde needs a field to skip a value of any kind")]
+    Other(IgnoredAny),
+}
+
+/// The extensions that hide geometry.
+#[derive(Default, Deserialize)]
+pub(super) struct Extensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    draco: Option<IgnoredAny>,
+    #[serde(rename = "EXT_meshopt_compression")]
+    meshopt: Option<IgnoredAny>,
+    #[serde(rename = "KHR_meshopt_compression")]
+    khr_meshopt: Option<IgnoredAny>,
+}
+
+impl Extensions {
+    /// Refuses compressed geometry.
+    pub fn check(&self, part: impl FnOnce() -> String) -> Result<(), FormatError> {
+        let name = match self {
+            Self { draco: Some(_), .. } => "KHR_draco_mesh_compression",
+            Self { meshopt: Some(_), .. } => "EXT_meshopt_compression",
+            Self { khr_meshopt: Some(_), .. } => "KHR_meshopt_compression",
+            _ => return Ok(()),
+        };
+        Err(FormatError::part(part(), unsupported(name)))
+    }
+}
+
+fn unsupported(extension: &str) -> String {
+    format!("the extension {} is not supported: save the file without it", quoted(extension))
+}
+
+#[derive(Deserialize)]
+struct Head {
+    asset: Asset,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asset {
+    version: String,
+    min_version: Option<String>,
+}
+
+/// Extensions that leave positions as they are: colours, pictures, light, and quantised numbers, which are read.
+const HARMLESS: [&str; 8] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+    "KHR_node_",
+    "KHR_mesh_quantization",
+];
+
+impl Root {
+    pub fn parse(text: &[u8]) -> Result<Self, FormatError> {
+        let refused = |e: serde_json::Error| FormatError::part("JSON", cut(&e.to_string(), 160));
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        // The version first: other versions have another structure.
+        let Head { asset } = serde_json::from_slice(text).map_err(refused)?;
+        let newest = asset.min_version.as_ref().is_none_or(|least| least == "2.0");
+        if !asset.version.starts_with("2.") || !newest {
+            let version = quoted(asset.min_version.filter(|_| !newest).as_ref().unwrap_or(&asset.version));
+            let cause =
+                format!("version {version} of the format is not supported: save the file as glTF 2.0");
+            return Err(FormatError::part("asset", cause));
+        }
+        let root: Self = serde_json::from_slice(text).map_err(refused)?;
+        match root.extensions_required.iter().find(|name| !HARMLESS.iter().any(|h| name.starts_with(h))) {
+            Some(name) => Err(FormatError::part("extensionsRequired", unsupported(name))),
+            None => Ok(root),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`.
+//!
+//! A mesh with its morph targets is a reduced model as it is: rest positions are the base mesh, and mode k is
+//! what target k adds to them. What else a file has (nodes and their transforms, skins, materials,
+//! animations) is left aside. Where a node places the mesh, what collides stays the same: an affine map takes
+//! crossing triangles to crossing triangles.
+//!
+//! A reader of our own over the JSON. The gltf crate (1.4.1) computes the end of an accessor without a check:
+//! a count of zero, a huge offset, or positions that are no vectors make it panic, and a sparse accessor
+//! without a buffer has as many items as it claims to have.
+
+mod accessors;
+mod buffers;
+mod component;
+mod glb;
+mod json;
+mod morph;
+mod select;
+mod triangles;
+
+use std::path::Path;
+
+use self::buffers::Buffers;
+use self::json::Root;
+use crate::{FormatError, IoError, read_whole};
+
+pub use morph::{MorphModel, PrimitiveRange};
+pub use select::MeshInfo;
+
+/// Reads a mesh with its morph targets: the one of that name (`#3`: the fourth), else the only one that
+/// has any. Buffers may be in the file or in files in its folder or below; links on disk are followed.
+///
+/// - Primitives of triangles, strips and fans are joined in file order, indexed or not.
+/// - Positions are float32, or integers of 8 or 16 bits as in KHR_mesh_quantization, accessors plain or sparse.
+/// - A target without positions is a mode of zeros.
+///
+/// # Errors
+/// When a file cannot be read or is malformed, has a version other than 2.x, compressed geometry or another
+/// required extension that could change positions; when a buffer is outside of the folder; when several
+/// meshes have morph targets and none is named, or the named one has none; when a primitive has no triangles;
+/// when the numbers would take more than 100 times the files' size and 64 MiB.
+pub fn read(path: &Path, mesh_name: Option<&str>) -> Result<MorphModel, IoError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse_in(&read_whole(path)?, mesh_name, Some(folder)).map_err(|error| error.of(path))
+}
+
+/// As [`read`], from the bytes of a file that needs no others.
+///
+/// # Errors
+/// As [`read`], and when a buffer is in another file.
+pub fn parse(bytes: &[u8], mesh_name: Option<&str>) -> Result<MorphModel, FormatError> {
+    parse_in(bytes, mesh_name, None)
+}
+
+/// The meshes of a file, in file order, those without morph targets too. Buffers are not looked at.
+///
+/// # Errors
+/// When the file cannot be read or is malformed.
+pub fn list_meshes(path: &Path) -> Result<Vec<MeshInfo>, IoError> {
+    let bytes = read_whole(path)?;
+    let root = glb::split(&bytes).and_then(|chunks| Root::parse(chunks.json));
+    root.map(|root| select::list(&root)).map_err(|error| error.of(path))
+}
+
+fn parse_in(bytes: &[u8], name: Option<&str>, folder: Option<&Path>) -> Result<MorphModel, FormatError> {
+    let chunks = glb::split(bytes)?;
+    let root = Root::parse(chunks.json)?;
+    let index = select::choose(&root, name)?;
+    let mesh_name = root.meshes[index].name.clone().unwrap_or_else(|| format!("#{index}"));
+    let buffers = Buffers::new(&root.buffers, chunks.binary, folder);
+    morph::model(&root, index, mesh_name, buffers, bytes.len() as u64)
+}
+
+#[cfg(test)]
+mod tests;

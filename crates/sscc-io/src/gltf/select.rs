@@ -1,0 +1,111 @@
+//! Which of a glTF file's meshes is meant.
+
+use super::json::{Mesh, Root};
+use crate::FormatError;
+use crate::error::{cut, quoted};
+
+/// A mesh of a glTF file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshInfo {
+    /// The name that chooses it: its own, or `#3` for an unnamed fourth mesh.
+    pub name: String,
+    /// Number of primitives.
+    pub primitives: usize,
+    /// Number of morph targets, 0 for none.
+    pub targets: usize,
+}
+
+/// All meshes in file order.
+pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
+    let info = |(index, mesh): (usize, &Mesh)| MeshInfo {
+        name: mesh.name.clone().unwrap_or_else(|| format!("#{index}")),
+        primitives: mesh.primitives.len(),
+        targets: mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0),
+    };
+    root.meshes.iter().enumerate().map(info).collect()
+}
+
+/// The index of the mesh of that name, else of the only one with morph targets. `#3` is the fourth mesh,
+/// unless one has that very name.
+pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
+    let all = list(root);
+    let movable: Vec<usize> = (0..all.len()).filter(|i| all[*i].targets > 0).collect();
+    let names = || {
+        let names: Vec<_> = movable.iter().take(20).map(|i| quoted(&all[*i].name)).collect();
+        cut(&names.join(", "), 200)
+    };
+    let Some(name) = name else {
+        return match movable[..] {
+            [one] => Ok(one),
+            [] => Err(FormatError::whole("no mesh in it has morph targets")),
+            _ => {
+                let cause = format!(
+                    "{} meshes have morph targets: choose one by --mesh-name; there are {}",
+                    movable.len(),
+                    names()
+                );
+                Err(FormatError::whole(cause))
+            }
+        };
+    };
+    let by_number =
+        || -> Option<usize> { name.strip_prefix('#')?.parse().ok().filter(|index| *index < all.len()) };
+    let named: Vec<usize> = (0..all.len()).filter(|i| all[*i].name == name).collect();
+    let cause = match named[..] {
+        [one] if all[one].targets > 0 => return Ok(one),
+        [_] => format!("the mesh {} has no morph targets", quoted(name)),
+        [] => match by_number() {
+            Some(index) if all[index].targets > 0 => return Ok(index),
+            Some(index) => format!("the mesh #{index} has no morph targets"),
+            None => format!("there is no mesh {}", quoted(name)),
+        },
+        [one, ..] => {
+            let several = format!("{} meshes have the name {}", named.len(), quoted(name));
+            return Err(FormatError::whole(format!("{several}: choose one by its number, as #{one}")));
+        }
+    };
+    let others = if movable.is_empty() { "no mesh has".into() } else { format!("{} have", names()) };
+    Err(FormatError::whole(format!("{cause}; {others} morph targets")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Meshes with these names and numbers of targets.
+    fn root(meshes: &[(Option<&str>, usize)]) -> Root {
+        let mesh = |(name, targets): &(Option<&str>, usize)| {
+            let name = name.map_or(String::new(), |name| format!(r#""name":"{name}","#));
+            let targets = vec!["{}"; *targets].join(",");
+            format!(r#"{{{name}"primitives":[{{"attributes":{{}},"targets":[{targets}]}}]}}"#)
+        };
+        let meshes: Vec<_> = meshes.iter().map(mesh).collect();
+        Root::parse(format!(r#"{{"asset":{{"version":"2.0"}},"meshes":[{}]}}"#, meshes.join(",")).as_bytes())
+            .unwrap()
+    }
+
+    #[test]
+    fn the_only_one_or_the_named_one() {
+        let one = root(&[(Some("a"), 0), (Some("b"), 2)]);
+        assert_eq!(choose(&one, None), Ok(1));
+        assert_eq!(choose(&one, Some("b")), Ok(1));
+        let message = |root: &Root, name| choose(root, name).unwrap_err().to_string();
+        assert_eq!(message(&one, Some("a")), "the mesh 'a' has no morph targets; 'b' have morph targets");
+        assert_eq!(message(&one, Some("c")), "there is no mesh 'c'; 'b' have morph targets");
+        let many = root(&[(None, 1), (Some("b"), 1), (Some("b"), 3), (Some("#0"), 0)]);
+        assert_eq!(
+            message(&many, None),
+            "3 meshes have morph targets: choose one by --mesh-name; there are '#0', 'b', 'b'"
+        );
+        assert_eq!(message(&many, Some("b")), "2 meshes have the name 'b': choose one by its number, as #1");
+        assert_eq!(choose(&many, Some("#2")), Ok(2));
+        assert!(message(&many, Some("#4")).starts_with("there is no mesh '#4'"));
+        assert_eq!(message(&root(&[]), None), "no mesh in it has morph targets");
+        assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; no mesh has morph targets");
+        let infos = list(&many);
+        assert_eq!((infos[0].name.as_str(), infos[2].targets, infos[2].primitives), ("#0", 3, 1));
+        let long = "x".repeat(1000);
+        assert!(message(&root(&[(Some(long.as_str()), 1); 50]), None).len() < 400);
+    }
+}

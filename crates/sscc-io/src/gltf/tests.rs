@@ -1,0 +1,323 @@
+use std::fs;
+
+use glam::DVec3;
+
+use super::*;
+
+/// Numbers as they are in a buffer.
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+/// A GLB of these two chunks, padded to multiples of 4.
+fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
+    let pad = |bytes: &[u8], with: u8| {
+        let mut bytes = bytes.to_vec();
+        bytes.resize(bytes.len().next_multiple_of(4), with);
+        bytes
+    };
+    let (json, binary) = (pad(json.as_bytes(), b' '), pad(binary, 0));
+    let size = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
+    let total = ((12 + 8 + json.len() + 8 + binary.len()) as u32).to_le_bytes();
+    [
+        b"glTF",
+        &2u32.to_le_bytes()[..],
+        &total,
+        &size(&json),
+        b"JSON",
+        &json,
+        &size(&binary),
+        b"BIN\0",
+        &binary,
+    ]
+    .concat()
+}
+
+/// Two primitives: a square as a strip (bytes: corners), with a plain and an empty target; and a triangle
+/// without indices, whose positions are normalised shorts, with a sparse target.
+const JSON: &str = r#"{
+ "asset":{"version":"2.0"},
+ "extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],
+ "buffers":[{"byteLength":152}],
+ "bufferViews":[
+  {"buffer":0,"byteOffset":0,"byteLength":48},
+  {"buffer":0,"byteOffset":48,"byteLength":48},
+  {"buffer":0,"byteOffset":96,"byteLength":4},
+  {"buffer":0,"byteOffset":100,"byteLength":24,"byteStride":8},
+  {"buffer":0,"byteOffset":124,"byteLength":4},
+  {"buffer":0,"byteOffset":128,"byteLength":24}],
+ "accessors":[
+  {"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+  {"bufferView":1,"componentType":5126,"count":4,"type":"VEC3"},
+  {"bufferView":2,"componentType":5121,"count":4,"type":"SCALAR"},
+  {"bufferView":3,"componentType":5122,"normalized":true,"count":3,"type":"VEC3"},
+  {"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,
+    "indices":{"bufferView":4,"componentType":5123},"values":{"bufferView":5}}}],
+ "meshes":[{"name":"face","extras":{"targetNames":["smile","frown"]},"weights":[0.25,0],"primitives":[
+  {"attributes":{"POSITION":0,"NORMAL":77},"indices":2,"mode":5,"targets":[{"POSITION":1},{"NORMAL":9}]},
+  {"attributes":{"POSITION":3},"targets":[{},{"POSITION":4}]}]}]
+}"#;
+
+fn binary() -> Vec<u8> {
+    let mut bytes = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
+    bytes.extend(floats(&[0.1, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3, 4.0, 5.0, 6.0]));
+    bytes.extend([0, 1, 2, 3]);
+    for position in [[0_i16, 0, i16::MAX], [i16::MAX, 0, i16::MIN], [0, 16384, 0]] {
+        bytes.extend(position.iter().flat_map(|c| c.to_le_bytes()));
+        bytes.extend([9, 9]); // padding of the stride
+    }
+    bytes.extend([0, 0, 2, 0]);
+    bytes.extend(floats(&[7.0, 8.0, 9.0, -1.0, -2.0, -3.0]));
+    bytes
+}
+
+fn message(json: &str) -> String {
+    parse(&glb(json, &binary()), None).unwrap_err().to_string()
+}
+
+/// The good file with one change.
+fn with(from: &str, to: &str) -> String {
+    assert_eq!(JSON.matches(from).count(), 1, "{from}");
+    message(&JSON.replace(from, to))
+}
+
+#[test]
+fn primitives_are_joined() {
+    let model = parse(&glb(JSON, &binary()), None).unwrap();
+    let half = 16384.0 / 32767.0;
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    assert_eq!(model.mesh.rest_positions(), [DVec3::ZERO, x, y, x + y, z, x - z, y * half]);
+    assert_eq!(model.mesh.faces(), [[0, 1, 2], [1, 3, 2], [4, 5, 6]]);
+    let wide = |x: f32| f64::from(x);
+    assert_eq!(model.modes.of_vertex(0), [x * wide(0.1), DVec3::ZERO]);
+    assert_eq!(model.modes.of_vertex(3), [DVec3::new(4.0, 5.0, 6.0), DVec3::ZERO]);
+    assert_eq!(model.modes.of_vertex(4), [DVec3::ZERO, DVec3::new(7.0, 8.0, 9.0)]);
+    assert_eq!(model.modes.of_vertex(5), [DVec3::ZERO; 2]);
+    assert_eq!(model.modes.of_vertex(6), [DVec3::ZERO, DVec3::new(-1.0, -2.0, -3.0)]);
+    assert_eq!(model.default_weights, [0.25, 0.0]);
+    assert_eq!(model.target_names, ["smile", "frown"]);
+    assert_eq!(model.mesh_name, "face");
+    assert_eq!(
+        model.primitives,
+        [
+            PrimitiveRange { vertices: 0..4, triangles: 0..2 },
+            PrimitiveRange { vertices: 4..7, triangles: 2..3 }
+        ]
+    );
+    // Names of another number, or of another form, are no names.
+    for extras in [r#"{"targetNames":["smile"]}"#, "7", "null", r#"{"targetNames":{"a":1}}"#] {
+        let json = JSON.replace(r#"{"targetNames":["smile","frown"]}"#, extras);
+        let other = parse(&glb(&json, &binary()), None).unwrap();
+        assert_eq!(other.target_names, ["target 0", "target 1"], "{extras}");
+    }
+    let silent = JSON.replace(r#""weights":[0.25,0],"#, "").replace(r#""name":"face","#, "");
+    let silent = parse(&glb(&silent, &binary()), Some("#0")).unwrap();
+    assert_eq!((silent.default_weights, silent.mesh_name.as_str()), (vec![0.0; 2], "#0"));
+}
+
+#[test]
+fn buffers_beside_and_embedded() {
+    use base64::Engine;
+    let whole = parse(&glb(JSON, &binary()), None).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path().join("in here");
+    fs::create_dir_all(folder.join("sub dir")).unwrap();
+    let path = folder.join("a.gltf");
+    let with_uri = |uri: &str| {
+        let json = JSON.replace(r#"{"byteLength""#, &format!(r#"{{"uri":"{uri}","byteLength""#));
+        fs::write(&path, &json).unwrap();
+        json
+    };
+    // An external buffer may be longer than needed.
+    fs::write(folder.join("sub dir/b.bin"), [&binary()[..], b"more"].concat()).unwrap();
+    let json = with_uri("./sub%20dir/b.bin");
+    assert_eq!(read(&path, None).unwrap(), whole);
+    assert_eq!(list_meshes(&path).unwrap()[0].targets, 2);
+    let alone = parse(json.as_bytes(), None).unwrap_err().to_string();
+    assert!(alone.contains("buffers[0]: the file './sub%20dir/b.bin' is needed beside this one"), "{alone}");
+    let data = base64::engine::general_purpose::STANDARD.encode(binary());
+    let json = with_uri(&format!("data:application/gltf-buffer;base64,{data}"));
+    assert_eq!(parse(json.as_bytes(), None).unwrap(), whole);
+
+    let refused = |uri: &str| {
+        with_uri(uri);
+        read(&path, None).unwrap_err().to_string()
+    };
+    fs::write(directory.path().join("b.bin"), binary()).unwrap();
+    for uri in ["../b.bin", "sub%20dir/../../b.bin", "/b.bin", "%2e%2e/b.bin", "C:/b.bin"] {
+        assert!(refused(uri).contains("leads out of the folder"), "{uri}");
+    }
+    assert!(refused("https://example.org/b.bin").contains("is a URL"));
+    assert!(refused("c.bin").contains("c.bin: not found"));
+    assert!(refused("sub dir").contains("is a directory"));
+    fs::write(folder.join("short.bin"), &binary()[1..]).unwrap();
+    assert!(refused("short.bin").ends_with("buffers[0]: 152 bytes are promised, 151 are there"));
+    assert!(refused("data:application/gltf-buffer;base64,AAAA").ends_with("3 are there"));
+}
+
+#[test]
+fn other_versions_and_extensions_are_refused() {
+    for version in ["1.0", "1", "3.0", "20", ""] {
+        let refused = with(r#""version":"2.0""#, &format!(r#""version":"{version}""#));
+        assert!(refused.starts_with("asset: version ") && refused.ends_with("as glTF 2.0"), "{refused}");
+    }
+    assert!(with(r#""version":"2.0""#, r#""version":"2.1","minVersion":"2.1""#).contains("version '2.1'"));
+    let newer = JSON.replace(r#""version":"2.0""#, r#""version":"2.1","minVersion":"2.0""#);
+    assert!(parse(&glb(&newer, &binary()), None).is_ok());
+    // Version 1.0 had objects in place of lists.
+    let first = message(r#"{"asset":{"version":"1.0"},"accessors":{"a":{}},"meshes":{"b":{}}}"#);
+    assert!(first.contains("version '1.0'"), "{first}");
+    assert!(message(r#"{"meshes":[]}"#).starts_with("JSON: missing field `asset`"));
+
+    let required = r#""extensionsRequired":["KHR_mesh_quantization"]"#;
+    for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "X_unknown"] {
+        let refused = with(required, &format!(r#""extensionsRequired":["KHR_texture_basisu","{name}"]"#));
+        assert_eq!(
+            refused,
+            format!("extensionsRequired: the extension '{name}' is not supported: save the file without it")
+        );
+    }
+    let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;
+    assert!(with(r#""mode":5"#, draco).starts_with("meshes[0].primitives[0]: the extension 'KHR_draco_"));
+    let meshopt =
+        r#""byteLength":4,"extensions":{"EXT_meshopt_compression":{}}},{"buffer":0,"byteOffset":100"#;
+    let refused = with(
+        r#""byteLength":4},
+  {"buffer":0,"byteOffset":100"#,
+        meshopt,
+    );
+    assert!(refused.starts_with("bufferViews[2]: the extension 'EXT_meshopt_compression'"), "{refused}");
+}
+
+#[test]
+fn bad_content_is_named() {
+    assert_eq!(
+        with(r#""mode":5"#, r#""mode":1"#),
+        "meshes[0].primitives[0]: a primitive of triangles was expected, this one is of lines"
+    );
+    assert_eq!(
+        with(r#"{},{"POSITION":4}"#, "{}"),
+        "meshes[0].primitives[1]: it has 1 morph targets, the first primitive 2: all need the same number"
+    );
+    assert_eq!(with(r#"[0.25,0]"#, "[0.25]"), "meshes[0]: 1 default weights for 2 morph targets");
+    assert_eq!(with(r#""weights":[0.25,0]"#, r#""weights":[1e999,0]"#).split(':').next(), Some("JSON"));
+    assert_eq!(with(r#"[{"POSITION":1}"#, r#"[{"POSITION":9}"#), "accessors[9]: there is no such accessor");
+    assert_eq!(
+        with(r#"[{"POSITION":1}"#, r#"[{"POSITION":4}"#),
+        "meshes[0].primitives[0]: target 0 has 3 positions for 4 vertices"
+    );
+    assert!(with(r#"[{"POSITION":1}"#, r#"[{"POSITION":2}"#).contains("must be VEC3 of float32"));
+    assert!(with(r#""indices":2"#, r#""indices":0"#).contains("must be SCALAR of unsigned integers"));
+    assert!(with(r#"{"POSITION":0,"#, "{").ends_with("it has no positions"));
+    assert!(with("5123", "5122").contains("sparse indices must be unsigned integers"));
+    assert!(with(r#""byteStride":8"#, r#""byteStride":4"#).contains("a stride of 4 bytes for items of 6"));
+    assert!(with(r#""byteStride":8"#, r#""byteStride":0"#).contains("a stride of 0 bytes"));
+    assert!(
+        with(r#""byteOffset":96,"byteLength":4"#, r#""byteOffset":150,"byteLength":4"#)
+            .contains("bufferViews[2]: 4 bytes from byte 150 on are not within buffers[0] of 152 bytes")
+    );
+    assert!(with(r#"[{"byteLength":152}]"#, r#"[{"byteLength":153}]"#).contains("153 bytes are promised"));
+    assert!(with(r#"[{"byteLength":152}]"#, "[]").contains("buffers[0]: there is no such buffer"));
+    assert!(with(r#"[{"byteLength":152}]"#, r#"[{"byteLength":-1}]"#).starts_with("JSON: "));
+    let mut bytes = binary();
+    bytes[99] = 4;
+    let refused = parse(&glb(JSON, &bytes), None).unwrap_err().to_string();
+    assert!(
+        refused.ends_with("primitives[0]: names vertex 4 (counted from 0), but there are 4"),
+        "{refused}"
+    );
+    for indices in [[0, 0], [2, 1], [0, 3], [0, u8::MAX]] {
+        let mut bytes = binary();
+        (bytes[124], bytes[126]) = (indices[0], indices[1]);
+        let refused = parse(&glb(JSON, &bytes), None).unwrap_err().to_string();
+        assert!(refused.contains("accessors[4]: sparse indices must ascend"), "{refused}");
+    }
+    let mut bytes = binary();
+    bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert!(parse(&glb(JSON, &bytes), None).unwrap_err().to_string().starts_with("vertex 0 "));
+    let mut bytes = binary();
+    bytes[48..52].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    assert!(parse(&glb(JSON, &bytes), None).unwrap_err().to_string().starts_with("mode 0 of vertex 0 "));
+}
+
+/// Counts that no bytes bear out: an error at once, with little memory.
+#[test]
+fn hostile_counts_are_refused() {
+    for count in ["5", "4294967296", "18446744073709551615", "6148914691236517206"] {
+        let refused = with(r#""count":4,"type":"SCALAR""#, &format!(r#""count":{count},"type":"SCALAR""#));
+        assert!(refused.contains("fit into it") || refused.contains("of memory"), "{refused}");
+        let sparse = with(r#"{"count":2,"#, &format!(r#"{{"count":{count},"#));
+        assert!(sparse.contains("more sparse items than items"), "{sparse}");
+        // Zeros come from nowhere: only the limit on growth is in their way.
+        let zeros = format!(
+            r#"{{"componentType":5126,"count":{count},"type":"VEC3"}},{{"componentType":5126,"count":3,"#
+        );
+        let json = JSON
+            .replace(r#"{"componentType":5126,"count":3,"#, &zeros)
+            .replace(r#":{"POSITION":3}"#, r#":{"POSITION":4}"#);
+        let refused = message(&json.replace(r#"{},{"POSITION":4}"#, "{},{}"));
+        assert!(count == "5" && refused.contains("5 corners") || refused.contains("of memory"), "{refused}");
+    }
+    for key in [r#""byteOffset":128"#, r#""byteStride":8"#, r#""byteOffset":48"#] {
+        let name = key.split(':').next().unwrap();
+        assert!(!with(key, &format!("{name}:18446744073709551615")).is_empty());
+    }
+    // Many targets of one accessor: the numbers are there, but not so often.
+    let targets = vec![r#"{"POSITION":1}"#; 20_000].join(",");
+    let vertices = 1_000;
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0}}}],"bufferViews":[{{"buffer":0,"byteLength":{0}}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":{vertices},"type":"VEC3"}},
+        {{"bufferView":0,"componentType":5126,"count":{vertices},"type":"VEC3"}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"targets":[{targets}]}}]}}]}}"#,
+        12 * vertices
+    );
+    let refused = parse(&glb(&json, &vec![0; 12 * vertices]), None).unwrap_err().to_string();
+    assert!(refused.contains("too much for a file of this size"), "{refused}");
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let bytes = glb(JSON, &binary());
+    assert!(parse(&bytes, None).is_ok());
+    for len in 0..bytes.len() {
+        assert!(parse(&bytes[..len], None).is_err(), "{len}");
+        assert!(parse(&JSON.as_bytes()[..len.min(JSON.len() - 1)], None).is_err(), "{len}");
+    }
+    assert!(parse(&[&bytes[..], b"\0"].concat(), None).is_err());
+    assert!(parse(&[JSON.as_bytes(), b"}"].concat(), None).is_err());
+}
+
+/// The file as two other tools would have written it.
+#[test]
+fn agrees_with_obj_and_npy() {
+    let directory = tempfile::tempdir().unwrap();
+    let [glb_path, obj_path, npy_path] = ["a.glb", "a.obj", "a.npy"].map(|n| directory.path().join(n));
+    fs::write(&glb_path, glb(JSON, &binary())).unwrap();
+    let (x, y) = (0.1_f32, 16384.0 / 32767.0);
+    fs::write(
+        &obj_path,
+        format!(
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 -1\nv 0 {y} 0\nf 1 2 3\nf 2 4 3\nf 5 6 7\n"
+        ),
+    )
+    .unwrap();
+    let mut values = [0.0; 42];
+    for (vertex, mode, moved) in [
+        (0, 0, [x, 0.0, 0.0]),
+        (1, 0, [0.0, 0.2, 0.0]),
+        (2, 0, [0.0, 0.0, 0.3]),
+        (3, 0, [4.0, 5.0, 6.0]),
+        (4, 1, [7.0, 8.0, 9.0]),
+        (6, 1, [-1.0, -2.0, -3.0]),
+    ] {
+        for c in 0..3 {
+            values[(3 * vertex + c) * 2 + mode] = f64::from(moved[c]);
+        }
+    }
+    crate::write_npy(&npy_path, &[21, 2], &values).unwrap();
+    let (ours, info) = crate::load_model(&glb_path, None).unwrap();
+    let (theirs, _) = crate::load_model(&obj_path, Some(&npy_path)).unwrap();
+    assert_eq!((ours.mesh(), ours.modes(), ours.metric()), (theirs.mesh(), theirs.modes(), theirs.metric()));
+    assert_eq!(info.provenance, "mesh \"face\" of a.glb");
+}

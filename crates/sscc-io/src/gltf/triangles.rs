@@ -1,0 +1,77 @@
+//! The triangles of a primitive, from its list of corners.
+
+/// How a primitive's corners make triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Topology {
+    List,
+    Strip,
+    Fan,
+}
+
+impl Topology {
+    /// By the number in the file; its name where it makes no triangles.
+    pub fn from_mode(mode: Option<u32>) -> Result<Self, String> {
+        Err(match mode {
+            None | Some(4) => return Ok(Self::List),
+            Some(5) => return Ok(Self::Strip),
+            Some(6) => return Ok(Self::Fan),
+            Some(0) => "points".into(),
+            Some(1..=3) => "lines".into(),
+            Some(other) => format!("unknown (mode {other})"),
+        })
+    }
+
+    /// The triangles of these corners, in order, with the winding of the standard. None when a list has no
+    /// multiple of 3 corners, or there are too few.
+    ///
+    /// Strips jump from place to place by triangles with a repeated corner. These are no part of the shape (they
+    /// would be segments that pierce it), so they are left out.
+    pub fn triangles(self, corners: &[u32]) -> Option<Vec<[u32; 3]>> {
+        if corners.len() < 3 {
+            return None;
+        }
+        match self {
+            Self::List => {
+                let (triangles, rest) = corners.as_chunks::<3>();
+                rest.is_empty().then(|| triangles.to_vec())
+            }
+            Self::Strip => {
+                let wound = |(i, w): (usize, &[u32])| {
+                    if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] }
+                };
+                let is_real = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+                Some(corners.windows(3).enumerate().map(wound).filter(is_real).collect())
+            }
+            Self::Fan => Some(corners[1..].windows(2).map(|pair| [pair[0], pair[1], corners[0]]).collect()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_topologies() {
+        let corners = [7, 1, 2, 3, 4, 5];
+        assert_eq!(Topology::List.triangles(&corners).unwrap(), [[7, 1, 2], [3, 4, 5]]);
+        let strip = Topology::Strip.triangles(&corners).unwrap();
+        assert_eq!(strip, [[7, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]]);
+        let fan = Topology::Fan.triangles(&corners).unwrap();
+        assert_eq!(fan, [[1, 2, 7], [2, 3, 7], [3, 4, 7], [4, 5, 7]]);
+        let two_strips = Topology::Strip.triangles(&[0, 1, 2, 2, 5, 5, 6, 7]).unwrap();
+        assert_eq!(two_strips, [[0, 1, 2], [5, 7, 6]]);
+        for topology in [Topology::List, Topology::Strip, Topology::Fan] {
+            assert_eq!(topology.triangles(&[0, 1]), None);
+        }
+        assert_eq!(Topology::List.triangles(&[0, 1, 2, 3]), None);
+    }
+
+    #[test]
+    fn others_are_named() {
+        assert_eq!(Topology::from_mode(Some(0)).unwrap_err(), "points");
+        assert_eq!(Topology::from_mode(Some(3)).unwrap_err(), "lines");
+        assert_eq!(Topology::from_mode(Some(7)).unwrap_err(), "unknown (mode 7)");
+        assert_eq!(Topology::from_mode(None), Topology::from_mode(Some(4)));
+    }
+}

@@ -1,0 +1,136 @@
+//! Stereolithography files (STL), binary and text.
+//!
+//! STL has no shared vertices: each triangle brings its own three corners. They stay apart here, corner `c` of
+//! triangle `t` as vertex `3 t + c`; whoever needs adjacency joins vertices of equal position.
+//!
+//! A reader of our own: both forms are short, places of errors are named, and stl_io joins equal vertices
+//! on its usual way. Many binary files begin with `solid` too, so their size decides.
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use super::Soup;
+use crate::error::quoted;
+use crate::text::{Lines, decoded, number, split_word};
+use crate::{FormatError, Place};
+
+/// Bytes of free text and of the count of triangles, before the triangles of a binary file.
+const HEADER: usize = 84;
+
+/// Bytes of one triangle: normal, three corners (f32 each) and two attribute bytes.
+const TRIANGLE: usize = 50;
+
+/// Parses an STL file. It is binary when its size is the one that its count of triangles gives
+/// (84 + 50 n), else text when it begins with `solid` and holds no zero byte early on. Normals, attribute
+/// bytes and the names of solids are skipped; a text may hold several solids.
+///
+/// # Errors
+/// When a binary file is shorter or longer than its count says; when a text has other statements than
+/// STL's, facets of other than 3 corners, or ends early; when [`TriMesh::new`] refuses the mesh.
+pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
+    soup(bytes)?.into_mesh()
+}
+
+pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
+    let positions = match binary(bytes) {
+        Err(_) if is_text(bytes) => text(bytes)?,
+        positions => positions?,
+    };
+    let Ok(vertices) = u32::try_from(positions.len()) else {
+        return Err(FormatError::whole(format!("{} vertices are too many", positions.len())));
+    };
+    let faces = (0..vertices / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    Ok(Soup { positions, faces })
+}
+
+fn is_text(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    split_word(text).0.eq_ignore_ascii_case(b"solid") && !bytes[..bytes.len().min(1024)].contains(&0)
+}
+
+fn binary(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
+    let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
+        let cause = "not an STL file: shorter than a binary header, and no text that begins with 'solid'";
+        return Err(FormatError::whole(cause));
+    };
+    let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
+    let size = u64::from(count) * TRIANGLE as u64;
+    if size != body.len() as u64 {
+        let cause = format!(
+            "the header promises {count} triangles ({size} bytes), but {} bytes follow: is the file cut off?",
+            body.len()
+        );
+        return Err(FormatError::new(Place::Byte(80), cause));
+    }
+    let corner = |bytes: &[u8; 12]| {
+        let [x, y, z] = [0, 4, 8].map(|at| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+        DVec3::from_array([x, y, z].map(|axis| f32::from_le_bytes(axis).into()))
+    };
+    let (triangles, _) = body.as_chunks::<TRIANGLE>();
+    Ok(triangles.iter().flat_map(|t| t[12..48].as_chunks().0).map(corner).collect())
+}
+
+/// The corners of a text file, three for each facet.
+fn text(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
+    let mut positions = Vec::new();
+    // Where we are: outside a solid, in one, in a facet, in its loop with so many corners, behind the loop.
+    let mut state = State::Outside;
+    for (line, text) in Lines::new(bytes)? {
+        let refused = |cause: String| Err(FormatError::line(line, cause));
+        let (keyword, arguments) = split_word(text);
+        state = match (state, keyword.to_ascii_lowercase().as_slice()) {
+            (state, b"") => state,
+            (State::Outside, b"solid") => State::Solid,
+            (State::Solid, b"facet") => State::Facet,
+            (State::Solid, b"endsolid") => State::Outside,
+            (State::Facet, b"outer") => State::Loop(0),
+            (State::Loop(corners @ 0..3), b"vertex") => {
+                positions.push(position(decoded(arguments, line)?, line)?);
+                State::Loop(corners + 1)
+            }
+            (State::Loop(3), b"endloop") => State::LoopEnd,
+            (State::LoopEnd, b"endfacet") => State::Solid,
+            (state, other) => {
+                let found = quoted(&String::from_utf8_lossy(other));
+                return refused(format!("{} expected, not {found}", state.expected()));
+            }
+        };
+    }
+    match state {
+        State::Outside => Ok(positions),
+        state => Err(FormatError::whole(format!("the file ends where {} was expected", state.expected()))),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum State {
+    Outside,
+    Solid,
+    Facet,
+    Loop(u8),
+    LoopEnd,
+}
+
+impl State {
+    fn expected(self) -> &'static str {
+        match self {
+            Self::Outside => "'solid'",
+            Self::Solid => "'facet' or 'endsolid'",
+            Self::Facet => "'outer loop'",
+            Self::Loop(0..3) => "'vertex' (a facet has 3)",
+            Self::Loop(_) => "'endloop' (a facet has 3 vertices)",
+            Self::LoopEnd => "'endfacet'",
+        }
+    }
+}
+
+fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
+    let words: Vec<_> = text.split_ascii_whitespace().take(4).collect();
+    let [x, y, z] = words[..] else {
+        return Err(FormatError::line(line, "a vertex has 3 coordinates"));
+    };
+    Ok(DVec3::new(number(x, line)?, number(y, line)?, number(z, line)?))
+}
+
+#[cfg(test)]
+mod tests;

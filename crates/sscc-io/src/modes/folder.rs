@@ -1,0 +1,144 @@
+//! Modes as a folder of target meshes beside a neutral one.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use sscc::{Modes, TriMesh, limits};
+
+use crate::mesh::{is_mesh_name, read_soup};
+use crate::{FormatError, IoError};
+
+/// More targets than any face has.
+const MOST: usize = 10_000;
+
+/// Reads the targets of a neutral mesh: every mesh file in the folder, in the order of the bytes of their names,
+/// so `10.obj` comes before `9.obj`. Mode k is target k minus neutral, vertex by vertex, each difference
+/// rounded to f64. The names are those of the files, without their endings.
+///
+/// Other files, folders, hidden files, and the neutral mesh itself where it lies among its targets, are skipped.
+///
+/// # Errors
+/// When the folder cannot be read or has no mesh in it, or more than 10,000; when a target cannot be read, has
+/// another number of vertices, has faces that differ from the neutral ones (it may have none), or a
+/// coordinate that is not finite or too large.
+pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<(Modes, Vec<String>), IoError> {
+    let paths = targets(folder, neutral_path)?;
+    let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
+    if paths.is_empty() {
+        return Err(request("there is no target mesh in this folder".into()));
+    }
+    if paths.len() > MOST {
+        return Err(request(format!("{} meshes are more than {MOST} targets", paths.len())));
+    }
+    // What a target takes in memory is borne out by its file, which has all vertices in it.
+    let columns = paths.iter().map(|path| displacements(path, neutral)).collect::<Result<Vec<_>, _>>()?;
+    let vertices = neutral.rest_positions().len();
+    let by_vertex = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
+    let modes = Modes::new(columns.len(), by_vertex).map_err(|error| request(error.to_string()))?;
+    let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok((modes, paths.iter().map(name).collect()))
+}
+
+/// The mesh files of a folder but for the neutral one, sorted.
+fn targets(folder: &Path, neutral: &Path) -> Result<Vec<PathBuf>, IoError> {
+    let refused = |cause: std::io::Error| match cause.kind() {
+        ErrorKind::NotFound => IoError::NotFound { path: folder.to_owned() },
+        _ => IoError::System { path: folder.to_owned(), action: "read", cause },
+    };
+    // The same file by another name (links, `..`) is the neutral one all the same.
+    let neutral = fs::canonicalize(neutral).ok();
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder).map_err(refused)? {
+        let name = entry.map_err(refused)?.file_name();
+        let path = folder.join(&name);
+        let hidden = name.as_encoded_bytes().starts_with(b".");
+        if hidden || !is_mesh_name(&path) || path.is_dir() {
+            continue;
+        }
+        if neutral.is_none() || fs::canonicalize(&path).ok() != neutral {
+            names.push(name);
+        }
+    }
+    names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes()));
+    Ok(names.iter().map(|name| folder.join(name)).collect())
+}
+
+fn displacements(path: &Path, neutral: &TriMesh) -> Result<Vec<DVec3>, IoError> {
+    let target = read_soup(path)?;
+    let refused = |cause: String| Err(FormatError::whole(cause).of(path));
+    let rest = neutral.rest_positions();
+    if target.positions.len() != rest.len() {
+        let (there, wanted) = (target.positions.len(), rest.len());
+        return refused(format!("this target has {there} vertices, the neutral mesh {wanted}"));
+    }
+    if !target.faces.is_empty() && target.faces != neutral.faces() {
+        let (there, wanted) = (target.faces.len(), neutral.faces().len());
+        let cause = match target.faces.iter().zip(neutral.faces()).position(|(a, b)| a != b) {
+            Some(face) if there == wanted => format!("triangle {face} (counted from 0) of this target"),
+            _ => format!("the number of triangles, {there} for {wanted},"),
+        };
+        return refused(format!(
+            "{cause} differs from the neutral mesh: are the vertices in the same order?"
+        ));
+    }
+    if let Some(vertex) = target.positions.iter().position(|p| !limits::contains(*p)) {
+        return refused(format!("vertex {vertex} (counted from 0) is not finite, or too large"));
+    }
+    Ok(target.positions.iter().zip(rest).map(|(moved, rest)| moved - rest).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEUTRAL: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+    #[test]
+    fn targets_become_modes_in_the_order_of_their_names() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path();
+        let put = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+        put("neutral.obj", NEUTRAL);
+        put("b.obj", &NEUTRAL.replace("v 1 0 0", "v 1 0 3"));
+        put("B.off", "OFF\n3 1 0\n0 0 0\n1 2 0\n0 1 0\n3 0 1 2\n");
+        put("10.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\n");
+        put("readme.txt", "x");
+        put(".hidden.obj", "x");
+        fs::create_dir(folder.join("folder.obj")).unwrap();
+        let path = folder.join("neutral.obj");
+        let mesh = crate::read_mesh(&path).unwrap();
+        let (modes, names) = read(folder, &mesh, &path).unwrap();
+        assert_eq!(names, ["10", "B", "b"]);
+        assert_eq!(modes.of_vertex(0), [DVec3::ZERO; 3]);
+        assert_eq!(modes.of_vertex(1), [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0]);
+
+        // From elsewhere the neutral mesh is a target like any other.
+        let (modes, names) = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
+        assert_eq!((modes.rank(), names[3].as_str()), (4, "neutral"));
+    }
+
+    #[test]
+    fn the_file_that_differs_is_named() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path();
+        let mesh = crate::mesh::obj::parse(NEUTRAL.as_bytes()).unwrap();
+        let message = || read(folder, &mesh, Path::new("none")).unwrap_err().to_string();
+        assert!(message().ends_with("there is no target mesh in this folder"));
+        fs::write(folder.join("a.obj"), NEUTRAL).unwrap();
+        let with = |text: &str| {
+            fs::write(folder.join("b.obj"), text).unwrap();
+            message()
+        };
+        let more = with(&format!("{NEUTRAL}v 0 0 0\n"));
+        assert!(more.ends_with("b.obj: this target has 4 vertices, the neutral mesh 3"), "{more}");
+        let turned = with(&NEUTRAL.replace("f 1 2 3", "f 2 3 1"));
+        assert!(turned.contains("b.obj: triangle 0 (counted from 0) of this target differs"), "{turned}");
+        assert!(with(&format!("{NEUTRAL}f 1 2 3\n")).contains("number of triangles, 2 for 1, differs"));
+        assert!(with(&NEUTRAL.replace("v 1", "v 1e70")).contains("b.obj: vertex 1 (counted from 0)"));
+        assert!(with("v 1").contains("b.obj: line 1: "));
+        let missing = read(&folder.join("c"), &mesh, Path::new("none")).unwrap_err().to_string();
+        assert!(missing.ends_with("c: not found"));
+    }
+}

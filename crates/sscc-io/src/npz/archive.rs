@@ -1,0 +1,90 @@
+//! Entries of a zip archive, with limits.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+
+use zip::{CompressionMethod, ZipArchive};
+
+use crate::allowance::Allowance;
+use crate::error::{cut, quoted};
+use crate::{FormatError, Place};
+
+/// An archive may hold no more than this, whatever its size: 4 GiB.
+const MOST: u64 = 4 << 30;
+
+/// The record at the end of an archive, without its comment.
+const END: usize = 22;
+
+/// The bytes of those entries (`NAME.npy`) whose name is wanted, by name. All others are not looked at.
+pub(super) fn entries(
+    bytes: &[u8],
+    wanted: impl Fn(&str) -> bool,
+) -> Result<BTreeMap<String, Vec<u8>>, FormatError> {
+    let whole = |e: &dyn std::fmt::Display| {
+        FormatError::whole(format!("not a zip archive: {}", cut(&e.to_string(), 120)))
+    };
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| whole(&e))?;
+    check_ends(bytes, &archive)?;
+    // Only what is wanted counts, and what two entries share counts twice.
+    let mut allowance = Allowance::new(bytes.len() as u64, MOST);
+    let mut found = BTreeMap::new();
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index_raw(index).map_err(|e| whole(&e))?;
+        let Ok(Some(name)) = entry.name().map(|name| name.strip_suffix(".npy").map(str::to_owned)) else {
+            continue;
+        };
+        if !wanted(&name) {
+            continue;
+        }
+        let refused = |cause: String| FormatError::part(place(&name), cause);
+        if entry.encrypted() {
+            return Err(refused("it is encrypted".into()));
+        }
+        if !matches!(entry.compression(), CompressionMethod::Stored | CompressionMethod::Deflated) {
+            let cause =
+                format!("the compression {} is not supported: save by numpy.savez", entry.compression());
+            return Err(refused(cause));
+        }
+        let size = entry.size();
+        allowance.take(size, 1).map_err(refused)?;
+        drop(entry);
+        let refused = |cause: String| FormatError::part(place(&name), cause);
+        entry = archive.by_index(index).map_err(|e| refused(cut(&e.to_string(), 120)))?;
+        let mut content = Vec::new();
+        // One byte more than promised shows that it is longer. At the end the checksum is compared.
+        let read = entry.by_ref().take(size.saturating_add(1)).read_to_end(&mut content);
+        read.map_err(|e| refused(format!("damaged: {}", cut(&e.to_string(), 120))))?;
+        if content.len() as u64 != size {
+            return Err(refused(format!("damaged: it does not have the {size} bytes that it promises")));
+        }
+        drop(entry);
+        if found.insert(name.clone(), content).is_some() {
+            return Err(FormatError::part(place(&name), "a second entry of this name"));
+        }
+    }
+    Ok(found)
+}
+
+/// The place of an entry, for messages.
+pub(super) fn place(name: &str) -> String {
+    format!("array {}", quoted(name))
+}
+
+/// Refuses bytes before and behind the archive, which zip readers skip, and names that are there twice, of
+/// which they keep the last.
+fn check_ends(bytes: &[u8], archive: &ZipArchive<Cursor<&[u8]>>) -> Result<(), FormatError> {
+    let end = bytes.len().checked_sub(END + archive.comment().len());
+    let Some(end) = end.filter(|end| bytes[*end..].starts_with(b"PK\x05\x06")) else {
+        return Err(FormatError::whole("there is something behind the end of the archive"));
+    };
+    if archive.offset() != 0 {
+        return Err(FormatError::new(Place::Byte(0), "there is something before the archive"));
+    }
+    // The largest number stands for one that is elsewhere.
+    let entries = u16::from_le_bytes([bytes[end + 10], bytes[end + 11]]);
+    if entries != u16::MAX && usize::from(entries) != archive.len() {
+        let cause = format!("it has {} names for {entries} entries: a name twice?", archive.len());
+        return Err(FormatError::new(Place::Byte(end), cause));
+    }
+    Ok(())
+}

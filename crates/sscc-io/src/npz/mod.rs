@@ -1,0 +1,86 @@
+//! Models in NumPy archives (`.npz`): PCA models, body models.
+//!
+//! Arrays are known by their names; all others are skipped. V vertices, r modes, N triangles:
+//!
+//! | array | names | shape |
+//! | --- | --- | --- |
+//! | rest positions | `mean`, `mean_`, `vertices`, `v_template`, `rest_positions` | (V, 3) or (3V) |
+//! | modes | `modes`, `shapedirs`, `U`, `basis` | (3V, r), (V, 3, r), (r, V, 3) or (3V) |
+//! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r) or (V, 3, r) |
+//! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
+//! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
+//!
+//! Where a shape fits two readings the one further left counts. A file with two names for one thing is
+//! refused. Arrays are float64 or float32, faces integers. An archive may be stored or deflated
+//! (`numpy.savez`, `numpy.savez_compressed`); its recognised arrays may take up to 100 times the file's size
+//! and 64 MiB, and never more than 4 GiB.
+
+mod archive;
+mod names;
+mod parts;
+
+use std::path::Path;
+
+use sscc::{Modes, TriMesh};
+
+use self::names::Part;
+use self::parts::Parts;
+use crate::{FormatError, IoError, read_whole};
+
+/// Reads a complete model: mesh, modes, and the numbers that the file has for each mode (r, such as
+/// variances), if any. Their meaning depends on the name; they are handed on as they are.
+///
+/// # Errors
+/// When the file cannot be read, is no archive, is damaged or too large when unpacked; when the mean, the modes or
+/// the faces are missing, or have another type or shape than the table says; when a face names no vertex.
+pub fn read_npz_model(path: &Path) -> Result<(TriMesh, Modes, Option<Vec<f64>>), IoError> {
+    parse_model(&read_whole(path)?).map_err(|error| error.of(path))
+}
+
+/// As [`read_npz_model`], from bytes.
+///
+/// # Errors
+/// As [`read_npz_model`], but for the file's name.
+pub fn parse_model(bytes: &[u8]) -> Result<(TriMesh, Modes, Option<Vec<f64>>), FormatError> {
+    let all = [Part::Mean, Part::Modes, Part::Components, Part::Faces, Part::Weights];
+    let parts = Parts::read(bytes, &all)?;
+    let mesh = parts.mesh()?;
+    let modes = parts.modes(mesh.rest_positions().len())?;
+    let weights = parts.weights(modes.rank())?;
+    Ok((mesh, modes, weights))
+}
+
+/// Parses the modes for a mesh; faces and other arrays are skipped. When the archive has a mean, it must be the
+/// mesh's rest positions up to 2^-20 of their largest coordinate (what float32 and text of 6 digits keep).
+///
+/// # Errors
+/// As [`parse_model`], and when the modes or the mean are those of another mesh.
+pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<Modes, FormatError> {
+    let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components])?;
+    let positions = mesh.rest_positions();
+    let modes = parts.modes(positions.len())?;
+    let Some(mean) = parts.mean()? else {
+        return Ok(modes);
+    };
+    if mean.len() != positions.len() {
+        let cause = format!("the mean has {} vertices, the mesh {}", mean.len(), positions.len());
+        return Err(FormatError::whole(cause));
+    }
+    let largest = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let tolerance = largest * 2.0_f64.powi(-20);
+    let is_close = |vertex: &usize| (mean[*vertex] - positions[*vertex]).abs().max_element() <= tolerance;
+    match (0..mean.len()).find(|vertex| !is_close(vertex)) {
+        Some(vertex) => {
+            let [x, y, z] = (mean[vertex] - positions[vertex]).to_array();
+            let cause = format!(
+                "the mean is not the mesh: vertex {vertex} (counted from 0) differs by ({x:.3e}, {y:.3e}, {z:.3e}); \
+                 give the mesh of the mean, or the modes alone"
+            );
+            Err(FormatError::whole(cause))
+        }
+        None => Ok(modes),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+//! Arrays of an archive as parts of a model.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use sscc::{Modes, TriMesh};
+
+use super::archive;
+use super::names::Part;
+use crate::modes::array;
+use crate::npy::{self, Array};
+use crate::{FormatError, Place};
+
+/// The recognised arrays of an archive: name and bytes.
+pub(super) struct Parts(BTreeMap<Part, (String, Vec<u8>)>);
+
+impl Parts {
+    /// Reads those parts.
+    pub fn read(bytes: &[u8], wanted: &[Part]) -> Result<Self, FormatError> {
+        let is_wanted = |name: &str| Part::of(name).is_some_and(|part| wanted.contains(&part));
+        let mut parts = BTreeMap::new();
+        for (name, content) in archive::entries(bytes, is_wanted)? {
+            let Some(part) = Part::of(&name) else { continue };
+            if let Some((other, _)) = parts.insert(part, (name.clone(), content)) {
+                let cause = format!("'{other}' and '{name}' mean the same: leave one of them out");
+                return Err(FormatError::whole(cause));
+            }
+        }
+        if parts.contains_key(&Part::Modes) && parts.contains_key(&Part::Components) {
+            let [a, b] = [Part::Modes, Part::Components].map(|part| parts[&part].0.clone());
+            let cause = format!("'{a}' and '{b}' mean the same: leave one of them out");
+            return Err(FormatError::whole(cause));
+        }
+        Ok(Self(parts))
+    }
+
+    fn get<T>(
+        &self,
+        part: Part,
+        parse: impl Fn(&[u8]) -> Result<T, FormatError>,
+    ) -> Result<Option<T>, FormatError> {
+        let Some((name, bytes)) = self.0.get(&part) else { return Ok(None) };
+        parse(bytes).map(Some).map_err(|error| FormatError::part(archive::place(name), error.to_string()))
+    }
+
+    fn missing(part: Part, advice: &str) -> FormatError {
+        FormatError::whole(format!("there is no array of {}{advice}", part.names()))
+    }
+
+    /// Rest positions, one for each vertex.
+    pub fn mean(&self) -> Result<Option<Vec<DVec3>>, FormatError> {
+        self.get(Part::Mean, |bytes| {
+            let array = npy::parse(bytes)?;
+            match *array.shape() {
+                [_, 3] => {}
+                [n] if n.is_multiple_of(3) => {}
+                ref other => {
+                    let cause = format!("shape {other:?}: (V, 3) or (3V) was expected");
+                    return Err(FormatError::whole(cause));
+                }
+            }
+            let values = array.to_c_order();
+            Ok(values.as_chunks().0.iter().map(|xyz| DVec3::from_array(*xyz)).collect())
+        })
+    }
+
+    /// The modes of that many vertices.
+    pub fn modes(&self, vertices: usize) -> Result<Modes, FormatError> {
+        let rows = |bytes: &[u8]| array::from_rows(&npy::parse(bytes)?, vertices);
+        if let Some(modes) = self.get(Part::Components, rows)? {
+            return Ok(modes);
+        }
+        let columns = |bytes: &[u8]| array::from_array(&npy::parse(bytes)?, vertices);
+        self.get(Part::Modes, columns)?
+            .ok_or_else(|| Self::missing(Part::Modes, &format!(", {}", Part::Components.names())))
+    }
+
+    /// The mesh of a complete model.
+    pub fn mesh(&self) -> Result<TriMesh, FormatError> {
+        let mean = self.mean()?.ok_or_else(|| Self::missing(Part::Mean, ""))?;
+        let faces = self.get(Part::Faces, |bytes| faces(&npy::parse_integers(bytes)?, mean.len()))?;
+        let advice = ": give it as --modes of a mesh file";
+        let faces = faces.ok_or_else(|| Self::missing(Part::Faces, advice))?;
+        Ok(TriMesh::new(mean, faces)?)
+    }
+
+    /// One number for each of r modes. Body models have skinning weights of that name: arrays of two axes are
+    /// something else and left aside.
+    pub fn weights(&self, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
+        let weights = self.get(Part::Weights, |bytes| {
+            let array = npy::parse(bytes)?;
+            match *array.shape() {
+                [n] if n == rank => Ok(Some(array.to_c_order())),
+                [n] => Err(FormatError::whole(format!("{n} numbers for {rank} modes"))),
+                _ => Ok(None),
+            }
+        });
+        Ok(weights?.flatten())
+    }
+}
+
+fn faces(array: &Array<i64>, vertices: usize) -> Result<Vec<[u32; 3]>, FormatError> {
+    let [_, 3] = *array.shape() else {
+        return Err(FormatError::whole(format!("shape {:?}: (N, 3) was expected", array.shape())));
+    };
+    let corner = |(at, index): (usize, i64)| match u32::try_from(index) {
+        Ok(corner) if (corner as usize) < vertices => Ok(corner),
+        _ => {
+            let face = at / 3;
+            let cause =
+                format!("face {face} names vertex {index} (counted from 0), but there are {vertices}");
+            Err(FormatError::new(Place::Whole, cause))
+        }
+    };
+    let corners: Vec<u32> =
+        array.to_c_order().into_iter().enumerate().map(corner).collect::<Result<_, _>>()?;
+    Ok(corners.as_chunks().0.to_vec())
+}

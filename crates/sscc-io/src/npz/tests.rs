@@ -1,0 +1,227 @@
+use std::io::{Cursor, Write};
+
+use glam::DVec3;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::*;
+use crate::npy::to_bytes;
+
+/// An archive as NumPy writes it.
+fn archive(entries: &[(&str, Vec<u8>)], method: CompressionMethod) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(method).large_file(true);
+    for (name, content) in entries {
+        writer.start_file(format!("{name}.npy"), options).unwrap();
+        writer.write_all(content).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+fn stored(entries: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    archive(entries, CompressionMethod::Stored)
+}
+
+fn numbers(shape: &[usize]) -> Vec<u8> {
+    let values: Vec<f64> = (0..shape.iter().product()).map(|i| i as f64).collect();
+    to_bytes(shape, &values).unwrap()
+}
+
+fn faces(descr: &str, corners: &[u8]) -> Vec<u8> {
+    let header =
+        format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}, 3), }}", corners.len() / 3);
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.bytes());
+    let size = usize::from(descr.as_bytes()[2] - b'0');
+    for corner in corners {
+        bytes.push(*corner);
+        bytes.resize(bytes.len() + size - 1, if *corner == 255 { 255 } else { 0 });
+    }
+    bytes
+}
+
+/// A tetrahedron's worth of vertices, two modes.
+fn good() -> Vec<(&'static str, Vec<u8>)> {
+    vec![
+        ("mean", numbers(&[4, 3])),
+        ("modes", numbers(&[12, 2])),
+        ("faces", faces("<i4", &[0, 1, 2, 3, 2, 1])),
+        ("kintree_table", b"a pickle".to_vec()),
+    ]
+}
+
+/// The good archive with another array in place of one, or beside.
+fn with(name: &'static str, content: Vec<u8>) -> Vec<(&'static str, Vec<u8>)> {
+    let mut entries = good();
+    entries.retain(|(other, _)| *other != name);
+    entries.push((name, content));
+    entries
+}
+
+fn message(entries: &[(&str, Vec<u8>)]) -> String {
+    parse_model(&stored(entries)).unwrap_err().to_string()
+}
+
+#[test]
+fn stored_and_deflated() {
+    let (mesh, modes, weights) = parse_model(&stored(&good())).unwrap();
+    assert_eq!(mesh.faces(), [[0, 1, 2], [3, 2, 1]]);
+    assert_eq!(mesh.rest_positions()[1], DVec3::new(3.0, 4.0, 5.0));
+    assert_eq!(modes.of_vertex(1)[1], DVec3::new(7.0, 9.0, 11.0));
+    assert_eq!(weights, None);
+    let deflated = archive(&good(), CompressionMethod::Deflated);
+    assert_eq!(parse_model(&deflated).unwrap(), (mesh.clone(), modes.clone(), None));
+    assert_eq!(parse_modes(&deflated, &mesh).unwrap(), modes);
+}
+
+#[test]
+fn all_names_and_shapes() {
+    let (mesh, modes, _) = parse_model(&stored(&good())).unwrap();
+    for mean in ["mean", "mean_", "vertices", "v_template", "rest_positions"] {
+        for (basis, shape) in [("shapedirs", &[4, 3, 2][..]), ("U", &[12, 2]), ("basis", &[12, 2])] {
+            for (f, descr) in
+                [("faces", "<i8"), ("f", "<u4"), ("triangles", "<u8"), ("f", "|u1"), ("f", "<i2")]
+            {
+                let entries = [
+                    (mean, numbers(&[12])),
+                    (basis, numbers(shape)),
+                    (f, faces(descr, &[0, 1, 2, 3, 2, 1])),
+                    ("weights", numbers(&[4, 24])),
+                ];
+                assert_eq!(parse_model(&stored(&entries)).unwrap(), (mesh.clone(), modes.clone(), None));
+            }
+        }
+    }
+    for name in ["components", "components_"] {
+        for shape in [&[2, 12][..], &[2, 4, 3]] {
+            let entries =
+                [("mean", numbers(&[4, 3])), (name, numbers(shape)), ("f", faces("<i4", &[0, 1, 2]))];
+            let (_, modes, _) = parse_model(&stored(&entries)).unwrap();
+            assert_eq!((modes.rank(), modes.of_vertex(1)[1]), (2, DVec3::new(15.0, 16.0, 17.0)));
+        }
+    }
+    for name in ["weights", "explained_variance", "explained_variance_", "eigenvalues"] {
+        let (_, _, weights) = parse_model(&stored(&with(name, numbers(&[2])))).unwrap();
+        assert_eq!(weights, Some(vec![0.0, 1.0]));
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_named() {
+    let without = |name: &str| {
+        let mut entries = good();
+        entries.retain(|(other, _)| *other != name);
+        message(&entries)
+    };
+    assert!(without("mean").starts_with("there is no array of mean, mean_, vertices"));
+    assert!(without("modes").starts_with("there is no array of modes, shapedirs, U, basis, components"));
+    assert!(without("faces").ends_with("triangles: give it as --modes of a mesh file"));
+    let twice = "'mean' and 'v_template' mean the same: leave one of them out";
+    assert_eq!(message(&with("v_template", numbers(&[4, 3]))), twice);
+    assert!(
+        message(&with("components", numbers(&[2, 12]))).contains("'modes' and 'components' mean the same")
+    );
+    assert_eq!(
+        message(&with("mean", numbers(&[3, 4]))),
+        "array 'mean': shape [3, 4]: (V, 3) or (3V) was expected"
+    );
+    assert!(message(&with("mean", b"x".to_vec())).starts_with("array 'mean': byte 0: not a NumPy array"));
+    assert!(
+        message(&with("modes", numbers(&[2, 12])))
+            .contains("array 'modes': shape [2, 12] has the modes in rows")
+    );
+    assert!(
+        message(&with("modes", numbers(&[15, 2]))).contains("the modes are for 5 vertices, the mesh has 4")
+    );
+    assert!(message(&with("modes", faces("<i4", &[0; 12]))).contains("save the array as float64"));
+    assert!(
+        message(&with("faces", numbers(&[2, 3])))
+            .contains("array 'faces': byte 10: header: numbers of type '<f8'")
+    );
+    assert_eq!(
+        message(&with("faces", faces("<i4", &[0, 1, 2, 0, 4, 1]))),
+        "array 'faces': face 1 names vertex 4 (counted from 0), but there are 4"
+    );
+    assert!(message(&with("faces", faces("<i4", &[0, 1, 255]))).contains("face 0 names vertex -1 "));
+    assert!(message(&with("faces", faces("<i4", &[]))).contains("no triangles"));
+    assert!(
+        message(&with("eigenvalues", numbers(&[3]))).contains("array 'eigenvalues': 3 numbers for 2 modes")
+    );
+}
+
+#[test]
+fn modes_of_another_mesh_are_refused() {
+    let (mesh, modes, _) = parse_model(&stored(&good())).unwrap();
+    let alone = stored(&good()[1..2]);
+    assert_eq!(parse_modes(&alone, &mesh).unwrap(), modes);
+    let moved = |by: f64| {
+        let positions = mesh.rest_positions().iter().map(|p| p + DVec3::Z * by).collect();
+        TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
+    };
+    assert!(parse_modes(&stored(&good()), &moved(1e-6)).is_ok());
+    let refused = parse_modes(&stored(&good()), &moved(1e-4)).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("the mean is not the mesh: vertex 0 (counted from 0) differs by ("),
+        "{refused}"
+    );
+    let fewer = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
+    let refused = parse_modes(&stored(&good()), &fewer).unwrap_err().to_string();
+    assert!(refused.contains("the modes are for 4 vertices, the mesh has 3"), "{refused}");
+    let other_mean = with("mean", numbers(&[3, 3]));
+    assert!(
+        parse_modes(&stored(&other_mean), &mesh).unwrap_err().to_string().contains("the mean has 3 vertices")
+    );
+}
+
+#[test]
+fn damage_is_refused() {
+    for method in [CompressionMethod::Stored, CompressionMethod::Deflated] {
+        let bytes = archive(&good(), method);
+        for len in 0..bytes.len() {
+            assert!(parse_model(&bytes[..len]).is_err(), "{len}");
+        }
+        for extra in [[&bytes[..], b"\0"].concat(), [b"x", &bytes[..]].concat()] {
+            assert!(parse_model(&extra).is_err());
+        }
+        // Whatever is flipped: the same model, or an error. A checksum is over every array.
+        let model = parse_model(&bytes).unwrap();
+        for at in 0..bytes.len() {
+            for bit in [0, 3, 7] {
+                let mut bytes = bytes.clone();
+                bytes[at] ^= 1 << bit;
+                if let Ok(read) = parse_model(&bytes) {
+                    assert_eq!(read, model, "{at}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bombs_are_refused() {
+    // 80 MB of zeros in 80 kB.
+    let bomb = archive(&with("modes", vec![0; 80_000_000]), CompressionMethod::Deflated);
+    assert!(bomb.len() < 100_000);
+    let refused = parse_model(&bomb).unwrap_err().to_string();
+    assert!(refused.starts_with("array 'modes': its numbers would take more than"), "{refused}");
+    // A size that is a lie: in the directory (behind the entry's data), as a number of 4 bytes.
+    let honest = archive(&with("modes", vec![0; 1_000_000]), CompressionMethod::Deflated);
+    let size = 1_000_000_u32.to_le_bytes();
+    let at = honest.windows(4).rposition(|w| w == size).unwrap();
+    for lie in [0_u32, 1000, 999_999, 1_000_001, 1 << 30, u32::MAX] {
+        let mut bytes = honest.clone();
+        bytes[at..at + 4].copy_from_slice(&lie.to_le_bytes());
+        let refused = parse_model(&bytes).unwrap_err().to_string();
+        assert!(!refused.contains("array 'modes': byte 0"), "{lie}: {refused}");
+    }
+}
+
+#[test]
+fn names_that_are_there_twice_are_refused() {
+    let mut bytes = stored(&with("meaN", numbers(&[4, 3])));
+    while let Some(at) = bytes.windows(8).position(|w| w == b"meaN.npy") {
+        bytes[at..at + 4].copy_from_slice(b"mean");
+    }
+    assert!(parse_model(&bytes).is_err());
+}
