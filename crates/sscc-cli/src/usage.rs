@@ -31,7 +31,10 @@ fn shortened(text: &str) -> String {
     let kept: Vec<String> = text
         .split("\n\n")
         .map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
-        .filter(|p| !p.is_empty() && !p.starts_with("Usage:") && !p.starts_with("For more information"))
+        .filter(|p| {
+            let noise = ["Usage:", "For more information", "tip: to pass"];
+            !p.is_empty() && !noise.iter().any(|start| p.starts_with(start))
+        })
         .collect();
     format!("{} (see --help)", kept.join("; "))
 }

@@ -48,7 +48,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         }
     } else if !args.json.json {
         out.line("")?;
-        out.line("Next: `sscc demo --out demo` writes these files, to try the other commands on.")?;
+        out.line("Next: the same with --out DIR writes these files, to try the other commands on.")?;
     }
     out.finish()?;
     ensure!(report.mismatches == 0, "the methods differ in {} frames: this is a defect", report.mismatches);

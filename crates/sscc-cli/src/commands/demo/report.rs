@@ -4,7 +4,7 @@ use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
 
 use super::frames::Frames;
-use crate::output::{duration, grouped, length};
+use crate::output::{counted, duration, grouped, length};
 
 #[derive(Serialize)]
 pub struct Report {
@@ -65,9 +65,9 @@ impl Report {
                 self.rank
             ),
             format!(
-                "Certified once, in {:.2} s on {} threads. Root radius {}: below it the whole spring is free.",
+                "Certified once, in {:.2} s on {}. Root radius {}: below it the whole spring is free.",
                 self.certify_seconds,
-                self.threads,
+                counted(self.threads as u64, "thread"),
                 length(self.root_radius)
             ),
             String::new(),
