@@ -17,7 +17,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::lanes::{add_scaled, dot, gram, project};
+use super::lanes::{LANES, add_scaled, dot, gram, project};
 use super::scaled::{ScaledModel, UP, direction, norm_up, radius};
 use crate::hierarchy::{Hierarchy, bounding_box};
 
@@ -201,11 +201,12 @@ fn corner_bound(
     // Inner products of B'n with the seven rows, kept up to date while signs flip in Gray code order.
     let mut inner: [f64; 7] = std::array::from_fn(|i| products[i].iter().sum());
     let mut square: f64 = inner.iter().sum();
-    let mut bound = f64::INFINITY;
-    for corner in 1..=64_u32 {
-        let gap = gap + signs.iter().zip(steps).map(|(sign, step)| sign * step).sum::<f64>();
-        bound = bound.min(radius(gap - rest_error, ((square.max(0.0) + lost).sqrt() + slack) * UP));
-        let flip = corner.trailing_zeros() as usize;
+    let mut gaps = [0.0; 64];
+    let mut squares = [0.0; 64];
+    for corner in 0..64 {
+        gaps[corner] = gap + signs.iter().zip(steps).map(|(sign, step)| sign * step).sum::<f64>();
+        squares[corner] = square;
+        let flip = (corner + 1).trailing_zeros() as usize;
         if flip < 6 {
             let change = -2.0 * signs[flip];
             signs[flip] = -signs[flip];
@@ -215,5 +216,13 @@ fn corner_bound(
             }
         }
     }
-    bound
+    // In a loop of its own, lane by lane: roots and quotients of several corners at once.
+    let mut bounds = [f64::INFINITY; LANES];
+    for (gaps, squares) in gaps.as_chunks::<LANES>().0.iter().zip(squares.as_chunks::<LANES>().0) {
+        for i in 0..LANES {
+            let rate = ((squares[i].max(0.0) + lost).sqrt() + slack) * UP;
+            bounds[i] = bounds[i].min(radius(gaps[i] - rest_error, rate));
+        }
+    }
+    bounds.into_iter().fold(f64::INFINITY, f64::min)
 }
