@@ -24,7 +24,7 @@ Examples:
   sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors \\
       --trajectory demo/spring.npy
 
-Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a violation, 2 error,\n130 interrupted.";
+Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a\nviolation, 2 error, 130 interrupted.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]

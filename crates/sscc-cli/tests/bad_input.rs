@@ -60,7 +60,7 @@ fn files_that_are_no_models() {
         ("short.model.safetensors", "short.model.safetensors: not a file written by sscc"),
         ("empty.model.safetensors", "empty.model.safetensors: the file is empty"),
         (CERTIFIED, "this is a certificate file, a model file was expected"),
-        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE"),
+        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE, or make some first: sscc modes"),
     ] {
         refused(folder, &["certify", model, "-o", "out.sscc.safetensors"], &[named]);
         refused(folder, &["check", model, "--q=0,0"], &[named]);

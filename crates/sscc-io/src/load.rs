@@ -84,7 +84,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         (_, None) => {
             // A file that is missing or no mesh at all is told first: modes would not help.
             read_mesh(path)?;
-            Err(refused("a mesh has no modes: add --modes FILE"))
+            Err(refused("a mesh has no modes: add --modes FILE, or make some first: sscc modes"))
         }
         (_, Some(modes_path)) => {
             let mesh = read_mesh(path)?;
@@ -142,7 +142,10 @@ mod tests {
         assert_eq!(same_info, info);
 
         let message = |path: &Path, modes: Option<&Path>| load_model(path, modes).unwrap_err().to_string();
-        assert!(message(&mesh, None).ends_with("a.obj: a mesh has no modes: add --modes FILE"));
+        assert!(
+            message(&mesh, None)
+                .ends_with("a.obj: a mesh has no modes: add --modes FILE, or make some first: sscc modes")
+        );
         assert!(message(&model, Some(&modes)).ends_with("has its own modes: leave out --modes"));
         assert!(message(&directory.path().join("b.obj"), None).ends_with("b.obj: not found"));
         write_npy(&modes, &[9, 2], &[1e-70; 18]).unwrap();
