@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use sscc::{Certificates, CertifyOptions, Method, Query, ReducedModel};
+use sscc::{AuditOptions, Certificates, CertifyOptions, Method, Query, ReducedModel, audit};
 use sscc_testdata::models;
 
 type Pairs = Vec<(u32, u32)>;
@@ -47,6 +47,18 @@ fn every_method_gives_the_listed_pairs(file: &Path, count: usize) {
 fn vega_letter() {
     let Some(folder) = models("vega_letter") else { return };
     every_method_gives_the_listed_pairs(&folder.join("vega_A/A_selfcollision_cases.json"), 17);
+}
+
+/// Every claim about the letter attacked, and its radius close to the truth.
+#[test]
+fn vega_letter_audit() {
+    let Some(folder) = models("vega_letter_audit") else { return };
+    let (model, _) = cases(&folder.join("vega_A/A_selfcollision_cases.json"));
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let options = AuditOptions { samples: 2000, ..AuditOptions::default() };
+    let report = audit(&model, &certificates, &options, &()).unwrap();
+    assert_eq!((report.samples, report.violations), (2000, vec![]));
+    assert!(report.root_tightness.unwrap() >= 0.9, "{:?}", report.root_tightness);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::lanes::padded;
+use crate::mesh::share_a_vertex;
 use crate::{Metric, ReducedModel};
 
 /// Bounds, for two points of the shape and a direction n, by how much the computed gap along n may
@@ -114,7 +115,6 @@ impl ScaledModel {
     }
 
     pub(crate) fn are_adjacent(&self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.faces[a as usize], self.faces[b as usize]);
-        a.iter().any(|v| b.contains(v))
+        share_a_vertex(self.faces[a as usize], self.faces[b as usize])
     }
 }

@@ -2,6 +2,7 @@
 
 use super::boxes::disjoint;
 use super::{Method, Query};
+use crate::certificates::child_pairs;
 use crate::intersect_triangle_triangle;
 
 impl Query<'_> {
@@ -37,17 +38,13 @@ impl Query<'_> {
             }
             return;
         }
+        self.stack.extend(node.children().map(|child| (child, child)));
         // Only the root's children have certificates as pairs.
-        let mut pair = 0;
-        for a in node.children() {
-            self.stack.push((a, a));
-            for b in a + 1..node.children().end {
-                let certified =
-                    n == 0 && self.used_certificates().is_some_and(|c| self.norm < c.root_pair_radii[pair]);
-                if !certified {
-                    self.stack.push((a, b));
-                }
-                pair += 1;
+        for (pair, (a, b)) in child_pairs(&node).enumerate() {
+            let certified =
+                n == 0 && self.used_certificates().is_some_and(|c| self.norm < c.root_pair_radii[pair]);
+            if !certified {
+                self.stack.push((a, b));
             }
         }
     }
