@@ -58,7 +58,7 @@ pub struct Demo {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial")]
 pub struct Modes {
-    /// A triangle mesh: .obj, .off, .ply
+    /// A triangle mesh: .obj, .off, .ply, .stl
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors
@@ -81,12 +81,17 @@ pub enum ModesKind {
 /// A model by its files.
 #[derive(Debug, Args)]
 pub struct Model {
-    /// The model: *.model.safetensors, or a mesh (.obj, .off, .ply) with --modes
+    /// The model: *.model.safetensors, a .glb or .gltf with morph targets, a complete .npz (mean, components,
+    /// faces), or a mesh (.obj, .off, .ply, .stl) with --modes
     #[arg(value_name = "MODEL")]
     pub path: PathBuf,
-    /// The modes U of a mesh: .npy (3V x r, V x 3 x r, r x V x 3) or a VegaFEM modal matrix (.U, .float, ...)
+    /// The modes U of a mesh: .npy (3V x r, V x 3 x r, r x V x 3), .npz, a VegaFEM modal matrix (.U, .float, ...), or
+    /// a folder of target meshes
     #[arg(long, value_name = "FILE")]
     pub modes: Option<PathBuf>,
+    /// The mesh of a glTF file with several (sscc info lists them)
+    #[arg(long, value_name = "NAME")]
+    pub mesh_name: Option<String>,
 }
 
 /// How certificates are computed. All optional, so that contradictions to given certificates can be told.
@@ -95,15 +100,49 @@ pub struct Options {
     /// Relative error allowed for each radius, between 0 and 1 [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
-    /// The metric: displacement, mass, identity, or a file with the diagonal of M (.npy or text), one weight for
-    /// each mode [default: the model's]
+    /// The metric: displacement, mass, identity, or a file with M: its diagonal, one weight for each mode (.npy or
+    /// text), or a dense symmetric one (.npy of shape r x r) [default: the model's]
     #[arg(long, value_name = "METRIC")]
     pub metric: Option<PathBuf>,
+    /// The q from which radii are measured: r numbers, or a file (.npy or text) [default: 0, the rest pose]
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    pub center: Option<String>,
+    /// What is asked of triangles that share a vertex [default: exclude]
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub neighbours: Option<Neighbours>,
+    /// Leave out, for good, the pairs that collide at rest
+    #[arg(long)]
+    pub ignore_rest: bool,
+    /// Whether vertices of equal position and modes count as one, for adjacency only [default: on for STL and glTF]
+    #[arg(long, value_enum, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
+    pub weld: Option<Switch>,
+    /// How many pairs that collide at the centre may be exceptions: left out of all radii and tested in every
+    /// query [default: a quarter of the number of triangles]
+    #[arg(long, value_name = "N")]
+    pub max_exceptions: Option<usize>,
     /// Which certificates are stored; both are the same in this version, and the file records "paper"
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
     #[command(flatten)]
     pub threads: Threads,
+}
+
+/// On or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Yes
+    On,
+    /// No
+    Off,
+}
+
+/// Rules for triangles that share a vertex. Those that share an edge never count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Neighbours {
+    /// They do not count
+    Exclude,
+    /// Those that share just one vertex count where they meet beside it
+    IncludeOneVertex,
 }
 
 /// How much the program may use of the machine.
@@ -128,7 +167,8 @@ pub enum Scheme {
 #[command(after_help = "\
 Examples:
   sscc certify bunny.model.safetensors -o bunny.sscc.safetensors
-  sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass")]
+  sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass
+  sscc certify head.glb --mesh-name Head -o head.sscc.safetensors")]
 pub struct Certify {
     #[command(flatten)]
     pub model: Model,
@@ -147,6 +187,8 @@ pub struct Certify {
 Examples:
   sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy
   sscc check face.obj --modes face.U.float --method traditional --q=0.5,0,-1.25
+  sscc check head.glb --first --q=1,0,0
+  sscc check face.obj --modes targets/ --q=0,0.5 --pose smile.ply
   sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'
 
 The metric and the other options come from the certificates; a flag that contradicts them is refused.
@@ -162,6 +204,15 @@ pub struct Check {
     /// How to look for collisions; the answer is the same
     #[arg(long, value_enum, default_value_t = Method::Certified)]
     pub method: Method,
+    /// Stop at the first colliding pair of each q
+    #[arg(long, conflicts_with = "limit")]
+    pub first: bool,
+    /// Stop at so many colliding pairs of each q; then count is a lower bound
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub limit: Option<u32>,
+    /// Also write the shape at --q, with its colliding triangles marked: .ply (red) or .obj (in groups)
+    #[arg(long, value_name = "FILE", requires = "q", conflicts_with_all = ["first", "limit"])]
+    pub pose: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]
@@ -223,7 +274,8 @@ pub struct Audit {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  sscc info spring.sscc.safetensors\n  sscc info bunny.obj --json")]
 pub struct Info {
-    /// A model (*.model.safetensors), certificates (*.sscc.safetensors) or a mesh (.obj, .off, .ply)
+    /// A model (*.model.safetensors, .glb, .gltf, .npz), certificates (*.sscc.safetensors) or a mesh (.obj, .off, .ply,
+    /// .stl)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]

@@ -25,6 +25,17 @@ pub fn happened() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
+/// Cancels queries on Ctrl-C.
+pub struct Interrupt;
+
+impl sscc::Progress for Interrupt {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn is_cancelled(&self) -> bool {
+        happened()
+    }
+}
+
 /// Stops here if Ctrl-C was pressed.
 pub fn check() -> anyhow::Result<()> {
     if happened() {

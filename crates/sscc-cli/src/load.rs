@@ -5,22 +5,16 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use anyhow::{Context, Result, bail, ensure};
-use sscc::{Certificates, CertifyOptions, Metric, ReducedModel};
-use sscc_io::ModelInfo;
+use sscc::{Certificates, CertifyOptions, Metric, MetricKind, Neighbours, PairRule, ReducedModel, Scope};
+use sscc_io::{LoadOptions, LoadedModel};
 
 use crate::progress::Bar;
 use crate::{args, interrupt};
 
 /// Loads a model.
-pub fn model(files: &args::Model) -> Result<(ReducedModel, ModelInfo)> {
-    // Without welding, triangles that meet at a split vertex would all count as touching.
-    ensure!(
-        !sscc_io::splits_vertices(&files.path),
-        "{}: STL and glTF files split vertices, and this version cannot weld them yet; convert the mesh to OBJ or PLY \
-         with shared vertices",
-        files.path.display()
-    );
-    Ok(sscc_io::load_model(&files.path, files.modes.as_deref())?)
+pub fn model(files: &args::Model) -> Result<LoadedModel> {
+    let options = LoadOptions::new(files.modes.as_deref(), files.mesh_name.as_deref());
+    Ok(sscc_io::load_model_with(&files.path, &options)?)
 }
 
 /// The metric that was asked for, if any.
@@ -34,24 +28,46 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
             "--metric energy: the model carries no stiffness; use displacement, mass, identity or a file"
         ),
         _ => {
-            let weights = sscc_io::read_vector(wanted).with_context(
+            let numbers = sscc_io::read_matrix(wanted).with_context(
                 || "--metric is neither displacement, mass nor identity, so a file was looked for",
             )?;
-            ensure!(
-                weights.len() == model.rank(),
-                "{}: the metric has {} weights, the model has {} modes",
-                wanted.display(),
-                weights.len(),
-                model.rank()
-            );
-            Metric::from_weights(&weights).with_context(|| wanted.display().to_string())?
+            let rank = model.rank();
+            let made = match (numbers.rows, numbers.columns) {
+                (1, n) | (n, 1) if n == rank => Metric::from_weights(MetricKind::Given, &numbers.data),
+                (n, m) if (n, m) == (rank, rank) => {
+                    Metric::from_matrix(MetricKind::Given, rank, &numbers.data)
+                }
+                (1, n) | (n, 1) => {
+                    bail!("{}: the metric has {n} weights, the model has {rank} modes", wanted.display())
+                }
+                (n, m) => {
+                    bail!("{}: the metric is {n} x {m}, the model has {rank} modes", wanted.display())
+                }
+            };
+            made.with_context(|| wanted.display().to_string())?
         }
     };
     // Refused here rather than later, where the flag is no longer known.
-    let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
-    let fits = ReducedModel::with_metric(mesh, modes, metric.clone());
-    fits.with_context(|| format!("--metric {}", wanted.display()))?;
+    metric.check(model.mesh(), model.modes()).with_context(|| format!("--metric {}", wanted.display()))?;
     Ok(Some(metric))
+}
+
+/// The centre that was asked for, if any: numbers, else the name of a file.
+fn center(model: &ReducedModel, typed: Option<&str>) -> Result<Option<Vec<f64>>> {
+    let Some(typed) = typed else { return Ok(None) };
+    let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
+    let center = match numbers {
+        Ok(numbers) => numbers,
+        Err(_) => sscc_io::read_vector(Path::new(typed))
+            .with_context(|| "--center is no list of numbers, so a file was looked for")?,
+    };
+    model.check_coordinates(&center).with_context(|| format!("--center {typed}"))?;
+    Ok(Some(center))
+}
+
+/// Whether to weld where nothing was typed.
+fn welds_by_default(files: &args::Model) -> bool {
+    sscc_io::splits_vertices(&files.path)
 }
 
 /// Number of threads for what was typed.
@@ -63,11 +79,39 @@ pub fn threads(typed: &args::Threads) -> usize {
 }
 
 /// What was typed about computing certificates.
-pub fn options(model: &ReducedModel, typed: &args::Options) -> Result<CertifyOptions> {
+pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<CertifyOptions> {
     Ok(CertifyOptions {
         epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
         metric: metric(model, typed.metric.as_deref())?,
+        center: center(model, typed.center.as_deref())?,
+        neighbours: typed.neighbours.map_or(Neighbours::default(), neighbours),
+        weld: typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
+        ignore_rest: typed.ignore_rest,
+        max_exceptions: typed.max_exceptions,
         threads: Some(threads(&typed.threads)),
+    })
+}
+
+fn neighbours(typed: args::Neighbours) -> Neighbours {
+    match typed {
+        args::Neighbours::Exclude => Neighbours::Exclude,
+        args::Neighbours::IncludeOneVertex => Neighbours::IncludeOneVertex,
+    }
+}
+
+/// What was typed, for a query without certificates.
+pub fn scope(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<Scope> {
+    let options = options(model, files, typed)?;
+    let mut rule = PairRule::new(options.neighbours, options.weld);
+    if options.ignore_rest {
+        rule = rule.ignoring_rest(model).with_context(|| files.path.display().to_string())?;
+    }
+    let default = Scope::of(model);
+    Ok(Scope {
+        metric: options.metric.unwrap_or(default.metric),
+        center: options.center.unwrap_or(default.center),
+        rule,
+        exceptions: Vec::new(),
     })
 }
 
@@ -92,13 +136,39 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
         );
     }
     if let Some(metric) = metric(model, options.metric.as_deref())? {
+        let known = certificates.metric();
         ensure!(
-            metric.scales() == certificates.metric().scales(),
+            (metric.scales(), metric.dense_factor()) == (known.scales(), known.dense_factor()),
             "{}: certified with another metric ({}) than --metric says; leave the flag out, or certify anew",
             name(),
-            certificates.metric().kind().name()
+            known.kind().name()
         );
     }
+    if let Some(center) = center(model, options.center.as_deref())? {
+        ensure!(
+            center == certificates.center(),
+            "{}: certified about another centre than --center says; leave the flag out, or certify anew",
+            name()
+        );
+    }
+    let known = certificates.rule();
+    let typed = PairRule::new(
+        options.neighbours.map_or(known.neighbours, neighbours),
+        options.weld.map_or(known.weld, |weld| weld == args::Switch::On),
+    );
+    certificates.check_rule(&typed.ignoring(known.ignored().iter().copied())).with_context(name)?;
+    ensure!(
+        !options.ignore_rest || known.ignored().len() as u64 == certificates.rest_collisions(),
+        "{}: certified without --ignore-rest; leave the flag out, or certify anew",
+        name()
+    );
+    let exceptions = certificates.exceptions().len();
+    ensure!(
+        options.max_exceptions.is_none_or(|most| exceptions <= most),
+        "{}: certified with {exceptions} exceptions, more than --max-exceptions says; leave the flag out, or certify \
+         anew",
+        name()
+    );
     Ok(certificates)
 }
 

@@ -229,7 +229,7 @@ fn forged_certificates() {
     assert_eq!(sscc(folder, &certify).code, Some(0));
     let mut parts = sscc_io::read_certificates(&folder.join("one.sscc.safetensors")).unwrap().parts().clone();
     let (model, _) = sscc_io::read_model(&folder.join(STRIPS)).unwrap();
-    parts.digest = sscc::Digest::of(&model, &parts.metric);
+    parts.digest = sscc::Digest::of(&model, &parts.scope);
     let forged = sscc::Certificates::from_parts(parts).unwrap();
     sscc_io::write_certificates(&folder.join("forged.sscc.safetensors"), &forged).unwrap();
     let args = ["check", STRIPS, "--certificates", "forged.sscc.safetensors", "--q=0,0"];

@@ -29,5 +29,5 @@ pub use mesh::read_mesh;
 pub use modes::{read_modes, read_modes_for};
 pub use npy::write_npy;
 pub use npz::read_npz_model;
-pub use numbers::{Rows, read_rows, read_vector};
+pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};

@@ -47,6 +47,19 @@ pub fn read_vector(path: &Path) -> Result<Vec<f64>, IoError> {
     parse(&bytes).map_err(|error| error.of(path))
 }
 
+/// Reads a matrix: a `.npy` array of shape (n, m); a vector of any form that [`read_vector`] reads becomes one row.
+///
+/// # Errors
+/// As [`read_rows`] and [`read_vector`].
+pub fn read_matrix(path: &Path) -> Result<Rows, IoError> {
+    let bytes = read_whole(path)?;
+    if ending(path) == "npy" {
+        return parse_rows(&bytes).map_err(|error| error.of(path));
+    }
+    let data = parse_text(&bytes).map_err(|error| error.of(path))?;
+    Ok(Rows { rows: 1, columns: data.len(), data })
+}
+
 fn parse_rows(bytes: &[u8]) -> Result<Rows, FormatError> {
     let array = npy::parse(bytes)?;
     match *array.shape() {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use sscc::{Method, Modes, Query, ReducedModel, TriMesh, intersect_triangle_triangle};
+use sscc::{Method, Modes, Query, ReducedModel, Scope, TriMesh, intersect_triangle_triangle};
 use sscc_modes::shapes;
 
 static HARE: LazyLock<TriMesh> = LazyLock::new(shapes::hare);
@@ -65,7 +65,7 @@ fn no_self_collision_at_rest() {
     for mesh in [&*HARE, &*SERPENT] {
         let still = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 0.0).unwrap();
         let model = ReducedModel::new(mesh.clone(), still).unwrap();
-        let mut query = Query::without_certificates(&model, Method::Traditional);
+        let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
         assert_eq!(query.discrete(&[0.0]).unwrap(), []);
         assert!(query.statistics().triangle_tests > 200, "{:?}", query.statistics());
     }

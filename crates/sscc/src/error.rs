@@ -84,6 +84,12 @@ pub enum Error {
         /// The largest magnitude of an entry of `U S^-1`.
         largest: f64,
     },
+    /// A dense metric that cannot be used.
+    #[error("the metric's matrix cannot be used: {what}")]
+    MetricMatrix {
+        /// What is wrong with it.
+        what: &'static str,
+    },
     /// q of another length.
     #[error("q has {found} entries, the model has {rank} modes")]
     CoordinatesLength {
@@ -103,6 +109,12 @@ pub enum Error {
     /// q so large that positions leave the range in which predicates are exact.
     #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
     CoordinatesRange,
+    /// So many collisions that no list of them is of use.
+    #[error("the rest pose has more than {most} colliding pairs of triangles: is the mesh a surface?")]
+    TooManyCollisions {
+        /// How many would be accepted.
+        most: usize,
+    },
     /// An option out of range.
     #[error("{name} is {value}: it must be {wanted}")]
     Option {
@@ -122,6 +134,12 @@ pub enum Error {
         certificates: String,
         /// Digest of the model at hand (first bytes).
         model: String,
+    },
+    /// Certificates for other pairs of triangles than those asked for.
+    #[error("the certificates do not speak of the pairs asked for: {what}; certify anew")]
+    OtherPairs {
+        /// What differs.
+        what: String,
     },
     /// Parts of certificates that do not fit together.
     #[error("the certificates are damaged: {0}")]

@@ -208,11 +208,13 @@ fn features(model: &ReducedModel, metric: &Metric) -> Vec<Feature> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let p = mesh.rest_positions();
     let mut vertex_features = vec![[0.0; FEATURES]; p.len()];
+    let mut scaled = vec![DVec3::ZERO; modes.rank()];
     for v in mesh.used_vertices() {
         let feature = &mut vertex_features[v as usize];
         feature[..3].copy_from_slice(&p[v as usize].to_array());
-        for (k, (u, s)) in modes.of_vertex(v).iter().zip(metric.scales()).enumerate() {
-            for (c, a) in (*u / *s).to_array().into_iter().enumerate() {
+        metric.scaled_modes(modes.of_vertex(v), &mut scaled);
+        for (k, a) in scaled.iter().enumerate() {
+            for (c, a) in a.to_array().into_iter().enumerate() {
                 let signs = hash(3 * k as u64 + c as u64);
                 for (j, f) in feature[3..].iter_mut().enumerate() {
                     *f += if signs >> j & 1 == 0 { a } else { -a };

@@ -54,9 +54,11 @@ impl TriMesh {
         &self.faces
     }
 
-    /// Whether two faces share a vertex. Adjacent faces are never a self-collision (paper, section 3).
+    /// Whether two faces share a vertex by its number. What that means for collisions, and for vertices that are
+    /// split, says a [`PairRule`](crate::PairRule).
     pub fn are_adjacent(&self, face_a: u32, face_b: u32) -> bool {
-        share_a_vertex(self.faces[face_a as usize], self.faces[face_b as usize])
+        let (a, b) = (self.faces[face_a as usize], self.faces[face_b as usize]);
+        a.iter().any(|v| b.contains(v))
     }
 
     /// The vertices that at least one face uses, ascending.
@@ -67,9 +69,4 @@ impl TriMesh {
         }
         (0..used.len() as u32).filter(|&v| used[v as usize]).collect()
     }
-}
-
-/// What makes two faces adjacent, for queries and certificates alike.
-pub(crate) fn share_a_vertex(a: [u32; 3], b: [u32; 3]) -> bool {
-    a.iter().any(|v| b.contains(v))
 }

@@ -81,6 +81,16 @@ impl ReducedModel {
         Ok((0..self.mesh.rest_positions().len() as u32).map(|v| self.position(v, q)).collect())
     }
 
+    /// An upper bound (up to rounding) of every `|p| + sum_k |U_k q_k|`.
+    pub(crate) fn reach(&self, q: &[f64]) -> f64 {
+        self.rest_reach + self.moved(q)
+    }
+
+    /// An upper bound (up to rounding) of every `sum_k |U_k q_k|`.
+    pub(crate) fn moved(&self, q: &[f64]) -> f64 {
+        self.mode_reach.iter().zip(q).fold(0.0, |moved, (u, x)| moved + u * x.abs())
+    }
+
     /// Refuses a q that is no configuration of this model; else gives the reach of the shape at q, an upper
     /// bound of every `|p| + sum_k |U_k q_k|` (up to rounding), from which error terms are made.
     ///
@@ -90,12 +100,8 @@ impl ReducedModel {
         if q.len() != self.rank() {
             return Err(Error::CoordinatesLength { found: q.len(), rank: self.rank() });
         }
-        let mut reach = self.rest_reach;
-        let mut zero = 0.0;
-        for (u, x) in self.mode_reach.iter().zip(q) {
-            reach += u * x.abs();
-            zero += x * 0.0; // NaN exactly when some entry is NaN or infinite
-        }
+        let reach = self.reach(q);
+        let zero: f64 = q.iter().map(|x| x * 0.0).sum(); // NaN exactly when some entry is NaN or infinite
         if zero != 0.0 || reach.is_nan() {
             let index = q.iter().position(|x| !x.is_finite()).unwrap_or(0);
             return Err(Error::CoordinatesValue { index, value: q[index] });

@@ -5,12 +5,12 @@ mod common;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use common::{Random, critical_z, random_model};
+use common::{Random, at, critical_z, random_model, random_options};
 use glam::DVec3;
 use sscc::hierarchy::{Hierarchy, Node};
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Query,
-    ReducedModel, TriMesh,
+    ReducedModel, Scope, TriMesh,
 };
 
 /// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
@@ -43,8 +43,8 @@ impl sscc::Progress for Budget {
 }
 
 /// Certificates with the default epsilon, or with a loose one where that takes too long.
-fn certify(model: &ReducedModel) -> Option<Certificates> {
-    let options = |epsilon| CertifyOptions { epsilon, threads: Some(1), ..CertifyOptions::default() };
+fn certify(model: &ReducedModel, options: &CertifyOptions) -> Option<Certificates> {
+    let options = |epsilon| CertifyOptions { epsilon, threads: Some(1), ..options.clone() };
     Certificates::compute(model, &options(0.1), &Budget(0.into()))
         .or_else(|_| Certificates::compute(model, &options(0.9), &Budget(0.into())))
         .or_else(|_| Certificates::compute(model, &options(0.999), &Budget(0.into())))
@@ -56,24 +56,53 @@ fn middling() -> (ReducedModel, Certificates) {
     (0..)
         .map(random_model)
         .filter(|model| model.mesh().faces().len() > 20 && model.rank() > 1)
-        .find_map(|model| certify(&model).filter(|c| c.root_radius() > 0.0).map(|c| (model, c)))
+        .find_map(|model| {
+            let certificates = certify(&model, &CertifyOptions::default());
+            let useful = |c: &Certificates| {
+                c.root_radius() > 0.0 && c.exceptions().is_empty() && collisions(&model, c) > 5
+            };
+            certificates.filter(useful).map(|c| (model, c))
+        })
         .unwrap()
+}
+
+/// At how many of 50 random q up to far beyond the root's radius the model collides.
+fn collisions(model: &ReducedModel, certificates: &Certificates) -> usize {
+    let mut query = Query::with_method(model, certificates, Method::Traditional).unwrap();
+    random_q(certificates).iter().filter(|q| query.first(q).is_ok_and(|pair| pair.is_some())).count()
+}
+
+fn random_q(certificates: &Certificates) -> Vec<Vec<f64>> {
+    let random = &mut Random::new(77);
+    let mut q = || {
+        let size = certificates.root_radius() * random.power(-1.0, 2.0);
+        let z: Vec<f64> = certificates.center().iter().map(|_| random.signed() * size).collect();
+        at(&certificates.parts().scope, &z)
+    };
+    (0..50).map(|_| q()).collect()
 }
 
 /// Models whose radii are attacked, and (with seeds of their own) those whose answers are compared.
 const PROVEN: u64 = 1110;
-const COMPARED: u64 = 300;
+const COMPARED: u64 = 1100;
 
-/// Scales q so that its norm lies as close below the radius as products allow; none where there is no room.
-fn just_inside(metric: &Metric, q: &[f64], radius: f64) -> Option<Vec<f64>> {
-    let norm = metric.norm(q);
+/// The q in the direction of z whose norm lies as close below the radius as products allow; none where there is no
+/// room.
+fn just_inside(scope: &Scope, z: &[f64], radius: f64) -> Option<Vec<f64>> {
+    let norm = length(z);
     if norm.is_nan() || norm <= 0.0 || norm.is_infinite() {
         return None;
     }
-    [0.0, 1e-15, 4e-15, 1.6e-14, 1e-12].into_iter().find_map(|less| {
-        let scaled: Vec<f64> = q.iter().map(|x| x / norm * radius * (1.0 - less)).collect();
-        (metric.norm(&scaled) < radius).then_some(scaled)
+    [0.0, 1e-15, 4e-15, 1.6e-14, 1e-12, 1e-9].into_iter().find_map(|less| {
+        let scaled: Vec<f64> = z.iter().map(|x| x / norm * radius * (1.0 - less)).collect();
+        let q = at(scope, &scaled);
+        let offset: Vec<f64> = q.iter().zip(&scope.center).map(|(q, c)| q - c).collect();
+        (scope.metric.norm(&offset) < radius).then_some(q)
     })
+}
+
+fn length(z: &[f64]) -> f64 {
+    z.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn pairs(query: &mut Query<'_>, q: &[f64]) -> Option<Vec<(u32, u32)>> {
@@ -82,19 +111,20 @@ fn pairs(query: &mut Query<'_>, q: &[f64]) -> Option<Vec<(u32, u32)>> {
 
 #[test]
 fn certified_implies_free() {
-    let mut skipped = 0;
+    let (mut skipped, mut scopes) = (0, [0; 6]);
     for seed in 0..PROVEN {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 1_000_000);
-        let Some(certificates) = certify(&model) else {
+        let Some(certificates) = certify(&model, &random_options(seed, &model)) else {
             skipped += 1;
             continue;
         };
-        let metric = certificates.metric().clone();
-        let mut oracle = Query::without_certificates(&model, Method::BruteForce);
+        let parts = certificates.parts();
+        let scope = &parts.scope;
+        count_scope(scope, &model, &mut scopes);
+        let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let hierarchy = certificates.hierarchy();
         let nodes = hierarchy.nodes();
-        let parts = certificates.parts();
         // Sets of pairs (a node with itself, or two nodes) and their radii.
         let mut claims: Vec<(usize, usize, f64)> =
             parts.node_radii.iter().enumerate().map(|(n, r)| (n, n, *r)).collect();
@@ -117,54 +147,70 @@ fn certified_implies_free() {
             let mut directions: Vec<Vec<f64>> = Vec::new();
             for _ in 0..4 {
                 let faces = (in_x[random.below(in_x.len())], in_y[random.below(in_y.len())]);
-                if !model.mesh().are_adjacent(faces.0, faces.1)
-                    && let Some(z) = critical_z(&model, &metric, faces, random)
-                {
-                    directions.push(z.iter().zip(metric.scales()).map(|(z, s)| z / s).collect());
-                }
+                directions.extend(critical_z(&model, scope, faces, random));
             }
             let k = random.below(model.rank());
             for sign in [1.0, -1.0] {
                 directions.push((0..model.rank()).map(|j| if j == k { sign } else { 0.0 }).collect());
             }
-            directions.push(metric.scales().iter().map(|s| random.signed() / s).collect());
-            for q in directions {
+            directions.push((0..model.rank()).map(|_| random.signed()).collect());
+            for z in directions {
                 let goal = if radius.is_finite() { radius } else { random.power(-3.0, 6.0) };
-                let Some(q) = just_inside(&metric, &q, goal) else { continue };
+                let Some(q) = just_inside(scope, &z, goal) else { continue };
                 let Some(found) = pairs(&mut oracle, &q) else { continue };
-                let bad = found.iter().find(|(i, j)| {
-                    in_x.contains(i) && in_y.contains(j) || in_x.contains(j) && in_y.contains(i)
+                let bad = found.iter().find(|pair| {
+                    let (i, j) = pair;
+                    let claimed =
+                        in_x.contains(i) && in_y.contains(j) || in_x.contains(j) && in_y.contains(i);
+                    claimed && !scope.exceptions.contains(pair)
                 });
                 assert!(bad.is_none(), "model {seed}, nodes {n} {m}: {bad:?} below {radius:e}, q = {q:?}");
             }
         }
     }
     assert!(PROVEN - skipped >= 1000, "{skipped} models skipped");
+    assert!(scopes.iter().all(|n| *n > 15), "too few of a kind: {scopes:?}");
 }
 
+/// Counts the kinds of scopes that were tried.
+fn count_scope(scope: &Scope, model: &ReducedModel, counts: &mut [u32; 6]) {
+    let kinds = [
+        scope.metric.dense_factor().is_some(),
+        scope.center.iter().any(|x| *x != 0.0),
+        scope.rule.weld && model.mesh().rest_positions().len() > 2 * model.mesh().faces().len(),
+        scope.rule.neighbours != sscc::Neighbours::Exclude,
+        !scope.exceptions.is_empty(),
+        !scope.rule.ignored().is_empty(),
+    ];
+    counts.iter_mut().zip(kinds).for_each(|(count, is)| *count += u32::from(is));
+}
+
+/// Every method under every kind of rule, one-vertex neighbours and welds included, against brute force.
 #[test]
 fn all_methods_find_the_same_pairs() {
-    let mut skipped = 0;
+    let (mut skipped, mut neighbours, mut partial) = (0, 0, 0);
     for seed in PROVEN..PROVEN + COMPARED {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 2_000_000);
-        let Some(certificates) = certify(&model) else {
+        let options = random_options(seed, &model);
+        let Some(certificates) = certify(&model, &options) else {
             skipped += 1;
             continue;
         };
-        let metric = certificates.metric().clone();
-        let mut oracle = Query::without_certificates(&model, Method::BruteForce);
+        let scope = &certificates.parts().scope;
+        let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let mut methods = [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce]
             .map(|method| Query::with_method(&model, &certificates, method).unwrap());
         let root = certificates.root_radius();
         let unit = if root > 0.0 && root.is_finite() { root } else { 1.0 };
+        let mut asked = Vec::new();
         for sample in 0..14 {
-            let mut q: Vec<f64> = metric.scales().iter().map(|s| random.signed() / s).collect();
+            let mut z: Vec<f64> = (0..model.rank()).map(|_| random.signed()).collect();
             let size = match sample {
                 0 => 0.0,
                 1 => random.power(-300.0, -160.0),
                 2 => {
-                    q[random.below(model.rank())] *= 1e9;
+                    z[random.below(model.rank())] *= 1e9;
                     unit
                 }
                 3 => 1.0 - 1e-14,
@@ -174,14 +220,15 @@ fn all_methods_find_the_same_pairs() {
                 _ => unit * random.power(-12.0, 3.0),
             };
             let size = if sample == 3 || sample == 4 { size * unit } else { size };
-            let norm = metric.norm(&q);
-            q.iter_mut().for_each(|x| *x = *x / norm * size);
+            let norm = length(&z);
+            z.iter_mut().for_each(|x| *x = *x / norm * size);
+            let q = at(scope, &z);
             let Some(expected) = pairs(&mut oracle, &q) else {
                 assert!(methods.iter_mut().all(|m| pairs(m, &q).is_none()), "model {seed}: {q:?}");
                 continue;
             };
             assert!(expected.is_sorted() && expected.iter().all(|(i, j)| i < j), "model {seed}");
-            assert!(expected.iter().all(|(i, j)| !model.mesh().are_adjacent(*i, *j)), "model {seed}");
+            neighbours += expected.iter().filter(|(i, j)| model.mesh().are_adjacent(*i, *j)).count();
             for (i, method) in methods.iter_mut().enumerate() {
                 let found = pairs(method, &q);
                 assert_eq!(
@@ -189,13 +236,30 @@ fn all_methods_find_the_same_pairs() {
                     Some(&expected),
                     "model {seed}, sample {sample}, method {i}: {q:?}"
                 );
+                assert!(method.statistics().complete);
+                let limit = 1 + random.below(5);
+                let some = method.discrete_at_most(&q, limit).unwrap().to_vec();
+                let complete = method.statistics().complete;
+                assert_eq!(some.len(), limit.min(expected.len()), "model {seed}, method {i}");
+                assert!(some.is_sorted() && some.iter().all(|pair| expected.contains(pair)));
+                assert!(complete == (some.len() == expected.len()) || some.len() == limit);
+                partial += usize::from(!complete);
+                assert_eq!(method.first(&q).unwrap().is_some(), !expected.is_empty());
             }
-            if sample == 0 {
+            if sample == 0 && !options.ignore_rest && scope.center.iter().all(|x| *x == 0.0) {
                 assert_eq!(certificates.rest_collisions(), expected.len() as u64, "model {seed}");
             }
+            asked.push((q, expected));
         }
+        let batch: Vec<&[f64]> = asked.iter().map(|(q, _)| &q[..]).collect();
+        let answers = methods[0].batch(&batch, Some(2), &()).unwrap();
+        assert!(
+            answers.iter().zip(&asked).all(|(answer, (_, pairs))| answer.pairs == *pairs),
+            "model {seed}"
+        );
     }
     assert!(skipped < COMPARED / 10, "{skipped} models skipped");
+    assert!(neighbours > 1000 && partial > 1000, "{neighbours} {partial}");
 }
 
 /// Certificates whose hierarchy is over fewer triangles than the model has must be refused somewhere.
@@ -222,11 +286,11 @@ fn root_radius_above_a_pair_is_refused() {
 
 #[test]
 fn the_number_of_threads_changes_no_bit() {
-    for seed in 0..25 {
+    for seed in 0..15 {
         let model = random_model(seed);
         let all = [1, 2, 3].map(|threads| {
-            let options = CertifyOptions { threads: Some(threads), ..CertifyOptions::default() };
-            certify(&model)?;
+            let options = CertifyOptions { threads: Some(threads), ..random_options(seed, &model) };
+            certify(&model, &options)?;
             let parts = Certificates::compute(&model, &options, &()).unwrap().parts().clone();
             let radii = parts.node_radii.iter().chain(&parts.root_pair_radii).chain([&parts.global_radius]);
             Some((radii.map(|r| r.to_bits()).collect::<Vec<_>>(), parts))
@@ -395,14 +459,11 @@ fn one_leaf_is_a_tree() {
         ..parts.clone()
     })
     .unwrap();
-    let mut oracle = Query::without_certificates(&model, Method::BruteForce);
+    let mut oracle = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
     let mut queries = [Method::Certified, Method::BdTree, Method::Traditional]
         .map(|method| Query::with_method(&model, &flat, method).unwrap());
-    let random = &mut Random::new(77);
     let mut collided = 0;
-    for _ in 0..50 {
-        let size = certificates.root_radius() * random.power(-1.0, 2.0);
-        let q: Vec<f64> = certificates.metric().scales().iter().map(|s| random.signed() * size / s).collect();
+    for q in random_q(&certificates) {
         let Some(expected) = pairs(&mut oracle, &q) else { continue };
         collided += usize::from(!expected.is_empty());
         for query in &mut queries {

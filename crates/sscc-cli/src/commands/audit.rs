@@ -19,7 +19,7 @@ struct Report {
 }
 
 pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
-    let (model, _) = load::model(&args.model)?;
+    let model = load::model(&args.model)?.model;
     let certificates = load::certificates(&args.certificates, &model, &args.options)?;
     let options = AuditOptions {
         samples: args.samples as usize,

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde::Serialize;
+use sscc::Certificates;
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
 
@@ -35,8 +36,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
             .flatten()
             .collect();
     load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
-    let (model, _) = load::model(&args.model)?;
-    let options = load::options(&model, &args.options)?;
+    let model = load::model(&args.model)?.model;
+    let options = load::options(&model, &args.model, &args.options)?;
     let start = Instant::now();
     let certificates = load::certify(&model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -56,7 +57,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         global_radius: certificates.global_radius(),
         bytes: bytes.len(),
         rest_collisions: certificates.rest_collisions(),
-        exceptions: 0,
+        exceptions: certificates.exceptions().len(),
     };
     let mut out = Output::new();
     if args.json.json {
@@ -68,18 +69,33 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         }
     }
     out.finish()?;
+    if let Some(note) = note(&certificates) {
+        eprintln!("note: {note}");
+    }
     Ok(Outcome::Done)
+}
+
+/// What to do about radii that promise nothing.
+fn note(certificates: &Certificates) -> Option<String> {
+    let unresolved = certificates.root_radius() <= 0.0 && certificates.exceptions().is_empty();
+    unresolved.then(|| {
+        "the shape collides at the centre in too many places for exceptions (--max-exceptions): radii of parts that \
+         contain such a place are 0; --ignore-rest leaves out what collides at rest"
+            .into()
+    })
 }
 
 impl Report {
     fn lines(&self, metric: &str, output: &Path) -> Vec<String> {
-        let promise = if self.root_radius > 0.0 {
-            format!("root radius    {}: below it the whole shape is free", length(self.root_radius))
-        } else {
-            format!(
-                "root radius    0: the shape collides with itself at rest ({}); the parts that do not are certified",
-                counted(self.rest_collisions, "pair")
-            )
+        let promise = match (self.root_radius > 0.0, self.exceptions) {
+            (true, 0) => "below it the whole shape is free",
+            (true, _) => "below it the whole shape is free, exceptions apart",
+            (false, _) => "the shape collides with itself at the centre; the parts that do not are certified",
+        };
+        let promise = format!("root radius    {}: {promise}", length(self.root_radius));
+        let exceptions = match self.exceptions {
+            0 => "none".to_owned(),
+            n => format!("{}, tested in every query", counted(n as u64, "pair")),
         };
         vec![
             format!(
@@ -91,6 +107,8 @@ impl Report {
             format!("certificates   {} nodes, {} pairs", grouped(self.nodes as u64), self.pairs),
             format!("time           {:.2} s on {}", self.seconds, counted(self.threads as u64, "thread")),
             format!("metric         {metric}"),
+            format!("at rest        {} collide", counted(self.rest_collisions, "pair")),
+            format!("exceptions     {exceptions}"),
             promise,
             format!("resolved up to {}", length(self.global_radius)),
             format!("written        {} ({} bytes)", output.display(), grouped(self.bytes as u64)),

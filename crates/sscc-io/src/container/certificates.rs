@@ -9,37 +9,45 @@
 //! | `node_states` | U8 | n | 0: the radius was resolved; 1: capped at the limit, the true one is no smaller |
 //! | `root_pair_radii` | F64 | p | `R_nm` of the pairs of the root's children: (0,1), (0,2), ..., (2,3) |
 //! | `root_pair_states` | U8 | p | as `node_states` |
-//! | `metric_scales` | F64 | r | the diagonal of the metric's factor S; radii are norms `\|S q\|` |
+//! | `metric_scales` | F64 | r | the diagonal of the metric's factor S, or |
+//! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
 //! | `limit` | F64 | 1 | `R_global`: radii are resolved and stored up to here; may be infinite |
 //! | `epsilon` | F64 | 1 | relative error allowed |
-//! | `center` | F64 | r | the q from which radii are measured: zeros in this version |
-//! | `exceptions` | U32 | 0 x 2 | pairs that the certificates leave out: none in this version |
-//! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest |
+//! | `center` | F64 | r | the q from which radii are measured: they are norms `\|S (q - center)\|` |
+//! | `exceptions` | U32 | e x 2 | pairs that no radius speaks of and every query tests, sorted |
+//! | `ignored` | U32 | i x 2 | pairs that never count, sorted |
+//! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
 //!
 //! Text: `metric` (the kind), `scheme` ("paper"), `pairs` (which pair radii are stored: "root-children"),
-//! `neighbours` ("exclude": triangles that share a vertex are no pair), `weld` ("none"). Nothing is to be
-//! inferred from the scheme's name: it says only how the file came about.
+//! `neighbours` ("exclude": triangles that share a vertex are no pair; "include-one-vertex": those that share just one
+//! count where they meet beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for
+//! adjacency). Nothing is to be inferred from the scheme's name: it says only how the file came about.
 
 use std::path::Path;
 
 use sscc::hierarchy::{Hierarchy, Node};
-use sscc::{CertificateParts, Certificates, Digest, Metric, MetricKind};
+use sscc::{CertificateParts, Certificates, Digest, Neighbours, Pair, PairRule, Scope};
 
-use super::{ANY, CERTIFICATES, Sealed, SealedWriter};
+use super::{ANY, CERTIFICATES, Sealed, SealedWriter, metric};
 use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
 
-/// The texts that have only one value in this version: anything else would change what is proven.
-const RULES: [(&str, &str); 4] =
-    [("scheme", "paper"), ("pairs", "root-children"), ("neighbours", "exclude"), ("weld", "none")];
+/// How the weld is stated.
+const WELD: &str = "equal";
+const NO_WELD: &str = "none";
 
-const TENSORS: [&str; 13] = [
+/// The texts that have only one value in this version: anything else would change what is proven.
+const FIXED: [(&str, &str); 2] = [("scheme", "paper"), ("pairs", "root-children")];
+
+const TENSORS: [&str; 15] = [
     "center",
     "epsilon",
     "exceptions",
+    "ignored",
     "limit",
-    "metric_scales",
+    metric::FACTOR,
+    metric::SCALES,
     "model_digest",
     "node_radii",
     "node_states",
@@ -77,14 +85,18 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
         .iter()
         .flat_map(|n| [n.first_triangle, n.triangle_count, n.first_child, n.child_count])
         .collect();
-    let (order, scales) = (parts.hierarchy.order(), parts.metric.scales());
+    let (order, scope) = (parts.hierarchy.order(), &parts.scope);
+    let flat = |pairs: &[Pair]| -> Vec<u32> { pairs.iter().flat_map(|&(i, j)| [i, j]).collect() };
+    let (exceptions, ignored) = (flat(&scope.exceptions), flat(scope.rule.ignored()));
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let mut writer = SealedWriter::new(CERTIFICATES);
-    for (key, text) in RULES {
+    for (key, text) in FIXED {
         writer.text(key, text);
     }
+    metric::write(&mut writer, &scope.metric);
     writer
-        .text("metric", parts.metric.kind().name())
+        .text("neighbours", scope.rule.neighbours.name())
+        .text("weld", if scope.rule.weld { WELD } else { NO_WELD })
         .u8("model_digest", &[32], &parts.digest.0)
         .u32("nodes", &[nodes.len(), 4], &columns)
         .u32("order", &[order.len()], order)
@@ -92,11 +104,11 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
         .u8("node_states", &[node_radii.len()], &states(node_radii, parts.global_radius))
         .f64("root_pair_radii", &[pair_radii.len()], pair_radii)
         .u8("root_pair_states", &[pair_radii.len()], &states(pair_radii, parts.global_radius))
-        .f64("metric_scales", &[scales.len()], scales)
         .f64("limit", &[1], &[parts.global_radius])
         .f64("epsilon", &[1], &[parts.epsilon])
-        .f64("center", &[scales.len()], &vec![0.0; scales.len()])
-        .u32("exceptions", &[0, 2], &[])
+        .f64("center", &[scope.center.len()], &scope.center)
+        .u32("exceptions", &[exceptions.len() / 2, 2], &exceptions)
+        .u32("ignored", &[ignored.len() / 2, 2], &ignored)
         .u64("rest_collisions", &[1], &[parts.rest_collisions]);
     writer.finish()
 }
@@ -108,20 +120,35 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
 pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError> {
     let file = Sealed::parse(bytes, CERTIFICATES)?;
     file.only(&TENSORS)?;
-    for (key, wanted) in RULES {
+    let unknown = |key: &str, found: &str| {
+        let cause = format!("{} is not known in this version of the format", quoted(found));
+        FormatError::new(Place::Key(key.into()), cause)
+    };
+    for (key, wanted) in FIXED {
         let found = file.text(key)?;
         if found != wanted {
-            let cause = format!("{} is not known in this version of the format", quoted(found));
-            return Err(FormatError::new(Place::Key(key.into()), cause));
+            return Err(unknown(key, found));
         }
     }
-    let metric = read_metric(&file)?;
-    let rank = metric.scales().len();
-    let center = file.f64("center")?.shaped(&[rank])?;
-    if center.values.iter().any(|x| *x != 0.0) {
-        return Err(center.refused("it is not zero, which this version of the format does not know"));
+    let neighbours = file.text("neighbours")?;
+    let neighbours = Neighbours::from_name(neighbours).ok_or_else(|| unknown("neighbours", neighbours))?;
+    let weld = match file.text("weld")? {
+        WELD => true,
+        NO_WELD => false,
+        other => return Err(unknown("weld", other)),
+    };
+    let metric = metric::read(&file, ANY)?;
+    let center = file.f64("center")?.shaped(&[metric.rank()])?;
+    if center.values.iter().any(|x| !x.is_finite()) {
+        return Err(center.refused("it is not finite"));
     }
-    file.u32("exceptions")?.shaped(&[0, 2])?;
+    let ignored = if file.text("version")? == "1" { Vec::new() } else { read_pairs(&file, "ignored")? };
+    let scope = Scope {
+        metric,
+        center: center.values,
+        rule: PairRule::new(neighbours, weld).ignoring(ignored),
+        exceptions: read_pairs(&file, "exceptions")?,
+    };
     let one = |name| file.f64(name)?.shaped(&[1]);
     let epsilon = one("epsilon")?;
     if !(epsilon.values[0] > 0.0 && epsilon.values[0] < 1.0) {
@@ -146,8 +173,8 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let digest = Digest(digest.try_into().unwrap_or_default());
     Ok(Certificates::from_parts(CertificateParts {
         digest,
+        scope,
         hierarchy,
-        metric,
         epsilon: epsilon.values[0],
         global_radius: limit,
         node_radii,
@@ -156,12 +183,15 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     })?)
 }
 
-fn read_metric(file: &Sealed<'_>) -> Result<Metric, FormatError> {
-    let name = file.text("metric")?;
-    let kind = MetricKind::from_name(name).ok_or_else(|| {
-        FormatError::new(Place::Key("metric".into()), format!("unknown metric {}", quoted(name)))
-    })?;
-    Ok(Metric::from_scales(kind, file.f64("metric_scales")?.shaped(&[ANY])?.values)?)
+/// Pairs of triangles `i < j`, sorted, each once.
+fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
+    let tensor = file.u32(name)?.shaped(&[ANY, 2])?;
+    let pairs: Vec<Pair> = tensor.values.as_chunks().0.iter().map(|&[i, j]| (i, j)).collect();
+    if pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|(i, j)| i < j) {
+        Ok(pairs)
+    } else {
+        Err(tensor.refused("pairs are not in order"))
+    }
 }
 
 fn read_hierarchy(file: &Sealed<'_>) -> Result<Hierarchy, FormatError> {

@@ -18,7 +18,8 @@ pub struct Kind {
 pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 1 };
 
 /// Certificates of a model: `*.sscc.safetensors`.
-pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 1 };
+/// Version 1 knew no pairs to be ignored, and no other centre, rule or exceptions than none.
+pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 2 };
 
 impl Kind {
     /// Checks the text entries `format` and `version`; gives the version.

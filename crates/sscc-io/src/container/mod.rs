@@ -8,6 +8,7 @@
 mod certificates;
 mod header;
 mod kind;
+mod metric;
 mod model;
 mod sealed;
 mod tensor;

@@ -5,19 +5,19 @@
 //! | `rest_positions` | F64 | V x 3 | model unit |
 //! | `faces` | U32 | N x 3 | vertex numbers from 0 |
 //! | `modes` | F64 | V x 3 x r | NumPy's `modes.reshape(3 * V, r)` is U |
-//! | `metric_scales` | F64 | r | the diagonal of the default metric's factor S |
+//! | `metric_scales` | F64 | r | the diagonal of the default metric's factor S, or |
+//! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
 //!
 //! Text: `metric` (the name of the metric's kind), `units`, `provenance`.
 
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
+use sscc::{Modes, ReducedModel, TriMesh};
 
-use super::{ANY, MODEL, Sealed, SealedWriter};
-use crate::error::quoted;
+use super::{ANY, MODEL, Sealed, SealedWriter, metric};
 use crate::file::{read_whole, write_whole};
-use crate::{FormatError, IoError, Place};
+use crate::{FormatError, IoError};
 
 /// What a model file says beside the numbers. Free text; empty where nothing is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -57,7 +57,7 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// # Errors
 /// When the texts are beyond 1 MiB.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
-    let (mesh, modes, metric) = (model.mesh(), model.modes(), model.metric());
+    let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());
     let positions: Vec<f64> = mesh.rest_positions().iter().flat_map(|p| p.to_array()).collect();
     let by_axis: Vec<f64> = modes
@@ -66,14 +66,13 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .flat_map(|of_vertex| (0..3).flat_map(move |axis| of_vertex.iter().map(move |u| u[axis])))
         .collect();
     let mut writer = SealedWriter::new(MODEL);
+    metric::write(&mut writer, model.metric());
     writer
-        .text("metric", metric.kind().name())
         .text("units", &info.units)
         .text("provenance", &info.provenance)
         .f64("rest_positions", &[vertices, 3], &positions)
         .u32("faces", &[mesh.faces().len(), 3], mesh.faces().as_flattened())
-        .f64("modes", &[vertices, 3, rank], &by_axis)
-        .f64("metric_scales", &[rank], metric.scales());
+        .f64("modes", &[vertices, 3, rank], &by_axis);
     writer.finish()
 }
 
@@ -83,21 +82,17 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 /// As [`read_model`], but for the file's name.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
     let file = Sealed::parse(bytes, MODEL)?;
-    file.only(&["faces", "metric_scales", "modes", "rest_positions"])?;
+    file.only(&["faces", metric::FACTOR, metric::SCALES, "modes", "rest_positions"])?;
     let positions = file.f64("rest_positions")?.shaped(&[ANY, 3])?;
     let vertices = positions.shape[0];
     let positions = positions.values.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
     let faces = file.u32("faces")?.shaped(&[ANY, 3])?.values.as_chunks().0.to_vec();
     let modes = file.f64("modes")?.shaped(&[vertices, 3, ANY])?;
     let rank = modes.shape[2];
-    let metric = file.text("metric")?;
-    let kind = MetricKind::from_name(metric).ok_or_else(|| {
-        FormatError::new(Place::Key("metric".into()), format!("unknown metric {}", quoted(metric)))
-    })?;
-    let scales = file.f64("metric_scales")?.shaped(&[rank])?.values;
+    let metric = metric::read(&file, rank)?;
     let mesh = TriMesh::new(positions, faces)?;
     let modes = Modes::from_matrix(vertices, rank, |row, k| modes.values[row * rank + k])?;
-    let model = ReducedModel::with_metric(mesh, modes, Metric::from_scales(kind, scales)?)?;
+    let model = ReducedModel::with_metric(mesh, modes, metric)?;
     Ok((model, ModelInfo::new(file.text("units")?, file.text("provenance")?)))
 }
 

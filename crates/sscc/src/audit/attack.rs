@@ -95,7 +95,7 @@ impl Attack<'_> {
         };
         let q = self.just_inside(radius, sample, &mut random)?;
         let (pairs, norm) = match target {
-            None => (whole.discrete(&q).ok()?.to_vec(), whole.norm()),
+            None => (whole.discrete_between(0, 0, &q).ok()?.to_vec(), whole.norm()),
             Some((n, m)) => (part.discrete_between(n, m, &q).ok()?.to_vec(), part.norm()),
         };
         if norm < radius && !pairs.is_empty() {
@@ -109,27 +109,30 @@ impl Attack<'_> {
 
     /// A q with `|z|` just below the radius, in a known hot direction, near one, or in a random one.
     fn just_inside(&self, radius: f64, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
-        let metric = self.certificates.metric();
-        let scales = metric.scales();
+        let scope = &self.certificates.parts().scope;
+        let rank = scope.center.len();
         let decay = sample % 3;
-        let mut q: Vec<f64> = match sample % 4 {
+        // Ways from the centre.
+        let mut way: Vec<f64> = match sample % 4 {
             0 | 1 if !self.hot.is_empty() => {
                 let hot = &self.hot[random.below(self.hot.len())].q;
                 let noise = if sample.is_multiple_of(4) { 0.0 } else { 0.1 * random.uniform() };
-                let size = self.certificates.metric().norm(hot) / (scales.len() as f64).sqrt();
-                hot.iter().zip(scales).map(|(x, s)| x + noise * size * random.normal() / s).collect()
+                let size = noise * scope.norm(hot) / (rank as f64).sqrt();
+                let shift = scope.metric.unscaled(&random.normals(rank));
+                hot.iter().zip(&scope.center).zip(shift).map(|((x, c), d)| x - c + size * d).collect()
             }
             2 if sample % 8 == 2 => {
-                let mode = random.below(scales.len());
+                let mode = random.below(rank);
                 let sign = if random.uniform() < 0.5 { 1.0 } else { -1.0 };
-                (0..scales.len()).map(|k| if k == mode { sign } else { 0.0 }).collect()
+                (0..rank).map(|k| if k == mode { sign } else { 0.0 }).collect()
             }
             _ => {
                 let weight = |k: usize| 1.0 / (1.0 + k as f64).powi(decay as i32);
-                scales.iter().enumerate().map(|(k, s)| weight(k) * random.normal() / s).collect()
+                let z = random.normals(rank);
+                scope.metric.unscaled(&z.iter().enumerate().map(|(k, z)| weight(k) * z).collect::<Vec<_>>())
             }
         };
-        let norm = metric.norm(&q);
+        let norm = scope.metric.norm(&way);
         // Three in four as close as the rounding of norms allows, the others anywhere inside.
         let share = if random.below(4) > 0 { 1.0 - 1e-13 } else { random.uniform() };
         // An infinite radius is tried at any size that keeps positions in range.
@@ -137,7 +140,7 @@ impl Attack<'_> {
         if !(norm > 0.0 && goal > 0.0) {
             return None;
         }
-        q.iter_mut().for_each(|x| *x *= goal * share / norm);
-        Some(q)
+        way.iter_mut().zip(&scope.center).for_each(|(x, c)| *x = c + *x * (goal * share / norm));
+        Some(way)
     }
 }

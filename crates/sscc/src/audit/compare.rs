@@ -47,20 +47,14 @@ pub(super) fn compare(
 /// five times it.
 fn random_q(certificates: &Certificates, seed: u64, sample: usize) -> Vec<f64> {
     let mut random = Random::new(seed, 2_000_000 + sample as u64);
-    let metric = certificates.metric();
-    let mut q: Vec<f64> = metric
-        .scales()
-        .iter()
-        .enumerate()
-        .map(|(k, s)| random.normal() / ((1.0 + k as f64).powi(sample as i32 % 3) * s))
-        .collect();
+    let scope = &certificates.parts().scope;
+    let weight = |k: usize| (1.0 + k as f64).powi(sample as i32 % 3);
+    let z = random.normals(scope.center.len());
+    let z: Vec<f64> = z.iter().enumerate().map(|(k, z)| z / weight(k)).collect();
     let (root, global) = (certificates.root_radius(), certificates.global_radius());
     let radius = if root > 0.0 { root } else { global / 25.0 };
     let goal =
         if radius.is_finite() { radius } else { 1.0 } * (0.2 + 4.8 * random.uniform() * random.uniform());
-    let norm = metric.norm(&q);
-    if norm > 0.0 {
-        q.iter_mut().for_each(|x| *x *= goal / norm);
-    }
-    q
+    let norm = z.iter().map(|z| z * z).sum::<f64>().sqrt();
+    scope.at(&z, if norm > 0.0 { goal / norm } else { 0.0 })
 }

@@ -4,7 +4,8 @@ use glam::{DMat3, DVec3};
 
 use super::random::Random;
 use crate::bounds::ScaledModel;
-use crate::{Metric, ReducedModel, intersect_triangle_triangle};
+use crate::pairs::PairFilter;
+use crate::{Pair, ReducedModel, Scope};
 
 /// A configuration at which two points of two triangles meet, up to rounding.
 ///
@@ -13,9 +14,9 @@ use crate::{Metric, ReducedModel, intersect_triangle_triangle};
 /// exact test confirms at a smaller norm than a radius proves that radius wrong.
 #[derive(Clone, Debug)]
 pub(super) struct Collision {
-    pub(super) faces: (u32, u32),
+    pub(super) faces: Pair,
     pub(super) q: Vec<f64>,
-    /// `|S q|`, rounded up.
+    /// `|S (q - center)|`, rounded up.
     pub(super) norm: f64,
     /// Whether the triangles collide at q on the computed positions.
     pub(super) confirmed: bool,
@@ -27,105 +28,110 @@ const GRID: usize = 6;
 /// Steps of the local search.
 const STEPS: usize = 400;
 
-/// Searches the smallest `|z|` at which two triangles meet: over point pairs, whose smallest z is known in
-/// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
-/// rays.
-pub(super) fn closest_collision(
-    model: &ReducedModel,
-    metric: &Metric,
-    scaled: &ScaledModel,
-    faces: (u32, u32),
-    random: &mut Random,
-) -> Option<Collision> {
-    let pair = PointPairs { scaled, x: scaled.faces[faces.0 as usize], y: scaled.faces[faces.1 as usize] };
-    let mut best = (f64::INFINITY, [DVec3::X; 2]);
-    for x in grid() {
-        for y in grid() {
-            let radius = pair.radius([x, y]);
-            if radius < best.0 {
-                best = (radius, [x, y]);
-            }
-        }
-    }
-    let mut width = 1.0 / GRID as f64;
-    for _ in 0..if best.0.is_finite() { STEPS } else { 0 } {
-        let mut step = |w: DVec3| {
-            let moved = w + DVec3::new(random.normal(), random.normal(), random.normal()) * width;
-            let clamped = moved.max(DVec3::ZERO);
-            clamped / (clamped.x + clamped.y + clamped.z).max(f64::MIN_POSITIVE)
-        };
-        let trial = best.1.map(&mut step);
-        let radius = pair.radius(trial);
-        if radius < best.0 {
-            best = (radius, trial);
-        } else {
-            width = (width * 0.98).max(1e-9);
-        }
-    }
-    if !best.0.is_finite() {
-        return along_rays(model, metric, &pair, faces, random);
-    }
-    let z = pair.solution(best.1);
-    let at =
-        |factor: f64| -> Vec<f64> { z.iter().zip(metric.scales()).map(|(z, s)| factor * z / s).collect() };
-    let factors = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6];
-    let confirmed = factors.into_iter().map(at).find(|q| collides(model, faces, q));
-    let q = confirmed.clone().unwrap_or_else(|| at(1.0));
-    Some(Collision { faces, norm: metric.norm(&q), q, confirmed: confirmed.is_some() })
+/// What is known of the certificates under attack.
+#[derive(Clone, Copy)]
+pub(super) struct Minimum<'a> {
+    pub(super) model: &'a ReducedModel,
+    pub(super) scope: &'a Scope,
+    pub(super) scaled: &'a ScaledModel,
+    pub(super) filter: &'a PairFilter,
 }
 
-/// Whether two triangles collide at q, on the computed positions.
-pub(super) fn collides(model: &ReducedModel, faces: (u32, u32), q: &[f64]) -> bool {
-    let corners = |face: u32| model.mesh().faces()[face as usize].map(|v| model.position(v, q));
-    model.check_coordinates(q).is_ok() && intersect_triangle_triangle(&corners(faces.0), &corners(faces.1))
-}
+impl Minimum<'_> {
+    /// Searches the smallest `|z|` at which two triangles collide: over point pairs, whose smallest z is known in
+    /// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
+    /// rays.
+    pub(super) fn search(&self, faces: Pair, random: &mut Random) -> Option<Collision> {
+        let found = self
+            .filter
+            .hulls(faces.0, faces.1)
+            .filter_map(|(x, y)| self.of_hulls(faces, &PointPairs { scaled: self.scaled, x, y }, random));
+        found.reduce(|a, b| if b.norm < a.norm { b } else { a })
+    }
 
-/// Looks for collisions along rays: along each mode, and along the ways in which points of the pair approach.
-fn along_rays(
-    model: &ReducedModel,
-    metric: &Metric,
-    pair: &PointPairs<'_>,
-    faces: (u32, u32),
-    random: &mut Random,
-) -> Option<Collision> {
-    let rank = metric.scales().len();
-    let mut rays: Vec<Vec<f64>> = Vec::new();
-    for k in 0..rank.min(8) {
-        for sign in [1.0, -1.0] {
-            rays.push((0..rank).map(|j| if j == k { sign } else { 0.0 }).collect());
-        }
-    }
-    for _ in 0..24 {
-        let weights = [(); 2].map(|()| {
-            let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
-            w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
-        });
-        let (d, b) = pair.relative(weights);
-        rays.push((0..rank).map(|k| -b[k].dot(d)).collect());
-    }
-    let mut best: Option<Collision> = None;
-    for ray in rays {
-        let length = ray.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            continue;
-        }
-        // The gap closes at about this |z|, if ever; look on both sides of it.
-        let (d, b) = pair.relative([DVec3::ONE / 3.0; 2]);
-        let rate: f64 = (0..rank).map(|k| b[k].dot(d) * ray[k]).sum::<f64>() / length;
-        let guess = if rate < 0.0 { -d.length_squared() / rate } else { continue };
-        for step in 1..200 {
-            let t = guess * f64::from(step) * 0.02;
-            let q: Vec<f64> = ray.iter().zip(metric.scales()).map(|(x, s)| x * (t / length) / s).collect();
-            if collides(model, faces, &q) {
-                let norm = metric.norm(&q);
-                if best.as_ref().is_none_or(|b| norm < b.norm) {
-                    best = Some(Collision { faces, q, norm, confirmed: true });
+    fn of_hulls(&self, faces: Pair, pair: &PointPairs<'_>, random: &mut Random) -> Option<Collision> {
+        let mut best = (f64::INFINITY, [DVec3::X; 2]);
+        for x in grid() {
+            for y in grid() {
+                let radius = pair.radius([x, y]);
+                if radius < best.0 {
+                    best = (radius, [x, y]);
                 }
-                break;
             }
         }
+        let mut width = 1.0 / GRID as f64;
+        for _ in 0..if best.0.is_finite() { STEPS } else { 0 } {
+            let mut step = |w: DVec3| {
+                let moved = w + DVec3::new(random.normal(), random.normal(), random.normal()) * width;
+                let clamped = moved.max(DVec3::ZERO);
+                clamped / (clamped.x + clamped.y + clamped.z).max(f64::MIN_POSITIVE)
+            };
+            let trial = best.1.map(&mut step);
+            let radius = pair.radius(trial);
+            if radius < best.0 {
+                best = (radius, trial);
+            } else {
+                width = (width * 0.98).max(1e-9);
+            }
+        }
+        if !best.0.is_finite() {
+            return self.along_rays(faces, pair, random);
+        }
+        let z = &pair.solution(best.1)[..self.model.rank()];
+        let factors = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6];
+        let confirmed = factors.into_iter().map(|f| self.scope.at(z, f)).find(|q| self.collides(faces, q));
+        let q = confirmed.clone().unwrap_or_else(|| self.scope.at(z, 1.0));
+        Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed: confirmed.is_some() })
     }
-    best
+
+    /// Whether two triangles collide at q, on the computed positions.
+    fn collides(&self, faces: Pair, q: &[f64]) -> bool {
+        let corners = |face: u32| self.model.mesh().faces()[face as usize].map(|v| self.model.position(v, q));
+        self.model.check_coordinates(q).is_ok()
+            && self.filter.collide(faces, &corners(faces.0), &corners(faces.1))
+    }
+
+    /// Looks for collisions along rays: along each mode, and along the ways in which points of the pair approach.
+    fn along_rays(&self, faces: Pair, pair: &PointPairs<'_>, random: &mut Random) -> Option<Collision> {
+        let rank = self.model.rank();
+        let mut rays: Vec<Vec<f64>> = Vec::new();
+        for k in 0..rank.min(8) {
+            for sign in [1.0, -1.0] {
+                rays.push((0..rank).map(|j| if j == k { sign } else { 0.0 }).collect());
+            }
+        }
+        for _ in 0..24 {
+            let weights = [(); 2].map(|()| {
+                let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
+                w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
+            });
+            let (d, b) = pair.relative(weights);
+            rays.push((0..rank).map(|k| -b[k].dot(d)).collect());
+        }
+        let mut best: Option<Collision> = None;
+        for ray in rays {
+            let length = ray.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                continue;
+            }
+            // The gap closes at about this |z|, if ever; look on both sides of it.
+            let (d, b) = pair.relative([DVec3::ONE / 3.0; 2]);
+            let rate: f64 = (0..rank).map(|k| b[k].dot(d) * ray[k]).sum::<f64>() / length;
+            let guess = if rate < 0.0 { -d.length_squared() / rate } else { continue };
+            for step in 1..200 {
+                let t = guess * f64::from(step) * 0.02;
+                let q = self.scope.at(&ray, t / length);
+                if self.collides(faces, &q) {
+                    let norm = self.scope.norm(&q);
+                    if best.as_ref().is_none_or(|b| norm < b.norm) {
+                        best = Some(Collision { faces, q, norm, confirmed: true });
+                    }
+                    break;
+                }
+            }
+        }
+        best
+    }
 }
 
 /// Points of two triangles, given by barycentric weights.

@@ -11,6 +11,7 @@ mod minimum;
 mod random;
 mod tightness;
 
+use crate::threads::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
 /// How hard to attack.
@@ -75,9 +76,6 @@ pub fn audit(
             tightness_min: all.first().copied(),
         })
     };
-    let report = match rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build() {
-        Ok(pool) => pool.install(run),
-        Err(_) => run(),
-    };
+    let report = on_threads(options.threads, run);
     if progress.is_cancelled() { Err(Error::Cancelled) } else { report }
 }

@@ -29,6 +29,11 @@ impl Random {
         ((self.uniform() * n as f64) as usize).min(n.saturating_sub(1))
     }
 
+    /// So many of [`Random::normal`].
+    pub(super) fn normals(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.normal()).collect()
+    }
+
     /// Nearly normal, mean 0 and variance 1 (a sum of twelve uniform numbers: no library functions, so the
     /// same bits everywhere).
     pub(super) fn normal(&mut self) -> f64 {

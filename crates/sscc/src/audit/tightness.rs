@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::minimum::{Collision, closest_collision};
+use super::minimum::{Collision, Minimum};
 use super::random::Random;
 use crate::bounds::{ClusterBounds, ScaledModel};
 use crate::certificates::{Search, child_pairs};
+use crate::pairs::PairFilter;
 use crate::{Certificates, Progress, ReducedModel};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -36,8 +37,10 @@ pub(super) fn measure(
 ) -> Tightness {
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
-    let scaled = ScaledModel::new(model, &parts.metric);
+    let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
+    let filter = PairFilter::new(model, &parts.scope.rule).without(&parts.scope.exceptions);
     let clusters = ClusterBounds::new(&scaled, &parts.hierarchy);
+    let minimum = Minimum { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
     let open = |radius: f64| radius > 0.0 && radius < parts.global_radius;
     let mut claims = vec![(Claim::Node(0), parts.node_radii[0])];
     claims.extend(
@@ -50,7 +53,8 @@ pub(super) fn measure(
         .enumerate()
         .filter(|(_, (_, radius))| open(*radius))
         .map(|(i, &(claim, radius))| {
-            let mut search = Search::new(&scaled, &parts.hierarchy, &clusters, parts.epsilon, progress);
+            let mut search =
+                Search::new(&scaled, &filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
             match claim {
                 Claim::RootPair(n, m) => search.between([(n, m)], parts.global_radius),
                 Claim::Node(n) => {
@@ -64,9 +68,7 @@ pub(super) fn measure(
                 }
             };
             let mut random = Random::new(seed, i as u64);
-            let collision = search
-                .hottest()
-                .and_then(|faces| closest_collision(model, &parts.metric, &scaled, faces, &mut random));
+            let collision = search.hottest().and_then(|faces| minimum.search(faces, &mut random));
             (i == 0, radius, collision)
         })
         .collect();

@@ -12,6 +12,7 @@ mod contact;
 mod direction;
 mod lanes;
 mod min_norm;
+mod path;
 #[cfg(test)]
 mod reference;
 mod scaled;
@@ -20,5 +21,6 @@ mod tests;
 mod triangle_pair;
 
 pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use path::Path;
 pub(crate) use scaled::ScaledModel;
 pub(crate) use triangle_pair::{PairRefiner, Target};

@@ -3,14 +3,15 @@
 use glam::DVec3;
 
 use super::lanes::padded;
-use crate::mesh::share_a_vertex;
 use crate::{Metric, ReducedModel};
 
 /// Bounds, for two points of the shape and a direction n, by how much the computed gap along n may
 /// fall short of `n.(d + B z)` in exact arithmetic: at most `rest(n) + rate(n) |z|`.
 ///
 /// Two things add up. The positions are computed with r products and r sums, each rounded once: at most
-/// `gamma_(r+1) sum_c |n_c| ((|p_x| + |p_y|)_c + sum_k (|A_x| + |A_y|)_ck |z_k|)`, plus underflow. And the bounds
+/// `gamma_(r+1) sum_c |n_c| ((|p_x| + |p_y|)_c + sum_k (|A_x| + |A_y|)_ck |z_k|)`, plus underflow; about a centre c,
+/// p is `|p| + |U||c|`, and the positions there are rounded once more in the same way; for a dense metric A is
+/// `|A||S||S^-1|`, which also covers what solving for A rounds. And the bounds
 /// evaluate `n.d`, `B'n`, scaled modes, midpoints and box corners with a few more roundings of the same
 /// magnitudes. One gamma with room for both is used for all points of the model:
 /// Cauchy-Schwarz over k turns the sum into `|z|` times the 2-norm of a row of A.
@@ -70,7 +71,7 @@ pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
     sum_of_squares.sqrt() * (1.0 + (terms as f64 + 16.0) * f64::EPSILON)
 }
 
-/// Rest positions and scaled modes of a model, laid out for the bounds.
+/// Positions at the centre (called rest below) and scaled modes of a model, laid out for the bounds.
 pub(crate) struct ScaledModel {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) faces: Vec<[u32; 3]>,
@@ -82,21 +83,29 @@ pub(crate) struct ScaledModel {
 }
 
 impl ScaledModel {
-    pub(crate) fn new(model: &ReducedModel, metric: &Metric) -> Self {
+    /// About the configuration `center`, from which z and radii are measured.
+    pub(crate) fn new(model: &ReducedModel, metric: &Metric, center: &[f64]) -> Self {
         let mesh = model.mesh();
-        let positions = mesh.rest_positions().to_vec();
-        let row = padded(model.rank());
+        let rank = model.rank();
+        let positions: Vec<DVec3> =
+            (0..mesh.rest_positions().len() as u32).map(|v| model.position(v, center)).collect();
+        let row = padded(rank);
         let mut modes = vec![0.0; positions.len() * 3 * row];
         let mut rest_reach = DVec3::ZERO;
         let mut rate_reach = DVec3::ZERO;
+        let (mut scaled, mut magnitudes) = (vec![DVec3::ZERO; rank], vec![DVec3::ZERO; rank]);
         for v in mesh.used_vertices() {
             let rows = &mut modes[v as usize * 3 * row..][..3 * row];
-            for (k, (u, s)) in model.modes().of_vertex(v).iter().zip(metric.scales()).enumerate() {
-                let a = *u / *s;
+            let of_vertex = model.modes().of_vertex(v);
+            metric.scaled_modes(of_vertex, &mut scaled);
+            for (k, a) in scaled.iter().enumerate() {
                 [rows[k], rows[row + k], rows[2 * row + k]] = a.to_array();
             }
-            rest_reach = rest_reach.max(positions[v as usize].abs());
-            let norm = |c: usize| norm_up(rows[c * row..][..row].iter().map(|a| a * a).sum(), row);
+            // What is added up on the way to the centre is rounded, too.
+            let moved: DVec3 = of_vertex.iter().zip(center).map(|(u, q)| (*u * *q).abs()).sum();
+            rest_reach = rest_reach.max(mesh.rest_positions()[v as usize].abs() + moved);
+            metric.magnitudes(&scaled, &mut magnitudes);
+            let norm = |c: usize| norm_up(magnitudes.iter().map(|m| m[c] * m[c]).sum(), row);
             rate_reach = rate_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
         // A component that never moves beside others that do still needs an error above what squares
@@ -112,9 +121,5 @@ impl ScaledModel {
     pub(crate) fn modes(&self, vertex: u32) -> &[f64] {
         let width = 3 * self.row;
         &self.modes[vertex as usize * width..][..width]
-    }
-
-    pub(crate) fn are_adjacent(&self, a: u32, b: u32) -> bool {
-        share_a_vertex(self.faces[a as usize], self.faces[b as usize])
     }
 }

@@ -119,7 +119,7 @@ fn reference(model: &ReducedModel, faces: [u32; 2]) -> Pair {
     let corners: Vec<u32> = faces.iter().flat_map(|&f| model.mesh().faces()[f as usize]).collect();
     let scaled = |v: u32| {
         let u = model.modes().of_vertex(v).iter().zip(model.metric().scales());
-        u.map(|(u, s)| *u / *s).collect()
+        u.map(|(u, s)| *u / s).collect()
     };
     Pair {
         p: std::array::from_fn(|i| model.mesh().rest_positions()[corners[i] as usize]),
@@ -142,7 +142,7 @@ fn far_target() -> Target {
 
 /// All bounds of one pair of triangles, by name.
 fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
-    let scaled = ScaledModel::new(model, model.metric());
+    let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let pair = triangle_pair(&scaled);
     let differences = pair.differences();
     let row = scaled.row;
@@ -170,9 +170,10 @@ fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f
         }
     }
     let mut refiner = PairRefiner::new(&scaled);
-    bounds.push(("estimate", refiner.estimate(0, 1)));
-    bounds.push(("refine", refiner.refine(0, 1, &mut far_target())));
-    let order = refiner.refine(1, 0, &mut Target { epsilon: 0.01, ..far_target() });
+    let (x, y) = ([0, 1, 2], [3, 4, 5]);
+    bounds.push(("estimate", refiner.estimate(x, y)));
+    bounds.push(("refine", refiner.refine(x, y, &mut far_target())));
+    let order = refiner.refine(y, x, &mut Target { epsilon: 0.01, ..far_target() });
     bounds.push(("refine exchanged", order));
     bounds
 }
@@ -250,7 +251,7 @@ fn rest_distance_is_never_too_large() {
     for case in 0..600_u64 {
         let random = &mut Random::new(case + 10_000);
         let model = random_pair(case as usize % KINDS, random);
-        let scaled = ScaledModel::new(&model, model.metric());
+        let scaled = ScaledModel::new(&model, model.metric(), &vec![0.0; model.rank()]);
         let differences = triangle_pair(&scaled).differences();
         let distance = reference(&model, [0, 1]).rest_distance(4, random);
         for n in [nearest_to_origin(&differences).point, random.vector(), differences.iter().sum()] {
@@ -316,7 +317,7 @@ fn two_leaves(split: u32, count: u32) -> Hierarchy {
 }
 
 fn cluster_bound(model: &ReducedModel, split: u32) -> f64 {
-    let scaled = ScaledModel::new(model, model.metric());
+    let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);
     let clusters = ClusterBounds::new(&scaled, &hierarchy);
     cluster_pair(&clusters, &scaled, 1, 2, f64::INFINITY, &mut ClusterScratch::new(scaled.row))

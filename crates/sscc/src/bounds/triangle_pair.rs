@@ -105,9 +105,9 @@ impl<'a> PairRefiner<'a> {
         }
     }
 
-    /// A cheap certified lower bound: the direction between the centroids.
-    pub(crate) fn estimate(&mut self, face_x: u32, face_y: u32) -> f64 {
-        let pair = self.pair(face_x, face_y);
+    /// A cheap certified lower bound for two triangles, given by their vertices: the direction between the centroids.
+    pub(crate) fn estimate(&mut self, x: [u32; 3], y: [u32; 3]) -> f64 {
+        let pair = self.pair(x, y);
         let differences = pair.differences();
         match direction(differences.iter().sum()) {
             Some(n) => direction_bound(&pair, &differences, n, &self.model.error, &mut self.projections),
@@ -115,9 +115,8 @@ impl<'a> PairRefiner<'a> {
         }
     }
 
-    fn pair(&self, face_x: u32, face_y: u32) -> TrianglePair<'a> {
+    fn pair(&self, x: [u32; 3], y: [u32; 3]) -> TrianglePair<'a> {
         let model = self.model;
-        let (x, y) = (model.faces[face_x as usize], model.faces[face_y as usize]);
         TrianglePair {
             x: x.map(|v| model.positions[v as usize]),
             y: y.map(|v| model.positions[v as usize]),
@@ -126,10 +125,10 @@ impl<'a> PairRefiner<'a> {
         }
     }
 
-    /// A certified lower bound for two triangles, refined until it is at least `target.enough()` or certain
+    /// A certified lower bound for two triangles, given by their vertices, refined until it is at least `target.enough()` or certain
     /// to be as good as asked; upper bounds met on the way lower `target.upper`.
-    pub(crate) fn refine(&mut self, face_x: u32, face_y: u32, target: &mut Target) -> f64 {
-        let pair = self.pair(face_x, face_y);
+    pub(crate) fn refine(&mut self, x: [u32; 3], y: [u32; 3], target: &mut Target) -> f64 {
+        let pair = self.pair(x, y);
         let lower = self.bound(&pair, target);
         if lower >= target.enough() || lower <= 0.0 {
             return lower;

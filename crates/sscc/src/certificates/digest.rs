@@ -1,46 +1,86 @@
 //! The digest of everything that certificates speak of.
 
-use crate::{Metric, ReducedModel};
+use super::Scope;
+use crate::pairs::weld_classes;
+use crate::{Neighbours, ReducedModel};
 
-/// BLAKE3 of faces, f64 positions, f64 modes, the certificates' metric, and the rules under which pairs
-/// count. Certificates whose digest differs from the model's would be a wrong proof.
+/// BLAKE3 of faces, f64 positions, f64 modes, and everything in the certificates' [`Scope`]. Certificates whose
+/// digest differs from the model's would be a wrong proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// The digest of a model with the metric of its certificates.
-    pub fn of(model: &ReducedModel, metric: &Metric) -> Self {
-        let mut hasher = blake3::Hasher::new();
-        let mut section = |name: &str, count: usize, bytes: &mut dyn Iterator<Item = [u8; 8]>| {
-            hasher.update(name.as_bytes());
-            hasher.update(&(count as u64).to_le_bytes());
-            let mut buffer = Vec::with_capacity(1 << 16);
-            for b in bytes {
-                buffer.extend_from_slice(&b);
-                if buffer.len() == buffer.capacity() {
-                    hasher.update(&buffer);
-                    buffer.clear();
-                }
-            }
-            hasher.update(&buffer);
-        };
+    /// The digest of a model with the scope of its certificates.
+    pub fn of(model: &ReducedModel, scope: &Scope) -> Self {
+        let mut sections = Sections(blake3::Hasher::new());
         let (mesh, modes) = (model.mesh(), model.modes());
-        let bits = |x: f64| x.to_bits().to_le_bytes();
-        let faces = mesh.faces();
-        section("faces", faces.len(), &mut faces.iter().flatten().map(|&v| u64::from(v).to_le_bytes()));
+        sections.numbers("faces", mesh.faces().len(), mesh.faces().as_flattened().iter().copied());
         let positions = mesh.rest_positions();
-        section("positions", positions.len(), &mut positions.iter().flat_map(|p| p.to_array()).map(bits));
-        section("rank", modes.rank(), &mut std::iter::empty());
+        sections.reals("positions", positions.len(), positions.iter().flat_map(|p| p.to_array()));
+        sections.begin("rank", modes.rank());
         let displacements = modes.displacements();
-        section("modes", displacements.len(), &mut displacements.iter().flat_map(|u| u.to_array()).map(bits));
-        section("scales", metric.scales().len(), &mut metric.scales().iter().copied().map(bits));
-        // The rules: pairs that share a vertex are left out, no weld, centre 0, no exceptions.
-        section("exclude-adjacent", 0, &mut std::iter::empty());
-        Self(*hasher.finalize().as_bytes())
+        sections.reals("modes", displacements.len(), displacements.iter().flat_map(|u| u.to_array()));
+        match scope.metric.dense_factor() {
+            Some(factor) => sections.reals("factor", factor.len(), factor.iter().copied()),
+            None => sections.reals("scales", scope.metric.rank(), scope.metric.scales().into_iter()),
+        }
+        // The defaults stand for themselves, so that digests of files written before there was a choice still hold.
+        sections.begin(
+            match scope.rule.neighbours {
+                Neighbours::Exclude => "exclude-adjacent",
+                Neighbours::IncludeOneVertex => "include-one-vertex",
+            },
+            0,
+        );
+        if scope.center.iter().any(|x| *x != 0.0) {
+            sections.reals("center", scope.center.len(), scope.center.iter().copied());
+        }
+        if scope.rule.weld {
+            let classes = weld_classes(model);
+            sections.numbers("weld", classes.len(), classes.into_iter());
+        }
+        for (name, pairs) in [("ignored", scope.rule.ignored()), ("exceptions", &scope.exceptions)] {
+            if !pairs.is_empty() {
+                sections.numbers(name, pairs.len(), pairs.iter().flat_map(|&(i, j)| [i, j]));
+            }
+        }
+        Self(*sections.0.finalize().as_bytes())
     }
 
     /// The first eight hexadecimal digits, for messages.
     pub fn short(&self) -> String {
         self.0[..4].iter().map(|b| format!("{b:02x}")).collect()
+    }
+}
+
+/// Named lists of known length, one after the other.
+struct Sections(blake3::Hasher);
+
+impl Sections {
+    fn begin(&mut self, name: &str, count: usize) {
+        self.0.update(name.as_bytes());
+        self.0.update(&(count as u64).to_le_bytes());
+    }
+
+    fn numbers(&mut self, name: &str, count: usize, numbers: impl Iterator<Item = u32>) {
+        self.begin(name, count);
+        self.bytes(numbers.map(|n| u64::from(n).to_le_bytes()));
+    }
+
+    fn reals(&mut self, name: &str, count: usize, reals: impl Iterator<Item = f64>) {
+        self.begin(name, count);
+        self.bytes(reals.map(|x| x.to_bits().to_le_bytes()));
+    }
+
+    fn bytes(&mut self, items: impl Iterator<Item = [u8; 8]>) {
+        let mut buffer = Vec::with_capacity(1 << 16);
+        for item in items {
+            buffer.extend_from_slice(&item);
+            if buffer.len() == buffer.capacity() {
+                self.0.update(&buffer);
+                buffer.clear();
+            }
+        }
+        self.0.update(&buffer);
     }
 }

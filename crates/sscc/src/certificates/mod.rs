@@ -4,13 +4,15 @@
 mod digest;
 mod global;
 mod precompute;
+mod scope;
 mod search;
 
 use crate::hierarchy::Hierarchy;
-use crate::{Error, Metric, MetricKind, Progress, ReducedModel};
+use crate::{Error, Metric, Neighbours, Pair, PairRule, Progress, ReducedModel};
 
 pub use digest::Digest;
 pub(crate) use precompute::child_pairs;
+pub use scope::Scope;
 pub(crate) use search::Search;
 
 /// How certificates are computed.
@@ -21,20 +23,42 @@ pub struct CertifyOptions {
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,
+    /// The configuration about which radii are measured (r); none: q = 0, the rest pose.
+    pub center: Option<Vec<f64>>,
+    /// What is asked of triangles that share a vertex.
+    pub neighbours: Neighbours,
+    /// Whether vertices of equal position and modes are one vertex: see [`PairRule::weld`].
+    pub weld: bool,
+    /// Whether pairs that collide at rest (q = 0) are left out for good: never tested, never listed.
+    pub ignore_rest: bool,
+    /// How many exceptions there may be: pairs that collide at the centre, left out of every radius and tested
+    /// in every query. Where more pairs collide there are none, and radii of parts that contain such
+    /// a pair are 0. None: a quarter of the number of triangles; beyond, testing them costs as much as radii save.
+    pub max_exceptions: Option<usize>,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
 }
 
 impl Default for CertifyOptions {
     fn default() -> Self {
-        Self { epsilon: 0.1, metric: None, threads: None }
+        Self {
+            epsilon: 0.1,
+            metric: None,
+            center: None,
+            neighbours: Neighbours::Exclude,
+            weld: false,
+            ignore_rest: false,
+            max_exceptions: None,
+            threads: None,
+        }
     }
 }
 
 /// Everything that a query needs to know about a model to skip work that provably finds nothing.
 ///
-/// All radii are norms `|z| = |S q|` in the metric of the certificates. A radius R of a set of triangle pairs
-/// promises: at any q with `|S q| < R` no pair of the set that is not adjacent has a point in common.
+/// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A radius R of a set of triangle
+/// pairs promises: at any q with `|z| < R` no pair of the set that counts under the rule has a point in common,
+/// exceptions apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificates {
     parts: CertificateParts,
@@ -47,8 +71,8 @@ pub struct CertificateParts {
     pub digest: Digest,
     /// The hierarchy over the triangles.
     pub hierarchy: Hierarchy,
-    /// The metric in which radii are measured.
-    pub metric: Metric,
+    /// What they speak of beside the model: metric, centre, rule, exceptions.
+    pub scope: Scope,
     /// Relative error that was allowed.
     pub epsilon: f64,
     /// `R_global`: radii are resolved up to here (paper, section 5.2); infinite when no mode moves anything.
@@ -57,7 +81,7 @@ pub struct CertificateParts {
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,
-    /// Number of colliding pairs at rest (q = 0).
+    /// Number of colliding pairs at rest (q = 0), ignored ones included.
     pub rest_collisions: u64,
 }
 
@@ -84,6 +108,14 @@ impl Certificates {
         let nodes = parts.hierarchy.nodes();
         if parts.node_radii.len() != nodes.len() {
             return damaged("there is not one radius for each node");
+        }
+        if parts.scope.center.len() != parts.scope.metric.rank() {
+            return damaged("centre and metric are of different ranks");
+        }
+        if !parts.scope.exceptions.is_sorted_by(|a, b| a < b)
+            || parts.scope.exceptions.iter().any(|(i, j)| i >= j)
+        {
+            return damaged("exceptions are not sorted pairs");
         }
         let children = nodes[0].child_count as usize;
         if parts.root_pair_radii.len() != children * children.saturating_sub(1) / 2 {
@@ -122,10 +154,25 @@ impl Certificates {
 
     /// The metric in which radii are measured.
     pub fn metric(&self) -> &Metric {
-        &self.parts.metric
+        &self.parts.scope.metric
     }
 
-    /// The radius of the root: at any q with `|S q|` below it the whole model is free.
+    /// The configuration from which radii are measured (r).
+    pub fn center(&self) -> &[f64] {
+        &self.parts.scope.center
+    }
+
+    /// Which pairs of triangles count.
+    pub fn rule(&self) -> &PairRule {
+        &self.parts.scope.rule
+    }
+
+    /// Pairs that no radius speaks of and every query tests, sorted.
+    pub fn exceptions(&self) -> &[Pair] {
+        &self.parts.scope.exceptions
+    }
+
+    /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, exceptions apart.
     pub fn root_radius(&self) -> f64 {
         self.parts.node_radii[0]
     }
@@ -151,21 +198,82 @@ impl Certificates {
     /// When faces, positions or modes differ in any bit from those that were certified, or the hierarchy is not
     /// over as many triangles.
     pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
-        let found = Digest::of(model, &self.parts.metric);
-        if found == self.parts.digest {
-            if self.parts.hierarchy.order().len() != model.mesh().faces().len() {
-                return Err(Error::Certificates("the hierarchy is of another mesh".to_owned()));
-            }
-            if self.parts.metric.scales().len() != model.rank() {
-                return Err(Error::Certificates("the metric is of another rank".to_owned()));
-            }
-            return Ok(());
+        let found = Digest::of(model, &self.parts.scope);
+        if found != self.parts.digest {
+            return Err(Error::OtherModel { certificates: self.parts.digest.short(), model: found.short() });
         }
-        Err(Error::OtherModel { certificates: self.parts.digest.short(), model: found.short() })
+        let damaged = |what: &str| Err(Error::Certificates(what.to_owned()));
+        let triangles = model.mesh().faces().len();
+        if self.parts.hierarchy.order().len() != triangles {
+            return damaged("the hierarchy is of another mesh");
+        }
+        if self.metric().rank() != model.rank() {
+            return damaged("the metric is of another rank");
+        }
+        if self.exceptions().iter().any(|(_, j)| *j as usize >= triangles) {
+            return damaged("an exception names a triangle that does not exist");
+        }
+        model.check_coordinates(self.center()).map(|_| ())
     }
-}
 
-/// Names of the metric kinds, for messages.
-pub fn metric_names() -> Vec<&'static str> {
-    [MetricKind::Displacement, MetricKind::Mass, MetricKind::Identity].map(MetricKind::name).to_vec()
+    /// Refuses another rule of what counts than the one that was certified.
+    ///
+    /// # Errors
+    /// When neighbours, weld or ignored pairs differ.
+    pub fn check_rule(&self, rule: &PairRule) -> Result<(), Error> {
+        let known = self.rule();
+        let what = if known.neighbours != rule.neighbours {
+            format!(
+                "they were made with the neighbour rule {}, not {}",
+                known.neighbours.name(),
+                rule.neighbours.name()
+            )
+        } else if known.weld != rule.weld {
+            format!("they were made with{} welding", if known.weld { "" } else { "out" })
+        } else if known.ignored() != rule.ignored() {
+            format!("they ignore {} pairs, not {}, or others", known.ignored().len(), rule.ignored().len())
+        } else {
+            return Ok(());
+        };
+        Err(Error::OtherPairs { what })
+    }
+
+    /// The q nearest to the centre's side of the given one that the root's certificate proves free: q itself where it
+    /// is inside the root's ellipsoid, else the point just inside on the way from the centre. None where
+    /// the root's radius is 0, or (as the radius says nothing of them) there are exceptions.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::check_coordinates`] for a model of this rank: length and finite entries.
+    pub fn clamp(&self, q: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        let center = self.center();
+        if q.len() != center.len() {
+            return Err(Error::CoordinatesLength { found: q.len(), rank: center.len() });
+        }
+        if let Some(index) = q.iter().position(|x| !x.is_finite()) {
+            return Err(Error::CoordinatesValue { index, value: q[index] });
+        }
+        let root = self.root_radius();
+        if root <= 0.0 || !self.exceptions().is_empty() {
+            return Ok(None);
+        }
+        let mut offset = vec![0.0; q.len()];
+        let mut inside = |q: &[f64]| self.metric().norm_from(q, center, &mut offset);
+        let mut clamped = q.to_vec();
+        let norm = inside(&clamped);
+        let mut scale = if norm.is_finite() { root / norm } else { 0.5 };
+        // A few roundings away at most; far away where the norm overflows.
+        for _ in 0..4096 {
+            if inside(&clamped) < root {
+                return Ok(Some(clamped));
+            }
+            for ((x, q), c) in clamped.iter_mut().zip(q).zip(center) {
+                *x = c + (q - c) * scale;
+            }
+            scale *= 1.0 - 4.0 * f64::EPSILON;
+            if norm.is_infinite() {
+                scale *= 0.5;
+            }
+        }
+        Ok(Some(center.to_vec()))
+    }
 }

@@ -1,18 +1,23 @@
 //! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
 //! pairs)` (paper, section 5.2).
 
-use std::borrow::Cow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use super::global::global_radius;
 use super::search::Search;
-use super::{CertificateParts, CertifyOptions, Digest};
+use super::{CertificateParts, CertifyOptions, Digest, Scope};
 use crate::bounds::{ClusterBounds, ScaledModel};
 use crate::hierarchy::{Hierarchy, Node};
 use crate::metric::check_scaled_modes;
-use crate::{Error, Method, Progress, Query, ReducedModel};
+use crate::pairs::PairFilter;
+use crate::query::colliding_pairs;
+use crate::threads::on_threads;
+use crate::{Error, PairRule, Progress, ReducedModel};
+
+/// By default there may be one exception for this many triangles.
+const EXCEPTIONS: usize = 4;
 
 pub(super) fn compute(
     model: &ReducedModel,
@@ -24,33 +29,41 @@ pub(super) fn compute(
     }
     let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
     check_scaled_modes(model.mesh(), model.modes(), &metric)?;
-    let scaled = ScaledModel::new(model, &metric);
+    let rest = vec![0.0; model.rank()];
+    let center = options.center.clone().unwrap_or_else(|| rest.clone());
+    model.check_coordinates(&center)?;
     let hierarchy = Hierarchy::build(model, &metric);
+    let mut rule = PairRule::new(options.neighbours, options.weld);
+    let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress)?;
+    let rest_collisions = at_rest.len() as u64;
+    if options.ignore_rest {
+        rule = rule.ignoring(at_rest);
+    }
+    let exceptions = {
+        let most = options.max_exceptions.unwrap_or(model.mesh().faces().len().div_ceil(EXCEPTIONS));
+        let at_center = colliding_pairs(model, &hierarchy, &rule, &center, progress)?;
+        if at_center.len() <= most { at_center } else { Vec::new() }
+    };
+    let scope = Scope { metric, center, rule, exceptions };
+    let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
+    let filter = PairFilter::new(model, &scope.rule).without(&scope.exceptions);
     let clusters = ClusterBounds::new(&scaled, &hierarchy);
-    let global_radius = global_radius(model, &metric);
+    let global_radius = global_radius(model, &scope.metric, &scope.center);
     let work = Work {
         scaled: &scaled,
+        filter: &filter,
         hierarchy: &hierarchy,
         clusters: &clusters,
         options,
         global_radius,
         progress,
     };
-    let threads = options.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let (node_radii, root_pair_radii) = match pool {
-        Ok(pool) => pool.install(|| work.run())?,
-        Err(_) => work.run()?, // no more threads to be had: the global pool serves as well
-    };
-    let rest_collisions = {
-        let mut rest = Query::on_hierarchy(model, Cow::Borrowed(&hierarchy), Method::Traditional);
-        rest.discrete(&vec![0.0; model.rank()])?.len() as u64
-    };
+    let (node_radii, root_pair_radii) = on_threads(options.threads, || work.run())?;
     Ok(CertificateParts {
-        digest: Digest::of(model, &metric),
+        digest: Digest::of(model, &scope),
+        scope,
         rest_collisions,
         hierarchy,
-        metric,
         epsilon: options.epsilon,
         global_radius,
         node_radii,
@@ -60,6 +73,7 @@ pub(super) fn compute(
 
 struct Work<'a> {
     scaled: &'a ScaledModel,
+    filter: &'a PairFilter,
     hierarchy: &'a Hierarchy,
     clusters: &'a ClusterBounds,
     options: &'a CertifyOptions,
@@ -107,7 +121,8 @@ impl Work<'_> {
     }
 
     fn search(&self) -> Search<'_> {
-        Search::new(self.scaled, self.hierarchy, self.clusters, self.options.epsilon, self.progress)
+        let epsilon = self.options.epsilon;
+        Search::new(self.scaled, self.filter, self.hierarchy, self.clusters, epsilon, self.progress)
     }
 
     fn least_child(&self, node: &Node, radii: &[f64]) -> f64 {

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use crate::Progress;
 use crate::bounds::{ClusterBounds, ClusterScratch, PairRefiner, ScaledModel, Target, cluster_pair};
 use crate::hierarchy::Hierarchy;
+use crate::pairs::PairFilter;
 
 /// Candidates waiting at the most, beside those of the pair at hand. Beyond it the search goes on depth
 /// first, in constant memory.
@@ -48,6 +49,7 @@ impl Eq for Entry {}
 /// Searches triangle pairs of one model; owns its scratch memory.
 pub(crate) struct Search<'a> {
     model: &'a ScaledModel,
+    filter: &'a PairFilter,
     hierarchy: &'a Hierarchy,
     clusters: &'a ClusterBounds,
     refiner: PairRefiner<'a>,
@@ -65,6 +67,7 @@ pub(crate) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(crate) fn new(
         model: &'a ScaledModel,
+        filter: &'a PairFilter,
         hierarchy: &'a Hierarchy,
         clusters: &'a ClusterBounds,
         epsilon: f64,
@@ -72,6 +75,7 @@ impl<'a> Search<'a> {
     ) -> Self {
         Self {
             model,
+            filter,
             hierarchy,
             clusters,
             refiner: PairRefiner::new(model),
@@ -148,8 +152,14 @@ impl<'a> Search<'a> {
             Candidate::Nodes(n, m) => {
                 cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
             }
-            Candidate::Triangles(x, y) if self.model.are_adjacent(x, y) => return,
-            Candidate::Triangles(x, y) => self.refiner.estimate(x, y),
+            Candidate::Triangles(x, y) => {
+                let hulls = self.filter.hulls(x, y);
+                let least = hulls.map(|(x, y)| self.refiner.estimate(x, y)).fold(f64::INFINITY, f64::min);
+                if least < self.settled && self.filter.leaves_out(x, y) {
+                    return;
+                }
+                least // infinite for triangles that never count
+            }
         };
         let lower = lower.max(inherited);
         if lower >= self.settled {
@@ -168,11 +178,13 @@ impl<'a> Search<'a> {
         match candidate {
             Candidate::Triangles(x, y) => {
                 let upper = self.target.upper;
-                let refined = self.refiner.refine(x, y, &mut self.target);
+                for (x, y) in self.filter.hulls(x, y) {
+                    let refined = self.refiner.refine(x, y, &mut self.target);
+                    self.settled = self.settled.min(refined.max(lower));
+                }
                 if self.target.upper < upper {
                     self.hottest = Some((x, y));
                 }
-                self.settled = self.settled.min(refined.max(lower));
             }
             Candidate::Nodes(n, m) => self.open_nodes(n, m, lower),
         }

@@ -8,6 +8,7 @@
 //! ([`orientation`]); only those signs need arithmetic. Most are settled in a few dozen
 //! floating-point operations with a proven error bound, the rest exactly ([`exact`]).
 
+mod beyond_vertex;
 mod exact;
 mod orientation;
 mod planar;
@@ -15,4 +16,5 @@ mod segment_segment;
 mod segment_triangle;
 mod triangle_triangle;
 
+pub use beyond_vertex::intersect_beyond_vertex;
 pub use triangle_triangle::intersect_triangle_triangle;

@@ -1,5 +1,7 @@
 //! Positions and boxes at the current q, each computed at most once for a query.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::Method;
@@ -24,8 +26,9 @@ pub(super) const TIGHT_TRIANGLES: u32 = 64;
 
 /// Vertex positions, triangle boxes and node boxes. Lazily (BD-tree) each entry carries the number of the query
 /// it was computed for; the traditional method computes all of them first.
+#[derive(Clone)]
 pub(super) struct Boxes {
-    bd_tree: Option<BdTree>,
+    bd_tree: Option<Arc<BdTree>>,
     query: u32,
     margin: f64,
     positions: Vec<DVec3>,
@@ -43,7 +46,7 @@ impl Boxes {
         };
         let lazy = matches!(method, Method::Certified | Method::BdTree);
         Self {
-            bd_tree: lazy.then(|| BdTree::new(model, hierarchy, TIGHT_TRIANGLES)),
+            bd_tree: lazy.then(|| Arc::new(BdTree::new(model, hierarchy, TIGHT_TRIANGLES))),
             query: 0,
             margin: 0.0,
             positions: vec![DVec3::ZERO; vertices],
@@ -108,14 +111,7 @@ impl Boxes {
         let mut aabb = union(std::iter::empty());
         if node.is_leaf() {
             for &t in hierarchy.triangles(node) {
-                let corners = model.mesh().faces()[t as usize].map(|v| {
-                    let i = v as usize;
-                    if self.position_query[i] != self.query {
-                        self.positions[i] = model.position(v, q);
-                        self.position_query[i] = self.query;
-                    }
-                    self.positions[i]
-                });
+                let corners = self.moved_corners(model, model.mesh().faces()[t as usize], q);
                 self.triangles[t as usize] = triangle_box(corners);
                 aabb = union([aabb, self.triangles[t as usize]].into_iter());
             }
@@ -133,6 +129,22 @@ impl Boxes {
     #[inline]
     pub(super) fn triangle(&self, t: u32) -> &Aabb {
         &self.triangles[t as usize]
+    }
+
+    /// The corners of any triangle at the current q.
+    #[inline]
+    pub(super) fn moved_corners(&mut self, model: &ReducedModel, face: [u32; 3], q: &[f64]) -> [DVec3; 3] {
+        face.map(|v| self.position(model, v, q))
+    }
+
+    #[inline]
+    fn position(&mut self, model: &ReducedModel, v: u32, q: &[f64]) -> DVec3 {
+        let i = v as usize;
+        if self.bd_tree.is_some() && self.position_query[i] != self.query {
+            self.positions[i] = model.position(v, q);
+            self.position_query[i] = self.query;
+        }
+        self.positions[i]
     }
 
     /// The corners of a triangle of such a leaf.

@@ -1,15 +1,23 @@
-//! Queries: which non-adjacent triangle pairs collide at q (paper, Algorithm 1).
+//! Queries: which pairs of triangles collide at q (paper, Algorithm 1).
 
+mod batch;
 mod bd_tree;
 mod boxes;
 mod brute_force;
+mod exceptions;
+mod safe_scale;
 mod traversal;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::hierarchy::Hierarchy;
-use crate::{Certificates, Error, Metric, ReducedModel};
+use crate::metric::check_scaled_modes;
+use crate::pairs::PairFilter;
+use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
 use boxes::Boxes;
+
+pub use batch::Answer;
 
 /// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +36,10 @@ pub enum Method {
 /// What the last query cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Whether the root's certificate alone proved the shape free.
+    /// Whether the root's certificate alone proved the shape free, exceptions apart.
     pub root_certified: bool,
+    /// Whether everything was looked at: the pairs listed are all. False where a limit stopped the query.
+    pub complete: bool,
     /// Nodes and pairs of nodes that had to be opened.
     pub opened: u64,
     /// Pairs of boxes compared.
@@ -39,21 +49,30 @@ pub struct Statistics {
 }
 
 /// Answers self-collision queries for one model; owns the memory for it, so that repeated queries allocate
-/// nothing (brute force and the rare exact signs of extreme numbers aside). One query serves one thread; make as many as there are threads.
+/// nothing (brute force and the rare exact signs of extreme numbers aside). One query serves one thread; make as many
+/// as there are threads by cloning it, or ask [`Query::batch`].
 ///
-/// "Free" (no pairs) is exact, and so are the pairs: two triangles are listed exactly when they share no vertex
-/// and their closed hulls, at the positions given by [`deformed_position`](crate::deformed_position), have a point
-/// in common.
+/// "Free" (no pairs) is exact, and so are the pairs: two triangles are listed exactly when they count under the
+/// [`PairRule`] (by default: when they share no vertex) and their closed hulls, at the positions given by
+/// [`deformed_position`](crate::deformed_position), have a point in common.
+#[derive(Clone)]
 pub struct Query<'a> {
     model: &'a ReducedModel,
     certificates: Option<&'a Certificates>,
+    scope: Cow<'a, Scope>,
     hierarchy: Cow<'a, Hierarchy>,
+    filter: Arc<PairFilter>,
     method: Method,
+    progress: &'a dyn Progress,
     boxes: Boxes,
-    stack: Vec<(u32, u32)>,
-    pairs: Vec<(u32, u32)>,
+    stack: Vec<Pair>,
+    pairs: Vec<Pair>,
+    /// The query ends with this many pairs.
+    limit: usize,
     statistics: Statistics,
     norm: f64,
+    /// Scratch: `q - center`.
+    offset: Vec<f64>,
 }
 
 impl<'a> Query<'a> {
@@ -65,7 +84,7 @@ impl<'a> Query<'a> {
         Self::with_method(model, certificates, Method::Certified)
     }
 
-    /// A query by the given method, on the hierarchy of the certificates.
+    /// A query by the given method, on the hierarchy of the certificates and by their rule.
     ///
     /// # Errors
     /// When the certificates are of another model.
@@ -75,80 +94,146 @@ impl<'a> Query<'a> {
         method: Method,
     ) -> Result<Self, Error> {
         certificates.check_model(model)?;
-        Ok(Self::build(model, Some(certificates), Cow::Borrowed(certificates.hierarchy()), method))
+        let hierarchy = Cow::Borrowed(certificates.hierarchy());
+        let scope = Cow::Borrowed(&certificates.parts().scope);
+        Ok(Self::build(model, Some(certificates), scope, hierarchy, method))
     }
 
-    /// A query that uses no certificates; [`Method::Certified`] becomes [`Method::BdTree`].
-    pub fn without_certificates(model: &'a ReducedModel, method: Method) -> Self {
-        let hierarchy = Hierarchy::build(model, model.metric());
-        Self::on_hierarchy(model, Cow::Owned(hierarchy), method)
-    }
-
-    pub(crate) fn on_hierarchy(
+    /// A query that uses no certificates, for the pairs that count in that scope ([`Scope::of`] is the default);
+    /// [`Method::Certified`] becomes [`Method::BdTree`].
+    ///
+    /// # Errors
+    /// When the scope's metric or centre is of another rank than the model.
+    pub fn without_certificates(
         model: &'a ReducedModel,
-        hierarchy: Cow<'a, Hierarchy>,
+        scope: Scope,
         method: Method,
-    ) -> Self {
+    ) -> Result<Self, Error> {
+        check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
+        model.check_coordinates(&scope.center)?;
+        let hierarchy = Cow::Owned(Hierarchy::build(model, &scope.metric));
         let method = if method == Method::Certified { Method::BdTree } else { method };
-        Self::build(model, None, hierarchy, method)
+        Ok(Self::build(model, None, Cow::Owned(scope), hierarchy, method))
     }
 
     fn build(
         model: &'a ReducedModel,
         certificates: Option<&'a Certificates>,
+        scope: Cow<'a, Scope>,
         hierarchy: Cow<'a, Hierarchy>,
         method: Method,
     ) -> Self {
-        let boxes = Boxes::new(model, &hierarchy, method);
         Self {
+            boxes: Boxes::new(model, &hierarchy, method),
+            filter: Arc::new(PairFilter::new(model, &scope.rule)),
             model,
             certificates,
+            scope,
             hierarchy,
             method,
-            boxes,
+            progress: &(),
             stack: Vec::new(),
             pairs: Vec::new(),
+            limit: usize::MAX,
             statistics: Statistics::default(),
             norm: 0.0,
+            offset: vec![0.0; model.rank()],
         }
+    }
+
+    /// The same query, which looks now and then whether it was cancelled. Nothing is reported.
+    #[must_use]
+    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
+        self.progress = progress;
+        self
     }
 
     /// All colliding pairs at q: triangle indices `i < j` of the file's order, sorted.
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or q moves vertices beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST).
-    pub fn discrete(&mut self, q: &[f64]) -> Result<&[(u32, u32)], Error> {
-        let reach = self.model.check_coordinates(q)?;
-        self.pairs.clear();
-        self.statistics = Statistics::default();
-        self.norm = self.metric().norm(q);
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when it was cancelled.
+    pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
+        self.discrete_at_most(q, usize::MAX)
+    }
+
+    /// At most `limit` colliding pairs at q, sorted; which ones is not fixed. Where the limit stopped the query,
+    /// [`Statistics::complete`] is false: there may be more.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
+        let reach = self.begin(q, limit)?;
         if self.method == Method::Certified
             && self.certificates.is_some_and(|certificates| self.norm < certificates.root_radius())
         {
             self.statistics.root_certified = true;
-            return Ok(&self.pairs);
+            if self.exceptions().is_empty() {
+                return Ok(&self.pairs);
+            }
         }
         if self.method == Method::BruteForce {
-            brute_force::collide(self.model, q, &mut self.pairs, &mut self.statistics);
+            self.brute_force(q)?;
         } else {
             self.boxes.update(self.model, &self.hierarchy, q, reach);
-            self.traverse((0, 0), q);
+            self.test_exceptions(q);
+            if !self.statistics.root_certified {
+                self.traverse((0, 0), q)?;
+            }
         }
         self.pairs.sort_unstable();
         Ok(&self.pairs)
     }
 
+    /// One colliding pair at q, if there is any; which one is not fixed.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn first(&mut self, q: &[f64]) -> Result<Option<Pair>, Error> {
+        Ok(self.discrete_at_most(q, 1)?.first().copied())
+    }
+
+    /// The number of colliding pairs at q.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn count(&mut self, q: &[f64]) -> Result<usize, Error> {
+        Ok(self.discrete(q)?.len())
+    }
+
     /// The colliding pairs between the triangles of two nodes without common triangles, or within one node
-    /// (n = m), found without certificates: for audits.
-    pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[(u32, u32)], Error> {
-        let reach = self.model.check_coordinates(q)?;
-        self.pairs.clear();
-        self.norm = self.metric().norm(q);
+    /// (n = m), exceptions left out, found without certificates: for audits.
+    pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[Pair], Error> {
+        debug_assert_ne!(self.method, Method::Certified);
+        let reach = self.begin(q, usize::MAX)?;
         self.boxes.update(self.model, &self.hierarchy, q, reach);
-        self.traverse((n, m), q);
+        self.traverse((n, m), q)?;
+        let exceptions = self.certificates.map_or(&[][..], Certificates::exceptions);
+        self.pairs.retain(|pair| exceptions.binary_search(pair).is_err());
         self.pairs.sort_unstable();
         Ok(&self.pairs)
+    }
+
+    /// Forgets the last answer; gives the reach of the shape at q.
+    fn begin(&mut self, q: &[f64], limit: usize) -> Result<f64, Error> {
+        let reach = self.model.check_coordinates(q)?;
+        self.pairs.clear();
+        self.limit = limit;
+        self.statistics = Statistics { complete: true, ..Statistics::default() };
+        self.norm = self.scope.metric.norm_from(q, &self.scope.center, &mut self.offset);
+        Ok(reach)
+    }
+
+    /// Whether the limit is reached: then the answer is not complete.
+    fn is_full(&mut self) -> bool {
+        let full = self.pairs.len() >= self.limit;
+        self.statistics.complete &= !full;
+        full
+    }
+
+    /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it.
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs
     }
 
     /// What the last query cost.
@@ -156,13 +241,35 @@ impl<'a> Query<'a> {
         self.statistics
     }
 
-    /// `|z| = |S q|` of the last query, rounded up, in the metric of the certificates (else the model's).
+    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope.
     pub fn norm(&self) -> f64 {
         self.norm
     }
 
-    /// The metric in which [`Query::norm`] measures.
-    pub fn metric(&self) -> &Metric {
-        self.certificates.map_or(self.model.metric(), Certificates::metric)
+    /// What is asked: metric and centre of [`Query::norm`], and which pairs count.
+    pub fn scope(&self) -> &Scope {
+        &self.scope
     }
 }
+
+/// The pairs that collide at q; an error where they are more than [`MOST_PAIRS`].
+pub(crate) fn colliding_pairs(
+    model: &ReducedModel,
+    hierarchy: &Hierarchy,
+    rule: &PairRule,
+    q: &[f64],
+    progress: &dyn Progress,
+) -> Result<Vec<Pair>, Error> {
+    let scope = Cow::Owned(Scope { rule: rule.clone(), ..Scope::of(model) });
+    let query = Query::build(model, None, scope, Cow::Borrowed(hierarchy), Method::Traditional);
+    let mut query = query.cancelled_by(progress);
+    query.discrete_at_most(q, MOST_PAIRS)?;
+    if query.statistics.complete {
+        Ok(query.pairs)
+    } else {
+        Err(Error::TooManyCollisions { most: MOST_PAIRS })
+    }
+}
+
+/// A mesh with more colliding pairs than this at rest (128 MiB of them) is no surface that anybody would deform.
+const MOST_PAIRS: usize = 1 << 24;

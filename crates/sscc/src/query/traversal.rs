@@ -3,17 +3,30 @@
 use super::boxes::disjoint;
 use super::{Method, Query};
 use crate::certificates::child_pairs;
-use crate::intersect_triangle_triangle;
+use crate::pairs::Relation;
+use crate::{Error, Pair};
+
+/// Between two looks at whether the query was cancelled. A step takes at most about 10 microseconds.
+const STEPS: u32 = 1024;
 
 impl Query<'_> {
-    /// Appends all colliding pairs at q between the nodes of `start`. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for
-    /// two nodes without common triangles.
-    pub(super) fn traverse(&mut self, start: (u32, u32), q: &[f64]) {
+    /// Appends all colliding pairs at q between the nodes of `start`. On the stack, `(n, n)` stands for a node
+    /// against itself, `(n, m)` for two nodes without common triangles.
+    pub(super) fn traverse(&mut self, start: Pair, q: &[f64]) -> Result<(), Error> {
         self.stack.clear();
         self.stack.push(start);
+        let mut steps = 0_u32;
         while let Some((n, m)) = self.stack.pop() {
+            if self.is_full() {
+                break;
+            }
+            steps = steps.wrapping_add(1);
+            if steps.is_multiple_of(STEPS) && self.progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
             if n == m { self.intra(n, q) } else { self.inter(n, m, q) }
         }
+        Ok(())
     }
 
     /// The certificates, if this method uses them.
@@ -84,18 +97,19 @@ impl Query<'_> {
     fn test(&mut self, i: usize, j: usize) {
         let (a, b) = (self.hierarchy.order()[i], self.hierarchy.order()[j]);
         self.statistics.box_tests += 1;
-        if disjoint(self.boxes.triangle(a), self.boxes.triangle(b)) {
-            return;
-        }
-        let mesh = self.model.mesh();
-        if mesh.are_adjacent(a, b) {
+        if disjoint(self.boxes.triangle(a), self.boxes.triangle(b))
+            || self.filter.relation(a, b) == Relation::Adjacent
+        {
             return;
         }
         self.statistics.triangle_tests += 1;
-        let faces = mesh.faces();
+        let faces = self.model.mesh().faces();
         let (x, y) = (self.boxes.corners(faces[a as usize]), self.boxes.corners(faces[b as usize]));
-        if intersect_triangle_triangle(&x, &y) {
-            self.pairs.push((a.min(b), a.max(b)));
+        if self.filter.collide((a, b), &x, &y) {
+            let pair = (a.min(b), a.max(b));
+            if !self.filter.leaves_out(a, b) && !self.is_exception(pair) && !self.is_full() {
+                self.pairs.push(pair);
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Small random models, with every kind of odd mesh and odd modes.
+#![allow(dead_code)] // no test uses all of it
 
 use glam::{DMat3, DVec3};
-use sscc::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
+use sscc::{CertifyOptions, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope, TriMesh};
 
 /// Small pseudo-random numbers (SplitMix64).
 pub struct Random(u64);
@@ -277,44 +278,113 @@ pub fn random_modes(random: &mut Random, p: &[DVec3], rank: usize) -> Vec<DVec3>
 /// The model number `seed`.
 pub fn random_model(seed: u64) -> ReducedModel {
     let random = &mut Random::new(seed);
-    let (p, faces) = random_mesh(random);
+    let (mut p, mut faces) = random_mesh(random);
     let rank = match random.below(4) {
         0 => 1 + random.below(3),
         1 => 1 + random.below(40),
         _ => 1 + random.below(8),
     };
-    let modes = Modes::new(rank, random_modes(random, &p, rank)).unwrap();
+    let mut modes = random_modes(random, &p, rank);
+    if random.below(4) == 0 {
+        split_vertices(random, &mut p, &mut faces, &mut modes);
+    }
+    let modes = Modes::new(rank, modes).unwrap();
     let mesh = TriMesh::new(p, faces).unwrap();
-    let metric = match random.below(4) {
+    let metric = match random.below(5) {
         0 => Metric::identity(rank),
         1 => Metric::mass(&mesh, &modes),
         2 => {
             let scales = (0..rank).map(|_| random.power(-6.0, 6.0)).collect();
             Metric::from_scales(MetricKind::Given, scales).unwrap()
         }
+        3 => dense_metric(random, &mesh, &modes),
         _ => Metric::displacement(&mesh, &modes),
     };
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
 
-/// The smallest z found that brings two points of the triangles together (relative modes of full rank).
+/// Some corners get vertices of their own, as along the seams of a file for drawing.
+fn split_vertices(random: &mut Random, p: &mut Vec<DVec3>, faces: &mut [[u32; 3]], modes: &mut Vec<DVec3>) {
+    let rank = modes.len() / p.len();
+    for corner in faces.iter_mut().flatten() {
+        if random.below(3) == 0 {
+            let v = *corner as usize;
+            p.push(p[v]);
+            modes.extend_from_within(v * rank..(v + 1) * rank);
+            *corner = p.len() as u32 - 1;
+        }
+    }
+}
+
+/// A matrix whose unit ball is turned and stretched.
+fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
+    let rank = modes.rank();
+    let scales = Metric::displacement(mesh, modes).scales();
+    let g: Vec<f64> = (0..rank * rank).map(|_| random.signed()).collect();
+    let entry = |i: usize, j: usize| -> f64 {
+        let inner: f64 = (0..rank).map(|k| g[k * rank + i] * g[k * rank + j]).sum();
+        (inner + if i == j { 0.01 } else { 0.0 }) * scales[i] * scales[j]
+    };
+    let matrix: Vec<f64> = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
+    Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
+}
+
+/// Options of every kind, by the number of the model.
+pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
+    let random = &mut Random::new(seed + 3_000_000);
+    let center = (random.below(4) == 0).then(|| {
+        let size = random.power(-3.0, 0.5);
+        model.metric().scales().iter().map(|s| random.signed() * size / s).collect()
+    });
+    CertifyOptions {
+        center,
+        neighbours: [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
+        weld: random.below(2) == 0,
+        ignore_rest: random.below(3) == 0,
+        max_exceptions: [None, Some(0), Some(1000)][random.below(3)],
+        threads: Some(1),
+        ..CertifyOptions::default()
+    }
+}
+
+/// `center + S^-1 z`
+pub fn at(scope: &Scope, z: &[f64]) -> Vec<f64> {
+    scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect()
+}
+
+/// The smallest z found that brings two points of the triangles together (relative modes of full rank), the points
+/// not at a common vertex.
 pub fn critical_z(
     model: &ReducedModel,
-    metric: &Metric,
+    scope: &Scope,
     faces: (u32, u32),
     random: &mut Random,
 ) -> Option<Vec<f64>> {
+    let [x, y] = [faces.0, faces.1].map(|f| model.mesh().faces()[f as usize]);
+    // One of the points is on the edge opposite to a common vertex.
+    let own = |v: u32| {
+        if y.iter().any(|w| model.position(v, &scope.center) == model.position(*w, &scope.center)) {
+            0.0
+        } else {
+            1.0
+        }
+    };
+    let mask = DVec3::from_array(x.map(own));
+    let mask = if mask == DVec3::ZERO { DVec3::ONE } else { mask };
+    let normalised = |w: DVec3| w / (w.x + w.y + w.z).max(1e-300);
     let solve = |weights: [DVec3; 2]| -> Option<(f64, Vec<f64>)> {
         let mut d = DVec3::ZERO;
         let mut b = vec![DVec3::ZERO; model.rank()];
-        for (face, weights, sign) in [(faces.0, weights[0], -1.0), (faces.1, weights[1], 1.0)] {
-            for (&v, w) in model.mesh().faces()[face as usize].iter().zip(weights.to_array()) {
-                d += model.mesh().rest_positions()[v as usize] * (sign * w);
-                for ((b, u), s) in b.iter_mut().zip(model.modes().of_vertex(v)).zip(metric.scales()) {
-                    *b += *u / *s * (sign * w);
+        for (face, weights, sign) in [(x, normalised(weights[0] * mask), -1.0), (y, weights[1], 1.0)] {
+            for (&v, w) in face.iter().zip(weights.to_array()) {
+                d += model.position(v, &scope.center) * (sign * w);
+                for (b, u) in b.iter_mut().zip(model.modes().of_vertex(v)) {
+                    *b += *u * (sign * w);
                 }
             }
         }
+        // Each component of `B S^-1` is a solution with the transpose of S.
+        let b = scaled_rows(scope, &b);
         let gram = b.iter().fold(DMat3::ZERO, |g, b| g + DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z));
         let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
         let y = (gram + DMat3::from_diagonal(DVec3::splat(1e-14 * trace))).inverse() * d;
@@ -327,10 +397,9 @@ pub fn critical_z(
     let mut width = 0.3;
     for i in 0..60 {
         let weights = match &best {
-            Some((_, _, at)) if i > 15 => at.map(|w| {
-                let w = (w + random.vector() * width).max(DVec3::ZERO);
-                w / (w.x + w.y + w.z).max(1e-300)
-            }),
+            Some((_, _, at)) if i > 15 => {
+                at.map(|w| normalised((w + random.vector() * width).max(DVec3::ZERO)))
+            }
             _ => [random.weights(), random.weights()],
         };
         width *= 0.93;
@@ -341,4 +410,18 @@ pub fn critical_z(
         }
     }
     best.map(|b| b.1)
+}
+
+/// `B S^-1`, column by column from the first mode on.
+fn scaled_rows(scope: &Scope, b: &[DVec3]) -> Vec<DVec3> {
+    let Some(s) = scope.metric.dense_factor() else {
+        return b.iter().zip(scope.metric.scales()).map(|(b, s)| *b / s).collect();
+    };
+    let rank = b.len();
+    let mut a: Vec<DVec3> = Vec::with_capacity(rank);
+    for k in 0..rank {
+        let known: DVec3 = (0..k).map(|j| a[j] * s[j * rank + k]).sum();
+        a.push((b[k] - known) / s[k * rank + k]);
+    }
+    a
 }

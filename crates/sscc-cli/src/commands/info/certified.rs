@@ -3,21 +3,25 @@
 use serde::Serialize;
 use sscc::Certificates;
 
-use super::{hexadecimal, range};
-use crate::output::{grouped, length};
+use super::{form, hexadecimal, range};
+use crate::output::{counted, grouped, length};
 
 #[derive(Serialize)]
 pub struct Certified {
     digest: String,
     scheme: &'static str,
     neighbours: &'static str,
+    weld: bool,
     triangles: usize,
     rank: usize,
     metric: &'static str,
+    metric_form: &'static str,
     metric_scales: Vec<f64>,
     epsilon: f64,
     rest_collisions: u64,
     exceptions: usize,
+    ignored: usize,
+    center: Vec<f64>,
     nodes: usize,
     root_radius: f64,
     global_radius: f64,
@@ -52,16 +56,19 @@ impl Certified {
         let levels = parts.hierarchy.levels();
         Self {
             digest: hexadecimal(parts.digest),
-            // The only ones that a file of this version can have.
-            scheme: "paper",
-            neighbours: "exclude",
+            scheme: "paper", // the only one that a file of this version can have
+            neighbours: parts.scope.rule.neighbours.name(),
+            weld: parts.scope.rule.weld,
             triangles: parts.hierarchy.order().len(),
-            rank: parts.metric.scales().len(),
-            metric: parts.metric.kind().name(),
-            metric_scales: parts.metric.scales().to_vec(),
+            rank: parts.scope.metric.rank(),
+            metric: parts.scope.metric.kind().name(),
+            metric_form: form(&parts.scope.metric),
+            metric_scales: parts.scope.metric.scales(),
             epsilon: parts.epsilon,
             rest_collisions: parts.rest_collisions,
-            exceptions: 0,
+            exceptions: parts.scope.exceptions.len(),
+            ignored: parts.scope.rule.ignored().len(),
+            center: parts.scope.center.clone(),
             nodes: parts.node_radii.len(),
             root_radius: certificates.root_radius(),
             global_radius: parts.global_radius,
@@ -78,12 +85,27 @@ impl Certified {
         let mut lines = vec![
             format!("certificates   of {} triangles, {} modes", grouped(self.triangles as u64), self.rank),
             format!("digest         {}", self.digest),
+            format!("scheme         {}, epsilon {}", self.scheme, self.epsilon),
             format!(
-                "scheme         {}, epsilon {}, neighbours {}d",
-                self.scheme, self.epsilon, self.neighbours
+                "neighbours     {}{}",
+                self.neighbours,
+                if self.weld { ", equal vertices welded" } else { "" }
             ),
-            format!("metric         {}, {}", self.metric, range(&self.metric_scales)),
-            format!("at rest        {} colliding pairs", grouped(self.rest_collisions)),
+            format!("metric         {} ({}), {}", self.metric, self.metric_form, range(&self.metric_scales)),
+            format!(
+                "center         {}",
+                if self.center.iter().all(|x| *x == 0.0) {
+                    "q = 0, the rest pose"
+                } else {
+                    "another q (see --json)"
+                }
+            ),
+            format!(
+                "at rest        {} colliding; exceptions {}, ignored {}",
+                counted(self.rest_collisions, "pair"),
+                self.exceptions,
+                self.ignored
+            ),
             format!("root radius    {}", length(self.root_radius)),
             format!("root's pairs   {}", if pairs.is_empty() { "none".into() } else { pairs.join(", ") }),
             format!("resolved up to {}", length(self.global_radius)),

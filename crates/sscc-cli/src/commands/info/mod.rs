@@ -8,6 +8,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
+use sscc::Metric;
 use sscc_io::{IoError, read_certificates, read_mesh, read_model};
 
 use crate::Outcome;
@@ -68,6 +69,11 @@ impl Report {
 /// 32 bytes as hexadecimal digits.
 fn hexadecimal(digest: sscc::Digest) -> String {
     digest.0.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Whether a metric's factor is diagonal.
+fn form(metric: &Metric) -> &'static str {
+    if metric.dense_factor().is_some() { "dense" } else { "diagonal" }
 }
 
 /// The least and the largest of a metric's scales, for people.

@@ -1,11 +1,11 @@
 //! What is known of a model.
 
 use serde::Serialize;
-use sscc::{Digest, ReducedModel};
+use sscc::{Digest, ReducedModel, Scope};
 use sscc_io::ModelInfo;
 
 use super::surface::Surface;
-use super::{hexadecimal, range};
+use super::{form, hexadecimal, range};
 
 #[derive(Serialize)]
 pub struct Model {
@@ -13,10 +13,11 @@ pub struct Model {
     surface: Surface,
     rank: usize,
     metric: &'static str,
+    metric_form: &'static str,
     metric_scales: Vec<f64>,
     units: String,
     provenance: String,
-    /// The digest that certificates in the default metric would have.
+    /// The digest that certificates by the defaults would have.
     digest: String,
 }
 
@@ -26,10 +27,11 @@ impl Model {
             surface: Surface::of(model.mesh()),
             rank: model.rank(),
             metric: model.metric().kind().name(),
-            metric_scales: model.metric().scales().to_vec(),
+            metric_form: form(model.metric()),
+            metric_scales: model.metric().scales(),
             units: info.units,
             provenance: info.provenance,
-            digest: hexadecimal(Digest::of(model, model.metric())),
+            digest: hexadecimal(Digest::of(model, &Scope::of(model))),
         }
     }
 
@@ -40,7 +42,7 @@ impl Model {
         let mut lines = self.surface.lines();
         lines.extend([
             format!("modes          {}", self.rank),
-            format!("default metric {}, {}", self.metric, range(&self.metric_scales)),
+            format!("default metric {} ({}), {}", self.metric, self.metric_form, range(&self.metric_scales)),
             format!("units          {}", known(&self.units)),
             format!("provenance     {}", known(&self.provenance)),
             format!("digest         {}", self.digest),

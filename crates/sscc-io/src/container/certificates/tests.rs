@@ -3,7 +3,7 @@ use std::sync::LazyLock;
 use super::super::MODEL;
 use super::*;
 use glam::DVec3;
-use sscc::{CertifyOptions, Modes, ReducedModel, TriMesh};
+use sscc::{CertifyOptions, Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
 /// A strip of triangles folded over itself, with three modes, one of which moves nothing.
 fn model() -> ReducedModel {
@@ -24,6 +24,32 @@ fn fold(x: f64) -> f64 {
     1.0 - x * x / 2.0 + x.powi(4) / 24.0 - x.powi(6) / 720.0
 }
 
+/// Everything that certificates can speak of, in one file.
+#[test]
+fn every_scope_is_kept() {
+    let options = CertifyOptions {
+        metric: Some(
+            Metric::from_factor(MetricKind::Given, 3, vec![1.0, 0.5, 0.0, 0.0, 2.0, 0.25, 0.0, 0.0, 1.0])
+                .unwrap(),
+        ),
+        center: Some(vec![0.5, -0.25, 1.0]),
+        neighbours: Neighbours::IncludeOneVertex,
+        weld: true,
+        ..CertifyOptions::default()
+    };
+    let certificates = Certificates::compute(&model(), &options, &()).unwrap();
+    let mut parts = certificates.parts().clone();
+    parts.scope.rule = parts.scope.rule.clone().ignoring([(3, 1), (7, 9)]);
+    parts.scope.exceptions = vec![(0, 5), (2, 3)];
+    let changed = Certificates::from_parts(parts).unwrap();
+    for certificates in [certificates, changed] {
+        let bytes = certificates_to_bytes(&certificates).unwrap();
+        let read = certificates_from_bytes(&bytes).unwrap();
+        assert_eq!(read, certificates);
+        assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
+    }
+}
+
 fn certificates() -> Certificates {
     static ONCE: LazyLock<Certificates> =
         LazyLock::new(|| Certificates::compute(&model(), &CertifyOptions::default(), &()).unwrap());
@@ -34,15 +60,13 @@ fn sample() -> Vec<u8> {
     certificates_to_bytes(&certificates()).unwrap()
 }
 
-/// A good file with one thing replaced, under a good seal.
-fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
-    let bytes = sample();
-    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
-    let mut writer = SealedWriter::new(CERTIFICATES);
+/// Everything in a file but the thing of that name.
+fn copy(file: &Sealed<'_>, writer: &mut SealedWriter, name: &str) {
     for key in ["metric", "scheme", "pairs", "neighbours", "weld"].iter().filter(|key| **key != name) {
         writer.text(key, file.text(key).unwrap());
     }
-    for tensor in TENSORS.iter().filter(|tensor| **tensor != name) {
+    let names = file.names();
+    for tensor in names.iter().filter(|tensor| *tensor != name) {
         if let Ok(t) = file.f64(tensor) {
             writer.f64(tensor, &t.shape, &t.values);
         } else if let Ok(t) = file.u32(tensor) {
@@ -54,6 +78,14 @@ fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
             writer.u8(tensor, &t.shape, &t.values);
         }
     }
+}
+
+/// A good file with one thing replaced, under a good seal.
+fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
+    let bytes = sample();
+    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
+    let mut writer = SealedWriter::new(CERTIFICATES);
+    copy(&file, &mut writer, name);
     change(&mut writer);
     certificates_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string()
 }
@@ -65,6 +97,22 @@ fn round_trip_is_exact() {
     assert_eq!(read, certificates);
     read.check_model(&model).unwrap();
     assert_eq!(certificates_to_bytes(&read).unwrap(), sample());
+}
+
+/// As they were written before there were rules to choose from.
+#[test]
+fn version_1_is_read() {
+    let options = CertifyOptions { max_exceptions: Some(0), ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&model(), &options, &()).unwrap();
+    let bytes = certificates_to_bytes(&certificates).unwrap();
+    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
+    let mut writer = SealedWriter::new(super::super::Kind { version: 1, ..CERTIFICATES });
+    copy(&file, &mut writer, "ignored");
+    let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
+    assert_eq!(read, certificates);
+    read.check_model(&model()).unwrap();
+    // The digest of this model as that version computed it.
+    assert_eq!(read.parts().digest.short(), "01b8aa45");
 }
 
 #[test]
@@ -94,8 +142,8 @@ fn other_kinds_and_newer_versions_are_refused() {
     let model_file = SealedWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = SealedWriter::new(super::super::Kind { version: 2, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 2"));
+    let newer = SealedWriter::new(super::super::Kind { version: 3, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 3"));
 }
 
 #[test]
@@ -105,10 +153,14 @@ fn what_this_version_does_not_know_is_refused() {
         assert!(with(key, |w| _ = w.text(key, "other")).ends_with(unknown), "{key}");
     }
     assert!(with("", |w| _ = w.u8("kinetic", &[1], &[0])).starts_with("tensor 'kinetic': not known"));
-    assert!(with("center", |w| _ = w.f64("center", &[3], &[0.0, 1.0, 0.0])).contains("is not zero"));
-    assert!(
-        with("exceptions", |w| _ = w.u32("exceptions", &[1, 2], &[0, 5])).contains("[0, 2] was expected")
-    );
+    assert!(with("center", |w| _ = w.f64("center", &[3], &[0.0, f64::NAN, 0.0])).contains("not finite"));
+    assert!(with("center", |w| _ = w.f64("center", &[2], &[0.0; 2])).contains("[3] was expected"));
+    for name in ["exceptions", "ignored"] {
+        for pairs in [&[3, 1][..], &[1, 1], &[1, 3, 0, 2], &[0, 1, 0, 1]] {
+            let message = with(name, |w| _ = w.u32(name, &[pairs.len() / 2, 2], pairs));
+            assert!(message.ends_with("pairs are not in order"), "{message}");
+        }
+    }
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::*;
+use sscc::{Metric, MetricKind};
 
 /// Two triangles, three modes, numbers of all sizes and signs.
 fn model() -> ReducedModel {

@@ -1,0 +1,38 @@
+//! The shape at q as a mesh file.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use sscc::{Pair, ReducedModel};
+use sscc_io::{write_obj_pose, write_ply_pose};
+
+use crate::{args, load};
+
+/// Refuses a file that cannot be written, before the work.
+pub fn check(path: &Path, model: &args::Model) -> Result<()> {
+    let ending = match ending(path) {
+        Some("ply") => ".ply",
+        Some("obj") => ".obj",
+        _ => bail!("{}: a pose is written as .ply or .obj", path.display()),
+    };
+    let inputs: Vec<&Path> =
+        [Some(model.path.as_path()), model.modes.as_deref()].into_iter().flatten().collect();
+    load::check_output(path, ending, &inputs)
+}
+
+/// Writes the shape at q with the triangles of these pairs marked.
+pub fn write(path: &Path, model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> Result<()> {
+    let positions = model.positions(q).with_context(|| path.display().to_string())?;
+    let mut colliding = vec![false; model.mesh().faces().len()];
+    for &(i, j) in pairs {
+        colliding[i as usize] = true;
+        colliding[j as usize] = true;
+    }
+    let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
+    Ok(write(path, model.mesh(), &positions, &colliding)?)
+}
+
+fn ending(path: &Path) -> Option<&str> {
+    path.extension().and_then(OsStr::to_str)
+}

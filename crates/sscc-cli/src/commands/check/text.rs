@@ -1,0 +1,88 @@
+//! Answers for people.
+
+use super::Answer;
+use crate::output::{counted, duration, grouped, length};
+
+/// Pairs listed in text; `--json` lists all.
+const LISTED: usize = 10;
+
+impl Answer<'_> {
+    /// The number of pairs, which is a lower bound where a limit stopped the query.
+    fn counted(&self) -> String {
+        let pairs = counted(self.count as u64, "pair");
+        if self.complete { pairs } else { format!("at least {pairs}") }
+    }
+
+    /// One line of a trajectory.
+    pub fn line(&self) -> String {
+        let result = match self.pairs.first() {
+            Some((i, j)) => format!("COLLIDING  {}, first {i} {j}", self.counted()),
+            None if self.root_certified => "free       by the root's certificate".to_owned(),
+            None => "free".to_owned(),
+        };
+        format!(
+            "{:>6}  |z| {:<10} {:>9}  {result}",
+            self.index,
+            length(self.norm),
+            duration(self.microseconds)
+        )
+    }
+}
+
+/// The answer for a q alone.
+pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
+    let norm = length(answer.norm);
+    let root = root_radius.map(|r| format!(", root radius {}", length(r))).unwrap_or_default();
+    let cost = format!(
+        "{}: {} boxes compared, {} tested exactly",
+        duration(answer.microseconds),
+        grouped(answer.box_tests),
+        counted(answer.triangle_tests, "triangle pair")
+    );
+    if answer.root_certified && !answer.colliding {
+        return vec![
+            format!("free: proven by the root's certificate alone (|z| = {norm}{root})"),
+            duration(answer.microseconds),
+        ];
+    }
+    if !answer.colliding {
+        return vec![format!("free: proven (|z| = {norm}{root})"), cost];
+    }
+    let pairs = answer.counted();
+    let mut lines = vec![format!("COLLIDING: {pairs} of triangles (|z| = {norm}{root})"), cost];
+    lines.extend(answer.pairs.iter().take(LISTED).map(|(i, j)| format!("{i:>8} {j:>8}")));
+    if answer.count > LISTED {
+        lines
+            .push(format!("     ... and {} more; --json lists all", grouped((answer.count - LISTED) as u64)));
+    }
+    lines
+}
+
+/// What a whole trajectory comes to.
+#[derive(Default)]
+pub struct Summary {
+    root_certified: usize,
+    pub colliding: usize,
+    microseconds: Vec<f64>,
+}
+
+impl Summary {
+    pub fn add(&mut self, answer: &Answer<'_>) {
+        self.root_certified += usize::from(answer.root_certified);
+        self.colliding += usize::from(answer.colliding);
+        self.microseconds.push(answer.microseconds);
+    }
+
+    pub fn line(&mut self) -> String {
+        let all = self.microseconds.len();
+        self.microseconds.sort_by(f64::total_cmp);
+        format!(
+            "{}: {} free ({} by the root's certificate alone), {} colliding; median {}",
+            counted(all as u64, "configuration"),
+            all - self.colliding,
+            self.root_certified,
+            self.colliding,
+            duration(self.microseconds[all / 2])
+        )
+    }
+}

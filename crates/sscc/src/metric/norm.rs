@@ -1,0 +1,114 @@
+//! `|S q|`, never short.
+
+use super::{Factor, Metric};
+
+/// Squares of numbers in this range neither overflow nor lose anything that counts: the largest is at least
+/// 1e-280, and what underflows in the others is at most r 2^-1074.
+const FAST: std::ops::Range<f64> = 1e-140..1e140;
+
+impl Metric {
+    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows.
+    ///
+    /// `q` must have one finite entry for each mode (checked by every query before it comes here).
+    pub fn norm(&self, q: &[f64]) -> f64 {
+        debug_assert_eq!(q.len(), self.rank());
+        match &self.factor {
+            Factor::Diagonal(scales) => diagonal_norm(scales, q),
+            Factor::Triangular(factor) => norm_of(|| factor.products_up(q), q.len()),
+        }
+    }
+
+    /// `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once, relatively
+    /// to itself, which the room in [`Metric::norm`] covers.
+    pub(crate) fn norm_from(&self, q: &[f64], center: &[f64], offset: &mut [f64]) -> f64 {
+        offset.iter_mut().zip(q).zip(center).for_each(|((d, q), c)| *d = q - c);
+        self.norm(offset)
+    }
+}
+
+/// Rounds up what `count` products, squares and sums have rounded.
+fn up(count: usize) -> f64 {
+    1.0 + (count as f64 + 16.0) * f64::EPSILON
+}
+
+fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
+    let mut lanes = [[0.0_f64; 4]; 2];
+    let mut scale_chunks = scales.chunks_exact(4);
+    let mut coordinates = q.chunks_exact(4);
+    for (s, x) in (&mut scale_chunks).zip(&mut coordinates) {
+        for i in 0..4 {
+            let z = (s[i] * x[i]).abs();
+            lanes[0][i] += z * z;
+            lanes[1][i] = lanes[1][i].max(z);
+        }
+    }
+    for (s, x) in scale_chunks.remainder().iter().zip(coordinates.remainder()) {
+        let z = (s * x).abs();
+        lanes[0][0] += z * z;
+        lanes[1][0] = lanes[1][0].max(z);
+    }
+    let largest = lanes[1].into_iter().fold(0.0, f64::max);
+    if FAST.contains(&largest) {
+        let [a, b, c, d] = lanes[0];
+        return ((a + b) + (c + d)).sqrt() * up(q.len());
+    }
+    // A product that underflows is rounded up to the smallest normal number: it is not 0.
+    let scaled = |(s, x): (&f64, &f64)| if *x == 0.0 { 0.0 } else { (s * x).abs().max(f64::MIN_POSITIVE) };
+    norm_by_largest(scales.iter().zip(q).map(scaled), q.len())
+}
+
+/// The norm of numbers that are not negative, given by an iterator that can be asked for twice.
+fn norm_of<I: Iterator<Item = f64> + Clone>(numbers: impl Fn() -> I, count: usize) -> f64 {
+    let (sum, largest) = numbers().fold((0.0, 0.0_f64), |(sum, l), z| (sum + z * z, l.max(z)));
+    if FAST.contains(&largest) { sum.sqrt() * up(count) } else { norm_by_largest(numbers(), count) }
+}
+
+/// The length where squares would overflow or vanish: by the largest component first.
+#[cold]
+fn norm_by_largest(numbers: impl Iterator<Item = f64> + Clone, count: usize) -> f64 {
+    let largest = numbers.clone().fold(0.0, f64::max);
+    if largest == 0.0 || largest == f64::INFINITY {
+        return largest;
+    }
+    let sum: f64 = numbers.map(|z| (z / largest) * (z / largest)).sum();
+    largest * sum.sqrt() * up(count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::MetricKind;
+
+    #[test]
+    fn norm_is_never_short() {
+        let metric = Metric::from_scales(MetricKind::Given, vec![1e6, 1.0, 1e-6]).unwrap();
+        // 1e6 * 3e-6 = 3, 4, 0
+        let exact = 5.0;
+        let norm = metric.norm(&[3e-6, 4.0, 0.0]);
+        assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
+        assert_eq!(metric.norm_from(&[3e-6, 9.0, 1.0], &[0.0, 5.0, 1.0], &mut [0.0; 3]), norm);
+        // S = [1 2; 0 4]: z = (3, 4) at q = (1, 1).
+        let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 2.0, 0.0, 4.0]).unwrap();
+        let norm = dense.norm(&[1.0, 1.0]);
+        assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
+        // What cancels is still covered: the exact sum is 2^-52.
+        let tiny = 2.0_f64.powi(-40);
+        let factor = vec![1.0, 1.0, 0.0, tiny];
+        let dense = Metric::from_factor(MetricKind::Given, 2, factor).unwrap();
+        assert!(dense.norm(&[1.0 + f64::EPSILON, -1.0]) >= f64::EPSILON);
+    }
+
+    #[test]
+    fn norm_survives_underflow_and_overflow() {
+        let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 0.0, 0.0, 1.0]).unwrap();
+        for metric in [Metric::identity(2), dense] {
+            for x in [1e-170, 5e-324, 1e-308, 1e170, 1e300] {
+                let norm = metric.norm(&[x, 0.0]);
+                assert!(norm >= x && norm <= 2.0 * x.max(f64::MIN_POSITIVE), "{x:e}: {norm:e}");
+            }
+            assert_eq!(metric.norm(&[0.0, 0.0]), 0.0);
+        }
+        let tiny_scale = Metric::from_scales(MetricKind::Given, vec![1e-200, 1.0]).unwrap();
+        assert!(tiny_scale.norm(&[1e-200, 0.0]) > 0.0);
+    }
+}

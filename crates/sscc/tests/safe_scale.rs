@@ -1,0 +1,124 @@
+//! How far one can go: safe scales and the root's ellipsoid.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Random, at, random_model, random_options};
+use glam::DVec3;
+use sscc::{
+    Certificates, CertifyOptions, Error, Method, Modes, Progress, Query, ReducedModel, Scope, TriMesh,
+};
+
+/// Stops what takes too long.
+struct Budget(std::sync::atomic::AtomicUsize);
+
+impl Progress for Budget {
+    fn report(&self, _done: usize, _total: usize) {}
+    fn is_cancelled(&self) -> bool {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
+    }
+}
+
+#[test]
+fn the_way_to_a_safe_scale_is_free() {
+    let (mut tried, mut larger, mut tight, mut stopped) = (0, 0, 0, 0);
+    for seed in 0..400 {
+        let model = random_model(seed);
+        let random = &mut Random::new(seed + 7_000_000);
+        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let scope = &certificates.parts().scope;
+        let mut query = Query::new(&model, &certificates).unwrap();
+        let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
+        for _ in 0..3 {
+            let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 2.0)).collect();
+            let q = at(scope, &z);
+            let Ok(scale) = query.safe_scale(&q) else { continue };
+            let along =
+                |t: f64| -> Vec<f64> { scope.center.iter().zip(&q).map(|(c, q)| c + t * (q - c)).collect() };
+            assert!(scale >= 0.0, "model {seed}: {scale}");
+            tried += 1;
+            let root = certificates.root_radius() / query.norm();
+            if scope.exceptions.is_empty() {
+                assert!(scale >= root * (1.0 - 1e-12), "model {seed}: {scale} {root}");
+                larger += usize::from(scale > 1.01 * root);
+            } else {
+                // They collide at the centre.
+                assert_eq!(scale, 0.0, "model {seed}");
+            }
+            let last = if scale.is_finite() { scale } else { random.power(-3.0, 3.0) };
+            if scale > 0.0 {
+                for share in [1.0, 1.0 - 1e-15, 1.0 - 1e-9, 0.999, random.uniform(), random.uniform(), 0.0] {
+                    let Ok(found) = oracle.discrete(&along(last * share)) else { continue };
+                    assert!(found.is_empty(), "model {seed}: {found:?} at {share} of {scale}");
+                }
+            } else {
+                stopped += 1;
+            }
+            let beyond = oracle.discrete(&along(last * 1.02));
+            tight += usize::from(beyond.is_ok_and(|found| !found.is_empty()));
+        }
+    }
+    assert!(tried > 600 && larger > 200 && tight > 200 && stopped > 30, "{tried} {larger} {tight} {stopped}");
+}
+
+#[test]
+fn scales_of_simple_shapes() {
+    let triangle = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);
+    let mesh = TriMesh::new([triangle(0.0), triangle(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
+    let model = ReducedModel::new(mesh, Modes::from_matrix(6, 1, lowered).unwrap()).unwrap();
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let mut query = Query::new(&model, &certificates).unwrap();
+    let near = |x: f64, goal: f64| x <= goal && x > goal * (1.0 - 1e-9);
+    assert!(near(certificates.global_radius(), 3.0_f64.sqrt() / 2.0));
+    // R_global, half the box diagonal, is nearer than the contact.
+    assert!(near(query.safe_scale(&[1.0]).unwrap(), certificates.global_radius()));
+    assert!(near(query.safe_scale(&[-2.0]).unwrap(), certificates.global_radius() / 2.0));
+    assert_eq!(query.safe_scale(&[0.0]).unwrap(), f64::INFINITY);
+    // Without certificates there is no R_global: up to the contact, and away from it as far as numbers go.
+    let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
+    assert!(near(query.safe_scale(&[1.0]).unwrap(), 1.0));
+    assert!(near(query.safe_scale(&[4.0]).unwrap(), 0.25));
+    assert!(query.safe_scale(&[-1.0]).unwrap() > 1e50);
+    assert!(matches!(query.safe_scale(&[f64::NAN]), Err(Error::CoordinatesValue { .. })));
+    assert!(query.safe_scale(&[1.0, 1.0]).is_err());
+}
+
+#[test]
+fn clamping_ends_inside_the_root_ellipsoid() {
+    let (mut clamped, mut none) = (0, 0);
+    for seed in 0..150 {
+        let model = random_model(seed);
+        let random = &mut Random::new(seed + 8_000_000);
+        let options = CertifyOptions { epsilon: 0.9, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let scope = &certificates.parts().scope;
+        let mut query = Query::new(&model, &certificates).unwrap();
+        for size in [1e-200, 1e-3, 1.0, 1e9, 1e300] {
+            let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * size).collect();
+            let q = at(scope, &z);
+            if q.iter().any(|x| !x.is_finite()) {
+                continue;
+            }
+            let Some(inside) = certificates.clamp(&q).unwrap() else {
+                assert!(certificates.root_radius() <= 0.0 || !certificates.exceptions().is_empty());
+                none += 1;
+                continue;
+            };
+            assert_eq!(certificates.clamp(&inside).unwrap().as_ref(), Some(&inside), "model {seed}");
+            if query.discrete(&inside).is_ok() {
+                assert!(
+                    query.statistics().root_certified && query.pairs().is_empty(),
+                    "model {seed} {size:e}"
+                );
+            }
+            if inside != q {
+                clamped += 1;
+            }
+        }
+        assert!(certificates.clamp(&vec![f64::NAN; model.rank()]).is_err());
+        assert!(certificates.clamp(&vec![0.0; model.rank() + 1]).is_err());
+    }
+    assert!(clamped > 100 && none > 20, "{clamped} {none}");
+}
