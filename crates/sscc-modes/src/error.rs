@@ -1,4 +1,4 @@
-//! Why a surface has no modes.
+//! Why a surface or a stiffness gives no modes.
 
 /// No modes could be made. One line, naming the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,7 +17,23 @@ pub enum ModesError {
         /// Root mean square distance of the surface from the origin (model unit).
         distance: f64,
     },
-    /// The core refused the modes: an entry is out of range.
+    /// An eigenvalue that no stiffness at rest has.
+    #[error(
+        "eigenvalue {index} (counted from 0) is {value:e}: it must be finite and at least 0; set small negative ones to 0"
+    )]
+    Eigenvalue {
+        /// Its place, from 0.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A filter that would leave nothing.
+    #[error("ell is {value:e}: it must be positive and finite; the paper takes 100")]
+    Ell {
+        /// Its value.
+        value: f64,
+    },
+    /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }
