@@ -1,4 +1,4 @@
-//! Why a surface has no modes.
+//! Why a surface or a stiffness gives no modes.
 
 /// No modes could be made. One line, naming the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,7 +17,70 @@ pub enum ModesError {
         /// Root mean square distance of the surface from the origin (model unit).
         distance: f64,
     },
-    /// The core refused the modes: an entry is out of range.
+    /// A stiffness for another number of modes.
+    #[error("the stiffness has {found} entries, {rank} modes need {rank} x {rank}: pass U'KU of these modes")]
+    StiffnessLength {
+        /// Entries given.
+        found: usize,
+        /// Number of modes.
+        rank: usize,
+    },
+    /// A stiffness with a NaN, an infinity or a number out of range.
+    #[error(
+        "the stiffness is {value:e} at row {row}, column {column} (counted from 0): not finite, or beyond 2^200; change its unit or repair it"
+    )]
+    StiffnessEntry {
+        /// The row, from 0.
+        row: usize,
+        /// The column, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Mirrored entries differ by more than rounding.
+    #[error(
+        "the stiffness is {entry:e} at row {row}, column {column} (counted from 0), but {mirrored:e} mirrored: it must be symmetric; pass all of it, not a triangle"
+    )]
+    StiffnessAsymmetric {
+        /// The row, from 0.
+        row: usize,
+        /// The column, from 0.
+        column: usize,
+        /// The entry there.
+        entry: f64,
+        /// The entry with row and column exchanged.
+        mirrored: f64,
+    },
+    /// Some deformation has a negative energy.
+    #[error(
+        "the stiffness has the eigenvalue {eigenvalue:e} (largest magnitude {largest:e}): none may be negative; take it where the model is at rest"
+    )]
+    StiffnessIndefinite {
+        /// The lowest eigenvalue.
+        eigenvalue: f64,
+        /// The largest magnitude of an eigenvalue.
+        largest: f64,
+    },
+    /// The iteration for the eigenvalues did not end. Not known to happen.
+    #[error("the eigenvalues of the stiffness did not converge: scale the modes to similar lengths")]
+    NoEigenvalues,
+    /// An eigenvalue that no stiffness at rest has.
+    #[error(
+        "eigenvalue {index} (counted from 0) is {value:e}: it must be finite and at least 0; set small negative ones to 0"
+    )]
+    Eigenvalue {
+        /// Its place, from 0.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A filter that would leave nothing.
+    #[error("ell is {value:e}: it must be positive and finite; the paper takes 100")]
+    Ell {
+        /// Its value.
+        value: f64,
+    },
+    /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }

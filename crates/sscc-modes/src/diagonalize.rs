@@ -1,0 +1,138 @@
+//! Modes in which the stiffness is diagonal (paper, section 6).
+
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+use faer::{Mat, Par};
+use glam::DVec3;
+use sscc::Modes;
+
+use crate::ModesError;
+use crate::stiffness::symmetrised;
+
+/// An eigenvalue of at most this share of the largest is 0. Rounding leaves about 1e-14 of a rigid motion's
+/// 0, of either sign, and such noise must not become the smallest positive weight.
+const ZERO_SHARE: f64 = 1e-12;
+
+/// Components of an eigenvector count as equal when they differ by less than this share: rounding must not
+/// decide which one is the largest, and with it the sign.
+const TIE_SHARE: f64 = 1e-8;
+
+/// Modes in which a stiffness is diagonal: see [`diagonalize`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagonalized {
+    /// `U' = U Q` (3V x r).
+    pub modes: Modes,
+    /// The diagonal of `Lambda`, one for each mode (energy per q squared), ascending, none negative.
+    pub eigenvalues: Vec<f64>,
+    /// The orthogonal matrix `Q` (r x r, row-major): `q = Q q'`, `q' = Q'q`. Column k is mode k of `U'`
+    /// in terms of the modes of `U`.
+    pub rotation: Vec<f64>,
+}
+
+/// Rotates modes so that a stiffness becomes diagonal: `K~ = Q Lambda Q'`, `U' = U Q`. The new modes span the
+/// same shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding; certificates of a model with the new modes
+/// speak of its positions alone, to the last bit.
+///
+/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (r x r, row-major, energy per q squared),
+/// say from [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
+/// single modes, so that a diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
+///
+/// The signs are fixed: the largest component of each column of `Q` is positive, the first one if several are
+/// equally large. For equal eigenvalues any orthonormal basis of their space may come out. The same input
+/// gives the same bits again, but other processors may round differently.
+///
+/// Eigenvalues of 1e-12 of the largest or less become 0. So give all modes about the same length first (best,
+/// make them mass-orthonormal: then `Lambda` holds squared natural angular frequencies); the result depends
+/// on it.
+///
+/// ```
+/// use glam::DVec3;
+/// use sscc::{Modes, ReducedModel, TriMesh};
+/// use sscc_modes::{DEFAULT_ELL, diagonalize, energy_metric, filter_eigenvalues};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // Two triangles, and two modes that move the second along z and x.
+/// let positions = vec![
+///     DVec3::ZERO, DVec3::X, DVec3::Y,
+///     DVec3::Z, DVec3::X + DVec3::Z, DVec3::Y + DVec3::Z,
+/// ];
+/// let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
+/// let modes = Modes::from_matrix(6, 2, |row, mode| {
+///     if row >= 9 && row % 3 == [2, 0][mode] { 1.0 } else { 0.0 }
+/// })?;
+/// let stiffness = [2.0, -1.0, -1.0, 2.0];
+///
+/// let diagonal = diagonalize(&modes, &stiffness)?;
+/// assert!((diagonal.eigenvalues[0] - 1.0).abs() < 1e-12); // x and z together
+/// assert!((diagonal.eigenvalues[1] - 3.0).abs() < 1e-12); // x against z
+///
+/// let weights = filter_eigenvalues(&diagonal.eigenvalues, DEFAULT_ELL)?;
+/// let model = ReducedModel::with_metric(mesh, diagonal.modes, energy_metric(&weights)?)?;
+/// # assert_eq!(model.rank(), 2);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// When the stiffness is not r x r, has an entry that is not finite or beyond 2^200, is not symmetric (to 1e-9
+/// of its largest entry; the mean with its mirror image is used), or has an eigenvalue below -1e-12 of the
+/// largest; and when an entry of the new modes is out of range.
+pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, ModesError> {
+    let rank = modes.rank();
+    let (mut eigenvalues, mut rotation) = eigen(rank, &symmetrised(rank, stiffness)?)?;
+    let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    for x in &mut eigenvalues {
+        if *x < -ZERO_SHARE * largest {
+            return Err(ModesError::StiffnessIndefinite { eigenvalue: *x, largest });
+        }
+        if *x <= ZERO_SHARE * largest {
+            *x = 0.0;
+        }
+    }
+    fix_signs(rank, &mut rotation);
+    let mut displacements = vec![DVec3::ZERO; modes.displacements().len()];
+    for (new, old) in displacements.chunks_exact_mut(rank).zip(modes.displacements().chunks_exact(rank)) {
+        for (u, row) in old.iter().zip(rotation.chunks_exact(rank)) {
+            new.iter_mut().zip(row).for_each(|(sum, x)| *sum += *u * *x);
+        }
+    }
+    Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
+}
+
+/// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
+/// matrix. On one thread, so that the order of sums is fixed.
+fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+    // Divided by a power of two, so that the largest entry is about 1 and no square leaves the range.
+    let largest = matrix.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let (_, exponent) = libm::frexp(largest);
+    let scaled = Mat::from_fn(rank, rank, |i, j| libm::ldexp(matrix[i * rank + j], -exponent));
+    let mut values = Diag::zeros(rank);
+    let mut vectors = Mat::zeros(rank, rank);
+    let scratch =
+        self_adjoint_evd_scratch::<f64>(rank, ComputeEigenvectors::Yes, Par::Seq, Default::default());
+    self_adjoint_evd(
+        scaled.as_ref(),
+        values.as_mut(),
+        Some(vectors.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    )
+    .map_err(|_| ModesError::NoEigenvalues)?;
+    let values = (0..rank).map(|k| libm::ldexp(values[k], exponent)).collect();
+    let vectors = (0..rank * rank).map(|at| vectors[(at / rank, at % rank)]).collect();
+    Ok((values, vectors))
+}
+
+/// Turns each column so that its largest component is positive, the first one of equals.
+fn fix_signs(rank: usize, columns: &mut [f64]) {
+    for k in 0..rank {
+        let column = || (0..rank).map(|j| j * rank + k);
+        let largest = column().fold(0.0_f64, |m, at| m.max(columns[at].abs()));
+        let first = column().find(|at| columns[*at].abs() >= (1.0 - TIE_SHARE) * largest);
+        if first.is_some_and(|at| columns[at] < 0.0) {
+            column().for_each(|at| columns[at] = -columns[at]);
+        }
+    }
+}
