@@ -1,6 +1,6 @@
 //! The energy metric and the filter of its weights (paper, section 6).
 
-use sscc::Metric;
+use sscc::{Metric, MetricKind};
 
 use crate::ModesError;
 
@@ -43,7 +43,7 @@ pub fn filter_eigenvalues(eigenvalues: &[f64], ell: f64) -> Result<Vec<f64>, Mod
 pub fn energy_metric(eigenvalues: &[f64]) -> Result<Metric, ModesError> {
     let fill = smallest_positive(eigenvalues)?.map_or(1.0, |least| least / 2.0);
     let weights: Vec<f64> = eigenvalues.iter().map(|x| if *x > 0.0 { x / 2.0 } else { fill }).collect();
-    Ok(Metric::from_weights(&weights)?)
+    Ok(Metric::from_weights(MetricKind::Energy, &weights)?)
 }
 
 /// The smallest positive eigenvalue; none if all are 0.
