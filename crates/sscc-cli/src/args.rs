@@ -117,7 +117,7 @@ pub struct Options {
     #[arg(long, value_enum, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub weld: Option<Switch>,
     /// How many pairs that collide at the centre may be exceptions: left out of all radii and tested in every
-    /// query [default: a quarter of the number of triangles]
+    /// query [default: half the number of triangles]
     #[arg(long, value_name = "N")]
     pub max_exceptions: Option<usize>,
     /// Which certificates are stored; both are the same in this version, and the file records "paper"
@@ -211,7 +211,7 @@ pub struct Check {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
     /// Also write the shape at --q, with its colliding triangles marked: .ply (red) or .obj (in groups)
-    #[arg(long, value_name = "FILE", requires = "q", conflicts_with_all = ["first", "limit"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "first", "limit"])]
     pub pose: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,

@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -65,6 +66,83 @@ fn vega_letter_audit() {
 fn face() {
     let Some(folder) = models("face") else { return };
     every_method_gives_the_listed_pairs(&folder.join("ict_face/ict_face_selfcollision_cases.json"), 12);
+}
+
+/// A GLB of another tool, and the same model as OBJ and npy: the same pairs at 200 random q.
+#[test]
+fn glb_and_obj_agree() {
+    let Some(folder) = models("glb_and_obj_agree") else { return };
+    let directory = tempfile::tempdir().unwrap();
+    let mut colliding = 0;
+    for file in ["RobotExpressive.glb", "AnimatedMorphSphere.gltf", "MorphStressTest.gltf"] {
+        let glb = folder.join("morph").join(file);
+        let model = sscc_io::load_model(&glb, None).unwrap().0;
+        let (vertices, rank) = (model.mesh().rest_positions().len(), model.rank());
+        let mut obj = String::new();
+        for p in model.mesh().rest_positions() {
+            writeln!(obj, "v {} {} {}", p.x, p.y, p.z).unwrap();
+        }
+        for [a, b, c] in model.mesh().faces() {
+            writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+        }
+        fs::write(directory.path().join("a.obj"), obj).unwrap();
+        let modes: Vec<f64> = (0..rank)
+            .flat_map(|k| (0..vertices as u32).map(move |v| (v, k)))
+            .flat_map(|(v, k)| model.modes().of_vertex(v)[k].to_array())
+            .collect();
+        sscc_io::write_npy(&directory.path().join("a.npy"), &[rank, vertices, 3], &modes).unwrap();
+        let q: Vec<f64> = (0..200 * rank).map(random).collect();
+        sscc_io::write_npy(&directory.path().join("q.npy"), &[200, rank], &q).unwrap();
+        let run = |model: &[&str]| {
+            let model = [&["check"], model, &["--trajectory", "q.npy", "--json"]].concat();
+            let run = common::sscc(directory.path(), &model);
+            assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
+            run.json().into_iter().map(|mut line| line["pairs"].take()).collect::<Vec<Value>>()
+        };
+        let of_glb = run(&[glb.to_str().unwrap()]);
+        assert_eq!(of_glb.len(), 200);
+        assert_eq!(of_glb, run(&["a.obj", "--modes", "a.npy", "--weld"]), "{file}");
+        assert_eq!(of_glb, run(&["a.obj", "--modes", "a.npy", "--weld", "--method=traditional"]), "{file}");
+        colliding += of_glb.iter().filter(|pairs| !pairs.as_array().unwrap().is_empty()).count();
+    }
+    assert!(colliding > 200, "{colliding}");
+}
+
+/// Fixed pseudo-random numbers in [-1, 1).
+fn random(i: usize) -> f64 {
+    let x = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Every published configuration with the rest contacts as exceptions, without, and ignored.
+#[test]
+fn face_with_exceptions() {
+    let Some(folder) = models("face_with_exceptions") else { return };
+    let (model, cases) = cases(&folder.join("ict_face/ict_face_selfcollision_cases.json"));
+    let rest = &cases[0].pairs;
+    let certify = |ignore_rest| {
+        // Loose radii: what counts here is which pairs they speak of.
+        let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
+        Certificates::compute(&model, &options, &()).unwrap()
+    };
+    let (with, ignoring) = (certify(false), certify(true));
+    assert_eq!((with.exceptions(), ignoring.rule().ignored()), (&rest[..], &rest[..]));
+    assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
+    let mut query = Query::new(&model, &with).unwrap();
+    assert_eq!(query.discrete(&cases[0].q).unwrap(), rest);
+    assert!(query.statistics().root_certified && query.statistics().opened == 0);
+    // The jaw alone opens a small part of the tree.
+    let mut jaw = vec![0.0; model.rank()];
+    jaw[0] = 0.1;
+    assert!(query.discrete(&jaw).unwrap().is_empty());
+    let open = with.parts().node_radii.iter().filter(|r| **r <= query.norm()).count();
+    assert!(20 * open < with.parts().node_radii.len(), "{open}");
+    let mut ignoring = Query::new(&model, &ignoring).unwrap();
+    for case in &cases {
+        let expected: Pairs = case.pairs.iter().copied().filter(|pair| !rest.contains(pair)).collect();
+        assert_eq!(ignoring.discrete(&case.q).unwrap(), expected);
+    }
 }
 
 /// The whole way by the command: certify, then check a trajectory of all cases.

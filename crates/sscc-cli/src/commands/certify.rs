@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde::Serialize;
-use sscc::Certificates;
+use sscc::{Certificates, CertifyOptions};
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
 
@@ -69,19 +69,21 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         }
     }
     out.finish()?;
-    if let Some(note) = note(&certificates) {
+    if let Some(note) = note(&certificates, args.options.max_exceptions) {
         eprintln!("note: {note}");
     }
     Ok(Outcome::Done)
 }
 
 /// What to do about radii that promise nothing.
-fn note(certificates: &Certificates) -> Option<String> {
+fn note(certificates: &Certificates, most: Option<usize>) -> Option<String> {
     let unresolved = certificates.root_radius() <= 0.0 && certificates.exceptions().is_empty();
+    let most = most.unwrap_or(CertifyOptions::default_exceptions(certificates.hierarchy().order().len()));
     unresolved.then(|| {
-        "the shape collides at the centre in too many places for exceptions (--max-exceptions): radii of parts that \
-         contain such a place are 0; --ignore-rest leaves out what collides at rest"
-            .into()
+        format!(
+            "more pairs collide at the centre than may be exceptions ({most}): radii of parts that contain one are 0; \
+             raise --max-exceptions, or leave out for good what collides at rest with --ignore-rest"
+        )
     })
 }
 

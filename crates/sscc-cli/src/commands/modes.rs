@@ -44,5 +44,8 @@ pub fn run(args: &Modes) -> anyhow::Result<Outcome> {
         out.line(format_args!("written: {}", args.output.display()))?;
     }
     out.finish()?;
+    if sscc_io::splits_vertices(&args.source) {
+        eprintln!("note: this format splits vertices: certify it with --weld");
+    }
     Ok(Outcome::Done)
 }

@@ -33,7 +33,7 @@ pub struct CertifyOptions {
     pub ignore_rest: bool,
     /// How many exceptions there may be: pairs that collide at the centre, left out of every radius and tested
     /// in every query. Where more pairs collide there are none, and radii of parts that contain such
-    /// a pair are 0. None: a quarter of the number of triangles; beyond, testing them costs as much as radii save.
+    /// a pair are 0. None: [`CertifyOptions::default_exceptions`].
     pub max_exceptions: Option<usize>,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
@@ -51,6 +51,14 @@ impl Default for CertifyOptions {
             max_exceptions: None,
             threads: None,
         }
+    }
+}
+
+impl CertifyOptions {
+    /// How many exceptions a mesh may have if nothing is said: half the number of its triangles. Testing more costs
+    /// as much as radii can save.
+    pub fn default_exceptions(triangles: usize) -> usize {
+        triangles.div_ceil(2)
     }
 }
 

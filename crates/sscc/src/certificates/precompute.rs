@@ -16,9 +16,6 @@ use crate::query::colliding_pairs;
 use crate::threads::on_threads;
 use crate::{Error, PairRule, Progress, ReducedModel};
 
-/// By default there may be one exception for this many triangles.
-const EXCEPTIONS: usize = 4;
-
 pub(super) fn compute(
     model: &ReducedModel,
     options: &CertifyOptions,
@@ -40,7 +37,8 @@ pub(super) fn compute(
         rule = rule.ignoring(at_rest);
     }
     let exceptions = {
-        let most = options.max_exceptions.unwrap_or(model.mesh().faces().len().div_ceil(EXCEPTIONS));
+        let triangles = model.mesh().faces().len();
+        let most = options.max_exceptions.unwrap_or(CertifyOptions::default_exceptions(triangles));
         let at_center = colliding_pairs(model, &hierarchy, &rule, &center, progress)?;
         if at_center.len() <= most { at_center } else { Vec::new() }
     };

@@ -1,6 +1,7 @@
 //! `sscc info`: what is in a file.
 
 mod certified;
+mod meshes;
 mod model;
 mod surface;
 
@@ -9,12 +10,13 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use sscc::Metric;
-use sscc_io::{IoError, read_certificates, read_mesh, read_model};
+use sscc_io::{IoError, LoadOptions, LoadedModel, load_model_with, read_certificates, read_mesh, read_model};
 
 use crate::Outcome;
 use crate::args::Info;
 use crate::output::Output;
 use certified::Certified;
+use meshes::Meshes;
 use model::Model;
 use surface::Surface;
 
@@ -25,6 +27,7 @@ enum Report {
     Mesh(Surface),
     Model(Model),
     Certificates(Certified),
+    Gltf(Meshes),
 }
 
 pub fn run(args: &Info) -> Result<Outcome> {
@@ -41,8 +44,14 @@ pub fn run(args: &Info) -> Result<Outcome> {
 
 impl Report {
     fn of(path: &Path) -> Result<Self, IoError> {
-        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("safetensors")) {
-            return Ok(Self::Mesh(Surface::of(&read_mesh(path)?)));
+        match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
+            "safetensors" => {}
+            "glb" | "gltf" => return Ok(Self::Gltf(Meshes::of(path)?)),
+            "npz" => {
+                let LoadedModel { model, info, .. } = load_model_with(path, &LoadOptions::default())?;
+                return Ok(Self::Model(Model::of(&model, info)));
+            }
+            _ => return Ok(Self::Mesh(Surface::of(&read_mesh(path)?))),
         }
         // Content decides; the name only says which error is told when it is neither.
         let by_name = path.file_name().is_some_and(|n| n.to_string_lossy().ends_with(".sscc.safetensors"));
@@ -62,6 +71,7 @@ impl Report {
             Self::Mesh(surface) => surface.lines(),
             Self::Model(model) => model.lines(),
             Self::Certificates(certified) => certified.lines(),
+            Self::Gltf(meshes) => meshes.lines(),
         }
     }
 }

@@ -1,0 +1,73 @@
+//! The models of the benches.
+#![allow(dead_code)]
+
+use anyhow::{Context, Result};
+use sscc::{CertifyOptions, ReducedModel};
+use sscc_io::{load_model, read_mesh};
+use sscc_modes::{polynomial_modes, shapes};
+
+/// A model and how to certify it.
+pub struct Case {
+    pub name: &'static str,
+    pub model: ReducedModel,
+    pub options: CertifyOptions,
+}
+
+/// The embedded shapes, and the real models that are there.
+pub fn all() -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for (name, mesh) in [("spring", shapes::spring()), ("hare", shapes::hare())] {
+        cases.push(Case::new(name, ReducedModel::new(mesh.clone(), polynomial_modes(&mesh)?)?));
+    }
+    let Some(folder) = sscc_testdata::models("the benches on real models") else { return Ok(cases) };
+    for (name, file) in [("bunny", "bunny_14964_closed.obj"), ("dragon", "dragon_77202_closed.ply")] {
+        let mesh = read_mesh(&folder.join(file))?;
+        cases.push(Case::new(name, ReducedModel::new(mesh.clone(), polynomial_modes(&mesh)?)?));
+    }
+    let (model, _) =
+        load_model(&folder.join("vega_A/A.obj"), Some(&folder.join("vega_A/A.URendering.float")))?;
+    cases.push(Case::new("vega_A", model));
+    if let Some((model, _)) = face()? {
+        let mut case = Case::new("ict_face, rest ignored", model);
+        case.options.ignore_rest = true;
+        cases.push(case);
+    }
+    Ok(cases)
+}
+
+impl Case {
+    fn new(name: &'static str, model: ReducedModel) -> Self {
+        Self { name, model, options: CertifyOptions::default() }
+    }
+}
+
+/// The face, and its published configurations.
+pub fn face() -> Result<Option<(ReducedModel, Vec<Vec<f64>>)>> {
+    let Some(folder) = sscc_testdata::models("the benches on a face") else { return Ok(None) };
+    let folder = folder.join("ict_face");
+    let modes = folder.join("ict_face_expressions30.U.float");
+    let (model, _) = load_model(&folder.join("ict_face_neutral.obj"), Some(&modes))?;
+    let text = std::fs::read_to_string(folder.join("ict_face_selfcollision_cases.json"))?;
+    let json: serde_json::Value = serde_json::from_str(&text)?;
+    let cases = json["cases"].as_array().context("cases")?;
+    let q = cases.iter().map(|case| Ok(serde_json::from_value(case["q"].clone())?));
+    Ok(Some((model, q.collect::<Result<_>>()?)))
+}
+
+/// Small pseudo-random numbers (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    /// In [0, 1).
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Nearly normal, mean 0 and variance 1.
+    pub fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
