@@ -10,11 +10,11 @@ use super::min_norm::nearest_to_origin;
 use super::scaled::{DOWN, direction};
 use crate::ReducedModel;
 
-/// Directions tried for one pair of triangles. Each is a proof by itself, so stopping early is safe.
-const STEPS: usize = 64;
-
-/// A step that gains less than this share of t is the last one.
+/// A step that gains less than this share of t is the last one: with it t is about where the triangles meet.
 const GAIN: f64 = 1e-4;
+
+/// Steps at the most; what is reached by then is safe, if not as far as it could be. A few dozen are common.
+const STEPS: usize = 1000;
 
 /// The vertices of a model on the way from `center` through q: at `x + t w`, `center` at t = 0 and q at t = 1.
 pub(crate) struct Path {
@@ -62,29 +62,58 @@ impl Path {
         }
     }
 
-    /// A t below which the two triangles with these vertices stay apart all the way: 0 where they already touch,
-    /// infinite when it is at least `enough`.
-    pub(crate) fn contact(&self, x: [u32; 3], y: [u32; 3], enough: f64) -> f64 {
-        let p = |v: u32| self.positions[v as usize];
-        let w = |v: u32| self.velocities[v as usize];
-        let d: [DVec3; 9] = std::array::from_fn(|i| p(y[i % 3]) - p(x[i / 3]));
-        let rates: [DVec3; 9] = std::array::from_fn(|i| w(y[i % 3]) - w(x[i / 3]));
-        let mut t = 0.0;
+    /// Follows two triangles that do not meet before `t`: infinite when they do not meet before `goal`; else a scale
+    /// before which they do not, about where they meet.
+    pub(crate) fn follow(&self, x: [u32; 3], y: [u32; 3], mut t: f64, goal: f64) -> f64 {
+        if self.separated_by_axes(x, y) >= goal {
+            return f64::INFINITY;
+        }
+        let (d, rates) = (self.differences(&self.positions, x, y), self.differences(&self.velocities, x, y));
         for _ in 0..STEPS {
             let now: [DVec3; 9] = std::array::from_fn(|i| d[i] + rates[i] * t);
-            let Some(n) = direction(nearest_to_origin(&now).point) else { break };
-            let until = (0..9)
-                .map(|i| self.closes_at(t, n.dot(now[i]), n.dot(rates[i])))
-                .fold(f64::INFINITY, f64::min);
-            if until >= enough {
+            // The direction that separates them best at t. Each one is a proof by itself, up to `until`.
+            let Some(n) = direction(nearest_to_origin(&now).point) else { return t };
+            let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, n.dot(*d), n.dot(*w)));
+            let until = until.fold(f64::INFINITY, f64::min);
+            if until >= goal {
                 return f64::INFINITY;
             }
-            let gain = until - t;
-            t = t.max(until);
-            if gain.is_nan() || gain <= GAIN * t {
-                break;
+            if until <= t * (1.0 + GAIN) {
+                return until.max(t);
+            }
+            t = until;
+        }
+        t
+    }
+
+    /// A t before which some axis separates two triangles all the way: quick, and enough for most.
+    fn separated_by_axes(&self, x: [u32; 3], y: [u32; 3]) -> f64 {
+        let (px, py) = (self.corner_box(&self.positions, x), self.corner_box(&self.positions, y));
+        let (wx, wy) = (self.corner_box(&self.velocities, x), self.corner_box(&self.velocities, y));
+        self.boxes_apart((px, wx), (py, wy))
+    }
+
+    /// A t before which some axis separates all points with positions and velocities in two pairs of boxes.
+    pub(crate) fn boxes_apart(&self, (x, wx): (Aabb, Aabb), (y, wy): (Aabb, Aabb)) -> f64 {
+        let mut bound = 0.0_f64;
+        for (gap, opening) in [(y.0 - x.1, wy.0 - wx.1), (x.0 - y.1, wx.0 - wy.1)] {
+            for axis in 0..3 {
+                bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
             }
         }
-        t * DOWN
+        bound
+    }
+
+    fn differences(&self, of: &[DVec3], x: [u32; 3], y: [u32; 3]) -> [DVec3; 9] {
+        let (x, y) = (x.map(|v| of[v as usize]), y.map(|v| of[v as usize]));
+        std::array::from_fn(|i| y[i % 3] - x[i / 3])
+    }
+
+    fn corner_box(&self, of: &[DVec3], x: [u32; 3]) -> Aabb {
+        let [a, b, c] = x.map(|v| of[v as usize]);
+        (a.min(b).min(c), a.max(b).max(c))
     }
 }
+
+/// Lower and upper corner.
+type Aabb = (DVec3, DVec3);
