@@ -38,7 +38,9 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
                     Metric::from_matrix(MetricKind::Given, rank, &numbers.data)
                 }
                 (1, n) | (n, 1) => {
-                    bail!("{}: the metric has {n} weights, the model has {rank} modes", wanted.display())
+                    let shown = wanted.display();
+                    let matrix = if n == rank * rank { " (a dense matrix must be a .npy)" } else { "" };
+                    bail!("{shown}: the metric has {n} weights, the model has {rank} modes{matrix}")
                 }
                 (n, m) => {
                     bail!("{}: the metric is {n} x {m}, the model has {rank} modes", wanted.display())
@@ -84,8 +86,10 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
         epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
         metric: metric(model, typed.metric.as_deref())?,
         center: center(model, typed.center.as_deref())?,
-        neighbours: typed.neighbours.map_or(Neighbours::default(), neighbours),
-        weld: typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
+        rule: PairRule::new(
+            typed.neighbours.map_or(Neighbours::default(), neighbours),
+            typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
+        ),
         ignore_rest: typed.ignore_rest,
         max_exceptions: typed.max_exceptions,
         threads: Some(threads(&typed.threads)),
@@ -102,7 +106,7 @@ fn neighbours(typed: args::Neighbours) -> Neighbours {
 /// What was typed, for a query without certificates.
 pub fn scope(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<Scope> {
     let options = options(model, files, typed)?;
-    let mut rule = PairRule::new(options.neighbours, options.weld);
+    let mut rule = options.rule;
     if options.ignore_rest {
         rule = rule.ignoring_rest(model).with_context(|| files.path.display().to_string())?;
     }

@@ -110,7 +110,9 @@ pub enum Error {
     #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
     CoordinatesRange,
     /// So many collisions that no list of them is of use.
-    #[error("the rest pose has more than {most} colliding pairs of triangles: is the mesh a surface?")]
+    #[error(
+        "the shape has more than {most} colliding pairs of triangles at rest or at the centre: is it a surface?"
+    )]
     TooManyCollisions {
         /// How many would be accepted.
         most: usize,

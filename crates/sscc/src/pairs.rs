@@ -58,7 +58,8 @@ impl PairRule {
     /// The same rule, which also ignores these pairs for good (in any order).
     #[must_use]
     pub fn ignoring(mut self, pairs: impl IntoIterator<Item = Pair>) -> Self {
-        self.ignored.extend(pairs.into_iter().map(|(i, j)| (i.min(j), i.max(j))));
+        let pairs = pairs.into_iter().filter(|(i, j)| i != j);
+        self.ignored.extend(pairs.map(|(i, j)| (i.min(j), i.max(j))));
         self.ignored.sort_unstable();
         self.ignored.dedup();
         self
@@ -114,8 +115,8 @@ impl PairFilter {
         Self { faces, classes, neighbours: rule.neighbours, left_out: rule.ignored.clone() }
     }
 
-    /// The same without these pairs: for certificates, which do not speak of exceptions.
-    pub(crate) fn without(mut self, pairs: &[Pair]) -> Self {
+    /// The same, which also leaves out these pairs: for certificates, which do not speak of exceptions.
+    pub(crate) fn leaving_out(mut self, pairs: &[Pair]) -> Self {
         self.left_out.extend_from_slice(pairs);
         self.left_out.sort_unstable();
         self

@@ -74,7 +74,7 @@ fn one_vertex_neighbours_are_found_when_asked_for() {
     let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     let model = ReducedModel::new(mesh, Modes::from_matrix(5, 1, lowered).unwrap()).unwrap();
     let certify = |neighbours| {
-        let options = CertifyOptions { neighbours, ..CertifyOptions::default() };
+        let options = CertifyOptions { rule: PairRule::new(neighbours, false), ..CertifyOptions::default() };
         Certificates::compute(&model, &options, &()).unwrap()
     };
     let (excluding, including) = (certify(Neighbours::Exclude), certify(Neighbours::IncludeOneVertex));

@@ -122,3 +122,25 @@ fn clamping_ends_inside_the_root_ellipsoid() {
     }
     assert!(clamped > 100 && none > 20, "{clamped} {none}");
 }
+
+/// Where quotients underflow nothing is known, rather than too much.
+#[test]
+fn tiny_gaps_and_large_motions() {
+    for (gap, size, q) in
+        [(1e-262, 1e-262, 1e55), (1e-304, 1e-3, 1e20), (1e-300, 1.0, 1.0), (1e59, 1e60, 1.0)]
+    {
+        let triangle = |z: f64| [DVec3::ZERO, DVec3::X * size, DVec3::Y * size].map(|p| p + DVec3::Z * z);
+        let mesh = TriMesh::new([triangle(0.0), triangle(gap)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
+        let modes = Modes::from_matrix(6, 1, lowered).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, sscc::Metric::identity(1)).unwrap();
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let mut query = Query::new(&model, &certificates).unwrap();
+        let mut plain = Query::without_certificates(&model, Scope::of(&model), Method::BdTree).unwrap();
+        for query in [&mut query, &mut plain] {
+            let scale = query.safe_scale(&[q]).unwrap();
+            assert!(!query.discrete(&[gap]).unwrap().is_empty());
+            assert!((0.0..=gap / q).contains(&scale), "{gap:e} {size:e} {q:e}: {scale:e}");
+        }
+    }
+}

@@ -142,7 +142,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     if center.values.iter().any(|x| !x.is_finite()) {
         return Err(center.refused("it is not finite"));
     }
-    let ignored = if file.text("version")? == "1" { Vec::new() } else { read_pairs(&file, "ignored")? };
+    let ignored = if file.version() == 1 { Vec::new() } else { read_pairs(&file, "ignored")? };
     let scope = Scope {
         metric,
         center: center.values,

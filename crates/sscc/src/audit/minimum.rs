@@ -18,12 +18,18 @@ pub(super) struct Collision {
     pub(super) q: Vec<f64>,
     /// `|S (q - center)|`, rounded up.
     pub(super) norm: f64,
-    /// Whether the triangles collide at q on the computed positions.
-    pub(super) confirmed: bool,
+    /// A q near it at which the computed positions collide by the exact test, with its norm.
+    pub(super) confirmed: Option<(f64, Vec<f64>)>,
 }
 
 /// Barycentric grid: this many steps along each edge.
 const GRID: usize = 6;
+
+/// Triangles that meet in one point alone are looked at beyond it, too: the exact test may not see them before ...
+const FACTORS: [f64; 5] = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.001];
+
+/// ... and where points meet that lie so much towards the centroids.
+const INWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.01, 0.05, 0.2];
 
 /// Steps of the local search.
 const STEPS: usize = 400;
@@ -77,11 +83,18 @@ impl Minimum<'_> {
         if !best.0.is_finite() {
             return self.along_rays(faces, pair, random);
         }
-        let z = &pair.solution(best.1)[..self.model.rank()];
-        let factors = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6];
-        let confirmed = factors.into_iter().map(|f| self.scope.at(z, f)).find(|q| self.collides(faces, q));
-        let q = confirmed.clone().unwrap_or_else(|| self.scope.at(z, 1.0));
-        Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed: confirmed.is_some() })
+        // Points well inside both triangles, when they meet, let the triangles cross.
+        let inwards = |share: f64| best.1.map(|w| w * (1.0 - share) + DVec3::splat(share / 3.0));
+        let at = |share: f64, factor: f64| {
+            self.scope.at(&pair.solution(inwards(share))[..self.model.rank()], factor)
+        };
+        let tries = INWARDS.into_iter().flat_map(|share| FACTORS.map(|factor| at(share, factor)));
+        let confirmed = tries
+            .filter(|q| self.collides(faces, q))
+            .map(|q| (self.scope.norm(&q), q))
+            .reduce(|a, b| if b.0 < a.0 { b } else { a });
+        let q = at(0.0, 1.0);
+        Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed })
     }
 
     /// Whether two triangles collide at q, on the computed positions.
@@ -124,7 +137,7 @@ impl Minimum<'_> {
                 if self.collides(faces, &q) {
                     let norm = self.scope.norm(&q);
                     if best.as_ref().is_none_or(|b| norm < b.norm) {
-                        best = Some(Collision { faces, q, norm, confirmed: true });
+                        best = Some(Collision { faces, confirmed: Some((norm, q.clone())), q, norm });
                     }
                     break;
                 }

@@ -38,7 +38,7 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
-    let filter = PairFilter::new(model, &parts.scope.rule).without(&parts.scope.exceptions);
+    let filter = PairFilter::new(model, &parts.scope.rule).leaving_out(&parts.scope.exceptions);
     let clusters = ClusterBounds::new(&scaled, &parts.hierarchy);
     let minimum = Minimum { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
     let open = |radius: f64| radius > 0.0 && radius < parts.global_radius;
@@ -51,19 +51,21 @@ pub(super) fn measure(
     let found: Vec<(bool, f64, Option<Collision>)> = claims
         .par_iter()
         .enumerate()
-        .filter(|(_, (_, radius))| open(*radius))
+        .filter(|(_, (_, radius))| *radius > 0.0)
         .map(|(i, &(claim, radius))| {
             let mut search =
                 Search::new(&scaled, &filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
+            // Beyond the radius: what is searched only up to it can break no claim.
+            let cap = 2.0 * radius.max(parts.global_radius);
             match claim {
-                Claim::RootPair(n, m) => search.between([(n, m)], parts.global_radius),
+                Claim::RootPair(n, m) => search.between([(n, m)], cap),
                 Claim::Node(n) => {
                     let n = responsible(certificates, n);
                     let node = &nodes[n as usize];
                     if node.is_leaf() {
-                        search.within_leaf(n, parts.global_radius)
+                        search.within_leaf(n, cap)
                     } else {
-                        search.between(child_pairs(node), parts.global_radius)
+                        search.between(child_pairs(node), cap)
                     }
                 }
             };
@@ -75,15 +77,19 @@ pub(super) fn measure(
     let mut result = Tightness { root: None, quotients: vec![], violations: vec![], hot: vec![] };
     for (is_root, radius, collision) in found {
         let Some(collision) = collision else { continue };
-        let quotient = radius / collision.norm;
-        result.quotients.push(quotient);
-        if is_root {
-            result.root = Some(quotient);
+        if open(radius) {
+            let quotient = radius / collision.norm;
+            result.quotients.push(quotient);
+            if is_root {
+                result.root = Some(quotient);
+            }
         }
-        if collision.confirmed && collision.norm < radius {
+        if let Some((norm, q)) = &collision.confirmed
+            && *norm < radius
+        {
             result.violations.push(format!(
-                "triangles {} and {} collide at |z| = {:e}, below the radius {radius:e}; q = {:?}",
-                collision.faces.0, collision.faces.1, collision.norm, collision.q
+                "triangles {} and {} collide at |z| = {norm:e}, below the radius {radius:e}; q = {q:?}",
+                collision.faces.0, collision.faces.1
             ));
         }
         result.hot.push(collision);

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::min_norm::nearest_to_origin;
-use super::scaled::{DOWN, direction};
+use super::scaled::{direction, quotient_down};
 use crate::ReducedModel;
 
 /// A step that gains less than this share of t is the last one: with it t is about where the triangles meet.
@@ -37,15 +37,15 @@ impl Path {
             modes.iter().zip(&offset).fold(DVec3::ZERO, |w, (u, x)| w + *u * *x)
         };
         let (reach, moved) = (model.reach(center), model.moved(&offset));
-        // Positions, velocities, q itself and the gaps are rounded at most 4 (r + 16) times, two vertices, three
-        // components each; and once more as much as room.
+        // Positions, velocities, q itself, gaps and sums of t are rounded at most 4 (r + 16) times, two vertices,
+        // three components each; and once more as much as room.
         let gamma = 12.0 * (4 * q.len() + 64) as f64 * f64::EPSILON;
         Self {
             positions: vertices.clone().map(|v| model.position(v, center)).collect(),
             velocities: vertices.map(velocity).collect(),
             rest: gamma * reach + f64::MIN_POSITIVE,
             rate: gamma * moved + f64::MIN_POSITIVE,
-            farthest: (crate::limits::LARGEST / 2.0 - reach) / moved.max(f64::MIN_POSITIVE),
+            farthest: ((crate::limits::LARGEST / 2.0 - reach) / moved.max(f64::MIN_POSITIVE)).max(0.0),
         }
     }
 
@@ -58,23 +58,27 @@ impl Path {
         } else if opening >= 0.0 {
             f64::INFINITY
         } else {
-            t + gap / -opening * DOWN
+            t + quotient_down(gap, -opening)
         }
     }
 
     /// Follows two triangles that do not meet before `t`: infinite when they do not meet before `goal`; else a scale
     /// before which they do not, about where they meet.
     pub(crate) fn follow(&self, x: [u32; 3], y: [u32; 3], mut t: f64, goal: f64) -> f64 {
-        if self.separated_by_axes(x, y) >= goal {
-            return f64::INFINITY;
-        }
         let (d, rates) = (self.differences(&self.positions, x, y), self.differences(&self.velocities, x, y));
         for _ in 0..STEPS {
             let now: [DVec3; 9] = std::array::from_fn(|i| d[i] + rates[i] * t);
-            // The direction that separates them best at t. Each one is a proof by itself, up to `until`.
+            let separated_until = |n: DVec3| {
+                let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, n.dot(*d), n.dot(*w)));
+                until.fold(f64::INFINITY, f64::min)
+            };
+            // Each direction is a proof by itself. Between the centroids is cheap and often enough; the one that
+            // separates them best at t leads to the contact.
+            if direction(now.iter().sum()).is_some_and(|n| separated_until(n) >= goal) {
+                return f64::INFINITY;
+            }
             let Some(n) = direction(nearest_to_origin(&now).point) else { return t };
-            let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, n.dot(*d), n.dot(*w)));
-            let until = until.fold(f64::INFINITY, f64::min);
+            let until = separated_until(n);
             if until >= goal {
                 return f64::INFINITY;
             }
@@ -86,19 +90,15 @@ impl Path {
         t
     }
 
-    /// A t before which some axis separates two triangles all the way: quick, and enough for most.
-    fn separated_by_axes(&self, x: [u32; 3], y: [u32; 3]) -> f64 {
-        let (px, py) = (self.corner_box(&self.positions, x), self.corner_box(&self.positions, y));
-        let (wx, wy) = (self.corner_box(&self.velocities, x), self.corner_box(&self.velocities, y));
-        self.boxes_apart((px, wx), (py, wy))
-    }
-
     /// A t before which some axis separates all points with positions and velocities in two pairs of boxes.
-    pub(crate) fn boxes_apart(&self, (x, wx): (Aabb, Aabb), (y, wy): (Aabb, Aabb)) -> f64 {
+    #[inline]
+    pub(crate) fn boxes_apart(&self, (x, wx): &(Aabb, Aabb), (y, wy): &(Aabb, Aabb)) -> f64 {
         let mut bound = 0.0_f64;
         for (gap, opening) in [(y.0 - x.1, wy.0 - wx.1), (x.0 - y.1, wx.0 - wy.1)] {
             for axis in 0..3 {
-                bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
+                if gap[axis] > 0.0 {
+                    bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
+                }
             }
         }
         bound
@@ -107,11 +107,6 @@ impl Path {
     fn differences(&self, of: &[DVec3], x: [u32; 3], y: [u32; 3]) -> [DVec3; 9] {
         let (x, y) = (x.map(|v| of[v as usize]), y.map(|v| of[v as usize]));
         std::array::from_fn(|i| y[i % 3] - x[i / 3])
-    }
-
-    fn corner_box(&self, of: &[DVec3], x: [u32; 3]) -> Aabb {
-        let [a, b, c] = x.map(|v| of[v as usize]);
-        (a.min(b).min(c), a.max(b).max(c))
     }
 }
 

@@ -62,7 +62,15 @@ pub(crate) fn direction(n: DVec3) -> Option<DVec3> {
 /// infinite where nothing moves.
 #[inline]
 pub(crate) fn radius(numerator: f64, denominator: f64) -> f64 {
-    if numerator > 0.0 && denominator >= 0.0 { numerator / denominator * DOWN } else { 0.0 }
+    if numerator > 0.0 && denominator >= 0.0 { quotient_down(numerator, denominator) } else { 0.0 }
+}
+
+/// A quotient of two numbers that are not negative, rounded down. Below the normal numbers, where rounding is no
+/// longer relative, it is 0.
+#[inline]
+pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
+    let quotient = numerator / denominator;
+    if quotient < f64::MIN_POSITIVE { 0.0 } else { quotient * DOWN }
 }
 
 /// The root of a sum of squares over at most `terms` numbers, rounded up.

@@ -8,7 +8,7 @@ mod scope;
 mod search;
 
 use crate::hierarchy::Hierarchy;
-use crate::{Error, Metric, Neighbours, Pair, PairRule, Progress, ReducedModel};
+use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
 pub use digest::Digest;
 pub(crate) use precompute::child_pairs;
@@ -25,11 +25,9 @@ pub struct CertifyOptions {
     pub metric: Option<Metric>,
     /// The configuration about which radii are measured (r); none: q = 0, the rest pose.
     pub center: Option<Vec<f64>>,
-    /// What is asked of triangles that share a vertex.
-    pub neighbours: Neighbours,
-    /// Whether vertices of equal position and modes are one vertex: see [`PairRule::weld`].
-    pub weld: bool,
-    /// Whether pairs that collide at rest (q = 0) are left out for good: never tested, never listed.
+    /// Which pairs of triangles count.
+    pub rule: PairRule,
+    /// Whether the rule is to ignore the pairs that collide at rest (q = 0), too: they are never listed.
     pub ignore_rest: bool,
     /// How many exceptions there may be: pairs that collide at the centre, left out of every radius and tested
     /// in every query. Where more pairs collide there are none, and radii of parts that contain such
@@ -45,8 +43,7 @@ impl Default for CertifyOptions {
             epsilon: 0.1,
             metric: None,
             center: None,
-            neighbours: Neighbours::Exclude,
-            weld: false,
+            rule: PairRule::default(),
             ignore_rest: false,
             max_exceptions: None,
             threads: None,
@@ -120,10 +117,15 @@ impl Certificates {
         if parts.scope.center.len() != parts.scope.metric.rank() {
             return damaged("centre and metric are of different ranks");
         }
-        if !parts.scope.exceptions.is_sorted_by(|a, b| a < b)
-            || parts.scope.exceptions.iter().any(|(i, j)| i >= j)
-        {
+        if parts.scope.center.iter().any(|x| !x.is_finite()) {
+            return damaged("the centre is not finite");
+        }
+        let (exceptions, ignored) = (&parts.scope.exceptions, parts.scope.rule.ignored());
+        if !exceptions.is_sorted_by(|a, b| a < b) || exceptions.iter().any(|(i, j)| i >= j) {
             return damaged("exceptions are not sorted pairs");
+        }
+        if exceptions.iter().any(|pair| ignored.binary_search(pair).is_ok()) {
+            return damaged("a pair is an exception and ignored");
         }
         let children = nodes[0].child_count as usize;
         if parts.root_pair_radii.len() != children * children.saturating_sub(1) / 2 {
@@ -218,8 +220,8 @@ impl Certificates {
         if self.metric().rank() != model.rank() {
             return damaged("the metric is of another rank");
         }
-        if self.exceptions().iter().any(|(_, j)| *j as usize >= triangles) {
-            return damaged("an exception names a triangle that does not exist");
+        if self.exceptions().iter().chain(self.rule().ignored()).any(|(_, j)| *j as usize >= triangles) {
+            return damaged("a pair names a triangle that does not exist");
         }
         model.check_coordinates(self.center()).map(|_| ())
     }
@@ -246,9 +248,17 @@ impl Certificates {
         Err(Error::OtherPairs { what })
     }
 
-    /// The q nearest to the centre's side of the given one that the root's certificate proves free: q itself where it
-    /// is inside the root's ellipsoid, else the point just inside on the way from the centre. None where
-    /// the root's radius is 0, or (as the radius says nothing of them) there are exceptions.
+    /// `|z| = |S (q - center)|`, rounded up: what radii are compared with.
+    ///
+    /// # Panics
+    /// When q has not one entry for each mode.
+    pub fn norm(&self, q: &[f64]) -> f64 {
+        self.parts.scope.norm(q)
+    }
+
+    /// q itself where it is inside the root's ellipsoid, else the last point inside on the straight way from the centre
+    /// to q: free by the root's certificate. None where the root's radius is 0, or there are exceptions (the radius
+    /// says nothing of them).
     ///
     /// # Errors
     /// As [`ReducedModel::check_coordinates`] for a model of this rank: length and finite entries.

@@ -14,9 +14,18 @@ use crate::metric::check_scaled_modes;
 use crate::pairs::PairFilter;
 use crate::query::colliding_pairs;
 use crate::threads::on_threads;
-use crate::{Error, PairRule, Progress, ReducedModel};
+use crate::{Error, Pair, Progress, ReducedModel};
 
 pub(super) fn compute(
+    model: &ReducedModel,
+    options: &CertifyOptions,
+    progress: &dyn Progress,
+) -> Result<CertificateParts, Error> {
+    on_threads(options.threads, || compute_here(model, options, progress))
+}
+
+/// On the threads of the current pool.
+fn compute_here(
     model: &ReducedModel,
     options: &CertifyOptions,
     progress: &dyn Progress,
@@ -30,21 +39,26 @@ pub(super) fn compute(
     let center = options.center.clone().unwrap_or_else(|| rest.clone());
     model.check_coordinates(&center)?;
     let hierarchy = Hierarchy::build(model, &metric);
-    let mut rule = PairRule::new(options.neighbours, options.weld);
+    let mut rule = options.rule.clone();
     let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress)?;
     let rest_collisions = at_rest.len() as u64;
+    let at_center = if center == rest {
+        at_rest.clone()
+    } else {
+        colliding_pairs(model, &hierarchy, &rule, &center, progress)?
+    };
     if options.ignore_rest {
         rule = rule.ignoring(at_rest);
     }
-    let exceptions = {
-        let triangles = model.mesh().faces().len();
-        let most = options.max_exceptions.unwrap_or(CertifyOptions::default_exceptions(triangles));
-        let at_center = colliding_pairs(model, &hierarchy, &rule, &center, progress)?;
-        if at_center.len() <= most { at_center } else { Vec::new() }
-    };
+    let counts = |pair: &Pair| rule.ignored().binary_search(pair).is_err();
+    let mut exceptions: Vec<Pair> = at_center.into_iter().filter(counts).collect();
+    let triangles = model.mesh().faces().len();
+    if exceptions.len() > options.max_exceptions.unwrap_or(CertifyOptions::default_exceptions(triangles)) {
+        exceptions.clear();
+    }
     let scope = Scope { metric, center, rule, exceptions };
     let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
-    let filter = PairFilter::new(model, &scope.rule).without(&scope.exceptions);
+    let filter = PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions);
     let clusters = ClusterBounds::new(&scaled, &hierarchy);
     let global_radius = global_radius(model, &scope.metric, &scope.center);
     let work = Work {
@@ -56,7 +70,7 @@ pub(super) fn compute(
         global_radius,
         progress,
     };
-    let (node_radii, root_pair_radii) = on_threads(options.threads, || work.run())?;
+    let (node_radii, root_pair_radii) = work.run()?;
     Ok(CertificateParts {
         digest: Digest::of(model, &scope),
         scope,

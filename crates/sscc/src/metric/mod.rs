@@ -130,7 +130,7 @@ impl Metric {
     /// # Errors
     /// When there are more than 1024 modes, the factor is not square or not upper triangular, an entry is beyond
     /// 2^200, a diagonal entry is not positive or below 2^-200, or the factor is nearly singular (condition beyond
-    /// about 1e13).
+    /// about 1e13, its square for M).
     pub fn from_factor(kind: MetricKind, rank: usize, factor: Vec<f64>) -> Result<Self, Error> {
         Ok(Self { kind, factor: Factor::Triangular(Triangular::new(rank, factor)?) })
     }
@@ -184,8 +184,7 @@ impl Metric {
         }
     }
 
-    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. The error of
-    /// each component is within `gamma_r |A||S|`.
+    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within `gamma_r |A||S||S^-1|`.
     pub(crate) fn scaled_modes(&self, modes: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(scales) => {

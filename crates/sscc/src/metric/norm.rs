@@ -7,11 +7,13 @@ use super::{Factor, Metric};
 const FAST: std::ops::Range<f64> = 1e-140..1e140;
 
 impl Metric {
-    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows.
+    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is not a
+    /// number. (For radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
     ///
-    /// `q` must have one finite entry for each mode (checked by every query before it comes here).
+    /// # Panics
+    /// When q has not one entry for each mode.
     pub fn norm(&self, q: &[f64]) -> f64 {
-        debug_assert_eq!(q.len(), self.rank());
+        assert_eq!(q.len(), self.rank(), "one number for each mode");
         match &self.factor {
             Factor::Diagonal(scales) => diagonal_norm(scales, q),
             Factor::Triangular(factor) => norm_of(|| factor.products_up(q), q.len()),
@@ -48,9 +50,13 @@ fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
         lanes[1][0] = lanes[1][0].max(z);
     }
     let largest = lanes[1].into_iter().fold(0.0, f64::max);
+    let [a, b, c, d] = lanes[0];
+    let sum = (a + b) + (c + d);
+    if sum.is_nan() {
+        return f64::INFINITY;
+    }
     if FAST.contains(&largest) {
-        let [a, b, c, d] = lanes[0];
-        return ((a + b) + (c + d)).sqrt() * up(q.len());
+        return sum.sqrt() * up(q.len());
     }
     // A product that underflows is rounded up to the smallest normal number: it is not 0.
     let scaled = |(s, x): (&f64, &f64)| if *x == 0.0 { 0.0 } else { (s * x).abs().max(f64::MIN_POSITIVE) };
@@ -108,6 +114,7 @@ mod tests {
             }
             assert_eq!(metric.norm(&[0.0, 0.0]), 0.0);
         }
+        assert_eq!(Metric::identity(2).norm(&[f64::NAN, 1.0]), f64::INFINITY);
         let tiny_scale = Metric::from_scales(MetricKind::Given, vec![1e-200, 1.0]).unwrap();
         assert!(tiny_scale.norm(&[1e-200, 0.0]) > 0.0);
     }

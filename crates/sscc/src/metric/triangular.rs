@@ -52,7 +52,8 @@ impl Triangular {
             }
         }
         let mut this = Self { rank, entries, growth: Vec::new() };
-        this.growth = this.growth_bound().ok_or(wrong("it is nearly singular (condition beyond 1e26)"))?;
+        this.growth =
+            this.growth_bound().ok_or(wrong("it is nearly singular (condition beyond about 1e26)"))?;
         Ok(this)
     }
 
@@ -119,8 +120,8 @@ impl Triangular {
         q
     }
 
-    /// `A = U S^-1` from the first mode on: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. Each component is off by at most
-    /// `gamma_r (|A||S|)_k` (as solutions with a triangular matrix are).
+    /// `A = U S^-1` from the first mode on: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. `A S` is off by at most
+    /// `gamma_r |A||S|` (as with any triangular matrix), so A itself by that times `|S^-1|`.
     pub(super) fn divide(&self, modes: &[DVec3], out: &mut [DVec3]) {
         out.copy_from_slice(modes);
         for j in 0..self.rank {

@@ -38,7 +38,8 @@ pub enum Method {
 pub struct Statistics {
     /// Whether the root's certificate alone proved the shape free, exceptions apart.
     pub root_certified: bool,
-    /// Whether everything was looked at: the pairs listed are all. False where a limit stopped the query.
+    /// Whether everything was looked at: the pairs listed are all. False where a limit stopped the query, or an
+    /// error.
     pub complete: bool,
     /// Nodes and pairs of nodes that had to be opened.
     pub opened: u64,
@@ -69,6 +70,8 @@ pub struct Query<'a> {
     pairs: Vec<Pair>,
     /// The query ends with this many pairs.
     limit: usize,
+    /// Whether it did, with something left to look at.
+    full: bool,
     statistics: Statistics,
     norm: f64,
     /// Scratch: `q - center`.
@@ -135,6 +138,7 @@ impl<'a> Query<'a> {
             stack: Vec::new(),
             pairs: Vec::new(),
             limit: usize::MAX,
+            full: false,
             statistics: Statistics::default(),
             norm: 0.0,
             offset: vec![0.0; model.rank()],
@@ -169,6 +173,7 @@ impl<'a> Query<'a> {
         {
             self.statistics.root_certified = true;
             if self.exceptions().is_empty() {
+                self.statistics.complete = true;
                 return Ok(&self.pairs);
             }
         }
@@ -182,6 +187,7 @@ impl<'a> Query<'a> {
             }
         }
         self.pairs.sort_unstable();
+        self.statistics.complete = !self.full;
         Ok(&self.pairs)
     }
 
@@ -216,19 +222,19 @@ impl<'a> Query<'a> {
 
     /// Forgets the last answer; gives the reach of the shape at q.
     fn begin(&mut self, q: &[f64], limit: usize) -> Result<f64, Error> {
-        let reach = self.model.check_coordinates(q)?;
         self.pairs.clear();
         self.limit = limit;
-        self.statistics = Statistics { complete: true, ..Statistics::default() };
+        self.full = false;
+        self.statistics = Statistics::default();
+        let reach = self.model.check_coordinates(q)?;
         self.norm = self.scope.metric.norm_from(q, &self.scope.center, &mut self.offset);
         Ok(reach)
     }
 
-    /// Whether the limit is reached: then the answer is not complete.
+    /// Whether the limit is reached while there is still something to look at: then the answer is not complete.
     fn is_full(&mut self) -> bool {
-        let full = self.pairs.len() >= self.limit;
-        self.statistics.complete &= !full;
-        full
+        self.full |= self.pairs.len() >= self.limit;
+        self.full
     }
 
     /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it.

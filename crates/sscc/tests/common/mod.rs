@@ -2,7 +2,7 @@
 #![allow(dead_code)] // no test uses all of it
 
 use glam::{DMat3, DVec3};
-use sscc::{CertifyOptions, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope, TriMesh};
+use sscc::{CertifyOptions, Metric, MetricKind, Modes, Neighbours, PairRule, ReducedModel, Scope, TriMesh};
 
 /// Small pseudo-random numbers (SplitMix64).
 pub struct Random(u64);
@@ -338,8 +338,10 @@ pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     });
     CertifyOptions {
         center,
-        neighbours: [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
-        weld: random.below(2) == 0,
+        rule: PairRule::new(
+            [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
+            random.below(2) == 0,
+        ),
         ignore_rest: random.below(3) == 0,
         max_exceptions: [None, Some(0), Some(1000)][random.below(3)],
         threads: Some(1),

@@ -68,7 +68,7 @@ pub struct Summary {
 
 impl Summary {
     pub fn add(&mut self, answer: &Answer<'_>) {
-        self.root_certified += usize::from(answer.root_certified);
+        self.root_certified += usize::from(answer.root_certified && !answer.colliding);
         self.colliding += usize::from(answer.colliding);
         self.microseconds.push(answer.microseconds);
     }

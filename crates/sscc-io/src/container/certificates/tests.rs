@@ -33,8 +33,7 @@ fn every_scope_is_kept() {
                 .unwrap(),
         ),
         center: Some(vec![0.5, -0.25, 1.0]),
-        neighbours: Neighbours::IncludeOneVertex,
-        weld: true,
+        rule: PairRule::new(Neighbours::IncludeOneVertex, true),
         ..CertifyOptions::default()
     };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();

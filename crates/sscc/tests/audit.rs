@@ -1,0 +1,78 @@
+//! Audits find what is wrong, and nothing else, whatever certificates speak of.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{random_model, random_options};
+use sscc::{AuditOptions, Certificates, CertifyOptions, Error, PairRule, audit};
+
+struct Budget(std::sync::atomic::AtomicUsize);
+
+impl sscc::Progress for Budget {
+    fn report(&self, _done: usize, _total: usize) {}
+    fn is_cancelled(&self) -> bool {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
+    }
+}
+
+/// Honest certificates of every scope pass; the same with radii 1.5 times as large are found out wherever the honest
+/// ones are close to the truth.
+#[test]
+fn lies_of_every_scope_are_found() {
+    let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
+    for seed in 0..220 {
+        let model = random_model(50_000 + seed);
+        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
+        honest += 1;
+        if report.root_tightness.is_none_or(|tightness| tightness < 0.75) {
+            continue;
+        }
+        let mut parts = certificates.parts().clone();
+        parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 1.5);
+        let forged = Certificates::from_parts(parts).unwrap();
+        lies += 1;
+        if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
+            missed.push(seed);
+        }
+    }
+    assert!(honest > 150 && lies > 30, "{honest} {lies}");
+    // Some collide at single points of a hyperplane only, where exact tests see nothing.
+    assert!(missed.len() * 20 <= lies, "{missed:?} of {lies}");
+}
+
+/// Exceptions that are dropped, added to what is ignored, or out of range.
+#[test]
+fn forged_exceptions_are_refused_or_found() {
+    let options = CertifyOptions { epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+    let mut found = 0;
+    for seed in 0..80 {
+        let model = random_model(seed);
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        if certificates.exceptions().is_empty() || certificates.root_radius() <= 0.0 {
+            continue;
+        }
+        let good = certificates.parts();
+        let digest = |parts: &sscc::CertificateParts| sscc::Digest::of(&model, &parts.scope);
+        let mut both = good.clone();
+        both.scope.rule = PairRule::default().ignoring(good.scope.exceptions.clone());
+        assert!(matches!(Certificates::from_parts(both), Err(Error::Certificates(_))));
+        let mut outside = good.clone();
+        outside.scope.exceptions = vec![(0, u32::MAX)];
+        outside.digest = digest(&outside);
+        assert!(Certificates::from_parts(outside).unwrap().check_model(&model).is_err());
+        let mut dropped = good.clone();
+        dropped.scope.exceptions.clear();
+        dropped.digest = digest(&dropped);
+        let dropped = Certificates::from_parts(dropped).unwrap();
+        let asked = AuditOptions { samples: 400, ..AuditOptions::default() };
+        found += usize::from(!audit(&model, &dropped, &asked, &()).unwrap().violations.is_empty());
+        let mut nowhere = good.clone();
+        nowhere.scope.center[0] = f64::NAN;
+        assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
+    }
+    assert!(found > 1, "{found}");
+}
