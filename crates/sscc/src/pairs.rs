@@ -96,7 +96,7 @@ pub(crate) enum Relation {
 #[derive(Clone, Debug)]
 pub(crate) struct PairFilter {
     faces: Vec<[u32; 3]>,
-    /// The vertex class of each corner: the least vertex that it is welded to. Empty without welds.
+    /// The vertex class of each corner: the least vertex that it is welded to; without welds itself.
     classes: Vec<[u32; 3]>,
     neighbours: Neighbours,
     /// Sorted.
@@ -110,7 +110,7 @@ impl PairFilter {
             let classes = weld_classes(model);
             faces.iter().map(|face| face.map(|v| classes[v as usize])).collect()
         } else {
-            Vec::new()
+            faces.clone()
         };
         Self { faces, classes, neighbours: rule.neighbours, left_out: rule.ignored.clone() }
     }
@@ -122,17 +122,15 @@ impl PairFilter {
         self
     }
 
-    fn classes(&self, face: u32) -> [u32; 3] {
-        let classes = if self.classes.is_empty() { &self.faces } else { &self.classes };
-        classes[face as usize]
-    }
-
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
-        let (x, y) = (self.classes(a), self.classes(b));
+        let (x, y) = (self.classes[a as usize], self.classes[b as usize]);
+        if x.iter().any(|v| y.contains(v)) { self.between_neighbours(x, y) } else { Relation::Apart }
+    }
+
+    fn between_neighbours(&self, x: [u32; 3], y: [u32; 3]) -> Relation {
         let mut shared = x.into_iter().filter(|v| y.contains(v));
         match (shared.next(), self.neighbours) {
-            (None, _) => Relation::Apart,
             (Some(v), Neighbours::IncludeOneVertex) if shared.all(|w| w == v) => Relation::OneVertex(v),
             _ => Relation::Adjacent,
         }
@@ -145,19 +143,24 @@ impl PairFilter {
     }
 
     /// Whether two triangles with these corners collide, exactly, under the rule. Pairs left out are the caller's.
+    pub(crate) fn collide(&self, pair: Pair, x: &[DVec3; 3], y: &[DVec3; 3]) -> bool {
+        self.collide_as(self.relation(pair.0, pair.1), pair, x, y)
+    }
+
+    /// The same where their relation is known.
     #[inline]
-    pub(crate) fn collide(&self, (a, b): Pair, x: &[DVec3; 3], y: &[DVec3; 3]) -> bool {
-        match self.relation(a, b) {
+    pub(crate) fn collide_as(&self, relation: Relation, pair: Pair, x: &[DVec3; 3], y: &[DVec3; 3]) -> bool {
+        match relation {
             Relation::Adjacent => false,
             Relation::Apart => intersect_triangle_triangle(x, y),
-            Relation::OneVertex(v) => self.collide_beyond(v, (a, b), x, y),
+            Relation::OneVertex(v) => self.collide_beyond(v, pair, x, y),
         }
     }
 
     fn collide_beyond(&self, v: u32, (a, b): Pair, x: &[DVec3; 3], y: &[DVec3; 3]) -> bool {
         match (self.opposite(a, v), self.opposite(b, v)) {
             (Some(e), Some(f)) => {
-                let at = self.classes(a).iter().position(|w| *w == v).unwrap_or(0);
+                let at = self.classes[a as usize].iter().position(|w| *w == v).unwrap_or(0);
                 intersect_beyond_vertex(x[at], e.map(|i| x[i]), f.map(|i| y[i]))
             }
             // A face that is the vertex alone.
@@ -184,7 +187,7 @@ impl PairFilter {
 
     /// The corners (0 to 2) of a face that are not of the class v: two, or one twice.
     fn opposite(&self, face: u32, v: u32) -> Option<[usize; 2]> {
-        let classes = self.classes(face);
+        let classes = self.classes[face as usize];
         let mut others = (0..3).filter(|&i| classes[i] != v);
         let first = others.next()?;
         Some([first, others.next().unwrap_or(first)])

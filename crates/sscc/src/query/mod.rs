@@ -74,7 +74,7 @@ pub struct Query<'a> {
     full: bool,
     statistics: Statistics,
     norm: f64,
-    /// Scratch: `q - center`.
+    /// Scratch for `q - center`; empty where the centre is 0.
     offset: Vec<f64>,
 }
 
@@ -126,6 +126,8 @@ impl<'a> Query<'a> {
         hierarchy: Cow<'a, Hierarchy>,
         method: Method,
     ) -> Self {
+        let is_centered = scope.center.iter().all(|x| *x == 0.0);
+        let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
         Self {
             boxes: Boxes::new(model, &hierarchy, method),
             filter: Arc::new(PairFilter::new(model, &scope.rule)),
@@ -141,7 +143,7 @@ impl<'a> Query<'a> {
             full: false,
             statistics: Statistics::default(),
             norm: 0.0,
-            offset: vec![0.0; model.rank()],
+            offset,
         }
     }
 
@@ -227,7 +229,11 @@ impl<'a> Query<'a> {
         self.full = false;
         self.statistics = Statistics::default();
         let reach = self.model.check_coordinates(q)?;
-        self.norm = self.scope.metric.norm_from(q, &self.scope.center, &mut self.offset);
+        self.norm = if self.offset.is_empty() {
+            self.scope.metric.norm(q)
+        } else {
+            self.scope.metric.norm_from(q, &self.scope.center, &mut self.offset)
+        };
         Ok(reach)
     }
 

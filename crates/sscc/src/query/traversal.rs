@@ -97,15 +97,17 @@ impl Query<'_> {
     fn test(&mut self, i: usize, j: usize) {
         let (a, b) = (self.hierarchy.order()[i], self.hierarchy.order()[j]);
         self.statistics.box_tests += 1;
-        if disjoint(self.boxes.triangle(a), self.boxes.triangle(b))
-            || self.filter.relation(a, b) == Relation::Adjacent
-        {
+        if disjoint(self.boxes.triangle(a), self.boxes.triangle(b)) {
+            return;
+        }
+        let relation = self.filter.relation(a, b);
+        if relation == Relation::Adjacent {
             return;
         }
         self.statistics.triangle_tests += 1;
         let faces = self.model.mesh().faces();
         let (x, y) = (self.boxes.corners(faces[a as usize]), self.boxes.corners(faces[b as usize]));
-        if self.filter.collide((a, b), &x, &y) {
+        if self.filter.collide_as(relation, (a, b), &x, &y) {
             let pair = (a.min(b), a.max(b));
             if !self.filter.leaves_out(a, b) && !self.is_exception(pair) && !self.is_full() {
                 self.pairs.push(pair);
