@@ -1,0 +1,112 @@
+//! A simulator's own loop, which asks in every step whether the shape touches itself.
+//!
+//! The shape is the embedded spring. Each of its modes is a damped oscillator, and all are shaken,
+//! ever harder, at the frequency of one of them, which swings up until coils meet.
+//!
+//! `cargo run --release -p sscc-examples --example simulation_loop`
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use sscc::{Certificates, CertifyOptions, Progress, Query, ReducedModel};
+use sscc_examples::exit_code;
+use sscc_modes::{polynomial_modes, shapes};
+
+/// Length of a step (seconds).
+const STEP: f64 = 1.0 / 240.0;
+
+/// Share of the critical damping.
+const DAMPING: f64 = 0.01;
+
+/// The polynomial mode that moves along z by the square of z: it squeezes one end and stretches the other.
+/// (The linear modes alone never make a shape touch itself before they have flattened it.)
+const SQUEEZE: usize = 14;
+
+fn main() -> ExitCode {
+    exit_code(run())
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    let mesh = shapes::spring();
+    let modes = polynomial_modes(&mesh)?;
+    let model = ReducedModel::new(mesh, modes)?;
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+    println!("{} triangles, {} modes, certified", model.mesh().faces().len(), model.rank());
+
+    // Whatever happens, the loop ends in time: queries look at the deadline too.
+    let deadline = Deadline(Instant::now() + Duration::from_secs(300));
+    let mut query = Query::new(&model, &certificates)?.cancelled_by(&deadline);
+    let mut oscillators = Oscillators::new(model.metric().scales());
+    // Steps, and the time of their queries: those answered by the root's certificate, and the others.
+    let (mut steps, mut spent) = ([0_u32; 2], [Duration::ZERO; 2]);
+    let touching = loop {
+        oscillators.advance();
+        let start = Instant::now();
+        let pairs = match query.discrete(&oscillators.q) {
+            Err(sscc::Error::Cancelled) => return Err("no contact before the deadline".into()),
+            pairs => pairs?.to_vec(),
+        };
+        let kind = usize::from(!query.statistics().root_certified);
+        spent[kind] += start.elapsed();
+        steps[kind] += 1;
+        if !pairs.is_empty() {
+            break pairs;
+        }
+    };
+
+    let total = steps[0] + steps[1];
+    println!("first contact in step {total}, after {:.3} s", f64::from(total) * STEP);
+    println!("{} pairs of triangles, the first {:?}", touching.len(), touching[0]);
+    // The straight way from rest to here, as far as it is proven free: a place to set the shape back to.
+    println!("{:.4} of this deformation is free", query.safe_scale(&oscillators.q)?);
+    let microseconds = |kind: usize| 1e6 * spent[kind].as_secs_f64() / f64::from(steps[kind].max(1));
+    println!("{} of {total} steps answered by one comparison, {:.2} us each", steps[0], microseconds(0));
+    println!("the other {} took {:.0} us each", steps[1], microseconds(1));
+    Ok(())
+}
+
+/// Damped oscillators, one for each mode: `q'' = force - w^2 q - 2 DAMPING w q'`.
+struct Oscillators {
+    time: f64,
+    q: Vec<f64>,
+    velocities: Vec<f64>,
+    /// By how much a unit of each mode moves the shape (metres).
+    scales: Vec<f64>,
+}
+
+impl Oscillators {
+    fn new(scales: Vec<f64>) -> Self {
+        Self { time: 0.0, q: vec![0.0; scales.len()], velocities: vec![0.0; scales.len()], scales }
+    }
+
+    /// Angular frequency of a mode (per second).
+    fn frequency(k: usize) -> f64 {
+        TAU * (1.0 + 0.2 * k as f64)
+    }
+
+    /// One step: velocities first, then positions by the new velocities, which stays stable.
+    fn advance(&mut self) {
+        let shaking = 4.0 * self.time * libm::sin(Self::frequency(SQUEEZE) * self.time); // m/s^2
+        for (k, scale) in self.scales.iter().enumerate() {
+            let w = Self::frequency(k);
+            let damping = 2.0 * DAMPING * w * self.velocities[k];
+            self.velocities[k] += STEP * (shaking / scale - w * w * self.q[k] - damping);
+            self.q[k] += STEP * self.velocities[k];
+        }
+        self.time += STEP;
+    }
+}
+
+/// A point in time after which nothing is worth waiting for.
+struct Deadline(Instant);
+
+impl Progress for Deadline {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn is_cancelled(&self) -> bool {
+        Instant::now() >= self.0
+    }
+}

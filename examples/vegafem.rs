@@ -1,0 +1,100 @@
+//! A reduced model as VegaFEM writes it, along a trajectory: what a query costs, and how a centre helps when
+//! the shape moves about another pose than its rest.
+//!
+//! `cargo run --release -p sscc-examples --example vegafem [MESH.obj MODES.U]`
+#![allow(clippy::print_stdout)]
+
+use std::env;
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use sscc::{Certificates, CertifyOptions, Query, ReducedModel};
+use sscc_examples::{exit_code, mouth_vegafem};
+use sscc_io::load_model;
+
+const FRAMES: usize = 300;
+
+fn main() -> ExitCode {
+    exit_code(run())
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?; // for the mouth; removed at the end
+    let files: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
+    let [mesh, modes] = match <[PathBuf; 2]>::try_from(files) {
+        Ok(files) => files,
+        Err(none) if none.is_empty() => mouth_vegafem(folder.path())?,
+        Err(_) => return Err("give a mesh and its modes, or nothing".into()),
+    };
+    let (model, info) = load_model(&mesh, Some(&modes))?;
+    println!("{}: {} triangles, {} modes", info.provenance, model.mesh().faces().len(), model.rank());
+
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+    println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
+
+    // All modes swing, ever harder, until some vertex may have moved by half the size of the shape.
+    let (rest, largest) = (vec![0.0; model.rank()], certificates.global_radius());
+    let growing = (0..FRAMES).map(|i| swing(&model, &rest, i, largest * i as f64 / FRAMES as f64));
+    let mut query = Query::new(&model, &certificates)?;
+    check("growing", &mut query, growing)?;
+
+    // The shape may have settled in another pose, say under its weight: here half as far as mode 0 can go
+    // backwards. About that pose it swings a little.
+    let mut settled = rest.clone();
+    settled[0] = -1.0;
+    let safe = query.safe_scale(&settled)?;
+    if safe == 0.0 || safe.is_infinite() {
+        println!("no other pose to settle in: the shape collides at rest, or mode 0 moves nothing");
+        return Ok(());
+    }
+    settled[0] *= safe / 2.0;
+    let size = 0.3 * certificates.root_radius();
+    let small = || (0..FRAMES).map(|i| swing(&model, &settled, i, size));
+    check("settled", &mut query, small())?;
+
+    // Certificates about that pose measure from there.
+    let options = CertifyOptions { center: Some(settled.clone()), ..CertifyOptions::default() };
+    let centred = Certificates::compute(&model, &options, &())?;
+    println!("certified about the settled pose: free where |z| < {:.3e}", centred.root_radius());
+    check("settled", &mut Query::new(&model, &centred)?, small())?;
+    Ok(())
+}
+
+/// Frame i of an oscillation about a pose, every mode with a frequency of its own, at the distance `size` from
+/// it in the model's metric.
+fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
+    let time = i as f64 / FRAMES as f64;
+    let turns = |k: usize| (3.0 + 0.7 * k as f64) * time + 0.13 * (1 + k) as f64;
+    let z: Vec<f64> = (0..model.rank()).map(|k| libm::sin(TAU * turns(k)) / (1 + k) as f64).collect();
+    let length = z.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let offset = model.metric().unscaled(&z);
+    about.iter().zip(offset).map(|(q, d)| q + d * size / length).collect()
+}
+
+/// Answers every frame, and tells what it cost.
+fn check(
+    name: &str,
+    query: &mut Query<'_>,
+    frames: impl Iterator<Item = Vec<f64>>,
+) -> Result<(), sscc::Error> {
+    let (mut colliding, mut by_root, mut opened, mut boxes, mut triangles) = (0, 0, 0, 0, 0);
+    for q in frames {
+        colliding += usize::from(!query.discrete(&q)?.is_empty());
+        let cost = query.statistics();
+        by_root += usize::from(cost.root_certified);
+        opened += cost.opened;
+        boxes += cost.box_tests;
+        triangles += cost.triangle_tests;
+    }
+    println!("{name}: {FRAMES} frames, {colliding} colliding, {by_root} answered by one comparison");
+    let mean = |sum: u64| sum as f64 / FRAMES as f64;
+    println!(
+        "    a frame opens {:.1} nodes, compares {:.1} boxes and tests {:.1} pairs of triangles",
+        mean(opened),
+        mean(boxes),
+        mean(triangles)
+    );
+    Ok(())
+}
