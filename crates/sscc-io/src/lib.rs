@@ -1,5 +1,49 @@
 //! Every reader and writer of sscc: meshes, modes, glTF, arrays and the sealed containers.
 //!
+//! [`load_model`] takes a model by the names of its files, whatever their form; [`load_model_with`] also tells what the
+//! files say beside it (names of morph targets, variances, the pose at which a glTF file is shown).
+//! Models and certificates are kept in containers ([`container`]): NumPy reads them too, and any flipped byte is
+//! noticed.
+//!
+//! ```
+//! use sscc::{Certificates, CertifyOptions, Query};
+//! use sscc_io::{load_model, read_certificates, read_model, write_certificates, write_model, write_npy};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let in_folder = |name: &str| folder.path().join(name);
+//! // A mesh, and one mode for it (3V x 1) that moves the second triangle along z.
+//! let (mesh, modes) = (in_folder("two.obj"), in_folder("two.npy"));
+//! std::fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n")?;
+//! let mode: Vec<f64> = (0..18).map(|row| if row >= 9 && row % 3 == 2 { 1.0 } else { 0.0 }).collect();
+//! write_npy(&modes, &[18, 1], &mode)?;
+//!
+//! // Once:
+//! let (model, info) = load_model(&mesh, Some(&modes))?;
+//! let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+//! write_model(&in_folder("two.model.safetensors"), &model, &info)?;
+//! write_certificates(&in_folder("two.sscc.safetensors"), &certificates)?;
+//!
+//! // From then on:
+//! let (model, _info) = read_model(&in_folder("two.model.safetensors"))?;
+//! let certificates = read_certificates(&in_folder("two.sscc.safetensors"))?;
+//! let mut query = Query::new(&model, &certificates)?;
+//! assert_eq!(query.discrete(&[-1.0])?, [(0, 1)]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! | what | here |
+//! | --- | --- |
+//! | meshes: OBJ, PLY, OFF, STL | [`read_mesh`], [`mesh`] |
+//! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
+//! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
+//! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
+//! | models and certificates | [`container`] |
+//! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
+//!
+//! Formats for drawing split vertices along seams ([`splits_vertices`]): certify such models with `weld`.
+//!
 //! All readers take hostile bytes: they answer with an error of one line that names the file, the place in
 //! it and the cause. They never panic, and never allocate by a number that the file's size does not bear out.
 //! Files are read whole (a mapped file that is replaced while in use kills the process), and written

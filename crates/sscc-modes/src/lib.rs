@@ -6,6 +6,24 @@
 //!   [`reduced_stiffness`] before it, and [`filter_eigenvalues`] and [`energy_metric`] after it;
 //! - [`shapes`]: example meshes made in code, so that nothing has to be downloaded.
 //!
+//! A model in two lines, for a first try or a test:
+//!
+//! ```
+//! use sscc::ReducedModel;
+//! use sscc_modes::{polynomial_modes, shapes};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let spring = shapes::spring();
+//! let modes = polynomial_modes(&spring)?;
+//! let model = ReducedModel::new(spring, modes)?;
+//! assert_eq!((model.mesh().faces().len(), model.rank()), (16_000, 24));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Modes from a program of your own need nothing of this: [`sscc::Modes`] takes any matrix. If you also have
+//! the stiffness of the solid, an example at [`diagonalize`] makes a model whose metric is strain energy.
+//!
 //! Everything here gives the same bits on every machine: sums have a fixed order, and sines and
 //! cosines come from `libm`, not from the platform. The exception is [`diagonalize`]: its eigenvectors are
 //! rounded as the vector instructions of the processor do.
