@@ -83,7 +83,7 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use sscc::{Certificates, CertifyOptions, Error, Modes, Neighbours, Query, ReducedModel, TriMesh};
+//! use sscc::{Certificates, CertifyOptions, Error, Modes, Neighbours, PairRule, Query, ReducedModel, TriMesh};
 //!
 //! # fn main() -> Result<(), Error> {
 //! // Two triangles that meet in a corner, each with a vertex of its own there. The mode folds the second onto
@@ -103,9 +103,9 @@
 //!
 //! let plain = CertifyOptions::default();
 //! assert!(collide(&plain, 0.0)?); // they touch in the corner
-//! let welded = CertifyOptions { weld: true, ..plain };
+//! let welded = CertifyOptions { rule: PairRule::new(Neighbours::Exclude, true), ..plain };
 //! assert!(!collide(&welded, 0.0)? && !collide(&welded, 1.0)?); // neighbours never count
-//! let strict = CertifyOptions { neighbours: Neighbours::IncludeOneVertex, ..welded };
+//! let strict = CertifyOptions { rule: PairRule::new(Neighbours::IncludeOneVertex, true), ..welded };
 //! assert!(!collide(&strict, 0.0)? && collide(&strict, 1.0)?); // folded, they meet beside the corner
 //! # Ok(())
 //! # }
