@@ -84,7 +84,7 @@ fn random_q(certificates: &Certificates) -> Vec<Vec<f64>> {
 
 /// Models whose radii are attacked, and (with seeds of their own) those whose answers are compared.
 const PROVEN: u64 = 1110;
-const COMPARED: u64 = 1150;
+const COMPARED: u64 = 1250;
 
 /// The q in the direction of z whose norm lies as close below the radius as products allow; none where there is no
 /// room.
