@@ -9,6 +9,7 @@
 
 mod allowance;
 pub mod container;
+mod cubic;
 mod error;
 mod file;
 pub mod gltf;
@@ -22,6 +23,7 @@ mod pose;
 mod text;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
+pub use cubic::{Cubic, parse_cubic, read_cubic};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};
