@@ -1,4 +1,4 @@
-//! Every reader and writer of sscc: meshes, modes, glTF, arrays and the sealed containers.
+//! Every reader and writer of sscc: meshes, solids, modes, glTF, arrays and the sealed containers.
 //!
 //! All readers take hostile bytes: they answer with an error of one line that names the file, the place in
 //! it and the cause. They never panic, and never allocate by a number that the file's size does not bear out.
@@ -20,6 +20,7 @@ pub mod npy;
 pub mod npz;
 mod numbers;
 mod pose;
+pub mod solid;
 mod text;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
@@ -33,3 +34,4 @@ pub use npy::write_npy;
 pub use npz::read_npz_model;
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
+pub use solid::{Material, Solid, read_solid};
