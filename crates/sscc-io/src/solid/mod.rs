@@ -1,4 +1,4 @@
-//! Solids: volumetric meshes of tetrahedra and cubes, from files of Medit, VegaFEM and TetGen.
+//! Solids: volumetric meshes of tetrahedra and cubes, from files of Medit, VegaFEM, gmsh and TetGen.
 //!
 //! Every vertex of the file is kept, in the file's order, used by an element or not. Elements keep the file's
 //! order among their kind, and the order of their corners. What is read is checked as far as it can be without
@@ -8,6 +8,7 @@
 //! Second-order elements, prisms and pyramids are refused, never left out: a body would have holes.
 
 mod builder;
+pub mod gmsh;
 pub mod medit;
 mod statements;
 pub mod tetgen;
@@ -22,7 +23,7 @@ use crate::IoError;
 use crate::file::{ending, read_whole};
 
 /// The endings that [`read_solid`] knows.
-const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .node and .ele (TetGen)";
+const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
 
 /// The name of the material of elements about which the file says nothing.
 const DEFAULT: &str = "default";
@@ -69,7 +70,7 @@ impl Material {
 }
 
 /// Reads a volumetric mesh; the format goes by the file name's ending, in any case: `.mesh` ([`medit`]), `.veg`
-/// ([`vega`]), `.node` or `.ele` with the other beside it ([`tetgen`]).
+/// ([`vega`]), `.msh` ([`gmsh`]), `.node` or `.ele` with the other beside it ([`tetgen`]).
 ///
 /// # Errors
 /// When the ending is none of these, or the file (or one that belongs to it) cannot be read or is malformed; when
@@ -78,6 +79,7 @@ impl Material {
 pub fn read_solid(path: &Path) -> Result<Solid, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse,
+        "msh" => gmsh::parse,
         "veg" => return vega::read(path),
         "node" | "ele" => return tetgen::read(path),
         _ => {
@@ -101,9 +103,10 @@ mod tests {
             read_solid(&path).unwrap_err().to_string()
         };
         assert!(message("a.MESH").contains("line 1: a Medit file begins with"));
+        assert!(message("a.msh").contains("line 1: a gmsh file begins with"));
         assert!(message("a.veg").contains("line 1: a section"));
         assert!(message("a.stl").contains("unknown kind of volumetric mesh file; supported: .mesh (Medit)"));
-        let missing = read_solid(&directory.path().join("b.mesh")).unwrap_err().to_string();
-        assert!(missing.ends_with("b.mesh: not found"));
+        let missing = read_solid(&directory.path().join("b.msh")).unwrap_err().to_string();
+        assert!(missing.ends_with("b.msh: not found"));
     }
 }
