@@ -1,4 +1,4 @@
-//! Every reader and writer of sscc: meshes, modes, glTF, arrays and the sealed containers.
+//! Every reader and writer of sscc: meshes, solids, modes, glTF, arrays and the sealed containers.
 //!
 //! [`load_model`] takes a model by the names of its files, whatever their form; [`load_model_with`] also tells what the
 //! files say beside it (names of morph targets, variances, the pose at which a glTF file is shown).
@@ -53,6 +53,7 @@
 
 mod allowance;
 pub mod container;
+mod cubic;
 mod error;
 mod file;
 pub mod gltf;
@@ -63,9 +64,11 @@ pub mod npy;
 pub mod npz;
 mod numbers;
 mod pose;
+pub mod solid;
 mod text;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
+pub use cubic::{Cubic, parse_cubic, read_cubic};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};
@@ -75,3 +78,4 @@ pub use npy::write_npy;
 pub use npz::read_npz_model;
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
+pub use solid::{Material, Solid, read_solid};

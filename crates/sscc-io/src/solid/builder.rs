@@ -1,0 +1,214 @@
+//! A solid in the making: what all formats check alike.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::{DEFAULT, Material, Solid};
+use crate::{FormatError, Place};
+
+/// Vertices and elements read so far. Elements may come before the vertices they name, so indices are checked at
+/// the end.
+pub(super) struct Builder {
+    solid: Solid,
+    cube_material: Vec<u32>,
+    by_name: BTreeMap<String, u32>,
+    /// The largest index, from 0, and where it is.
+    largest: Option<(u64, Place)>,
+    /// What the file calls its first vertex: 0 or 1. Only for messages.
+    pub first: u64,
+}
+
+impl Builder {
+    pub fn new(first: u64) -> Self {
+        let (solid, cube_material, by_name) = (Solid::default(), Vec::new(), BTreeMap::new());
+        Self { solid, cube_material, by_name, largest: None, first }
+    }
+
+    pub fn vertices(&self) -> usize {
+        self.solid.vertices.len()
+    }
+
+    pub fn elements(&self) -> usize {
+        self.solid.tets.len() + self.solid.cubes.len()
+    }
+
+    pub fn vertex(&mut self, position: DVec3, place: Place) -> Result<(), FormatError> {
+        if !sscc::limits::contains(position) {
+            return Err(FormatError::new(place, "a coordinate is larger than 2^200 or not finite"));
+        }
+        self.solid.vertices.push(position);
+        Ok(())
+    }
+
+    /// The index of the material of that name.
+    pub fn material(&mut self, name: &str) -> u32 {
+        if let Some(known) = self.by_name.get(name) {
+            return *known;
+        }
+        let index = self.solid.materials.len() as u32;
+        self.by_name.insert(name.to_owned(), index);
+        self.solid.materials.push(Material::named(name));
+        index
+    }
+
+    /// The index of the material of elements about which the file says nothing.
+    pub fn default_material(&mut self) -> u32 {
+        self.material(DEFAULT)
+    }
+
+    /// Adds a tetrahedron; corners from 0.
+    pub fn tet(&mut self, corners: [u64; 4], material: u32, place: Place) -> Result<(), FormatError> {
+        self.check(&corners, place)?;
+        self.solid.tets.push(corners.map(|c| c as u32));
+        self.solid.element_material.push(material);
+        Ok(())
+    }
+
+    /// Adds a cube; corners from 0.
+    pub fn cube(&mut self, corners: [u64; 8], material: u32, place: Place) -> Result<(), FormatError> {
+        self.check(&corners, place)?;
+        self.solid.cubes.push(corners.map(|c| c as u32));
+        self.cube_material.push(material);
+        Ok(())
+    }
+
+    /// Adds a face of 3 or 4 corners, from 0.
+    pub fn face<const N: usize>(&mut self, corners: [u64; N], place: Place) -> Result<(), FormatError> {
+        self.check(&corners, place)?;
+        let corners = corners.map(|c| c as u32);
+        self.solid.surface.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
+        Ok(())
+    }
+
+    /// Indices beyond 32 bits are cut when they are stored, but are also `largest`, which `finish` refuses.
+    fn check(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
+        if let Some(twice) = repeated(corners) {
+            let (vertex, first) = (twice.saturating_add(self.first), self.first);
+            return Err(FormatError::new(
+                place,
+                format!("names vertex {vertex} (counted from {first}) twice"),
+            ));
+        }
+        let largest = corners.iter().copied().max().unwrap_or_default();
+        if self.largest.as_ref().is_none_or(|(known, _)| largest > *known) {
+            self.largest = Some((largest, place));
+        }
+        Ok(())
+    }
+
+    /// The solid, when all its indices name vertices.
+    pub fn finish(mut self) -> Result<Solid, FormatError> {
+        let there = self.solid.vertices.len();
+        if there == 0 {
+            return Err(FormatError::whole("the mesh has no vertices"));
+        }
+        if u32::try_from(there).is_err() {
+            return Err(FormatError::whole(format!(
+                "{there} vertices are more than 32-bit indices can name"
+            )));
+        }
+        match self.largest {
+            Some((index, place)) if index >= there as u64 => {
+                let (index, first) = (index.saturating_add(self.first), self.first);
+                let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
+                return Err(FormatError::new(place, cause));
+            }
+            _ => {}
+        }
+        if self.solid.tets.is_empty() && self.solid.cubes.is_empty() {
+            return Err(FormatError::whole("the mesh has no tetrahedra and no cubes (hexahedra)"));
+        }
+        check_different("tetrahedra", &self.solid.tets)?;
+        check_different("cubes", &self.solid.cubes)?;
+        self.solid.element_material.append(&mut self.cube_material);
+        Ok(self.solid)
+    }
+}
+
+/// Refuses elements that are there twice: they would be twice as stiff. gmsh writes such files in version 2.2, for
+/// volumes in two physical groups.
+fn check_different<const N: usize>(what: &str, elements: &[[u32; N]]) -> Result<(), FormatError> {
+    let mut sorted: Vec<_> = elements.iter().copied().zip(0_usize..).collect();
+    sorted.iter_mut().for_each(|(corners, _)| corners.sort_unstable());
+    sorted.sort_unstable();
+    match sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        Some(pair) => {
+            let (a, b) = (pair[0].1, pair[1].1);
+            let cause = format!("{what} {a} and {b} (counted from 0) have the same corners");
+            Err(FormatError::whole(cause))
+        }
+        None => Ok(()),
+    }
+}
+
+/// A corner that occurs twice.
+pub(super) fn repeated(corners: &[u64]) -> Option<u64> {
+    corners.iter().enumerate().find(|(i, corner)| corners[..*i].contains(corner)).map(|(_, corner)| *corner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_vertices(count: usize) -> Builder {
+        let mut builder = Builder::new(1);
+        for _ in 0..count {
+            builder.vertex(DVec3::ZERO, Place::Whole).unwrap();
+        }
+        builder
+    }
+
+    #[test]
+    fn indices_are_checked_against_all_vertices() {
+        for index in [4, u64::from(u32::MAX), 1 << 32, u64::MAX] {
+            let mut builder = with_vertices(4);
+            builder.tet([0, 1, 2, index], 0, Place::Line(7)).unwrap();
+            assert_eq!(*builder.finish().unwrap_err().place(), Place::Line(7));
+        }
+        let mut builder = with_vertices(4);
+        builder.face([0, 1, 4], Place::Line(8)).unwrap();
+        assert_eq!(*builder.finish().unwrap_err().place(), Place::Line(8));
+    }
+
+    #[test]
+    fn corners_differ() {
+        let mut builder = with_vertices(4);
+        let error = builder.tet([0, 3, 2, 3], 0, Place::Line(2)).unwrap_err().to_string();
+        assert_eq!(error, "line 2: names vertex 4 (counted from 1) twice");
+        assert!(builder.cube([0, 1, 2, 3, 4, 5, 6, 0], 0, Place::Whole).is_err());
+        assert!(builder.face([0, 0, 1], Place::Whole).is_err());
+    }
+
+    #[test]
+    fn materials_of_tetrahedra_come_first() {
+        let mut builder = with_vertices(8);
+        let (a, b) = (builder.material("a"), builder.default_material());
+        builder.cube([0, 1, 2, 3, 4, 5, 6, 7], a, Place::Whole).unwrap();
+        builder.tet([0, 1, 2, 3], b, Place::Whole).unwrap();
+        builder.face([0, 1, 2, 3], Place::Whole).unwrap();
+        assert_eq!(builder.material("a"), a);
+        let solid = builder.finish().unwrap();
+        assert_eq!((solid.element_material, solid.materials.len()), (vec![b, a], 2));
+        assert_eq!(solid.surface, [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn elements_differ() {
+        let mut builder = with_vertices(5);
+        for corners in [[0, 1, 2, 3], [1, 2, 3, 4], [3, 1, 0, 2]] {
+            builder.tet(corners, 0, Place::Whole).unwrap();
+        }
+        let error = builder.finish().unwrap_err().to_string();
+        assert_eq!(error, "tetrahedra 0 and 2 (counted from 0) have the same corners");
+    }
+
+    #[test]
+    fn nothing_is_refused() {
+        assert!(with_vertices(0).finish().unwrap_err().to_string().contains("no vertices"));
+        assert!(with_vertices(4).finish().unwrap_err().to_string().contains("no tetrahedra"));
+        for x in [f64::NAN, f64::INFINITY, 2e60] {
+            assert!(with_vertices(0).vertex(DVec3::new(0.0, x, 0.0), Place::Whole).is_err());
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! `$Elements`.
+
+use super::groups::Groups;
+use super::nodes::Nodes;
+use super::numbers::Numbers;
+use super::{Builder, Version};
+use crate::FormatError;
+use crate::solid::builder::repeated;
+
+const WHAT: &str = "the last element";
+
+/// What becomes of an element.
+#[derive(Clone, Copy)]
+enum Kind {
+    Tet,
+    Cube,
+    Triangle,
+    Quadrilateral,
+    /// No part of the volume; of that many nodes.
+    Skipped(u64),
+}
+
+/// The kind of an element by its number in gmsh; none for solid elements that are not read.
+fn kind(number: i64) -> Option<Kind> {
+    Some(match number {
+        4 => Kind::Tet,
+        5 => Kind::Cube,
+        2 => Kind::Triangle,
+        3 => Kind::Quadrilateral,
+        // Points, lines, and faces of higher order.
+        15 => Kind::Skipped(1),
+        1 => Kind::Skipped(2),
+        8 => Kind::Skipped(3),
+        26 => Kind::Skipped(4),
+        27 => Kind::Skipped(5),
+        28 => Kind::Skipped(6),
+        9 => Kind::Skipped(6),
+        16 => Kind::Skipped(8),
+        10 => Kind::Skipped(9),
+        20 => Kind::Skipped(9),
+        21 => Kind::Skipped(10),
+        _ => return None,
+    })
+}
+
+/// Reads the elements into the builder.
+pub(super) fn read(
+    numbers: &mut Numbers,
+    version: Version,
+    nodes: &Nodes,
+    groups: &Groups,
+    builder: &mut Builder,
+) -> Result<(), FormatError> {
+    let mut reader = Reader { numbers, version, nodes, builder };
+    match version {
+        Version::V2 => {
+            let count = reader.numbers.words.count("the number of elements")? as u64;
+            reader.numbers.words.rest_of_line();
+            let mut done = 0;
+            while done < count {
+                done += reader.block_2(count - done, groups)?;
+            }
+            Ok(())
+        }
+        Version::V4 => reader.blocks_4(groups),
+    }
+}
+
+struct Reader<'r, 'a> {
+    numbers: &'r mut Numbers<'a>,
+    version: Version,
+    nodes: &'r Nodes,
+    builder: &'r mut Builder,
+}
+
+impl Reader<'_, '_> {
+    /// Elements of version 2 that share a head, at most `left`. In text, each has its own; returns how many.
+    fn block_2(&mut self, left: u64, groups: &Groups) -> Result<u64, FormatError> {
+        if !self.numbers.words.binary {
+            self.numbers.integer(WHAT)?; // the element's own number
+        }
+        let kind = self.kind()?;
+        let count = if self.numbers.words.binary { self.numbers.tag(WHAT)? } else { 1 };
+        let tags = self.numbers.tag(WHAT)?;
+        if count == 0 || count > left {
+            return self.numbers.refused(format!("a block of {count} elements, but {left} are left"));
+        }
+        for _ in 0..count {
+            if self.numbers.words.binary {
+                self.numbers.integer(WHAT)?;
+            }
+            let group = if tags > 0 { self.numbers.integer(WHAT)?.unsigned_abs() } else { 0 };
+            self.numbers.skip_integers(tags.saturating_sub(1), WHAT)?;
+            self.element(kind, |builder| groups.material(group, builder))?;
+        }
+        Ok(count)
+    }
+
+    fn blocks_4(&mut self, groups: &Groups) -> Result<(), FormatError> {
+        let blocks = self.numbers.size("the number of blocks")?;
+        let promised = self.numbers.size("the number of elements")?;
+        self.numbers.size("the smallest tag")?;
+        self.numbers.size("the largest tag")?;
+        let mut found = 0_u64;
+        for _ in 0..blocks {
+            self.numbers.integer(WHAT)?; // the dimension, which the kind tells too
+            let entity = self.numbers.integer(WHAT)?;
+            let kind = self.kind()?;
+            let count = self.numbers.size("the number of elements in a block")?;
+            for _ in 0..count {
+                self.numbers.size(WHAT)?; // its tag
+                self.element(kind, |builder| groups.material_of_volume(entity, builder))?;
+            }
+            found = found.saturating_add(count);
+        }
+        if found != promised {
+            return self.numbers.refused(format!("{found} elements, but {promised} were promised"));
+        }
+        Ok(())
+    }
+
+    fn kind(&mut self) -> Result<Kind, FormatError> {
+        let number = self.numbers.integer(WHAT)?;
+        match kind(number) {
+            Some(kind) => Ok(kind),
+            None => self.numbers.refused(format!(
+                "elements of type {number}: of solid elements, only 4-node tetrahedra (4) and 8-node hexahedra (5) \
+                 are supported"
+            )),
+        }
+    }
+
+    fn element(&mut self, kind: Kind, material: impl Fn(&mut Builder) -> u32) -> Result<(), FormatError> {
+        match kind {
+            Kind::Tet => {
+                let (corners, material) = (self.corners()?, material(self.builder));
+                self.builder.tet(corners, material, self.numbers.place())
+            }
+            Kind::Cube => {
+                let (corners, material) = (self.corners()?, material(self.builder));
+                self.builder.cube(corners, material, self.numbers.place())
+            }
+            Kind::Triangle => {
+                let corners = self.corners::<3>()?;
+                self.builder.face(corners, self.numbers.place())
+            }
+            Kind::Quadrilateral => {
+                let corners = self.corners::<4>()?;
+                self.builder.face(corners, self.numbers.place())
+            }
+            Kind::Skipped(nodes) => (0..nodes).try_for_each(|_| self.node().map(drop)),
+        }
+    }
+
+    fn node(&mut self) -> Result<u64, FormatError> {
+        match self.version {
+            Version::V2 => self.numbers.tag(WHAT),
+            Version::V4 => self.numbers.size(WHAT),
+        }
+    }
+
+    /// The vertices of an element's nodes.
+    fn corners<const N: usize>(&mut self) -> Result<[u64; N], FormatError> {
+        let mut corners = [0; N];
+        for corner in &mut corners {
+            *corner = self.node()?;
+        }
+        if let Some(twice) = repeated(&corners) {
+            return self.numbers.refused(format!("names node {twice} twice"));
+        }
+        for corner in &mut corners {
+            *corner = match self.nodes.vertex(*corner) {
+                Some(vertex) => vertex,
+                None => return self.numbers.refused(format!("names node {corner}, which is not there")),
+            };
+        }
+        Ok(corners)
+    }
+}

@@ -1,0 +1,94 @@
+//! `$PhysicalNames` and `$Entities`: which material a volume has.
+
+use std::collections::BTreeMap;
+
+use super::numbers::Numbers;
+use super::{Builder, Words};
+use crate::FormatError;
+use crate::text::decoded;
+
+/// Dimension of volumes.
+const VOLUME: i64 = 3;
+
+const NAME: &str = "the last name";
+const ENTITY: &str = "the last entity";
+
+#[derive(Default)]
+pub(super) struct Groups {
+    /// Names of the physical groups of volumes.
+    names: BTreeMap<u64, String>,
+    /// The first physical group of each volume that has one (version 4).
+    of_volume: BTreeMap<i64, u64>,
+}
+
+impl Groups {
+    /// Lines `dimension number "name"`, text in binary files too.
+    pub fn read_names(&mut self, words: &mut Words) -> Result<(), FormatError> {
+        let count = words.count("the number of names")?;
+        words.rest_of_line();
+        for _ in 0..count {
+            let (dimension, number) = (words.integer(NAME)?, words.integer(NAME)?);
+            let place = words.place();
+            let name = decoded(words.rest_of_line(), 0)
+                .map_err(|error| FormatError::new(place.clone(), error.cause()))?
+                .trim_ascii();
+            let Some(name) = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')) else {
+                return Err(FormatError::new(place, "a name in double quotes was expected"));
+            };
+            if dimension == VOLUME {
+                self.names.insert(number.unsigned_abs(), name.to_owned());
+            }
+        }
+        Ok(())
+    }
+
+    /// Points, curves, surfaces and volumes: tag, box (of a point, its position), physical groups, and except for
+    /// points the tags of what bounds them.
+    pub fn read_entities(&mut self, numbers: &mut Numbers) -> Result<(), FormatError> {
+        let mut counts = [0; 4];
+        for count in &mut counts {
+            *count = numbers.size("the number of entities")?;
+        }
+        for (dimension, count) in (0..=VOLUME).zip(counts) {
+            for _ in 0..count {
+                self.entity(numbers, dimension)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn entity(&mut self, numbers: &mut Numbers, dimension: i64) -> Result<(), FormatError> {
+        let tag = numbers.integer(ENTITY)?;
+        for _ in 0..if dimension == 0 { 3 } else { 6 } {
+            numbers.number(ENTITY)?;
+        }
+        let groups = numbers.size(ENTITY)?;
+        if groups > 0 {
+            // Negative where the group turns the entity around.
+            let first = numbers.integer(ENTITY)?.unsigned_abs();
+            numbers.skip_integers(groups - 1, ENTITY)?;
+            if dimension == VOLUME {
+                self.of_volume.insert(tag, first);
+            }
+        }
+        if dimension > 0 {
+            let bounding = numbers.size(ENTITY)?;
+            numbers.skip_integers(bounding, ENTITY)?;
+        }
+        Ok(())
+    }
+
+    /// The material of a physical group; 0 is none.
+    pub fn material(&self, group: u64, builder: &mut Builder) -> u32 {
+        match (group, self.names.get(&group)) {
+            (0, _) => builder.default_material(),
+            (_, Some(name)) => builder.material(name),
+            (_, None) => builder.material(&group.to_string()),
+        }
+    }
+
+    /// The material of the elements of a volume.
+    pub fn material_of_volume(&self, volume: i64, builder: &mut Builder) -> u32 {
+        self.material(self.of_volume.get(&volume).copied().unwrap_or_default(), builder)
+    }
+}

@@ -1,0 +1,127 @@
+//! gmsh's `.msh`, versions 2.2 and 4.1, text and binary.
+//!
+//! A reader of our own: the mshio crate panics when a count is 0, reads version 4.1 only, takes no parametric
+//! nodes and no names of groups, and does not say where an error is.
+//!
+//! A file is a row of sections `$Name` .. `$EndName`. Read are the format, the nodes, the elements, and what gives
+//! elements a material: physical groups of volumes, with their names where there are some. Other sections are
+//! skipped.
+
+mod elements;
+mod groups;
+mod nodes;
+mod numbers;
+#[cfg(test)]
+mod tests;
+
+use super::Solid;
+use super::builder::Builder;
+use super::words::Words;
+use crate::FormatError;
+use crate::error::quoted;
+use groups::Groups;
+use nodes::Nodes;
+use numbers::Numbers;
+
+/// The versions that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Version {
+    V2,
+    V4,
+}
+
+/// Parses a gmsh file: 4-node tetrahedra, 8-node hexahedra, and as surface 3-node triangles and 4-node
+/// quadrilaterals. Points, lines and other faces are skipped. Vertices are in the file's order, whatever their tags.
+///
+/// The material of an element is the first physical group of its volume, named by the group's name, else its
+/// number; without a group it is the default.
+///
+/// # Errors
+/// When the version is another, numbers of the binary form are of another width, a section is shorter than its
+/// counts or without its end, solid elements are of another kind, tags of nodes occur twice or are unknown, or as
+/// [`read_solid`](super::read_solid).
+pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
+    let mut words = Words::new(bytes, false)?;
+    let (version, mut numbers) = header(&mut words)?;
+    let mut builder = Builder::new(0);
+    let (mut nodes, mut groups) = (None, Groups::default());
+    let mut elements = false;
+    while let Some(section) = numbers.words.next_word()? {
+        let place = numbers.words.place();
+        let Some(name) = section.strip_prefix('$') else {
+            let cause = format!("the name of a section was expected, not {}", quoted(section));
+            return numbers.words.refused(cause);
+        };
+        let refused = |cause: String| Err(FormatError::new(place, cause));
+        let second = || format!("a second section {}", quoted(section));
+        numbers.words.rest_of_line();
+        match (name, &nodes) {
+            ("Nodes", Some(_)) => return refused(second()),
+            ("Nodes", None) => nodes = Some(Nodes::read(&mut numbers, version, &mut builder)?),
+            ("Elements", _) if elements => return refused(second()),
+            ("Elements", None) => return refused("$Elements before $Nodes".into()),
+            ("Elements", Some(nodes)) => {
+                elements = true;
+                elements::read(&mut numbers, version, nodes, &groups, &mut builder)?;
+            }
+            ("PhysicalNames", _) => groups.read_names(&mut numbers.words)?,
+            ("Entities", _) if version == Version::V4 => groups.read_entities(&mut numbers)?,
+            _ if numbers.words.skip_behind_line(&format!("$End{name}")) => continue,
+            _ => {
+                return Err(FormatError::whole(format!(
+                    "the file ends before {}",
+                    quoted(&format!("$End{name}"))
+                )));
+            }
+        }
+        end(&mut numbers.words, name)?;
+    }
+    if !elements {
+        return Err(FormatError::whole("the file has no section $Elements"));
+    }
+    builder.finish()
+}
+
+/// `$MeshFormat`: version, whether binary, bytes of a size; then for binary files the integer 1.
+fn header<'a>(words: &mut Words<'a>) -> Result<(Version, Numbers<'a>), FormatError> {
+    let magic = words.word("the header")?;
+    if magic != "$MeshFormat" {
+        return words.refused(format!("a gmsh file begins with '$MeshFormat', not {}", quoted(magic)));
+    }
+    let version = match words.word("the version")? {
+        "2.2" | "2.1" | "2" | "2.0" => Version::V2,
+        "4.1" => Version::V4,
+        other => {
+            let cause = format!("version {} of the format: only 2.2 and 4.1 are supported", quoted(other));
+            return words.refused(cause);
+        }
+    };
+    words.binary = words.integer("the type of the file")? != 0;
+    let size = words.integer("the size of numbers")?;
+    if words.binary && size != 8 {
+        return words.refused(format!("numbers of {size} bytes: only 8 are supported"));
+    }
+    words.rest_of_line();
+    let mut big_endian = false;
+    if words.binary {
+        big_endian = match words.take::<4>("the integer 1")? {
+            [1, 0, 0, 0] => false,
+            [0, 0, 0, 1] => true,
+            other => {
+                return words.refused(format!("the order of bytes is not clear: 1 is stored as {other:?}"));
+            }
+        };
+    }
+    end(words, "MeshFormat")?;
+    Ok((version, Numbers { words: *words, big_endian }))
+}
+
+fn end(words: &mut Words, name: &str) -> Result<(), FormatError> {
+    let expected = format!("$End{name}");
+    let found = words.word(&quoted(&expected))?;
+    if found != expected {
+        return words.refused(format!("{} was expected, not {}", quoted(&expected), quoted(found)));
+    }
+    words.rest_of_line();
+    Ok(())
+}

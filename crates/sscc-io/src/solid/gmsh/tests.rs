@@ -1,0 +1,138 @@
+use glam::DVec3;
+
+use super::*;
+use crate::solid::Solid;
+
+const V2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"skin\"\n3 5 \"soft body\"\n\
+    $EndPhysicalNames\n$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n7 1 1 1\n$EndNodes\n$Elements\n4\n\
+    1 15 2 0 1 10\n2 2 2 1 1 10 20 30\n3 4 2 5 1 10 20 30 40\n4 4 2 6 1 20 30 40 7\n$EndElements\n";
+
+const V4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 5 \"soft body\"\n$EndPhysicalNames\n\
+    $Entities\n1 0 1 2\n1 0 0 0 0\n1 0 0 0 1 1 1 1 -1 0\n1 0 0 0 1 1 1 2 5 6 1 -1\n2 0 0 0 1 1 1 1 6 0\n$EndEntities\n\
+    $Nodes\n2 5 7 40\n2 1 1 3\n10\n20\n30\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 1 0 2\n40\n7\n0 0 1\n1 1 1\n$EndNodes\n\
+    $Elements\n4 4 1 4\n0 1 15 1\n1 10\n2 1 2 1\n2 10 20 30\n3 1 4 1\n3 10 20 30 40\n3 2 4 1\n4 20 30 40 7\n$EndElements\n";
+
+fn message(text: &str) -> String {
+    parse(text.as_bytes()).unwrap_err().to_string()
+}
+
+fn check(solid: &Solid) {
+    assert_eq!(solid.vertices, [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE]);
+    assert_eq!(solid.tets, [[0, 1, 2, 3], [1, 2, 3, 4]]);
+    assert_eq!(solid.surface, [[0, 1, 2]]);
+    let names: Vec<_> = solid.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!((names, solid.element_material.as_slice()), (vec!["soft body", "6"], &[0, 1][..]));
+}
+
+/// The same in binary. Words that are no numbers are lines of text, `i` and so on types of what follows.
+fn binary(version: Version, big_endian: bool) -> Vec<u8> {
+    let text = match version {
+        Version::V2 => {
+            "$MeshFormat\n|2.2 1 8\n|i1 \n|$EndMeshFormat\n|$PhysicalNames\n|2\n|2 1 \"skin\"\n|3 5 \"soft body\"\n|\
+             $EndPhysicalNames\n|$Nodes\n|5\n|i10 d0 d0 d0 i20 d1 d0 d0 i30 d0 d1 d0 i40 d0 d0 d1 i7 d1 d1 d1 \n|\
+             $EndNodes\n|$Elements\n|4\n|i15 i1 i2 i1 i0 i1 i10 i2 i1 i2 i2 i1 i1 i10 i20 i30 \
+             i4 i2 i2 i3 i5 i1 i10 i20 i30 i40 i4 i6 i1 i20 i30 i40 i7 \n|$EndElements\n"
+        }
+        Version::V4 => {
+            "$MeshFormat\n|4.1 1 8\n|i1 \n|$EndMeshFormat\n|$PhysicalNames\n|1\n|3 5 \"soft body\"\n|$EndPhysicalNames\n|\
+             $Entities\n|s1 s0 s1 s2 i1 d0 d0 d0 s0 i1 d0 d0 d0 d1 d1 d1 s1 i-1 s0 i1 d0 d0 d0 d1 d1 d1 s2 i5 i6 s1 \
+             i-1 i2 d0 d0 d0 d1 d1 d1 s1 i6 s0 \n|$EndEntities\n|$Nodes\n|s2 s5 s7 s40 i2 i1 i1 s3 s10 s20 s30 \
+             d0 d0 d0 d0 d0 d1 d0 d0 d1 d0 d0 d1 d0 d0 d1 i3 i1 i0 s2 s40 s7 d0 d0 d1 d1 d1 d1 \n|$EndNodes\n|\
+             $Elements\n|s4 s4 s1 s4 i0 i1 i15 s1 s1 s10 i2 i1 i2 s1 s2 s10 s20 s30 i3 i1 i4 s1 s3 s10 s20 s30 s40 \
+             i3 i2 i4 s1 s4 s20 s30 s40 s7 \n|$EndElements\n"
+        }
+    };
+    let order = |mut bytes: Vec<u8>| {
+        if big_endian {
+            bytes.reverse();
+        }
+        bytes
+    };
+    let mut file = Vec::new();
+    for part in text.split('|') {
+        if !part.ends_with(" \n") {
+            file.extend(part.bytes());
+            continue;
+        }
+        for word in part.split_ascii_whitespace() {
+            file.extend(order(match word.split_at(1) {
+                ("i", value) => value.parse::<i32>().unwrap().to_le_bytes().to_vec(),
+                ("s", value) => value.parse::<u64>().unwrap().to_le_bytes().to_vec(),
+                (_, value) => value.parse::<f64>().unwrap().to_le_bytes().to_vec(),
+            }));
+        }
+        file.push(b'\n');
+    }
+    file
+}
+
+#[test]
+fn all_dialects_say_the_same() {
+    check(&parse(V2.as_bytes()).unwrap());
+    check(&parse(V4.as_bytes()).unwrap());
+    for version in [Version::V2, Version::V4] {
+        for big_endian in [false, true] {
+            check(&parse(&binary(version, big_endian)).unwrap());
+        }
+    }
+    check(&parse(V4.replace('\n', "\r\n").as_bytes()).unwrap());
+    let other = "$Comments\nanything $Nodes\n$EndComments\n";
+    check(&parse(V2.replace("$Nodes", &format!("{other}$Nodes")).as_bytes()).unwrap());
+}
+
+#[test]
+fn cubes_and_elements_without_a_group() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n\
+        7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n2\n1 5 0 1 2 3 4 5 6 7 8\n2 3 0 1 4 3 2\n$EndElements\n";
+    let solid = parse(text.as_bytes()).unwrap();
+    assert_eq!((solid.cubes, solid.materials.len()), (vec![[0, 1, 2, 3, 4, 5, 6, 7]], 1));
+    assert_eq!((solid.materials[0].name.as_str(), solid.element_material), ("default", vec![0]));
+    assert_eq!(solid.surface, [[0, 3, 2], [0, 2, 1]]);
+}
+
+#[test]
+fn bad_files_are_named() {
+    let v2 = |from, to| message(&V2.replace(from, to));
+    let v4 = |from, to| message(&V4.replace(from, to));
+    assert_eq!(message("OFF\n"), "line 1: a gmsh file begins with '$MeshFormat', not 'OFF'");
+    assert_eq!(v2("2.2 0", "4.0 0"), "line 2: version '4.0' of the format: only 2.2 and 4.1 are supported");
+    assert_eq!(v2("$EndMeshFormat", "$End"), "line 3: '$EndMeshFormat' was expected, not '$End'");
+    assert_eq!(v2("\"soft body\"", "soft"), "line 7: a name in double quotes was expected");
+    assert_eq!(v2("30 0 1 0", "20 0 1 0"), "line 15: two nodes have the tag 20");
+    assert_eq!(v2("30 0 1 0", "30 0 1 nan"), "line 13: 'nan' is not a finite number");
+    assert_eq!(v2("30 0 1 0", "30 0 1 1e61"), "line 13: a coordinate is larger than 2^200 or not finite");
+    assert_eq!(v2("30 0 1 0", "-30 0 1 0"), "line 13: -30 is not a tag");
+    assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: names node 8, which is not there");
+    assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: names node 20 twice");
+    assert!(
+        v2("4 4 2 6", "4 6 2 6").starts_with("line 22: elements of type 6: of solid elements, only 4-node")
+    );
+    assert!(v2("4 4 2 6", "4 11 2 6").starts_with("line 22: elements of type 11"));
+    assert_eq!(v2("$Elements", "$Other"), "the file ends before '$EndOther'");
+    assert_eq!(v2("$EndElements\n", "$EndElements\n$Nodes\n"), "line 24: a second section '$Nodes'");
+    assert_eq!(v2("$Elements\n4", "$Elements\n5"), "line 23: '$EndElements' is not an integer");
+    assert_eq!(v4("2 5 7 40", "2 6 7 40"), "line 28: 5 nodes, but 6 were promised");
+    assert_eq!(v4("4 4 1 4", "4 5 1 4"), "line 39: 4 elements, but 5 were promised");
+    assert_eq!(v4("2 1 1 3", "2 1 2 3"), "line 17: dimension 2, parametric 2: not known");
+    let repeated = v2("4 4 2 6 1 20 30 40 7", "4 4 2 6 1 30 10 20 40");
+    assert_eq!(repeated, "tetrahedra 0 and 1 (counted from 0) have the same corners");
+    assert!(message("$MeshFormat\n4.1 1 4\n\u{1}").contains("numbers of 4 bytes: only 8 are supported"));
+    assert!(message("$MeshFormat\n4.1 1 8\nabcd\n").contains("the order of bytes is not clear"));
+    assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").contains("no section $Elements"));
+    assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Elements\n").contains("$Elements before $Nodes"));
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let files = [
+        V2.as_bytes().to_vec(),
+        V4.as_bytes().to_vec(),
+        binary(Version::V2, false),
+        binary(Version::V4, true),
+    ];
+    for file in files {
+        for len in 0..file.len() - 1 {
+            assert!(parse(&file[..len]).is_err(), "{len}");
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! TetGen's pair of files: `.node` with the vertices, `.ele` with the tetrahedra.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::Solid;
+use super::builder::Builder;
+use super::statements::{corners, fields, index, position, statements, value};
+use crate::file::{ending, read_whole};
+use crate::{FormatError, IoError, Place};
+
+/// The vertices of a `.node` file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes {
+    positions: Vec<DVec3>,
+    /// The number of the first: 0 or 1.
+    first: u64,
+}
+
+/// Reads a `.node` and a `.ele` file of the same name beside each other; either may be given.
+///
+/// # Errors
+/// When one of them is missing, cannot be read or is malformed.
+pub fn read(path: &Path) -> Result<Solid, IoError> {
+    let (nodes, elements) = match ending(path).as_str() {
+        "ele" => (beside(path, "node")?, path.to_owned()),
+        _ => (path.to_owned(), beside(path, "ele")?),
+    };
+    let vertices = parse_nodes(&read_whole(&nodes)?).map_err(|error| error.of(&nodes))?;
+    parse(&vertices, &read_whole(&elements)?).map_err(|error| error.of(&elements))
+}
+
+/// The file of the same name with another ending, in capitals where the given one is.
+fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
+    let capitals =
+        path.extension().is_some_and(|e| e.to_string_lossy().bytes().all(|b| b.is_ascii_uppercase()));
+    let companion = path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() });
+    // Of the two, the file that is missing altogether is named by its own reader.
+    if path.exists() && !companion.exists() {
+        let cause = format!("needs the .{other} file of the same name beside it, which is not there");
+        return Err(IoError::Request { path: path.to_owned(), cause });
+    }
+    Ok(companion)
+}
+
+/// Parses a `.node` file: the number of vertices (then the dimension, the number of attributes, whether there
+/// are markers), and a line for each vertex: its number, x, y, z; attributes and markers are skipped, and so are
+/// comments (`#`). Numbers are consecutive; whether they begin with 0 or 1 holds for the `.ele` file too.
+///
+/// # Errors
+/// When the dimension is not 3, there are more or fewer lines than the header says, the numbers are not
+/// consecutive, or a coordinate is malformed or beyond [`sscc::limits`].
+pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
+    let mut nodes = Nodes { positions: Vec::new(), first: 0 };
+    table(bytes, "vertices", check_dimension, |number, text, line| {
+        let at = |cause: String| FormatError::line(line, cause);
+        let mut rest = fields(text).skip(1);
+        let position = position(&mut rest).map_err(at)?;
+        if nodes.positions.is_empty() {
+            nodes.first = number;
+        }
+        if number != nodes.first + nodes.positions.len() as u64 || nodes.first > 1 {
+            let expected = nodes.positions.len() as u64 + nodes.first.min(1);
+            let cause =
+                format!("vertices are numbered from 0 or 1 without gaps: not {number} but {expected}");
+            return Err(at(cause));
+        }
+        if !sscc::limits::contains(position) {
+            return Err(at("a coordinate is larger than 2^200".into()));
+        }
+        nodes.positions.push(position);
+        Ok(())
+    })?;
+    Ok(nodes)
+}
+
+/// Parses a `.ele` file for these vertices: the number of tetrahedra (then the corners of each, which must be 4,
+/// and whether there is an attribute), and a line for each: its number, its corners, and maybe an attribute.
+/// The attribute becomes the name of the material.
+///
+/// # Errors
+/// When elements have 10 nodes, there are more or fewer lines than the header says, an attribute that it promises
+/// is missing, or as [`read_solid`](super::read_solid).
+pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<Solid, FormatError> {
+    let mut builder = Builder::new(nodes.first);
+    for position in &nodes.positions {
+        builder.vertex(*position, Place::Whole)?;
+    }
+    let header = |header: &[u64]| match header.get(1).copied().unwrap_or(4) {
+        4 => Ok(header.get(2).is_some_and(|attributes| *attributes > 0)),
+        other => Err(format!("tetrahedra of {other} nodes: only 4 are supported")),
+    };
+    table(bytes, "tetrahedra", header, |_, text, line| {
+        let at = |cause: String| FormatError::line(line, cause);
+        let mut rest = fields(text).skip(1);
+        let mut corners = corners::<4>(&mut rest).map_err(at)?;
+        for corner in &mut corners {
+            *corner = corner
+                .checked_sub(nodes.first)
+                .ok_or_else(|| at("names vertex 0, but vertices are counted from 1".into()))?;
+        }
+        let material = match rest.next() {
+            Some(attribute) => builder.material(&value(attribute).map_err(at)?.to_string()),
+            None => builder.default_material(),
+        };
+        builder.tet(corners, material, Place::Line(line))
+    })?;
+    builder.finish()
+}
+
+fn check_dimension(header: &[u64]) -> Result<bool, String> {
+    match header.get(1) {
+        None | Some(3) => Ok(false),
+        Some(other) => Err(format!("vertices of dimension {other}: only 3 is supported")),
+    }
+}
+
+/// A header that begins with a count, and as many lines that begin with a number. `check` gets the header's
+/// numbers, and says whether each line ends with an attribute; `item` gets number, text and line.
+fn table(
+    bytes: &[u8],
+    what: &str,
+    check: impl FnOnce(&[u64]) -> Result<bool, String>,
+    mut item: impl FnMut(u64, &str, usize) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let mut lines = statements(bytes)?;
+    let Some(header) = lines.next() else {
+        return Err(FormatError::whole("the file ends before the header"));
+    };
+    let (top, text) = header?;
+    let at_top = |cause: String| FormatError::line(top, cause);
+    // Four numbers at most mean something.
+    let header: Vec<u64> = fields(text).take(4).map(index).collect::<Result<_, _>>().map_err(at_top)?;
+    let promised = header.first().copied().unwrap_or_default();
+    let attributes = check(&header).map_err(at_top)?;
+    let mut found = 0;
+    for line in lines {
+        let (line, text) = line?;
+        if found == promised {
+            let cause = format!("more lines than the {promised} {what} of the header");
+            return Err(FormatError::line(line, cause));
+        }
+        let number = index(fields(text).next().unwrap_or_default());
+        let number = number.map_err(|cause| FormatError::line(line, cause))?;
+        if attributes && fields(text).nth(5).is_none() {
+            return Err(FormatError::line(line, "the attribute that the header promises is missing"));
+        }
+        item(number, text, line)?;
+        found += 1;
+    }
+    if found < promised {
+        return Err(at_top(format!("the file has {found} of the {promised} {what} promised here")));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NODE: &str =
+        "# nodes\n5 3 1 1\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1\n3 0 1 0 0.5 1\n4 0 0 1 0.5 1\n5 1 1 1 0.5 0\n";
+    const ELE: &str = "2  4  1\n  1  1 2 3 4  10\n  2  2 3 4 5  20\n# Generated\n";
+
+    fn both(node: &str, ele: &str) -> Result<Solid, String> {
+        let nodes = parse_nodes(node.as_bytes()).map_err(|error| format!("node {error}"))?;
+        parse(&nodes, ele.as_bytes()).map_err(|error| format!("ele {error}"))
+    }
+
+    #[test]
+    fn the_first_number_is_0_or_1() {
+        let solid = both(NODE, ELE).unwrap();
+        assert_eq!((solid.vertices.len(), &solid.tets), (5, &vec![[0, 1, 2, 3], [1, 2, 3, 4]]));
+        assert_eq!((solid.materials[1].name.as_str(), &solid.element_material), ("20", &vec![0, 1]));
+        let from_0 = both("4\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4 0\n0 0 1 2 3\n").unwrap();
+        assert_eq!((from_0.tets[0], from_0.materials[0].name.as_str()), ([0, 1, 2, 3], "default"));
+    }
+
+    #[test]
+    fn bad_files_are_named() {
+        let node = |from, to| both(&NODE.replace(from, to), ELE).unwrap_err();
+        let ele = |from, to| both(NODE, &ELE.replace(from, to)).unwrap_err();
+        assert_eq!(node("5 3 1", "5 2 1"), "node line 2: vertices of dimension 2: only 3 is supported");
+        assert_eq!(node("5 3 1", "6 3 1"), "node line 2: the file has 5 of the 6 vertices promised here");
+        assert_eq!(node("5 3 1", "4 3 1"), "node line 7: more lines than the 4 vertices of the header");
+        let gaps = "vertices are numbered from 0 or 1 without gaps: not";
+        assert_eq!(node("4 0 0 1", "9 0 0 1"), format!("node line 6: {gaps} 9 but 4"));
+        assert_eq!(node("\n1 0 0 0", "\n2 0 0 0"), format!("node line 3: {gaps} 2 but 1"));
+        assert_eq!(node("4 0 0 1", "4 0 0 inf"), "node line 6: 'inf' is not a finite number");
+        assert_eq!(node("4 0 0 1", "4 0 0 1e61"), "node line 6: a coordinate is larger than 2^200");
+        assert_eq!(node("4 0 0 1 0.5 1", "4 0 0"), "node line 6: a vertex has a number and 3 coordinates");
+        assert_eq!(ele("2  4  1", "2 10 1"), "ele line 1: tetrahedra of 10 nodes: only 4 are supported");
+        assert_eq!(ele("5  20", "6 20"), "ele line 3: names vertex 6 (counted from 1), but there are 5");
+        assert_eq!(ele("5  20", "0 20"), "ele line 3: names vertex 0, but vertices are counted from 1");
+        assert_eq!(ele("5  20", "4 20"), "ele line 3: names vertex 4 (counted from 1) twice");
+        assert_eq!(ele("5  20", "-1 20"), "ele line 3: '-1' is not a number of a vertex or element");
+        assert_eq!(ele("5  20", "5"), "ele line 3: the attribute that the header promises is missing");
+        assert_eq!(ele("5  20", "5 x"), "ele line 3: 'x' is not a number");
+        let all = u64::MAX;
+        assert!(
+            ele("2  4", &format!("{all} 4")).contains(&format!("2 of the {all} tetrahedra promised here"))
+        );
+        assert_eq!(both("# nothing\n", ELE).unwrap_err(), "node the file ends before the header");
+        assert_eq!(both("0\n", "0\n").unwrap_err(), "ele the mesh has no vertices");
+    }
+
+    #[test]
+    fn every_truncation_is_refused() {
+        // Behind what is read of the last line, nothing is missing.
+        for len in 0..NODE.len() - " 0.5 0\n".len() {
+            assert!(both(&NODE[..len], ELE).is_err(), "{len}");
+        }
+        for len in 0..ELE.find("20").unwrap() {
+            assert!(both(NODE, &ELE[..len]).is_err(), "{len}");
+        }
+    }
+
+    #[test]
+    fn either_file_is_given() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        std::fs::write(path("a.1.node"), NODE).unwrap();
+        let missing = read(&path("a.1.node")).unwrap_err().to_string();
+        assert!(
+            missing.ends_with("a.1.node: needs the .ele file of the same name beside it, which is not there")
+        );
+        std::fs::write(path("a.1.ele"), ELE.replace("5  20", "6 20")).unwrap();
+        assert!(read(&path("a.1.node")).unwrap_err().to_string().contains("a.1.ele: line 3: names vertex 6"));
+        std::fs::write(path("a.1.ele"), ELE).unwrap();
+        let solid = read(&path("a.1.node")).unwrap();
+        assert_eq!((read(&path("a.1.ele")).unwrap(), solid.tets.len()), (solid.clone(), 2));
+        std::fs::write(path("B.NODE"), NODE).unwrap();
+        std::fs::write(path("B.ELE"), ELE).unwrap();
+        assert_eq!(read(&path("B.ELE")).unwrap(), solid);
+        assert!(read(&path("c.ele")).unwrap_err().to_string().contains("not found"));
+    }
+}

@@ -1,0 +1,102 @@
+//! Files within files.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::parser::Parser;
+use crate::error::{cut, quoted};
+use crate::file::read_whole;
+use crate::solid::Solid;
+use crate::solid::statements::statements;
+use crate::{FormatError, IoError, Place};
+
+/// Files included from included files, at most this deep. Real ones include vertices and elements, no deeper.
+const DEEPEST: usize = 8;
+
+/// Files included in all, at most.
+const MOST: usize = 64;
+
+/// Parses a `.veg` file that includes no other.
+///
+/// # Errors
+/// When there is an `*INCLUDE`, a section is unknown, out of place, twice or shorter or longer than it says, numbers
+/// are not consecutive, a material is malformed or unknown, or as [`read_solid`](crate::read_solid).
+pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
+    let mut parser = Parser::default();
+    for statement in statements(bytes)? {
+        let (line, text) = statement?;
+        if included(text).is_some() {
+            return Err(FormatError::line(line, "*INCLUDE names a file: read this one by its path"));
+        }
+        parser.statement(text, &Place::Line(line))?;
+    }
+    parser.finish()
+}
+
+/// Reads a `.veg` file with those that it includes.
+///
+/// # Errors
+/// As [`parse`]; also when an included file cannot be read, lies elsewhere than in the file's folder or below, is
+/// included twice, or there are too many. What is wrong in it is named with both files.
+pub fn read(path: &Path) -> Result<Solid, IoError> {
+    let mut reader = Reader { main: path, seen: Vec::new(), parser: Parser::default() };
+    reader.feed(&read_whole(path)?, None, 0)?;
+    reader.parser.finish().map_err(|error| error.of(path))
+}
+
+struct Reader<'a> {
+    main: &'a Path,
+    /// The files included so far, as they were named.
+    seen: Vec<PathBuf>,
+    parser: Parser,
+}
+
+impl Reader<'_> {
+    /// Takes the lines of the main file, or of an included one of that name.
+    fn feed(&mut self, bytes: &[u8], name: Option<&str>, depth: usize) -> Result<(), IoError> {
+        let main = self.main;
+        let within = |error: FormatError| match (name, error.place()) {
+            (None, _) => error.of(main),
+            (Some(name), Place::Line(line)) => FormatError::part(at(name, *line), error.cause()).of(main),
+            (Some(name), _) => FormatError::part(cut(name, 60), error.to_string()).of(main),
+        };
+        for statement in statements(bytes).map_err(within)? {
+            let (line, text) = statement.map_err(within)?;
+            let Some(file) = included(text) else {
+                let place = name.map_or(Place::Line(line), |name| Place::Part(at(name, line)));
+                self.parser.statement(text, &place).map_err(|error| error.of(main))?;
+                continue;
+            };
+            let path = self.check(file, depth).map_err(|cause| within(FormatError::line(line, cause)))?;
+            self.seen.push(path.clone());
+            let path = main.parent().unwrap_or(Path::new("")).join(path);
+            self.feed(&read_whole(&path)?, Some(file), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    /// The path below the main file's folder, or why it is refused.
+    fn check(&self, file: &str, depth: usize) -> Result<PathBuf, String> {
+        let path: PathBuf = Path::new(file).components().filter(|c| *c != Component::CurDir).collect();
+        let below = path.components().all(|c| matches!(c, Component::Normal(_)));
+        if !below || path.as_os_str().is_empty() || file.contains(['\\', ':']) {
+            return Err(format!("{} is not a file in the same folder or below", quoted(file)));
+        }
+        if self.seen.contains(&path) || Some(path.as_os_str()) == self.main.file_name() {
+            return Err(format!("{} is included a second time", quoted(file)));
+        }
+        if depth == DEEPEST || self.seen.len() == MOST {
+            return Err(format!("too many files within files: at most {DEEPEST} deep and {MOST} in all"));
+        }
+        Ok(path)
+    }
+}
+
+fn at(name: &str, line: usize) -> String {
+    format!("{}: line {line}", cut(name, 60))
+}
+
+/// The file named by an `*INCLUDE`.
+fn included(text: &str) -> Option<&str> {
+    let name = text.strip_prefix("*INCLUDE")?;
+    (name.is_empty() || name.starts_with(|c: char| c.is_ascii_whitespace())).then(|| name.trim_ascii())
+}

@@ -1,0 +1,32 @@
+//! VegaFEM's `.veg`, text.
+//!
+//! Sections begin with `*`; fields are parted by commas or blanks; `#` begins a comment.
+//!
+//! | section | what follows |
+//! | --- | --- |
+//! | `*VERTICES` | `n 3 0 0`, then n lines `number x y z` |
+//! | `*ELEMENTS` | `TET` or `CUBIC`, then `n 4 0` or `n 8 0`, then n lines `number corners` |
+//! | `*MATERIAL name` | one line, see below |
+//! | `*SET name` | numbers of elements, over any number of lines |
+//! | `*REGION` | `set, material`; the set `allElements` needs no `*SET` |
+//! | `*INCLUDE file` | the lines of a file in the same folder or below come here (also TetGen's files) |
+//!
+//! The number of the first vertex, 0 or 1, says where the corners of elements begin to count; that of the first
+//! element does for sets. As in VegaFEM, the last region that names an element decides its material, and elements
+//! in no region get the last material. Blanks in names do not count.
+//!
+//! | material | density | Young's modulus, Poisson's ratio |
+//! | --- | --- | --- |
+//! | `ENU, density, E, nu` | as given | as given |
+//! | `MOONEYRIVLIN, density, mu01, mu10, v1` | as given | those of the same stiffness at rest |
+//! | `ORTHOTROPIC..., density, ...` | as given | none: it is not isotropic |
+
+mod count;
+mod include;
+mod material;
+mod parser;
+mod regions;
+#[cfg(test)]
+mod tests;
+
+pub use include::{parse, read};

@@ -1,0 +1,96 @@
+//! Sets of elements, and the regions that give them a material.
+
+use std::collections::BTreeMap;
+
+use crate::error::quoted;
+use crate::solid::Material;
+use crate::{FormatError, Place};
+
+/// The set that needs no definition. One of this name in a file is not looked at, as in VegaFEM.
+const ALL: &str = "allElements";
+
+/// Index of a material that is yet to be decided.
+const UNDECIDED: u32 = u32::MAX;
+
+#[derive(Default)]
+pub(super) struct Regions {
+    names: BTreeMap<String, usize>,
+    sets: Vec<Vec<u32>>,
+    regions: Vec<Region>,
+}
+
+struct Region {
+    set: String,
+    material: String,
+    place: Place,
+}
+
+/// A name without its blanks.
+pub(super) fn compact(name: &str) -> String {
+    name.chars().filter(|c| !c.is_ascii_whitespace()).collect()
+}
+
+impl Regions {
+    pub fn begin_set(&mut self, name: String) -> Result<(), String> {
+        if self.names.contains_key(&name) {
+            return Err(format!("a second set {}", quoted(&name)));
+        }
+        self.names.insert(name, self.sets.len());
+        self.sets.push(Vec::new());
+        Ok(())
+    }
+
+    /// Adds an element, from 0, to the set begun last.
+    pub fn add(&mut self, element: u32) {
+        if let Some(set) = self.sets.last_mut() {
+            set.push(element);
+        }
+    }
+
+    /// Adds a region: `set, material`.
+    pub fn push(&mut self, text: &str, place: &Place) -> Result<(), String> {
+        let Some((set, material)) = text.split_once(',') else {
+            return Err(format!("'set, material' was expected, not {}", quoted(text)));
+        };
+        self.regions.push(Region { set: compact(set), material: compact(material), place: place.clone() });
+        Ok(())
+    }
+
+    /// The material of each of that many elements: that of the last region with it, else the last material.
+    pub fn materials(&self, elements: usize, materials: &[Material]) -> Result<Vec<u32>, FormatError> {
+        let by_name: BTreeMap<&str, u32> = materials.iter().map(|m| m.name.as_str()).zip(0..).collect();
+        let mut of_element = vec![UNDECIDED; elements];
+        // Backwards, each set once: what an earlier region says of it is overruled anyway, and a file of many
+        // regions with one large set would take forever.
+        let mut seen = vec![false; self.sets.len()];
+        let mut all = false;
+        for region in self.regions.iter().rev() {
+            let unknown = |what, name| {
+                let cause = format!("the region names the {what} {}, which is not there", quoted(name));
+                Err(FormatError::new(region.place.clone(), cause))
+            };
+            let Some(&material) = by_name.get(region.material.as_str()) else {
+                return unknown("material", &region.material);
+            };
+            if region.set == ALL {
+                if !std::mem::replace(&mut all, true) {
+                    decide(&mut of_element, material);
+                }
+                continue;
+            }
+            let Some(&set) = self.names.get(&region.set) else { return unknown("set", &region.set) };
+            if !std::mem::replace(&mut seen[set], true) {
+                for element in &self.sets[set] {
+                    let decided = &mut of_element[*element as usize];
+                    *decided = if *decided == UNDECIDED { material } else { *decided };
+                }
+            }
+        }
+        decide(&mut of_element, (materials.len() as u32).saturating_sub(1));
+        Ok(of_element)
+    }
+}
+
+fn decide(of_element: &mut [u32], material: u32) {
+    of_element.iter_mut().filter(|m| **m == UNDECIDED).for_each(|m| *m = material);
+}

@@ -1,0 +1,149 @@
+//! Words between white space, of formats that do not care about lines, and bytes between them.
+
+use crate::error::quoted;
+use crate::text::{Lines, count, decoded, number};
+use crate::{FormatError, Place};
+
+/// A place in a file from which words are read, or plain bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    /// Of the word read last, from 1. Bytes that are not words are not looked at for line ends.
+    line: usize,
+    comments: bool,
+    /// Whether places are bytes, because there are no lines to speak of.
+    pub binary: bool,
+}
+
+impl<'a> Words<'a> {
+    /// With `comments`, everything from a `#` to the end of its line is skipped.
+    pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
+        Lines::new(bytes)?; // refuses UTF-16
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Ok(Self { bytes, at, line: 1, comments, binary: false })
+    }
+
+    /// The line of the word read last, or in binary files the offset of the next byte.
+    pub fn place(&self) -> Place {
+        if self.binary { Place::Byte(self.at) } else { Place::Line(self.line) }
+    }
+
+    pub fn refused<T>(&self, cause: impl Into<String>) -> Result<T, FormatError> {
+        Err(FormatError::new(self.place(), cause))
+    }
+
+    /// The next word; none at the end of the file.
+    pub fn next_word(&mut self) -> Result<Option<&'a str>, FormatError> {
+        let mut comment = false;
+        while let Some(byte) = self.bytes.get(self.at) {
+            match byte {
+                b'\n' => {
+                    self.line += 1;
+                    comment = false;
+                }
+                b'#' if self.comments => comment = true,
+                _ if comment || byte.is_ascii_whitespace() => {}
+                _ => break,
+            }
+            self.at += 1;
+        }
+        let rest = &self.bytes[self.at..];
+        let ends = |b: &u8| b.is_ascii_whitespace() || (self.comments && *b == b'#');
+        let word = &rest[..rest.iter().position(ends).unwrap_or(rest.len())];
+        self.at += word.len();
+        if word.is_empty() { Ok(None) } else { decoded(word, self.line).map(Some) }
+    }
+
+    /// The next word, which stays the next.
+    pub fn peek(&self) -> Result<Option<&'a str>, FormatError> {
+        let mut ahead = *self;
+        ahead.next_word()
+    }
+
+    /// The next word, which must be there.
+    pub fn word(&mut self, what: &str) -> Result<&'a str, FormatError> {
+        match self.next_word()? {
+            Some(word) => Ok(word),
+            None => Err(FormatError::whole(format!("the file ends before {what}"))),
+        }
+    }
+
+    pub fn number(&mut self, what: &str) -> Result<f64, FormatError> {
+        let word = self.word(what)?;
+        number(word, self.line).map_err(|error| self.here(&error))
+    }
+
+    pub fn count(&mut self, what: &str) -> Result<usize, FormatError> {
+        let word = self.word(what)?;
+        count(word, self.line).map_err(|error| self.here(&error))
+    }
+
+    fn here(&self, error: &FormatError) -> FormatError {
+        FormatError::new(self.place(), error.cause())
+    }
+
+    pub fn integer(&mut self, what: &str) -> Result<i64, FormatError> {
+        let word = self.word(what)?;
+        word.parse().or_else(|_| self.refused(format!("{} is not an integer", quoted(word))))
+    }
+
+    /// The next bytes, whatever they are.
+    pub fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], FormatError> {
+        let Some(bytes) = self.bytes[self.at..].first_chunk() else {
+            let cause = format!("the file ends before {what}");
+            return Err(FormatError::new(Place::Byte(self.at), cause));
+        };
+        self.at += N;
+        Ok(*bytes)
+    }
+
+    /// The rest of the line, without its end.
+    pub fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let line = &rest[..rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len())];
+        self.at += line.len();
+        if self.at < self.bytes.len() {
+            self.at += 1;
+            self.line += 1;
+        }
+        line.strip_suffix(b"\r").unwrap_or(line)
+    }
+
+    /// Goes behind the next line that begins with this, if there is one.
+    pub fn skip_behind_line(&mut self, start: &str) -> bool {
+        while self.at < self.bytes.len() {
+            if self.rest_of_line().trim_ascii_start().starts_with(start.as_bytes()) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_know_their_lines() {
+        let mut words = Words::new(b"\xef\xbb\xbfa  b#c\r\n# d\n\te", true).unwrap();
+        let mut found = Vec::new();
+        while let Some(word) = words.next_word().unwrap() {
+            found.push((word, words.place()));
+        }
+        assert_eq!(found, [("a", Place::Line(1)), ("b", Place::Line(1)), ("e", Place::Line(3))]);
+        assert_eq!(Words::new(b"a#b", false).unwrap().next_word().unwrap(), Some("a#b"));
+        assert!(Words::new(b"\xff\xfea\0", false).is_err());
+    }
+
+    #[test]
+    fn bytes_follow_lines() {
+        let mut words = Words::new(b"a b\nxyz\n$End", false).unwrap();
+        words.word("a").unwrap();
+        assert_eq!(words.rest_of_line(), b" b");
+        assert_eq!(words.take::<2>("xy").unwrap(), *b"xy");
+        assert!(words.take::<7>("more").unwrap_err().to_string().starts_with("byte 6: the file ends before"));
+        assert!(words.skip_behind_line("$End") && !words.skip_behind_line("$End"));
+    }
+}
