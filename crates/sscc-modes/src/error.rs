@@ -80,6 +80,145 @@ pub enum ModesError {
         /// Its value.
         value: f64,
     },
+    /// A solid without elements.
+    #[error("the solid has no element: a body needs at least one tetrahedron or cube")]
+    NoElements,
+    /// Numbers of materials that do not fit the elements.
+    #[error("{found} material numbers for {elements} elements: each element needs one, of a material that is there")]
+    ElementMaterials {
+        /// Number of elements.
+        elements: usize,
+        /// Number of material numbers.
+        found: usize,
+    },
+    /// An element of a vertex that is not there.
+    #[error("an element names vertex {index} (counted from 0), but there are {vertices}")]
+    ElementIndex {
+        /// The vertex, from 0.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A vertex that no element holds: it has neither mass nor stiffness.
+    #[error("vertex {vertex} (counted from 0) of the solid belongs to no element: remove it")]
+    OrphanVertex {
+        /// The vertex, from 0.
+        vertex: usize,
+    },
+    /// A vertex out of range.
+    #[error("vertex {vertex} (counted from 0) of the solid has a coordinate that is not finite or beyond 2^200")]
+    SolidVertex {
+        /// The vertex, from 0.
+        vertex: usize,
+    },
+    /// A tetrahedron without volume.
+    #[error("tetrahedron {tet} (counted from 0, vertices {corners:?}) is flat: mesh the solid anew, or remove it")]
+    FlatTet {
+        /// The tetrahedron, from 0.
+        tet: usize,
+        /// Its vertices.
+        corners: [u32; 4],
+    },
+    /// A tetrahedron that is turned the other way than most.
+    #[error(
+        "tetrahedron {tet} (counted from 0, vertices {corners:?}) is inverted, one of {count}: exchange two of its vertices, or mesh the solid anew"
+    )]
+    InvertedTet {
+        /// The tetrahedron, from 0.
+        tet: usize,
+        /// Its vertices.
+        corners: [u32; 4],
+        /// How many are inverted.
+        count: usize,
+    },
+    /// A cube that is flat or turned inside out somewhere.
+    #[error(
+        "cube {cube} (counted from 0) is flat or inverted at a corner: its corners go around its lower face, then around its upper one"
+    )]
+    InvertedCube {
+        /// The cube, from 0.
+        cube: usize,
+    },
+    /// A material that does not exist.
+    #[error("{what} is {value:e}: it must be {range}")]
+    Material {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// A fixed vertex that is not there.
+    #[error("vertex {vertex} (counted from 0) cannot be fixed: the solid has {vertices} vertices")]
+    FixedVertex {
+        /// The vertex, from 0.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// Nothing is left to move.
+    #[error("all {vertices} vertices are fixed: leave some free")]
+    AllFixed {
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// More modes than a body can have.
+    #[error("{asked} modes were asked for, but the body has {available}: ask for fewer, or take a finer mesh")]
+    TooManyModes {
+        /// Modes asked for.
+        asked: usize,
+        /// Degrees of freedom, without fixed vertices and rigid motions.
+        available: usize,
+    },
+    /// Parts that hang together by less than three vertices.
+    #[error(
+        "the body has {found} motions that cost no energy, {expected} were expected: parts of it hang together by an edge or a vertex only, or not at all; join them, or fix each"
+    )]
+    Mechanism {
+        /// Motions found.
+        found: usize,
+        /// Motions that a body in one piece has.
+        expected: usize,
+    },
+    /// Not enough memory for the factor of the stiffness.
+    #[error("the stiffness of this body is too large for the memory: lower the resolution")]
+    Memory,
+    /// A surface with a border.
+    #[error("the surface is open at the edge of vertices {edge:?} (counted from 0): close its holes first")]
+    OpenSurface {
+        /// The edge.
+        edge: [u32; 2],
+    },
+    /// Faces that do not agree on which side is outside.
+    #[error(
+        "the faces at the edge of vertices {edge:?} (counted from 0) are not oriented alike: turn them so that all go around the same way"
+    )]
+    EdgeOrientation {
+        /// The edge.
+        edge: [u32; 2],
+    },
+    /// A flat surface.
+    #[error("the surface encloses no volume")]
+    NoVolume,
+    /// A surface that meets itself at rest: what is inside is not defined.
+    #[error("triangles {} and {} (counted from 0) of the surface meet at rest: move them apart first", faces[0], faces[1])]
+    SelfIntersecting {
+        /// Two triangles.
+        faces: [u32; 2],
+    },
+    /// More cubes than can be.
+    #[error("{cells:.0} cubes along the longest side are too many: lower the resolution")]
+    Resolution {
+        /// Cubes along the longest side.
+        cells: f64,
+    },
+    /// A surface of several bodies.
+    #[error("the surface encloses {count} separate pieces: give one at a time, or join them")]
+    Pieces {
+        /// How many.
+        count: usize,
+    },
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),

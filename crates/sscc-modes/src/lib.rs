@@ -28,16 +28,28 @@
 //! cosines come from `libm`, not from the platform. The exception is [`diagonalize`]: its eigenvectors are
 //! rounded as the vector instructions of the processor do.
 
+mod body;
 mod diagonalize;
+mod elasticity;
+mod embedded;
 mod energy;
 mod error;
+mod lattice;
+mod nonlinear;
 mod orthonormal;
 mod polynomial;
 pub mod shapes;
+mod solid;
+mod sparse;
 mod stiffness;
+mod vibration;
 
 pub use diagonalize::{Diagonalized, diagonalize};
+pub use elasticity::ReducedForces;
+pub use embedded::Embedded;
 pub use energy::{DEFAULT_ELL, energy_metric, filter_eigenvalues};
 pub use error::ModesError;
 pub use polynomial::polynomial_modes;
+pub use solid::{Material, Solid};
 pub use stiffness::reduced_stiffness;
+pub use vibration::{SolidModes, linear_modes, modes_of_span, nonlinear_modes};

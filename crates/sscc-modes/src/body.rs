@@ -1,0 +1,147 @@
+//! Bodies: solids with fixed vertices, their mass and stiffness, and what moves in them without energy.
+
+use faer::{Mat, Side};
+use glam::{DMat3, DVec3};
+
+use crate::sparse::{BlockSparse, FIXED, Pencil, Symbolic};
+use crate::{ModesError, Solid};
+
+/// Directions in which fixed vertices hold less than this share of the others are free: rounding.
+const HELD: f64 = 1e-10;
+
+/// A solid, some vertices of which may not move, with its matrices at rest.
+pub(crate) struct Body<'a> {
+    /// The solid.
+    pub solid: &'a Solid,
+    /// Each vertex's row in the matrices, or [`FIXED`].
+    rows: Vec<u32>,
+    /// Rest positions of the free vertices.
+    free: Vec<DVec3>,
+    /// Stiffness at rest.
+    pub stiffness: BlockSparse,
+    /// Consistent mass.
+    pub mass: BlockSparse,
+    /// M-orthonormal rigid motions that the fixed vertices allow: six columns for a free body.
+    pub rigid: Mat<f64>,
+}
+
+impl<'a> Body<'a> {
+    /// # Errors
+    /// When a fixed vertex does not exist, or all are fixed.
+    pub fn new(solid: &'a Solid, fixed: &[u32]) -> Result<Self, ModesError> {
+        let vertices = solid.vertices().len();
+        let mut rows = vec![0; vertices];
+        for vertex in fixed {
+            match rows.get_mut(*vertex as usize) {
+                Some(row) => *row = FIXED,
+                None => return Err(ModesError::FixedVertex { vertex: *vertex, vertices }),
+            }
+        }
+        let mut free = Vec::new();
+        for (row, p) in rows.iter_mut().zip(solid.vertices()).filter(|(row, _)| **row != FIXED) {
+            *row = free.len() as u32;
+            free.push(*p);
+        }
+        if free.is_empty() {
+            return Err(ModesError::AllFixed { vertices });
+        }
+        let (stiffness, mass) = assemble(solid, &rows, free.len());
+        let mut body = Self { solid, rows, free, stiffness, mass, rigid: Mat::zeros(0, 0) };
+        body.rigid = body.rigid_motions()?;
+        Ok(body)
+    }
+
+    /// Matrices and rigid motions, for the eigenproblem.
+    pub fn pencil(&self) -> Pencil<'_> {
+        let Self { stiffness, mass, free, rigid, .. } = self;
+        Pencil { stiffness, mass, positions: free, rigid: rigid.as_ref() }
+    }
+
+    /// The order of elimination.
+    pub fn symbolic(&self) -> Result<Symbolic, ModesError> {
+        Symbolic::new(&self.stiffness, &self.free)
+    }
+
+    /// A field on the free vertices as a field on all.
+    pub fn on_all(&self, field: &[f64]) -> Vec<DVec3> {
+        let at = |row: &u32| match *row {
+            FIXED => DVec3::ZERO,
+            row => DVec3::from_slice(&field[3 * row as usize..]),
+        };
+        self.rows.iter().map(at).collect()
+    }
+
+    /// A field on all vertices, restricted to the free ones.
+    pub fn on_free(&self, field: &[DVec3]) -> Vec<f64> {
+        let free = self.rows.iter().zip(field).filter(|(row, _)| **row != FIXED);
+        free.flat_map(|(_, u)| u.to_array()).collect()
+    }
+
+    /// Translations and rotations that vanish at the fixed vertices, M-orthonormal.
+    fn rigid_motions(&self) -> Result<Mat<f64>, ModesError> {
+        let centre = self.free.iter().sum::<DVec3>() / self.free.len() as f64;
+        let size = self.free.iter().map(|p| p.distance(centre)).fold(f64::MIN_POSITIVE, f64::max);
+        let motion = |p: DVec3, k: usize| match k {
+            0..3 => DVec3::AXES[k],
+            _ => DVec3::AXES[k - 3].cross((p - centre) / size),
+        };
+        let fixed: Vec<DVec3> = self.rows.iter().zip(self.solid.vertices()).filter(|(r, _)| **r == FIXED).map(|(_, p)| *p).collect();
+        let held = Mat::from_fn(6, 6, |i, j| {
+            fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>()
+        });
+        let eigen = held.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
+        let allowed: Vec<usize> = (0..6).filter(|k| eigen.S()[*k] <= HELD).collect();
+        let motions = Mat::from_fn(3 * self.free.len(), allowed.len(), |row, column| {
+            (0..6).map(|k| motion(self.free[row / 3], k)[row % 3] * eigen.U()[(k, allowed[column])]).sum()
+        });
+        m_orthonormal(&self.mass, motions, 1e-14, 6)
+    }
+}
+
+/// An M-orthonormal basis of the columns: the `most` directions of the largest mass, without those of less than `least`
+/// times the largest.
+pub(crate) fn m_orthonormal(mass: &BlockSparse, mut x: Mat<f64>, least: f64, most: usize) -> Result<Mat<f64>, ModesError> {
+    for _ in 0..2 {
+        if x.ncols() == 0 {
+            break; // faer decomposes no empty matrix
+        }
+        let gram = x.transpose() * mass.multiply(x.as_ref());
+        let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
+        let size = gram.nrows();
+        let largest = eigen.S()[size - 1];
+        let kept: Vec<usize> = (0..size).rev().filter(|k| eigen.S()[*k] > least * largest).take(most).collect();
+        let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
+        x = &x * &turn;
+    }
+    Ok(x)
+}
+
+/// Stiffness and mass of the free vertices.
+fn assemble(solid: &Solid, rows: &[u32], free: usize) -> (BlockSparse, BlockSparse) {
+    let elements: Vec<Vec<u32>> = (0..solid.element_count())
+        .map(|index| solid.element(index).vertices.iter().map(|v| rows[*v as usize]).collect())
+        .collect();
+    let mut stiffness = BlockSparse::with_pattern(free, elements.iter().map(Vec::as_slice));
+    let mut mass = stiffness.clone();
+    for (index, rows) in elements.iter().enumerate() {
+        let element = solid.element(index);
+        let masses = element.masses();
+        for (a, row) in rows.iter().enumerate().filter(|(_, row)| **row != FIXED) {
+            for (b, column) in rows.iter().enumerate().filter(|(_, column)| **column != FIXED) {
+                let mut block = DMat3::ZERO;
+                let (lambda, mu) = (element.material.lame_lambda(), element.material.lame_mu());
+                for point in element.points() {
+                    let (g, h) = (point.gradients[a], point.gradients[b]);
+                    let outer = |x: DVec3, y: DVec3| DMat3::from_cols(x * y.x, x * y.y, x * y.z);
+                    let sum = outer(g, h) * lambda + (outer(h, g) + DMat3::from_diagonal(DVec3::splat(g.dot(h)))) * mu;
+                    block += sum * point.volume;
+                }
+                let block = block.transpose().to_cols_array();
+                stiffness.add(*row, *column, &block);
+                let m = masses[a][b];
+                mass.add(*row, *column, &[m, 0.0, 0.0, 0.0, m, 0.0, 0.0, 0.0, m]);
+            }
+        }
+    }
+    (stiffness, mass)
+}

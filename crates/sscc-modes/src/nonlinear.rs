@@ -1,0 +1,132 @@
+//! Modal derivatives, and the basis that they and the linear modes give (Barbic and James 2005).
+//!
+//! A linear mode cannot bend far: what a large bend needs beside it is, to second order, its derivative. `K d_ij =
+//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much they are likely to occur,
+//! modes by `lambda_1 / lambda_i`, derivatives by `lambda_1^2 / (lambda_i lambda_j)`; then the directions of the most mass
+//! are taken.
+
+use faer::Mat;
+use sscc::{Error, Progress};
+
+use crate::ModesError;
+use crate::body::{Body, m_orthonormal};
+use crate::elasticity::second_derivative;
+use crate::sparse::{Cholesky, Lowest, Pencil, lowest_modes};
+
+/// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
+const LINEAR_SHARE: f64 = 2.0 / 3.0;
+
+/// Right-hand sides solved at once.
+const BATCH: usize = 16;
+
+/// The residual of a derivative, as a share of its right-hand side.
+const SOLVED: f64 = 1e-9;
+
+/// Refinements at most; each gains a factor of about 100.
+const REFINEMENTS: usize = 30;
+
+/// The columns that span the basis (free vertices), M-orthonormal.
+pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
+    let pencil = body.pencil();
+    let shift = pencil.shift();
+    let symbolic = body.symbolic()?;
+    let factor = pencil.factor(&symbolic, shift)?;
+    let available = 3 * body.stiffness.rows() - body.rigid.ncols();
+    if rank > available {
+        return Err(ModesError::TooManyModes { asked: rank, available });
+    }
+    let linear = linear_count(rank).min(available);
+    let lowest = lowest_modes(&pencil, &symbolic, &factor, shift, linear, progress)?;
+    let derivatives = derivatives(body, &pencil, &factor, &lowest, progress)?;
+
+    let least = lowest.eigenvalues[0];
+    let size = lowest.vectors.nrows();
+    let mut all = Mat::zeros(size, linear + derivatives.ncols());
+    for (i, lambda) in lowest.eigenvalues.iter().enumerate() {
+        let scale = least / lambda;
+        for (to, from) in all.col_as_slice_mut(i).iter_mut().zip(lowest.vectors.col_as_slice(i)) {
+            *to = scale * from;
+        }
+    }
+    let pairs = (0..linear).flat_map(|i| (i..linear).map(move |j| (i, j)));
+    for (k, (i, j)) in pairs.enumerate() {
+        let scale = (least / lowest.eigenvalues[i]) * (least / lowest.eigenvalues[j]);
+        for (to, from) in all.col_as_slice_mut(linear + k).iter_mut().zip(derivatives.col_as_slice(k)) {
+            *to = scale * from;
+        }
+    }
+    principal(body, all, rank)
+}
+
+/// The number of linear modes: with their derivatives at least `rank` directions.
+fn linear_count(rank: usize) -> usize {
+    ((rank as f64 * LINEAR_SHARE).round() as usize).max(2).min(rank.max(1))
+}
+
+/// The modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
+fn derivatives(
+    body: &Body,
+    pencil: &Pencil,
+    factor: &Cholesky,
+    lowest: &Lowest,
+    progress: &dyn Progress,
+) -> Result<Mat<f64>, ModesError> {
+    let count = lowest.eigenvalues.len();
+    let fields: Vec<_> = (0..count).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
+    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i..count).map(move |j| (i, j))).collect();
+    let mut all = Mat::zeros(lowest.vectors.nrows(), pairs.len());
+    for (batch, some) in pairs.chunks(BATCH).enumerate() {
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled.into());
+        }
+        let mut right = Mat::zeros(all.nrows(), some.len());
+        for (k, (i, j)) in some.iter().enumerate() {
+            let force = body.on_free(&second_derivative(body.solid, &fields[*i], &fields[*j]));
+            right.col_as_slice_mut(k).iter_mut().zip(force).for_each(|(to, f)| *to = -f);
+        }
+        let solved = solve(body, pencil, factor, lowest, right);
+        all.as_mut().subcols_mut(batch * BATCH, some.len()).copy_from(&solved);
+        progress.report(batch * BATCH + some.len(), pairs.len());
+    }
+    Ok(all)
+}
+
+/// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest by
+/// refinement, which gains a factor of `s / (lambda + s)` each time.
+fn solve(body: &Body, pencil: &Pencil, factor: &Cholesky, lowest: &Lowest, mut right: Mat<f64>) -> Mat<f64> {
+    // Rigid motions carry no elastic force: f - M R R'f.
+    if body.rigid.ncols() > 0 {
+        let carried = &body.rigid * (body.rigid.transpose() * &right);
+        right -= body.mass.multiply(carried.as_ref());
+    }
+    let norm = |x: &Mat<f64>, k: usize| x.col(k).norm_l2();
+    let mut x = Mat::zeros(right.nrows(), right.ncols());
+    let mut residual = right.clone();
+    for _ in 0..REFINEMENTS {
+        let mut coefficients = lowest.vectors.transpose() * &residual;
+        for k in 0..coefficients.ncols() {
+            for (c, lambda) in coefficients.col_as_slice_mut(k).iter_mut().zip(&lowest.eigenvalues) {
+                *c /= lambda;
+            }
+        }
+        let low = &lowest.vectors * coefficients;
+        let mut high = &residual - body.stiffness.multiply(low.as_ref());
+        factor.solve(&mut high);
+        x += low + high;
+        pencil.without_rigid(&mut x);
+        residual = &right - body.stiffness.multiply(x.as_ref());
+        if (0..right.ncols()).all(|k| norm(&residual, k) <= SOLVED * norm(&right, k)) {
+            break;
+        }
+    }
+    x
+}
+
+/// The `rank` directions of the most mass among the columns.
+fn principal(body: &Body, all: Mat<f64>, rank: usize) -> Result<Mat<f64>, ModesError> {
+    let basis = m_orthonormal(&body.mass, all, 1e-15, rank)?;
+    match basis.ncols() {
+        found if found < rank => Err(ModesError::TooManyModes { asked: rank, available: found }),
+        _ => Ok(basis),
+    }
+}
