@@ -56,9 +56,16 @@ pub struct Demo {
 
 /// `sscc modes`
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial")]
+#[command(after_help = "\
+Examples:
+  sscc modes bunny.obj -o bunny.model.safetensors --kind nonlinear --rank 30
+  sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial
+  sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0
+
+A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not
+glued. Modes are mass-orthonormal, and the metric is strain energy.")]
 pub struct Modes {
-    /// A triangle mesh: .obj, .off, .ply, .stl
+    /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele)
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors
@@ -67,15 +74,45 @@ pub struct Modes {
     /// Where the modes come from
     #[arg(long, value_enum)]
     pub kind: ModesKind,
+    /// Number of modes [default: 20 linear, 30 nonlinear]
+    #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=500))]
+    pub rank: Option<u32>,
+    /// Vertices that do not move: numbers from 0, as in 0,5,7; box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text)
+    /// [default: none, a free body without its rigid motions]
+    #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
+    pub fix: Option<String>,
+    /// The material, where the file names none: any of youngs=E,poisson=NU,density=RHO [default: youngs=1e6,poisson=0.4,
+    /// density=1000]
+    #[arg(long, value_name = "MATERIAL")]
+    pub material: Option<String>,
+    /// Cubes along the longest side of the lattice around a surface [default: so many that 10,000 have its volume]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub resolution: Option<u32>,
     #[command(flatten)]
     pub json: Json,
 }
 
 /// Kinds of modes that `sscc modes` makes.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModesKind {
-    /// The 24 quadratic polynomials of the rest position, rigid motions taken out
+    /// The lowest natural vibrations of a solid (linear modal analysis)
+    Linear,
+    /// A basis for large deformations, with their forces (modal derivatives)
+    Nonlinear,
+    /// The 24 quadratic polynomials of the rest position, rigid motions taken out; with --resolution or --material also
+    /// the stiffness and forces of a solid
     Polynomial,
+}
+
+impl ModesKind {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Nonlinear => "nonlinear",
+            Self::Polynomial => "polynomial",
+        }
+    }
 }
 
 /// A model by its files.
@@ -100,7 +137,7 @@ pub struct Options {
     /// Relative error allowed for each radius, between 0 and 1 [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
-    /// The metric: displacement, mass, identity, or a file with M: its diagonal, one weight for each mode (.npy or
+    /// The metric: energy (of models that know their stiffness), displacement, mass, identity, or a file with M: its diagonal, one weight for each mode (.npy or
     /// text), or a dense symmetric one (.npy of shape r x r) [default: the model's]
     #[arg(long, value_name = "METRIC")]
     pub metric: Option<PathBuf>,

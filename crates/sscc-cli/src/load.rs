@@ -24,8 +24,9 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
         Some("displacement") => Metric::displacement(model.mesh(), model.modes()),
         Some("mass") => Metric::mass(model.mesh(), model.modes()),
         Some("identity") => Metric::identity(model.rank()),
+        Some("energy") if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
         Some("energy") => bail!(
-            "--metric energy: the model carries no stiffness; use displacement, mass, identity or a file"
+            "--metric energy: the model carries no stiffness (sscc modes --kind linear makes one that does); use displacement, mass, identity or a file"
         ),
         _ => {
             let numbers = sscc_io::read_matrix(wanted).with_context(

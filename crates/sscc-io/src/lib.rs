@@ -67,7 +67,7 @@ mod pose;
 pub mod solid;
 mod text;
 
-pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
+pub use container::{Elasticity, ModelInfo, read_certificates, read_model, write_certificates, write_model};
 pub use cubic::{Cubic, parse_cubic, read_cubic};
 pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};

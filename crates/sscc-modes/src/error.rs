@@ -139,6 +139,12 @@ pub enum ModesError {
         /// The cube, from 0.
         cube: usize,
     },
+    /// A face of more than two elements.
+    #[error("the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew")]
+    OverlappingElements {
+        /// Its vertices.
+        face: Vec<u32>,
+    },
     /// A material that does not exist.
     #[error("{what} is {value:e}: it must be {range}")]
     Material {
@@ -162,62 +168,6 @@ pub enum ModesError {
     AllFixed {
         /// Number of vertices.
         vertices: usize,
-    },
-    /// More modes than a body can have.
-    #[error("{asked} modes were asked for, but the body has {available}: ask for fewer, or take a finer mesh")]
-    TooManyModes {
-        /// Modes asked for.
-        asked: usize,
-        /// Degrees of freedom, without fixed vertices and rigid motions.
-        available: usize,
-    },
-    /// Parts that hang together by less than three vertices.
-    #[error(
-        "the body has {found} motions that cost no energy, {expected} were expected: parts of it hang together by an edge or a vertex only, or not at all; join them, or fix each"
-    )]
-    Mechanism {
-        /// Motions found.
-        found: usize,
-        /// Motions that a body in one piece has.
-        expected: usize,
-    },
-    /// Not enough memory for the factor of the stiffness.
-    #[error("the stiffness of this body is too large for the memory: lower the resolution")]
-    Memory,
-    /// A surface with a border.
-    #[error("the surface is open at the edge of vertices {edge:?} (counted from 0): close its holes first")]
-    OpenSurface {
-        /// The edge.
-        edge: [u32; 2],
-    },
-    /// Faces that do not agree on which side is outside.
-    #[error(
-        "the faces at the edge of vertices {edge:?} (counted from 0) are not oriented alike: turn them so that all go around the same way"
-    )]
-    EdgeOrientation {
-        /// The edge.
-        edge: [u32; 2],
-    },
-    /// A flat surface.
-    #[error("the surface encloses no volume")]
-    NoVolume,
-    /// A surface that meets itself at rest: what is inside is not defined.
-    #[error("triangles {} and {} (counted from 0) of the surface meet at rest: move them apart first", faces[0], faces[1])]
-    SelfIntersecting {
-        /// Two triangles.
-        faces: [u32; 2],
-    },
-    /// More cubes than can be.
-    #[error("{cells:.0} cubes along the longest side are too many: lower the resolution")]
-    Resolution {
-        /// Cubes along the longest side.
-        cells: f64,
-    },
-    /// A surface of several bodies.
-    #[error("the surface encloses {count} separate pieces: give one at a time, or join them")]
-    Pieces {
-        /// How many.
-        count: usize,
     },
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]

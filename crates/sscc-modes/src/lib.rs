@@ -29,21 +29,21 @@
 //! rounded as the vector instructions of the processor do.
 
 mod body;
+mod boundary;
 mod diagonalize;
 mod elasticity;
 mod embedded;
 mod energy;
 mod error;
-mod lattice;
 mod nonlinear;
 mod orthonormal;
 mod polynomial;
 pub mod shapes;
 mod solid;
-mod sparse;
 mod stiffness;
 mod vibration;
 
+pub use boundary::{Boundary, tets_within};
 pub use diagonalize::{Diagonalized, diagonalize};
 pub use elasticity::ReducedForces;
 pub use embedded::Embedded;
@@ -52,4 +52,4 @@ pub use error::ModesError;
 pub use polynomial::polynomial_modes;
 pub use solid::{Material, Solid};
 pub use stiffness::reduced_stiffness;
-pub use vibration::{SolidModes, linear_modes, modes_of_span, nonlinear_modes};
+pub use vibration::{SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};

@@ -1,12 +1,13 @@
 //! Linear modes: the lowest natural vibrations of a solid.
 
+use faer::{Mat, Side};
 use glam::DVec3;
-use sscc::{Modes, Progress};
+use sscc::{Modes, Progress, TriMesh};
 
 use crate::body::Body;
 use crate::elasticity::{ReducedForces, reduced_forces};
 use crate::nonlinear;
-use crate::sparse::lowest_modes;
+use crate::sparse::{fix_signs, lowest_modes};
 use crate::{ModesError, Solid};
 
 /// Modes of a solid's vertices in which mass is the identity and the stiffness at rest is diagonal.
@@ -47,7 +48,9 @@ pub fn linear_modes(
     let pencil = body.pencil();
     let shift = pencil.shift();
     let symbolic = body.symbolic()?;
+    let t = std::time::Instant::now();
     let factor = pencil.factor(&symbolic, shift)?;
+    eprintln!("factor {:?}", t.elapsed());
     let lowest = lowest_modes(&pencil, &symbolic, &factor, shift, rank, progress)?;
     let columns: Vec<Vec<DVec3>> =
         (0..rank).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
@@ -68,53 +71,71 @@ pub fn nonlinear_modes(
 ) -> Result<SolidModes, ModesError> {
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
-    in_basis(&body, basis, true, progress)
+    let (turn, eigenvalues) = rotation(&body, &basis)?;
+    let vectors = basis * turn;
+    let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
+    let modes = from_columns(&columns)?;
+    let forces = Some(reduced_forces(solid, &modes, progress)?);
+    Ok(SolidModes { modes, eigenvalues, forces })
 }
 
-/// The same span as the columns of `modes` (say polynomial ones, evaluated at the solid's vertices), rotated such that
-/// mass is the identity and the stiffness diagonal (paper, section 6): `U' = U Q`. Dependent modes fall away, and so do
-/// rigid motions of a body that is not fixed.
+/// The quadratic polynomial modes of a free solid (paper, section 7), rotated such that mass is the identity and the
+/// stiffness diagonal (section 6): those of the solid's vertices, with their forces, and those of the vertices of a surface that
+/// moves with it. Rigid motions are left out: 24 modes remain, fewer for small solids.
 ///
 /// # Errors
 /// As [`linear_modes`].
-pub fn modes_of_span(
+pub fn polynomial_solid_modes(
     solid: &Solid,
-    fixed: &[u32],
-    modes: &Modes,
+    surface: &TriMesh,
     progress: &dyn Progress,
-) -> Result<SolidModes, ModesError> {
-    let body = Body::new(solid, fixed)?;
-    let r = modes.rank();
-    let column = |k: usize| -> Vec<f64> {
-        body.on_free(&modes.displacements().iter().skip(k).step_by(r).copied().collect::<Vec<_>>())
+) -> Result<(SolidModes, Modes), ModesError> {
+    let body = Body::new(solid, &[])?;
+    let vertices = solid.vertices();
+    let low = vertices.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
+    let high = vertices.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+    let (centre, size) = ((low + high) * 0.5, (high - low).max_element());
+    let fields = |points: &[DVec3]| {
+        Mat::from_fn(3 * points.len(), 3 * POLYNOMIALS, |row, k| {
+            let p = (points[row / 3] - centre) / size;
+            let scalars = [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y];
+            if k % 3 == row % 3 { scalars[k / 3] } else { 0.0 }
+        })
     };
-    let columns: Vec<Vec<f64>> = (0..r).map(column).collect();
-    let basis = faer::Mat::from_fn(columns[0].len(), r, |i, j| columns[j][i]);
-    in_basis(&body, basis, false, progress)
+    let (turn, eigenvalues) = rotation(&body, &fields(vertices))?;
+    let on = |points: &[DVec3]| {
+        let fields = fields(points) * &turn;
+        let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
+        from_columns(&(0..turn.ncols()).map(column).collect::<Vec<_>>())
+    };
+    let (modes, of_surface) = (on(vertices)?, on(surface.rest_positions())?);
+    let forces = Some(reduced_forces(solid, &modes, progress)?);
+    Ok((SolidModes { modes, eigenvalues, forces }, of_surface))
 }
 
-/// Mass-orthonormal modes with a diagonal stiffness that span the given columns, and their forces.
-fn in_basis(
-    body: &Body,
-    mut basis: faer::Mat<f64>,
-    with_forces: bool,
-    progress: &dyn Progress,
-) -> Result<SolidModes, ModesError> {
-    let pencil = body.pencil();
-    pencil.without_rigid(&mut basis);
-    let basis = crate::body::m_orthonormal(&body.mass, basis, 1e-14, usize::MAX)?;
+/// Monomials of degree 2 or less in three variables.
+const POLYNOMIALS: usize = 10;
+
+/// Eigenvalues of at most this share of the largest belong to rigid motions.
+const RIGID: f64 = 1e-11;
+
+/// The matrix T for which the columns of `X T` are M-orthonormal and their stiffness is diagonal, and that diagonal.
+/// Dependent columns and motions without energy fall away.
+fn rotation(body: &Body, basis: &Mat<f64>) -> Result<(Mat<f64>, Vec<f64>), ModesError> {
+    let gram = basis.transpose() * body.mass.multiply(basis.as_ref());
+    let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
+    let size = gram.nrows();
+    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > 1e-13 * eigen.S()[size - 1]).collect();
+    let orthonormal = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
     let stiffness = basis.transpose() * body.stiffness.multiply(basis.as_ref());
-    let eigen = stiffness.self_adjoint_eigen(faer::Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
-    let mut vectors = &basis * eigen.U();
-    crate::sparse::fix_signs(&mut vectors);
-    let rank = vectors.ncols();
-    let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
-    let modes = from_columns(&columns)?;
-    let forces = match with_forces {
-        true => Some(reduced_forces(body.solid, &modes, progress)?),
-        false => None,
-    };
-    Ok(SolidModes { modes, eigenvalues: (0..rank).map(|k| eigen.S()[k]).collect(), forces })
+    let stiffness = orthonormal.transpose() * stiffness * &orthonormal;
+    let eigen = stiffness.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
+    let size = stiffness.nrows();
+    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > RIGID * eigen.S()[size - 1]).collect();
+    let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])]);
+    let mut turn = orthonormal * turn;
+    fix_signs(&mut turn);
+    Ok((turn, kept.into_iter().map(|k| eigen.S()[k]).collect()))
 }
 
 /// Modes from one field for each.

@@ -6,6 +6,7 @@
 //! the seal. The bytes are a function of the content: the same content gives the same file.
 
 mod certificates;
+mod elasticity;
 mod header;
 mod kind;
 mod metric;
@@ -17,6 +18,7 @@ mod writer;
 pub use certificates::{
     certificates_from_bytes, certificates_to_bytes, read_certificates, write_certificates,
 };
+pub use elasticity::Elasticity;
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
 pub use sealed::Sealed;

@@ -7,6 +7,9 @@
 //! | `modes` | F64 | V x 3 x r | NumPy's `modes.reshape(3 * V, r)` is U |
 //! | `metric_scales` | F64 | r | the diagonal of the default metric's factor S, or |
 //! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
+//! | `stiffness` | F64 | r x r | where known: elastic forces at rest are `stiffness q`; the reduced mass is the identity |
+//! | `forces_quadratic` | F64 | r x r(r+1)/2 | where known: those of large deformations, as in VegaFEM's `.cub` |
+//! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | |
 //!
 //! Text: `metric` (the name of the metric's kind), `units`, `provenance`.
 
@@ -15,31 +18,40 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{Modes, ReducedModel, TriMesh};
 
-use super::{ANY, MODEL, Sealed, SealedWriter, metric};
+use super::elasticity::Elasticity;
+use super::{ANY, MODEL, Sealed, SealedWriter, elasticity, metric};
 use crate::file::{read_whole, write_whole};
-use crate::{FormatError, IoError};
+use crate::{FormatError, IoError, Place};
 
 /// What a model file says beside the numbers. Free text; empty where nothing is known.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelInfo {
     /// The unit of length ("m", "cm", ...).
     pub units: String,
     /// Where the mesh and the modes come from.
     pub provenance: String,
+    /// The elastic forces, where they are known; of the rank of the modes.
+    pub elasticity: Option<Elasticity>,
 }
 
 impl ModelInfo {
     /// Of these texts.
     pub fn new(units: impl Into<String>, provenance: impl Into<String>) -> Self {
-        Self { units: units.into(), provenance: provenance.into() }
+        Self { units: units.into(), provenance: provenance.into(), elasticity: None }
+    }
+
+    /// With elastic forces.
+    #[must_use]
+    pub fn with_elasticity(self, elasticity: Elasticity) -> Self {
+        Self { elasticity: Some(elasticity), ..self }
     }
 }
 
 /// Writes a model. Reading it back gives the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, or the file cannot be written.
+/// When the texts are beyond 1 MiB, the elastic forces are of another rank, or the file cannot be written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -67,6 +79,13 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .collect();
     let mut writer = SealedWriter::new(MODEL);
     metric::write(&mut writer, model.metric());
+    if let Some(elasticity) = &info.elasticity {
+        if elasticity.stiffness().len() != rank * rank {
+            let cause = format!("its stiffness is not that of {rank} modes");
+            return Err(FormatError::new(Place::Tensor(elasticity::STIFFNESS.into()), cause));
+        }
+        elasticity::write(&mut writer, elasticity, rank);
+    }
     writer
         .text("units", &info.units)
         .text("provenance", &info.provenance)
@@ -82,7 +101,9 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 /// As [`read_model`], but for the file's name.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
     let file = Sealed::parse(bytes, MODEL)?;
-    file.only(&["faces", metric::FACTOR, metric::SCALES, "modes", "rest_positions"])?;
+    let metrics = [metric::FACTOR, metric::SCALES];
+    let forces = [elasticity::STIFFNESS, elasticity::QUADRATIC, elasticity::CUBIC];
+    file.only(&[&["faces", "modes", "rest_positions"], &metrics[..], &forces].concat())?;
     let positions = file.f64("rest_positions")?.shaped(&[ANY, 3])?;
     let vertices = positions.shape[0];
     let positions = positions.values.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
@@ -90,10 +111,12 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     let modes = file.f64("modes")?.shaped(&[vertices, 3, ANY])?;
     let rank = modes.shape[2];
     let metric = metric::read(&file, rank)?;
+    let elasticity = elasticity::read(&file, rank)?;
     let mesh = TriMesh::new(positions, faces)?;
     let modes = Modes::from_matrix(vertices, rank, |row, k| modes.values[row * rank + k])?;
     let model = ReducedModel::with_metric(mesh, modes, metric)?;
-    Ok((model, ModelInfo::new(file.text("units")?, file.text("provenance")?)))
+    let info = ModelInfo::new(file.text("units")?, file.text("provenance")?);
+    Ok((model, ModelInfo { elasticity, ..info }))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod stvk;
 pub(crate) use element::cube_is_inverted;
 pub use forces::ReducedForces;
 pub(crate) use reduce::reduced_forces;
-pub(crate) use stvk::{second_derivative, stress};
+pub(crate) use stvk::second_derivative;
 
 #[cfg(test)]
 mod tests;

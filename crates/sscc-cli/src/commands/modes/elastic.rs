@@ -1,0 +1,87 @@
+//! Modes of elastic solids.
+
+use anyhow::{Result, bail};
+use sscc::{Modes, Progress};
+use sscc_io::{Cubic, Elasticity};
+use sscc_modes::{
+    DEFAULT_ELL, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
+    polynomial_solid_modes,
+};
+
+use super::source::Source;
+use super::{Made, fix, material, name};
+use crate::args::{self, ModesKind};
+use crate::progress::Bar;
+
+/// Modes, if no number is given.
+const LINEAR_RANK: usize = 20;
+const NONLINEAR_RANK: usize = 30;
+
+pub fn make(args: &args::Modes) -> Result<Made> {
+    let polynomial = args.kind == ModesKind::Polynomial;
+    if polynomial && (args.rank.is_some() || args.fix.is_some()) {
+        bail!("--rank and --fix: polynomial modes are always all 24, and move every vertex");
+    }
+    let material = material::parse(args.material.as_deref())?;
+    let bar = Bar::new("modes");
+    let source = Source::read(&args.source, args.resolution, material)?;
+    let fixed = fix::vertices(args.fix.as_deref(), &source)?;
+    let (solid, progress): (_, &dyn Progress) = (source.solid(), &bar);
+    let rank = |default| args.rank.map_or(default, |rank| rank as usize);
+    let (found, of_surface): (SolidModes, Modes) = match args.kind {
+        ModesKind::Linear => {
+            let found = linear_modes(solid, &fixed, rank(LINEAR_RANK), progress)?;
+            let modes = source.on_surface(&found.modes)?;
+            (found, modes)
+        }
+        ModesKind::Nonlinear => {
+            let found = nonlinear_modes(solid, &fixed, rank(NONLINEAR_RANK), progress)?;
+            let modes = source.on_surface(&found.modes)?;
+            (found, modes)
+        }
+        ModesKind::Polynomial => polynomial_solid_modes(solid, source.mesh(), progress)?,
+    };
+    drop(bar);
+    // Natural frequencies are as they are; those of other modes may be very high, and are filtered (paper, section 6).
+    let weights = match args.kind {
+        ModesKind::Linear => found.eigenvalues.clone(),
+        _ => filter_eigenvalues(&found.eigenvalues, DEFAULT_ELL)?,
+    };
+    let (elements, freedom) = (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
+    let provenance = format!(
+        "{} {}, {} modes, {} elements, {} degrees of freedom, youngs={:e} poisson={} density={}",
+        if source.is_embedded() { "mesh" } else { "solid" },
+        name(args),
+        args.kind.name(),
+        elements,
+        freedom,
+        material.youngs_modulus,
+        material.poisson_ratio,
+        material.density,
+    );
+    let frequencies = found.frequencies();
+    Ok(Made {
+        metric: Some(energy_metric(&weights)?),
+        elasticity: Some(elasticity(found.eigenvalues, found.forces)),
+        mesh: source.into_mesh(),
+        modes: of_surface,
+        elements: Some(elements),
+        degrees_of_freedom: Some(freedom),
+        frequencies: Some(frequencies),
+        provenance,
+    })
+}
+
+/// The forces as a model file holds them.
+fn elasticity(eigenvalues: Vec<f64>, forces: Option<ReducedForces>) -> Elasticity {
+    let rank = eigenvalues.len();
+    let mut stiffness = vec![0.0; rank * rank];
+    eigenvalues.iter().enumerate().for_each(|(k, x)| stiffness[k * (rank + 1)] = *x);
+    match forces {
+        None => Elasticity::Linear(stiffness),
+        // The linear part is that diagonal, but for rounding.
+        Some(ReducedForces { quadratic, cubic, .. }) => {
+            Elasticity::Nonlinear(Cubic { rank, linear: stiffness, quadratic, cubic })
+        }
+    }
+}

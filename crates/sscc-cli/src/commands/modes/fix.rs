@@ -1,0 +1,53 @@
+//! `--fix`: vertices that do not move, by list, box or file.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use glam::DVec3;
+
+use super::source::Source;
+
+/// The vertices of the solid that are fixed. Numbers are those of the source's file, from 0; of a surface they fix the
+/// corners of the lattice that hold them.
+pub fn vertices(typed: Option<&str>, source: &Source) -> Result<Vec<u32>> {
+    let Some(typed) = typed else { return Ok(Vec::new()) };
+    let mut fixed = match typed.strip_prefix("box:") {
+        Some(corners) => within(corners, source)?,
+        None => {
+            let numbers: Result<Vec<u32>, _> = typed.split(',').map(|n| n.trim().parse()).collect();
+            let numbers = match numbers {
+                Ok(numbers) => numbers,
+                Err(_) => from_file(Path::new(typed))?,
+            };
+            let mut fixed = Vec::new();
+            for number in numbers {
+                fixed.extend(source.holding(number).with_context(|| format!("--fix {typed}"))?);
+            }
+            fixed
+        }
+    };
+    fixed.sort_unstable();
+    fixed.dedup();
+    ensure!(!fixed.is_empty(), "--fix {typed}: no vertex is there");
+    Ok(fixed)
+}
+
+fn from_file(path: &Path) -> Result<Vec<u32>> {
+    let numbers = sscc_io::read_vector(path)
+        .context("--fix is no list of numbers and no box:X0,Y0,Z0,X1,Y1,Z1, so a file was looked for")?;
+    let whole = |x: &f64| match *x {
+        x if x >= 0.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0 => Ok(x as u32),
+        x => bail!("{}: {x} is no vertex number", path.display()),
+    };
+    numbers.iter().map(whole).collect()
+}
+
+/// The vertices in a box, borders included.
+fn within(typed: &str, source: &Source) -> Result<Vec<u32>> {
+    let numbers: Result<Vec<f64>, _> = typed.split(',').map(|n| n.trim().parse()).collect();
+    let Ok([x0, y0, z0, x1, y1, z1]) = numbers.as_deref() else {
+        bail!("--fix box: six numbers were expected, as in box:-1,-1,-1,1,1,0");
+    };
+    let (a, b) = (DVec3::new(*x0, *y0, *z0), DVec3::new(*x1, *y1, *z1));
+    Ok(source.within(a.min(b), a.max(b)))
+}

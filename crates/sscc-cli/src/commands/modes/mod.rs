@@ -1,0 +1,123 @@
+//! `sscc modes`: a mesh or a solid becomes a model.
+
+mod elastic;
+mod fix;
+mod material;
+mod source;
+
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+use sscc::{Metric, Modes, ReducedModel, TriMesh};
+use sscc_io::{Elasticity, ModelInfo, read_mesh, write_model};
+use sscc_modes::polynomial_modes;
+
+use crate::args::{self, ModesKind};
+use crate::output::{Output, counted, grouped, length};
+use crate::{Outcome, interrupt, load};
+
+#[derive(Serialize)]
+struct Report {
+    triangles: usize,
+    vertices: usize,
+    rank: usize,
+    /// Tetrahedra and cubes of the solid, its degrees of freedom; none without a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    elements: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    degrees_of_freedom: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frequencies_hz: Option<Vec<f64>>,
+}
+
+/// A surface with modes, and what else was found.
+struct Made {
+    mesh: TriMesh,
+    modes: Modes,
+    /// If not given, displacement.
+    metric: Option<Metric>,
+    elasticity: Option<Elasticity>,
+    elements: Option<usize>,
+    degrees_of_freedom: Option<usize>,
+    frequencies: Option<Vec<f64>>,
+    provenance: String,
+}
+
+pub fn run(args: &args::Modes) -> Result<Outcome> {
+    load::check_output(&args.output, ".model.safetensors", &[&args.source])?;
+    let in_source = || args.source.display().to_string();
+    let made = match args.kind {
+        ModesKind::Polynomial if !asks_for_solid(args) => surface_polynomials(args)?,
+        _ => elastic::make(args).with_context(in_source)?,
+    };
+    let model = match made.metric {
+        Some(metric) => ReducedModel::with_metric(made.mesh, made.modes, metric),
+        None => ReducedModel::new(made.mesh, made.modes),
+    };
+    let model = model.with_context(in_source)?;
+    let info = ModelInfo::new("", made.provenance);
+    let info = match made.elasticity {
+        Some(elasticity) => info.with_elasticity(elasticity),
+        None => info,
+    };
+    interrupt::check()?;
+    write_model(&args.output, &model, &info)?;
+
+    let report = Report {
+        triangles: model.mesh().faces().len(),
+        vertices: model.mesh().rest_positions().len(),
+        rank: model.rank(),
+        elements: made.elements,
+        degrees_of_freedom: made.degrees_of_freedom,
+        frequencies_hz: made.frequencies,
+    };
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&report)?;
+    } else {
+        let kind = args.kind.name();
+        let (triangles, vertices) = (grouped(report.triangles as u64), grouped(report.vertices as u64));
+        out.line(format_args!("{triangles} triangles, {vertices} vertices, {} {kind} modes", report.rank))?;
+        if let (Some(elements), Some(freedom)) = (report.elements, report.degrees_of_freedom) {
+            let elements = counted(elements as u64, "element");
+            out.line(format_args!("solid of {elements}, {} degrees of freedom", grouped(freedom as u64)))?;
+        }
+        if let Some([first, .., last]) = report.frequencies_hz.as_deref() {
+            out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
+        }
+        out.line(format_args!("written: {}", args.output.display()))?;
+    }
+    out.finish()?;
+    if sscc_io::splits_vertices(&args.source) {
+        eprintln!("note: this format splits vertices: certify it with --weld");
+    }
+    Ok(Outcome::Done)
+}
+
+/// Whether polynomial modes shall know the stiffness of a solid.
+fn asks_for_solid(args: &args::Modes) -> bool {
+    args.resolution.is_some() || args.material.is_some() || source::is_solid(&args.source)
+}
+
+fn surface_polynomials(args: &args::Modes) -> Result<Made> {
+    if args.rank.is_some() || args.fix.is_some() {
+        bail!("--rank and --fix: polynomial modes are always all 24, and move every vertex");
+    }
+    let mesh = read_mesh(&args.source)?;
+    let modes = polynomial_modes(&mesh).with_context(|| args.source.display().to_string())?;
+    let provenance = format!("mesh {}, polynomial modes", name(args));
+    Ok(Made {
+        mesh,
+        modes,
+        metric: None,
+        elasticity: None,
+        elements: None,
+        degrees_of_freedom: None,
+        frequencies: None,
+        provenance,
+    })
+}
+
+/// The name of the source, without its folder.
+fn name(args: &args::Modes) -> String {
+    args.source.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,141 @@
+//! The solid that modes are made for: from a file, or around a surface.
+
+use std::path::Path;
+
+use anyhow::{Result, bail};
+use glam::DVec3;
+use sscc::{Modes, TriMesh};
+use sscc_io::{read_mesh, read_solid};
+use sscc_modes::{Boundary, Embedded, Material, Solid, tets_within};
+
+/// A solid with a surface.
+pub enum Source {
+    /// Around a surface.
+    Around { mesh: TriMesh, embedded: Embedded },
+    /// From a file, with its boundary.
+    Whole {
+        solid: Solid,
+        boundary: Boundary,
+        /// The solid's vertex for each of the file's, if it is left.
+        vertices: Vec<Option<u32>>,
+    },
+}
+
+/// Whether a file holds a volumetric mesh, by its ending.
+pub fn is_solid(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    ["mesh", "veg", "msh", "node", "ele"].contains(&ending.as_str())
+}
+
+impl Source {
+    pub fn read(path: &Path, resolution: Option<u32>, material: Material) -> Result<Self> {
+        if !is_solid(path) {
+            let mesh = read_mesh(path)?;
+            let embedded = Embedded::new(&mesh, resolution.map(|cells| cells as usize), material)?;
+            return Ok(Self::Around { mesh, embedded });
+        }
+        if resolution.is_some() {
+            bail!("--resolution is for surfaces: this file brings its own elements");
+        }
+        let file = read_solid(path)?;
+        let within = tets_within(&file.tets, &file.surface);
+        let left_out = within.iter().filter(|within| !**within).count();
+        if left_out > 0 {
+            eprintln!("note: {left_out} tetrahedra outside the surface that the file lists are left out");
+        }
+        let kept: Vec<usize> = (0..file.tets.len()).filter(|t| within[*t]).collect();
+        let tets: Vec<[u32; 4]> = kept.iter().map(|t| file.tets[*t]).collect();
+        // What belonged to nothing but left out elements is left out, too.
+        let mut used = vec![left_out == 0; file.vertices.len()];
+        tets.as_flattened().iter().chain(file.cubes.as_flattened()).for_each(|v| used[*v as usize] = true);
+        let mut vertices = Vec::with_capacity(used.len());
+        let mut count = 0;
+        for used in &used {
+            vertices.push(used.then_some(count));
+            count += u32::from(*used);
+        }
+        let number = |v: u32| vertices[v as usize].unwrap_or_default();
+        let positions = file.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect();
+        let materials = file.materials.iter().map(|m| Material {
+            density: m.density.unwrap_or(material.density),
+            youngs_modulus: m.youngs_modulus.unwrap_or(material.youngs_modulus),
+            poisson_ratio: m.poisson_ratio.unwrap_or(material.poisson_ratio),
+        });
+        let of_tets = kept.iter().map(|t| file.element_material[*t]);
+        let of_cubes = file.element_material[file.tets.len()..].iter().copied();
+        let solid = Solid::new(
+            positions,
+            tets.iter().map(|t| t.map(number)).collect(),
+            file.cubes.iter().map(|c| c.map(number)).collect(),
+            materials.collect(),
+            of_tets.chain(of_cubes).collect(),
+        )?;
+        let boundary = solid.boundary()?;
+        Ok(Self::Whole { solid, boundary, vertices })
+    }
+
+    pub fn solid(&self) -> &Solid {
+        match self {
+            Self::Around { embedded, .. } => embedded.solid(),
+            Self::Whole { solid, .. } => solid,
+        }
+    }
+
+    pub fn is_embedded(&self) -> bool {
+        matches!(self, Self::Around { .. })
+    }
+
+    /// The surface.
+    pub fn mesh(&self) -> &TriMesh {
+        match self {
+            Self::Around { mesh, .. } => mesh,
+            Self::Whole { boundary, .. } => &boundary.mesh,
+        }
+    }
+
+    pub fn into_mesh(self) -> TriMesh {
+        match self {
+            Self::Around { mesh, .. } => mesh,
+            Self::Whole { boundary, .. } => boundary.mesh,
+        }
+    }
+
+    /// Modes of the solid as modes of the surface.
+    pub fn on_surface(&self, modes: &Modes) -> Result<Modes> {
+        match self {
+            Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
+            Self::Whole { boundary, .. } => {
+                let rank = modes.rank();
+                let of = |v: &u32| &modes.displacements()[*v as usize * rank..][..rank];
+                Ok(Modes::new(rank, boundary.vertices.iter().flat_map(of).copied().collect())?)
+            }
+        }
+    }
+
+    /// The vertices of the solid that hold a vertex of the file.
+    pub fn holding(&self, number: u32) -> Result<Vec<u32>> {
+        let count = match self {
+            Self::Around { mesh, .. } => mesh.rest_positions().len(),
+            Self::Whole { vertices, .. } => vertices.len(),
+        };
+        if number as usize >= count {
+            bail!("there is no vertex {number} (counted from 0): the file has {count}");
+        }
+        Ok(match self {
+            Self::Around { embedded, .. } => embedded.holding(number as usize).collect(),
+            Self::Whole { vertices, .. } => vertices[number as usize].into_iter().collect(),
+        })
+    }
+
+    /// The vertices of the solid in a box, and those that hold vertices of the surface there.
+    pub fn within(&self, low: DVec3, high: DVec3) -> Vec<u32> {
+        let inside = |p: &DVec3| p.cmpge(low).all() && p.cmple(high).all();
+        let solid = self.solid().vertices();
+        let mut found: Vec<u32> = (0..solid.len() as u32).filter(|v| inside(&solid[*v as usize])).collect();
+        if let Self::Around { mesh, embedded } = self {
+            let points = mesh.rest_positions();
+            (0..points.len()).filter(|v| inside(&points[*v])).for_each(|v| found.extend(embedded.holding(v)));
+        }
+        found
+    }
+}
