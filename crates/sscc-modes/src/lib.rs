@@ -29,11 +29,21 @@
 //! rounded as the vector instructions of the processor do.
 
 mod diagonalize;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
+)]
+mod eigen;
 mod energy;
 mod error;
 mod orthonormal;
 mod polynomial;
 pub mod shapes;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
+)]
+mod sparse;
 mod stiffness;
 
 pub use diagonalize::{Diagonalized, diagonalize};
