@@ -131,7 +131,9 @@ pub(crate) fn random_blocks(pattern: &BlockSparse, seed: u64, diagonal: f64) -> 
             let block: [f64; 9] = std::array::from_fn(|_| random.next());
             let mirrored = std::array::from_fn(|k| block[k % 3 * 3 + k / 3]);
             if j as usize == i {
-                let entry = |k: usize| if k % 4 == 0 { diagonal * block[k] } else { block[k] + mirrored[k] };
+                let entry = |k: usize| {
+                    if [0, 4, 8].contains(&k) { diagonal * block[k] } else { block[k] + mirrored[k] }
+                };
                 matrix.add(j, j, &std::array::from_fn(entry));
             } else {
                 matrix.add(i as u32, j, &block);
