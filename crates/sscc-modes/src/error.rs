@@ -169,6 +169,47 @@ pub enum ModesError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// More modes than a body can have.
+    #[error(
+        "{asked} modes were asked for, but the body has {available}: ask for fewer, or take a finer mesh"
+    )]
+    TooManyModes {
+        /// Modes asked for.
+        asked: usize,
+        /// Degrees of freedom, without fixed vertices and rigid motions.
+        available: usize,
+    },
+    /// A deformation of a solid has a negative energy, or none.
+    #[error(
+        "the stiffness is not positive at free vertex {vertex} (counted from 0): check the elements and materials around it"
+    )]
+    NotDefinite {
+        /// The vertex at which that was noticed, from 0, fixed vertices not counted.
+        vertex: usize,
+    },
+    /// Parts that hang together by less than a face.
+    #[error(
+        "the body has {found} motions that cost no energy, a connected one has {expected}: parts hang together by an edge or a vertex only, or by nothing; join them or fix more vertices"
+    )]
+    Mechanism {
+        /// Motions found.
+        found: usize,
+        /// Motions of a body in one piece.
+        expected: usize,
+    },
+    /// The number of modes found is not the number that exist. Not known to happen.
+    #[error(
+        "{found} modes were found where {counted} were counted: ask for a few more or fewer, or check the mesh for tiny elements"
+    )]
+    MissedModes {
+        /// Modes found below some eigenvalue.
+        found: usize,
+        /// Modes that exist below it.
+        counted: usize,
+    },
+    /// Not enough memory for the factor of the stiffness.
+    #[error("the stiffness of this body is too large for the memory: take a coarser mesh")]
+    Memory,
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),

@@ -33,6 +33,11 @@ mod boundary;
 mod diagonalize;
 mod elasticity;
 mod embedded;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
+)]
+mod eigen;
 mod energy;
 mod error;
 mod nonlinear;
@@ -40,6 +45,11 @@ mod orthonormal;
 mod polynomial;
 pub mod shapes;
 mod solid;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
+)]
+mod sparse;
 mod stiffness;
 mod vibration;
 

@@ -1,0 +1,43 @@
+//! Whether all eigenvalues were found: they are counted.
+
+use crate::ModesError;
+use crate::sparse::{Analysis, BlockSparse, count_negative_eigenvalues};
+
+/// Where in a gap between two eigenvalues they are counted, one place after the other.
+const PLACES: [f64; 3] = [0.5, 0.3, 0.7];
+
+/// So many gaps are tried, the widest first.
+const GAPS: usize = 2;
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Count {
+    /// Eigenvalues found below a bound.
+    pub found: usize,
+    /// Eigenvalues that there are below it, rigid motions included.
+    pub counted: usize,
+}
+
+/// Counts the eigenvalues of `K x = lambda M x` up to a bound in the widest gap (relative) after the first `count` of
+/// `values`, ascending. None when rounding decides everywhere.
+pub(super) fn count_below_gap(
+    stiffness: &BlockSparse,
+    mass: &BlockSparse,
+    analysis: &Analysis,
+    values: &[f64],
+    count: usize,
+) -> Result<Option<Count>, ModesError> {
+    let width = |k: usize| 1.0 - values[k - 1] / values[k];
+    let mut gaps: Vec<usize> = (count.max(1)..values.len()).collect();
+    gaps.sort_by(|a, b| width(*b).total_cmp(&width(*a)).then(a.cmp(b)));
+    for gap in gaps.into_iter().take(GAPS) {
+        for place in PLACES {
+            let sigma = values[gap - 1] + place * (values[gap] - values[gap - 1]);
+            let shifted = stiffness.combined(1.0, mass, -sigma);
+            if let Some(counted) = count_negative_eigenvalues(&shifted, analysis)? {
+                return Ok(Some(Count { found: gap, counted }));
+            }
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,158 @@
+//! The lowest eigenvectors, none missed.
+
+use faer::{Mat, MatRef};
+use glam::DVec3;
+use sscc::{Error, Progress};
+
+use super::basis::{Random, Space};
+use super::count::{Count, count_below_gap};
+use super::dense::all_modes;
+use super::lanczos::{BLOCK, Inverse, Ritz, largest};
+use super::shift::{Shifted, factor_shifted, negligible};
+use crate::ModesError;
+use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
+
+/// Problems of at most so many rows are solved as a whole.
+const SMALL: usize = 300;
+
+/// So are those of which more than one in so many eigenvectors is asked for.
+const LARGE_SHARE: usize = 4;
+
+/// How often new random vectors look for what was missed.
+const ROUNDS: usize = 2;
+
+/// Components count as equal when they differ by less than this share: rounding must not decide the sign.
+const TIE_SHARE: f64 = 1e-8;
+
+/// The lowest eigenvectors.
+pub(crate) struct Lowest {
+    /// Ascending.
+    pub eigenvalues: Vec<f64>,
+    /// M-orthonormal, and M-orthogonal to the rigid motions (3n x count).
+    pub vectors: Mat<f64>,
+    /// The factor of `K + shift M`.
+    pub factor: Cholesky,
+    /// 0 for a body without rigid motions.
+    pub shift: f64,
+}
+
+/// A stiffness and a mass.
+struct Pencil<'a> {
+    stiffness: &'a BlockSparse,
+    mass: &'a BlockSparse,
+    rigid: MatRef<'a, f64>,
+    analysis: Analysis,
+}
+
+/// The `count` lowest eigenvectors of `K x = lambda M x` beside the rigid motions. `k` is positive semidefinite, `m`
+/// positive definite, both of one pattern; `positions` are those of their vertices; `rigid` are M-orthonormal
+/// motions without energy (3n x 0 to 6).
+///
+/// Residuals are small for whatever was found, and cannot tell what was missed. So the eigenvalues are counted, by
+/// the inertia of `K - sigma M`.
+///
+/// # Errors
+/// When there are fewer, when motions beside `rigid` cost no energy, when it is cancelled, when memory is short, and
+/// when the iteration fails.
+pub(crate) fn lowest_modes(
+    k: &BlockSparse,
+    m: &BlockSparse,
+    positions: &[DVec3],
+    rigid: MatRef<f64>,
+    count: usize,
+    progress: &dyn Progress,
+) -> Result<Lowest, ModesError> {
+    let size = 3 * k.rows();
+    let available = size - rigid.ncols();
+    if count > available {
+        return Err(ModesError::TooManyModes { asked: count, available });
+    }
+    if progress.is_cancelled() {
+        return Err(Error::Cancelled.into());
+    }
+    progress.report(0, count);
+    let pencil = Pencil { stiffness: k, mass: m, rigid, analysis: Analysis::new(k, positions)? };
+    let small = size <= SMALL || LARGE_SHARE * count > size;
+    let (values, mut vectors, shifted) =
+        if small { pencil.as_a_whole()? } else { pencil.by_iteration(count, progress)? };
+    vectors.resize_with(size, count, |_, _| 0.0);
+    fix_signs(&mut vectors);
+    progress.report(count, count);
+    let Shifted { factor, shift } = shifted;
+    Ok(Lowest { eigenvalues: values[..count].to_vec(), vectors, factor, shift })
+}
+
+impl Pencil<'_> {
+    /// All of them.
+    fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+        let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
+        self.refuse_mechanisms(&values)?;
+        Ok((values, vectors, self.shifted()?))
+    }
+
+    /// The factor of the shifted stiffness.
+    fn shifted(&self) -> Result<Shifted, ModesError> {
+        let space = Space::new(self.mass, self.rigid);
+        factor_shifted(self.stiffness, &space, &self.analysis, self.rigid.ncols(), &mut Random(0))
+    }
+
+    /// At least the `count` lowest.
+    fn by_iteration(
+        &self,
+        count: usize,
+        progress: &dyn Progress,
+    ) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+        let space = Space::new(self.mass, self.rigid);
+        let shifted = self.shifted()?;
+        let zero = negligible(self.stiffness, self.mass);
+        let ceiling = 1.0 / (shifted.shift + zero);
+        let operator = Inverse { space: &space, factor: &shifted.factor, ceiling };
+        // A few more, so that there is a wide gap among them.
+        let wanted = count + BLOCK / 2;
+        let mut random = Random(1);
+        let mut ritz = Ritz { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
+        let mut missed = Count { found: 0, counted: 0 };
+        for _ in 0..=ROUNDS {
+            ritz = largest(&operator, ritz, wanted, &mut random, progress, count)?;
+            let values: Vec<f64> = ritz.values.iter().map(|theta| 1.0 / theta - shifted.shift).collect();
+            self.refuse_mechanisms(&values)?;
+            if progress.is_cancelled() {
+                return Err(Error::Cancelled.into());
+            }
+            let counted = count_below_gap(self.stiffness, self.mass, &self.analysis, &values, count)?;
+            let Some(Count { found, counted }) = counted else { return Err(ModesError::NoEigenvalues) };
+            let found = found + self.rigid.ncols();
+            if found == counted {
+                return Ok((values, ritz.vectors, shifted));
+            }
+            missed = Count { found, counted };
+        }
+        Err(ModesError::MissedModes { found: missed.found, counted: missed.counted })
+    }
+
+    /// An error where eigenvalues (ascending) are 0.
+    fn refuse_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
+        let zero = negligible(self.stiffness, self.mass);
+        let expected = self.rigid.ncols();
+        let mut found = expected + values.iter().filter(|x| **x <= zero).count();
+        if found == expected {
+            return Ok(());
+        }
+        // Maybe there are more than were looked for.
+        let sigma = values.get(found - expected).map_or(zero, |next| (zero * next).sqrt());
+        let shifted = self.stiffness.combined(1.0, self.mass, -sigma);
+        found = found.max(count_negative_eigenvalues(&shifted, &self.analysis)?.unwrap_or(0));
+        Err(ModesError::Mechanism { found, expected })
+    }
+}
+
+/// Turns each column so that its largest component is positive, the first one of equals.
+fn fix_signs(vectors: &mut Mat<f64>) {
+    for column in vectors.col_iter_mut() {
+        let largest = column.norm_max();
+        let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_SHARE) * largest).copied();
+        if first.is_some_and(|x| x < 0.0) {
+            column.iter_mut().for_each(|x| *x = -*x);
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! The lowest eigenvectors of `K x = lambda M x`.
+
+mod basis;
+mod count;
+mod dense;
+mod lanczos;
+#[cfg(test)]
+pub(crate) mod lattice;
+mod lowest;
+mod shift;
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub(crate) use lowest::{Lowest, lowest_modes};

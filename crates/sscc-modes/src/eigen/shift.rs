@@ -1,0 +1,69 @@
+//! The shift that makes the stiffness of a free body positive definite.
+
+use super::basis::{Random, Space};
+use super::lanczos::{Inverse, roughly_largest};
+use crate::ModesError;
+use crate::sparse::{Analysis, BlockSparse, Cholesky};
+
+/// The first shift, as a share of the mean eigenvalue. Rounding leaves about 1e-15 of the largest eigenvalue in rigid
+/// motions, so that the factor is good; and the lowest eigenvalue of a compact body of a million vertices is about
+/// 1e-5 of the mean one, so that the shift hardly changes the order of magnitude of any.
+const SHIFT: f64 = 1e-8;
+
+/// Slender bodies have lower eigenvalues: the shift is then this share of the lowest one.
+const SHARE: f64 = 0.1;
+
+/// Lower shifts, as a share of the mean eigenvalue, come near to rounding.
+const LEAST: f64 = 1e-12;
+
+/// An eigenvalue of at most this share of the mean one belongs to a motion without energy. Rounding leaves about
+/// 1e-14; the lowest of slender springs are about 1e-9.
+const ZERO: f64 = 1e-12;
+
+/// A stiffness made definite.
+pub(super) struct Shifted {
+    /// The factor of `K + s M`.
+    pub factor: Cholesky,
+    /// s.
+    pub shift: f64,
+}
+
+/// Eigenvalues up to here are 0 but for rounding.
+pub(super) fn negligible(stiffness: &BlockSparse, mass: &BlockSparse) -> f64 {
+    ZERO * stiffness.trace() / mass.trace()
+}
+
+/// Factors `K + s M`. Without rigid motions s is 0, unless the body can move all the same.
+pub(super) fn factor_shifted(
+    stiffness: &BlockSparse,
+    space: &Space,
+    analysis: &Analysis,
+    rigid: usize,
+    random: &mut Random,
+) -> Result<Shifted, ModesError> {
+    let mean = stiffness.trace() / space.mass.trace();
+    let with = |shift: f64| -> Result<Shifted, ModesError> {
+        let factor = analysis.factor(&stiffness.combined(1.0, space.mass, shift))?;
+        Ok(Shifted { factor, shift })
+    };
+    if rigid == 0 {
+        return match with(0.0) {
+            Err(ModesError::NotDefinite { .. }) => with(SHIFT * mean),
+            result => result,
+        };
+    }
+    let first = with(SHIFT * mean)?;
+    let operator = Inverse { space, factor: &first.factor, ceiling: f64::INFINITY };
+    let largest = roughly_largest(&operator, random)?;
+    let lowest = 1.0 / largest - first.shift;
+    // Where there is a mechanism, all that remains to do is to count it.
+    if first.shift <= lowest || lowest <= negligible(stiffness, space.mass) {
+        return Ok(first);
+    }
+    let shift = (SHARE * lowest).max(LEAST * mean);
+    drop(first);
+    match with(shift) {
+        Err(ModesError::NotDefinite { .. }) => with(SHIFT * mean),
+        result => result,
+    }
+}

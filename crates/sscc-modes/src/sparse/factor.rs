@@ -1,0 +1,175 @@
+//! Sparse Cholesky factors.
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltError;
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, Par, Side};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::BlockSparse;
+use super::dissection::nested_dissection;
+use crate::ModesError;
+
+/// Right-hand sides that one thread solves for. The factor is read once for each group, so they are not taken singly.
+const GROUP: usize = 4;
+
+/// The order of elimination, and where the entries of the factor are: for all matrices of one pattern.
+#[derive(Clone)]
+pub(crate) struct Analysis(Arc<SymbolicCholesky<usize>>);
+
+/// The factor of a positive definite matrix.
+pub(crate) struct Cholesky {
+    analysis: Analysis,
+    values: Vec<f64>,
+}
+
+impl Analysis {
+    /// By nested dissection. `positions` are those of the vertices (one for each row of blocks).
+    ///
+    /// # Errors
+    /// When memory is short.
+    pub fn new(matrix: &BlockSparse, positions: &[DVec3]) -> Result<Self, ModesError> {
+        Self::with_order(matrix, &nested_dissection(matrix, positions))
+    }
+
+    /// Eliminates the vertices in a given order.
+    pub fn with_order(matrix: &BlockSparse, vertices: &[usize]) -> Result<Self, ModesError> {
+        let size = 3 * matrix.rows();
+        let forward: Vec<usize> = vertices.iter().flat_map(|v| [3 * v, 3 * v + 1, 3 * v + 2]).collect();
+        let mut inverse = vec![0; size];
+        forward.iter().enumerate().for_each(|(at, row)| inverse[*row] = at);
+        let (starts, rows, _) = matrix.lower();
+        factorize_symbolic_cholesky(
+            SymbolicSparseColMatRef::new_checked(size, size, &starts, None, &rows),
+            Side::Lower,
+            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size)),
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
+        )
+        .map(|symbolic| Self(Arc::new(symbolic)))
+        .map_err(|_| ModesError::Memory)
+    }
+
+    /// Number of entries of a factor.
+    pub fn entries(&self) -> usize {
+        self.0.len_val()
+    }
+
+    /// What faer found.
+    pub(super) fn symbolic(&self) -> &SymbolicCholesky<usize> {
+        &self.0
+    }
+
+    /// Room for the entries of a factor.
+    pub(super) fn room(&self) -> Result<Vec<f64>, ModesError> {
+        let mut values = Vec::new();
+        values.try_reserve_exact(self.entries()).map_err(|_| ModesError::Memory)?;
+        values.resize(self.entries(), 0.0);
+        Ok(values)
+    }
+
+    /// The factor of a matrix of the pattern.
+    ///
+    /// # Errors
+    /// When the matrix is not positive definite, or memory is short.
+    pub fn factor(&self, matrix: &BlockSparse) -> Result<Cholesky, ModesError> {
+        let (starts, rows, entries) = matrix.lower();
+        let size = 3 * matrix.rows();
+        let pattern = SymbolicSparseColMatRef::new_checked(size, size, &starts, None, &rows);
+        let mut values = self.room()?;
+        let scratch = self.0.factorize_numeric_llt_scratch::<f64>(threads(), Default::default());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
+        self.0
+            .factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(pattern, &entries),
+                Side::Lower,
+                Default::default(),
+                threads(),
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map_err(|LltError::NonPositivePivot { index }| {
+                let row = self.0.perm().map_or(index, |perm| perm.arrays().0[index]);
+                ModesError::NotDefinite { vertex: row / 3 }
+            })?;
+        Ok(Cholesky { analysis: self.clone(), values })
+    }
+}
+
+impl Cholesky {
+    /// Replaces all columns by the solutions for them.
+    ///
+    /// # Errors
+    /// When memory is short.
+    pub fn solve(&self, x: &mut Mat<f64>) -> Result<(), ModesError> {
+        let symbolic = self.analysis.symbolic();
+        let factor = LltRef::new(symbolic, &self.values);
+        // Each column is the same whichever thread solves it.
+        x.par_col_chunks_mut(GROUP).try_for_each(|group| {
+            let scratch = symbolic.solve_in_place_scratch::<f64>(group.ncols(), Par::Seq);
+            let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
+            factor.solve_in_place_with_conj(Conj::No, group, Par::Seq, MemStack::new(&mut memory));
+            Ok(())
+        })
+    }
+}
+
+/// Threads for factorising.
+pub(super) fn threads() -> Par {
+    Par::rayon(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eigen::lattice::{Lattice, dense, random_matrix};
+
+    #[test]
+    fn solutions_are_those_of_the_dense_matrix() {
+        for body in [Lattice::clamped(6, 5, 4), Lattice::free(5, 5, 5)] {
+            let matrix = body.stiffness.combined(1.0, &body.mass, 0.01);
+            let factor = Analysis::new(&matrix, &body.positions).unwrap().factor(&matrix).unwrap();
+            for columns in [0, 1, 11] {
+                let wanted = random_matrix(3 * matrix.rows(), columns);
+                let mut x = dense(&matrix) * &wanted;
+                factor.solve(&mut x).unwrap();
+                assert!((x - wanted).norm_max() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused_with_a_vertex() {
+        let body = Lattice::clamped(6, 5, 4);
+        let mut matrix = body.stiffness.clone();
+        matrix.add(17, 17, &[-100.0, 0.0, 0.0, 0.0, -100.0, 0.0, 0.0, 0.0, -100.0]);
+        let found = Analysis::new(&matrix, &body.positions).unwrap().factor(&matrix).err();
+        assert_eq!(found, Some(ModesError::NotDefinite { vertex: 17 }));
+    }
+
+    /// Not promised by faer, but relied on: see the crate's documentation.
+    #[test]
+    fn the_number_of_threads_does_not_change_a_bit() {
+        let body = Lattice::clamped(12, 12, 12);
+        let matrix = body.stiffness.combined(1.0, &body.mass, 0.01);
+        let values = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Analysis::new(&matrix, &body.positions).unwrap().factor(&matrix).unwrap().values)
+        };
+        let one = values(1);
+        for threads in [2, 3, 8] {
+            assert!(one == values(threads), "{threads} threads");
+        }
+    }
+}
