@@ -31,6 +31,8 @@
 mod diagonalize;
 mod energy;
 mod error;
+#[cfg_attr(not(test), expect(dead_code, reason = "the modes of solids will use it"))]
+mod lattice;
 mod orthonormal;
 mod polynomial;
 pub mod shapes;
