@@ -8,7 +8,7 @@ use super::crossings::Interval;
 use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
 use super::overlap::{Block, SLACK};
-use super::pieces::{Piece, for_each_piece};
+use super::pieces::for_each_piece;
 use super::surface::Surface;
 use crate::ModesError;
 
@@ -45,11 +45,6 @@ impl Nodes {
         };
         for axis in 0..3 {
             for_each_piece(grid, cells, axis, &inside[axis], |piece, last| {
-                // One line is enough between cells of one piece.
-                let is_whole = |of: &Piece| cells.triangles(of.cell).is_empty();
-                if piece.line != [0, 0] && is_whole(piece) && last.is_none_or(is_whole) {
-                    return;
-                }
                 let ends = last.map(|last| [last, piece].map(|piece| piece.elements().next()));
                 if let Some([Some(a), Some(b)]) = ends {
                     link(axis, [a, b]);

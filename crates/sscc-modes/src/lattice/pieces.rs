@@ -41,7 +41,8 @@ impl Piece<'_> {
     }
 }
 
-/// Calls for each piece of the intervals of an axis; with the piece before it, if that is of the same interval.
+/// Calls for each piece of the intervals of an axis; with the piece before it, if that is of the same interval. Of
+/// the lines that pass between cells that lie wholly inside, one stands for all.
 pub(super) fn for_each_piece(
     grid: &Grid,
     cells: &Cells,
@@ -74,7 +75,10 @@ pub(super) fn for_each_piece(
                 triangles: [(along == from).then_some(enter.1), (along == to).then_some(leave.1)],
                 cells,
             };
-            call(&piece, last.as_ref());
+            let is_whole = |of: &Piece| cells.triangles(of.cell).is_empty();
+            if piece.line == [0, 0] || !is_whole(&piece) || !last.as_ref().is_none_or(is_whole) {
+                call(&piece, last.as_ref());
+            }
             last = Some(piece);
         }
     }

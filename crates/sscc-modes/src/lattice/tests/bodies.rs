@@ -62,6 +62,26 @@ pub fn cut_ring(gap: f64) -> TriMesh {
     rod(&(0..=count).map(section).collect::<Vec<_>>())
 }
 
+/// A plate of width 1 along y, folded: so many layers of length 1 along x, a height apart, 0.4 heights thick.
+pub fn folded_plate(layers: i32, height: f64) -> TriMesh {
+    let ends = |layer: i32| if layer % 2 == 0 { [0.0, 1.0] } else { [1.0, 0.0] };
+    let way: Vec<DVec3> = (0..layers)
+        .flat_map(|layer| ends(layer).map(|x| DVec3::new(x, 0.0, height * f64::from(layer))))
+        .collect();
+    // Across each segment of the way.
+    let across: Vec<DVec3> =
+        way.windows(2).map(|of| 0.2 * height * (of[1] - of[0]).normalize().cross(DVec3::Y)).collect();
+    let section = |i: usize| {
+        let mitre = match i {
+            0 => across[0],
+            i if i == across.len() => across[i - 1],
+            i => across[i - 1] + across[i],
+        };
+        [way[i] - mitre, way[i] - mitre + DVec3::Y, way[i] + mitre + DVec3::Y, way[i] + mitre]
+    };
+    rod(&(0..way.len()).map(section).collect::<Vec<_>>())
+}
+
 /// The unit sphere: an octahedron, split and blown up.
 pub fn sphere(splits: u32) -> TriMesh {
     let mut positions = [DVec3::AXES, DVec3::AXES.map(|p| -p)].concat();

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use sscc::TriMesh;
 
 use super::super::Lattice;
-use super::bodies::{cuboid, cut_ring, mesh, moved, sphere};
+use super::bodies::{cuboid, cut_ring, folded_plate, mesh, moved, sphere};
 use super::{distances, duplicates, lattice, mesh_volume, volume};
 use crate::shapes::spring;
 
@@ -36,6 +36,27 @@ fn ends_of_a_ring() {
                 let error = volume(&lattice) / mesh_volume(&ring) - 1.0;
                 assert!(error.abs() < 0.03 && duplicates(&lattice) > 0, "{gap} {cells:?}: {error}");
             }
+        }
+    }
+}
+
+/// All layers of a folded plate lie in the same cells, and the way through cubes is as long as the plate.
+#[test]
+fn layers_of_a_folded_plate() {
+    for height in [0.02, 1e-3, 1e-7] {
+        let plate = folded_plate(12, height);
+        for plate in [plate.clone(), turned(&plate)] {
+            let lattice = lattice(&plate, Some(9));
+            let last = plate.rest_positions().len() - 4;
+            let steps = surface_distances(&lattice, 0)[last];
+            // Diagonal steps; both cubes at a turn may belong to both layers.
+            let least = 12.0 * (1.0 / (lattice.spacing * 3_f64.sqrt()) - 2.0);
+            assert!(f64::from(steps) >= least && least > 20.0, "{height}: {steps} < {least}");
+            let copies = duplicates(&lattice) as f64 / lattice.cubes.len() as f64;
+            assert!(copies > 0.9, "{height}: {copies}");
+            let error = volume(&lattice) / mesh_volume(&plate).abs() - 1.0;
+            // Its outline is counted in lines, a quarter of a cell apart; thinner plates are as thick as MIN_FILL says.
+            assert!(height < 0.01 || error.abs() < 0.1, "{height}: {error}");
         }
     }
 }
