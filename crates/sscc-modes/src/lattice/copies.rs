@@ -1,8 +1,10 @@
 //! The copies of cells: one for each connected piece of the solid within a cell.
 
 use glam::DVec3;
+use sscc::Progress;
 
 use super::cells::{CELL_SAMPLES, Cells};
+use super::check_cancelled;
 use super::crossings::{Interval, SAMPLES};
 use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
@@ -32,13 +34,17 @@ pub(super) struct Copies {
 
 impl Copies {
     /// Unites what is connected within cells. Points are in units of cells, `inside` is by axes.
+    ///
+    /// # Errors
+    /// When cancelled.
     pub fn new(
         grid: &Grid,
         cells: &Cells,
         surface: &Surface,
         points: &[DVec3],
         inside: &[Vec<Interval>; 3],
-    ) -> Self {
+        progress: &dyn Progress,
+    ) -> Result<Self, sscc::Error> {
         let mut sets = DisjointSets::new(cells.elements());
         let mut samples: Vec<SampleSet> = vec![0; cells.len()];
         let mut pierced = vec![false; cells.elements()];
@@ -59,6 +65,9 @@ impl Copies {
         }
         let mut weights = vec![[1.0 / 3.0; 3]; cells.len()];
         for cell in (0..cells.len()).filter(|c| !cells.triangles(*c).is_empty()) {
+            if cell.is_multiple_of(1024) {
+                check_cancelled(progress)?;
+            }
             join_patches(grid, cells, surface, points, cell, &mut sets);
             let (low, block) = (grid.cell(cells.keys[cell]), block_of(grid, cells, cell));
             let corners_of = |t: &u32| surface.faces[*t as usize].map(|v| points[v as usize]);
@@ -97,7 +106,7 @@ impl Copies {
             }
         }
         copies.measure(grid, cells, inside, &weights);
-        copies
+        Ok(copies)
     }
 
     /// How much of each octant is inside, by the lengths of lines there.

@@ -81,7 +81,7 @@ impl Lattice {
         check_orientation(&surface, &inside, &odd)?;
         let cells = Cells::new(&grid, &points, &surface.faces, &inside[0], progress)?;
         step(5)?;
-        let copies = Copies::new(&grid, &cells, &surface, &points, &inside);
+        let copies = Copies::new(&grid, &cells, &surface, &points, &inside, progress)?;
         step(6)?;
         let nodes = Nodes::new(&grid, &cells, &surface, &points, &inside, &copies)?;
         let interpolation = Interpolation::new(&grid, &cells, &surface, &points, &copies, &nodes.of_copy);

@@ -12,6 +12,10 @@ use super::pieces::for_each_piece;
 use super::surface::Surface;
 use crate::ModesError;
 
+/// The corners at the face between a cube and the next one along each axis: of the cube, and of the next.
+const COMMON: [[[u32; 2]; 4]; 3] =
+    [[[1, 0], [2, 3], [5, 4], [6, 7]], [[3, 0], [2, 1], [7, 4], [6, 5]], [[4, 0], [5, 1], [6, 2], [7, 3]]];
+
 /// Nodes in order of their first use.
 pub(super) struct Nodes {
     /// Positions (model unit).
@@ -35,11 +39,10 @@ impl Nodes {
     ) -> Result<Self, ModesError> {
         let mut corners = DisjointSets::new(8 * copies.cell.len());
         let mut connected = DisjointSets::new(copies.cell.len());
-        let common = [0, 1, 2].map(common_corners);
         let mut link = |axis: usize, elements: [u32; 2]| {
             let [a, b] = elements.map(|element| copies.of_element[element as usize]);
             connected.unite(a, b);
-            for [high, low] in common[axis] {
+            for [high, low] in COMMON[axis] {
                 corners.unite(8 * a + high, 8 * b + low);
             }
         };
@@ -77,16 +80,6 @@ impl Nodes {
         }
         nodes
     }
-}
-
-/// The corners at the face between a cube and the next one along an axis, as corners of either.
-fn common_corners(axis: usize) -> [[u32; 2]; 4] {
-    let side = |side: u32| (0..8_u32).filter(move |k| OCTANTS[*k as usize][axis] == side);
-    let across = |k: &u32| [1, 2].map(|step| OCTANTS[*k as usize][(axis + step) % 3]);
-    let mut pairs = side(1).flat_map(|high| side(0).map(move |low| [high, low]));
-    std::array::from_fn(|_| {
-        pairs.find(|[high, low]| across(high) == across(low)).expect("a cube has four edges along each axis")
-    })
 }
 
 /// Links the patches of a cell with those of the next cell which share a triangle that passes the face between.
