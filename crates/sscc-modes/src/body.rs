@@ -2,8 +2,10 @@
 
 use faer::{Mat, Side};
 use glam::{DMat3, DVec3};
+use sscc::Progress;
 
-use crate::sparse::{BlockSparse, FIXED, Pencil, Symbolic};
+use crate::eigen::{Lowest, lowest_modes};
+use crate::sparse::{BlockSparse, FIXED};
 use crate::{ModesError, Solid};
 
 /// Directions in which fixed vertices hold less than this share of the others are free: rounding.
@@ -51,15 +53,19 @@ impl<'a> Body<'a> {
         Ok(body)
     }
 
-    /// Matrices and rigid motions, for the eigenproblem.
-    pub fn pencil(&self) -> Pencil<'_> {
-        let Self { stiffness, mass, free, rigid, .. } = self;
-        Pencil { stiffness, mass, positions: free, rigid: rigid.as_ref() }
+    /// The `count` lowest vibrations beside the rigid motions.
+    pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<Lowest, ModesError> {
+        lowest_modes(&self.stiffness, &self.mass, &self.free, self.rigid.as_ref(), count, progress)
     }
 
-    /// The order of elimination.
-    pub fn symbolic(&self) -> Result<Symbolic, ModesError> {
-        Symbolic::new(&self.stiffness, &self.free)
+    /// Takes the rigid motions away, M-orthogonally.
+    pub fn without_rigid(&self, x: &mut Mat<f64>) {
+        if self.rigid.ncols() > 0 {
+            for _ in 0..2 {
+                let coefficients = self.rigid.transpose() * self.mass.multiply(x.as_ref());
+                *x -= &self.rigid * coefficients;
+            }
+        }
     }
 
     /// A field on the free vertices as a field on all.

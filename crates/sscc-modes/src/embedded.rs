@@ -1,39 +1,37 @@
 //! A surface that moves with a solid around it.
 
 use glam::DVec3;
-use sscc::{Modes, TriMesh};
+use sscc::{Modes, Progress, TriMesh};
 
-use crate::lattice::Lattice;
+use crate::lattice::{Interpolation, Lattice};
 use crate::{Material, ModesError, Solid};
 
 /// A closed surface and the lattice of cubes around it, which has its mass and stiffness.
 ///
 /// Parts that are close in space but apart along the shape are not glued, however narrow the gap. Cubes at the surface
 /// count by the share of each octant that lies inside.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Embedded {
     solid: Solid,
-    /// For each surface vertex, vertices of the solid and their shares; nothing where no triangle uses it.
-    shares: Vec<Vec<(u32, f64)>>,
+    interpolation: Interpolation,
     spacing: f64,
 }
 
 impl Embedded {
-    /// `cells` cubes along the longest side of the surface; if not given, so many that 10,000 cubes have its volume.
+    /// `cells` cubes along the longest side of the surface; if not given, about 10,000 cubes in all.
     ///
     /// # Errors
     /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there would be too
     /// many cubes, or the material is outside physical limits.
-    pub fn new(surface: &TriMesh, cells: Option<usize>, material: Material) -> Result<Self, ModesError> {
-        let Lattice { vertices, cubes, fill, places, spacing } = Lattice::around(surface, cells)?;
-        let shares = places.iter().map(|place| match place {
-            Some((cube, shares)) => cubes[*cube as usize].into_iter().zip(*shares).filter(|(_, share)| *share > 0.0).collect(),
-            None => Vec::new(),
-        });
-        let shares = shares.collect();
+    pub fn new(
+        surface: &TriMesh,
+        cells: Option<usize>,
+        material: Material,
+        progress: &dyn Progress,
+    ) -> Result<Self, ModesError> {
+        let Lattice { vertices, cubes, fill, spacing, interpolation } = Lattice::around(surface, cells, progress)?;
         let elements = cubes.len();
         let solid = Solid::filled(vertices, Vec::new(), cubes, fill, vec![material], vec![0; elements])?;
-        Ok(Self { solid, shares, spacing })
+        Ok(Self { solid, interpolation, spacing })
     }
 
     /// The lattice.
@@ -53,11 +51,11 @@ impl Embedded {
     /// When the modes are of another number of vertices.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, ModesError> {
         let r = modes.rank();
-        if modes.displacements().len() != r * self.solid.vertices().len() {
+        if modes.vertices() != self.solid.vertices().len() {
             return Err(ModesError::ElementIndex { index: 0, vertices: self.solid.vertices().len() });
         }
-        let mut displacements = vec![DVec3::ZERO; r * self.shares.len()];
-        for (to, shares) in displacements.chunks_exact_mut(r).zip(&self.shares) {
+        let mut displacements = vec![DVec3::ZERO; r * self.interpolation.vertices.len()];
+        for (to, shares) in displacements.chunks_exact_mut(r).zip(&self.interpolation.vertices) {
             for (vertex, share) in shares {
                 let from = &modes.displacements()[*vertex as usize * r..][..r];
                 to.iter_mut().zip(from).for_each(|(to, from)| *to += *from * *share);
@@ -68,6 +66,6 @@ impl Embedded {
 
     /// The vertices of the solid that hold a vertex of the surface: fix them, and it is fixed.
     pub fn holding(&self, vertex: usize) -> impl Iterator<Item = u32> {
-        self.shares[vertex].iter().map(|(v, _)| *v)
+        self.interpolation.vertices[vertex].iter().filter(|(_, share)| *share > 0.0).map(|(v, _)| *v)
     }
 }

@@ -210,6 +210,55 @@ pub enum ModesError {
     /// Not enough memory for the factor of the stiffness.
     #[error("the stiffness of this body is too large for the memory: take a coarser mesh")]
     Memory,
+    /// A surface with a hole, or with triangles that are oriented differently.
+    #[error(
+        "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes, weld its seams), and orient its triangles alike"
+    )]
+    OpenEdge {
+        /// The vertex at one end, from 0.
+        from: u32,
+        /// The vertex at the other end, from 0.
+        to: u32,
+        /// Triangles that pass the edge in this direction.
+        forward: usize,
+        /// Triangles that pass it in the other.
+        backward: usize,
+    },
+    /// A surface that encloses nothing.
+    #[error("the surface encloses no volume: a lattice needs the surface of a solid, thicker than rounding")]
+    NoVolume,
+    /// What is inside of a surface that cuts itself is ambiguous.
+    #[error(
+        "triangles {a} and {b} (counted from 0) collide at rest: a lattice needs a surface that neither cuts nor touches itself; move them apart, or remove one"
+    )]
+    CollidesAtRest {
+        /// A triangle, from 0.
+        a: u32,
+        /// The other triangle, from 0.
+        b: u32,
+    },
+    /// A lattice of no cells, or of so many that memory would not suffice.
+    #[error("{cells} cells along the longest side: for this surface it must be 1 to {most}")]
+    Resolution {
+        /// Cells asked for.
+        cells: usize,
+        /// The most for this surface.
+        most: usize,
+    },
+    /// A body within a body, or a part of a surface that is inside out.
+    #[error(
+        "the part of the surface with triangle {triangle} (counted from 0) lies inside the solid or is inside out: remove it, or turn its triangles over (outward, and for a hollow towards its middle)"
+    )]
+    Nested {
+        /// A triangle of that part, from 0.
+        triangle: u32,
+    },
+    /// Several solids.
+    #[error("the solid is in {count} separate pieces: make a lattice for each, or join them")]
+    Pieces {
+        /// How many pieces there are.
+        count: usize,
+    },
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),

@@ -31,24 +31,17 @@
 mod body;
 mod boundary;
 mod diagonalize;
+mod eigen;
 mod elasticity;
 mod embedded;
-#[cfg_attr(
-    not(test),
-    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
-)]
-mod eigen;
 mod energy;
 mod error;
+mod lattice;
 mod nonlinear;
 mod orthonormal;
 mod polynomial;
 pub mod shapes;
 mod solid;
-#[cfg_attr(
-    not(test),
-    allow(dead_code, unused_imports, reason = "the solid's modes, which need it, come next")
-)]
 mod sparse;
 mod stiffness;
 mod vibration;

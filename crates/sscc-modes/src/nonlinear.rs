@@ -11,7 +11,7 @@ use sscc::{Error, Progress};
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
 use crate::elasticity::second_derivative;
-use crate::sparse::{Cholesky, Lowest, Pencil, lowest_modes};
+use crate::eigen::Lowest;
 
 /// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
 const LINEAR_SHARE: f64 = 2.0 / 3.0;
@@ -27,17 +27,13 @@ const REFINEMENTS: usize = 30;
 
 /// The columns that span the basis (free vertices), M-orthonormal.
 pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
-    let pencil = body.pencil();
-    let shift = pencil.shift();
-    let symbolic = body.symbolic()?;
-    let factor = pencil.factor(&symbolic, shift)?;
     let available = 3 * body.stiffness.rows() - body.rigid.ncols();
     if rank > available {
         return Err(ModesError::TooManyModes { asked: rank, available });
     }
     let linear = linear_count(rank).min(available);
-    let lowest = lowest_modes(&pencil, &symbolic, &factor, shift, linear, progress)?;
-    let derivatives = derivatives(body, &pencil, &factor, &lowest, progress)?;
+    let lowest = body.lowest(linear, progress)?;
+    let derivatives = derivatives(body, &lowest, progress)?;
 
     let least = lowest.eigenvalues[0];
     let size = lowest.vectors.nrows();
@@ -66,8 +62,6 @@ fn linear_count(rank: usize) -> usize {
 /// The modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
 fn derivatives(
     body: &Body,
-    pencil: &Pencil,
-    factor: &Cholesky,
     lowest: &Lowest,
     progress: &dyn Progress,
 ) -> Result<Mat<f64>, ModesError> {
@@ -84,7 +78,7 @@ fn derivatives(
             let force = body.on_free(&second_derivative(body.solid, &fields[*i], &fields[*j]));
             right.col_as_slice_mut(k).iter_mut().zip(force).for_each(|(to, f)| *to = -f);
         }
-        let solved = solve(body, pencil, factor, lowest, right);
+        let solved = solve(body, lowest, right)?;
         all.as_mut().subcols_mut(batch * BATCH, some.len()).copy_from(&solved);
         progress.report(batch * BATCH + some.len(), pairs.len());
     }
@@ -93,7 +87,7 @@ fn derivatives(
 
 /// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest by
 /// refinement, which gains a factor of `s / (lambda + s)` each time.
-fn solve(body: &Body, pencil: &Pencil, factor: &Cholesky, lowest: &Lowest, mut right: Mat<f64>) -> Mat<f64> {
+fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
     // Rigid motions carry no elastic force: f - M R R'f.
     if body.rigid.ncols() > 0 {
         let carried = &body.rigid * (body.rigid.transpose() * &right);
@@ -111,15 +105,15 @@ fn solve(body: &Body, pencil: &Pencil, factor: &Cholesky, lowest: &Lowest, mut r
         }
         let low = &lowest.vectors * coefficients;
         let mut high = &residual - body.stiffness.multiply(low.as_ref());
-        factor.solve(&mut high);
+        lowest.factor.solve(&mut high)?;
         x += low + high;
-        pencil.without_rigid(&mut x);
+        body.without_rigid(&mut x);
         residual = &right - body.stiffness.multiply(x.as_ref());
         if (0..right.ncols()).all(|k| norm(&residual, k) <= SOLVED * norm(&right, k)) {
             break;
         }
     }
-    x
+    Ok(x)
 }
 
 /// The `rank` directions of the most mass among the columns.

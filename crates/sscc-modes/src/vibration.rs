@@ -7,7 +7,7 @@ use sscc::{Modes, Progress, TriMesh};
 use crate::body::Body;
 use crate::elasticity::{ReducedForces, reduced_forces};
 use crate::nonlinear;
-use crate::sparse::{fix_signs, lowest_modes};
+use crate::eigen::fix_signs;
 use crate::{ModesError, Solid};
 
 /// Modes of a solid's vertices in which mass is the identity and the stiffness at rest is diagonal.
@@ -45,13 +45,7 @@ pub fn linear_modes(
     progress: &dyn Progress,
 ) -> Result<SolidModes, ModesError> {
     let body = Body::new(solid, fixed)?;
-    let pencil = body.pencil();
-    let shift = pencil.shift();
-    let symbolic = body.symbolic()?;
-    let t = std::time::Instant::now();
-    let factor = pencil.factor(&symbolic, shift)?;
-    eprintln!("factor {:?}", t.elapsed());
-    let lowest = lowest_modes(&pencil, &symbolic, &factor, shift, rank, progress)?;
+    let lowest = body.lowest(rank, progress)?;
     let columns: Vec<Vec<DVec3>> =
         (0..rank).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
     Ok(SolidModes { modes: from_columns(&columns)?, eigenvalues: lowest.eigenvalues, forces: None })

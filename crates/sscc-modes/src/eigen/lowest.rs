@@ -147,7 +147,7 @@ impl Pencil<'_> {
 }
 
 /// Turns each column so that its largest component is positive, the first one of equals.
-fn fix_signs(vectors: &mut Mat<f64>) {
+pub(crate) fn fix_signs(vectors: &mut Mat<f64>) {
     for column in vectors.col_iter_mut() {
         let largest = column.norm_max();
         let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_SHARE) * largest).copied();

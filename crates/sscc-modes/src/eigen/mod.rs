@@ -11,4 +11,4 @@ mod shift;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use lowest::{Lowest, lowest_modes};
+pub(crate) use lowest::{Lowest, fix_signs, lowest_modes};

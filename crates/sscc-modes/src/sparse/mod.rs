@@ -5,6 +5,6 @@ mod dissection;
 mod factor;
 mod inertia;
 
-pub(crate) use block::BlockSparse;
+pub(crate) use block::{BlockSparse, FIXED};
 pub(crate) use factor::{Analysis, Cholesky};
 pub(crate) use inertia::count_negative_eigenvalues;

@@ -24,7 +24,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     }
     let material = material::parse(args.material.as_deref())?;
     let bar = Bar::new("modes");
-    let source = Source::read(&args.source, args.resolution, material)?;
+    let source = Source::read(&args.source, args.resolution, material, &bar)?;
     let fixed = fix::vertices(args.fix.as_deref(), &source)?;
     let (solid, progress): (_, &dyn Progress) = (source.solid(), &bar);
     let rank = |default| args.rank.map_or(default, |rank| rank as usize);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use glam::DVec3;
-use sscc::{Modes, TriMesh};
+use sscc::{Modes, Progress, TriMesh};
 use sscc_io::{read_mesh, read_solid};
 use sscc_modes::{Boundary, Embedded, Material, Solid, tets_within};
 
@@ -28,10 +28,10 @@ pub fn is_solid(path: &Path) -> bool {
 }
 
 impl Source {
-    pub fn read(path: &Path, resolution: Option<u32>, material: Material) -> Result<Self> {
+    pub fn read(path: &Path, resolution: Option<u32>, material: Material, progress: &dyn Progress) -> Result<Self> {
         if !is_solid(path) {
             let mesh = read_mesh(path)?;
-            let embedded = Embedded::new(&mesh, resolution.map(|cells| cells as usize), material)?;
+            let embedded = Embedded::new(&mesh, resolution.map(|cells| cells as usize), material, progress)?;
             return Ok(Self::Around { mesh, embedded });
         }
         if resolution.is_some() {

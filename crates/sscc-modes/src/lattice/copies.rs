@@ -1,0 +1,180 @@
+//! The copies of cells: one for each connected piece of the solid within a cell.
+
+use glam::DVec3;
+use sscc::Progress;
+
+use super::cells::{CELL_SAMPLES, Cells};
+use super::check_cancelled;
+use super::crossings::{Interval, SAMPLES};
+use super::disjoint_sets::DisjointSets;
+use super::grid::Grid;
+use super::overlap::{Block, SLACK};
+use super::pieces::{SampleSet, for_each_piece};
+use super::probe::Probe;
+use super::surface::Surface;
+
+/// The least share of an octant that is taken to be filled. So that no cube is without mass and stiffness, and
+/// the stiffest cube is a thousand times the softest: three of sixteen digits. What it adds to the volume
+/// of a solid is a thousandth of its outermost layer, less than the lines' own error.
+pub(super) const MIN_FILL: f64 = 1e-3;
+
+/// The octants of a cube, in the order of its corners: 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z).
+pub(super) const OCTANTS: [[u32; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+
+/// The copies of all cells, in the order of cells; within a cell in the order of their smallest elements.
+pub(super) struct Copies {
+    /// The copy of each element; meaningless for samples outside.
+    pub of_element: Vec<u32>,
+    /// The cell of each copy.
+    pub cell: Vec<u32>,
+    /// The share of each octant that is inside.
+    pub fill: Vec<[f64; 8]>,
+}
+
+impl Copies {
+    /// Unites what is connected within cells. Points are in units of cells, `inside` is by axes.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn new(
+        grid: &Grid,
+        cells: &Cells,
+        surface: &Surface,
+        points: &[DVec3],
+        inside: &[Vec<Interval>; 3],
+        progress: &dyn Progress,
+    ) -> Result<Self, sscc::Error> {
+        let mut sets = DisjointSets::new(cells.elements());
+        let mut samples: Vec<SampleSet> = vec![0; cells.len()];
+        let mut pierced = vec![false; cells.elements()];
+        for axis in 0..3 {
+            for_each_piece(grid, cells, axis, &inside[axis], |piece, _| {
+                if cells.triangles(piece.cell).is_empty() {
+                    return;
+                }
+                let first = cells.first_element(piece.cell);
+                piece.elements().fold(None, |one, element| {
+                    if element - first < CELL_SAMPLES {
+                        samples[piece.cell] |= 1 << (element - first);
+                    }
+                    one.inspect(|one| sets.unite(*one, element)).or(Some(element))
+                });
+                piece.triangles().for_each(|element| pierced[element as usize] = true);
+            });
+        }
+        let mut weights = vec![[1.0 / 3.0; 3]; cells.len()];
+        for cell in (0..cells.len()).filter(|c| !cells.triangles(*c).is_empty()) {
+            if cell.is_multiple_of(1024) {
+                check_cancelled(progress)?;
+            }
+            join_patches(grid, cells, surface, points, cell, &mut sets);
+            let (low, block) = (grid.cell(cells.keys[cell]), block_of(grid, cells, cell));
+            let corners_of = |t: &u32| surface.faces[*t as usize].map(|v| points[v as usize]);
+            let corners: Vec<_> = cells.triangles(cell).iter().map(corners_of).collect();
+            let parts: Vec<_> = corners.iter().map(|corners| block.clip(*corners)).collect();
+            weights[cell] = axis_weights(&parts);
+            let probe = Probe {
+                cells,
+                cell,
+                low: DVec3::from_array(low.map(f64::from)),
+                corners: &corners,
+                parts: &parts,
+                samples: samples[cell],
+                pierced: &pierced,
+            };
+            probe.join(&mut sets);
+        }
+        drop(pierced);
+
+        let mut copies = Self { of_element: vec![0; cells.elements()], cell: Vec::new(), fill: Vec::new() };
+        for cell in 0..cells.len() {
+            let first = cells.first_element(cell);
+            for element in first..cells.first_element(cell + 1) {
+                let number = element - first;
+                let is_bordered = !cells.triangles(cell).is_empty();
+                if is_bordered && number < CELL_SAMPLES && samples[cell] >> number & 1 == 0 {
+                    continue;
+                }
+                let root = sets.find(element);
+                copies.of_element[element as usize] = if root == element {
+                    copies.cell.push(cell as u32);
+                    copies.cell.len() as u32 - 1
+                } else {
+                    copies.of_element[root as usize]
+                };
+            }
+        }
+        copies.measure(grid, cells, inside, &weights);
+        Ok(copies)
+    }
+
+    /// How much of each octant is inside, by the lengths of lines there.
+    fn measure(&mut self, grid: &Grid, cells: &Cells, inside: &[Vec<Interval>; 3], weights: &[[f64; 3]]) {
+        let mut fill = vec![[0.0; 8]; self.cell.len()];
+        // Lines through an octant, each of half a cell.
+        let full = f64::from((SAMPLES / 2).pow(2)) * 0.5;
+        for axis in 0..3 {
+            for_each_piece(grid, cells, axis, &inside[axis], |piece, _| {
+                let Some(element) = piece.elements().next() else { return };
+                let of = &mut fill[self.of_element[element as usize] as usize];
+                if cells.triangles(piece.cell).is_empty() {
+                    *of = [1.0; 8];
+                    return;
+                }
+                for (octant, half) in OCTANTS.iter().enumerate() {
+                    let across = [1, 2].map(|k| half[(axis + k) % 3]);
+                    if across == piece.line.map(|k| k / (SAMPLES / 2)) {
+                        let low = 0.5 * f64::from(half[axis]);
+                        let length = piece.ends[1].min(low + 0.5) - piece.ends[0].max(low);
+                        of[octant] += weights[piece.cell][axis] * length.max(0.0) / full;
+                    }
+                }
+            });
+        }
+        self.fill = fill.into_iter().map(|of| of.map(|share: f64| share.clamp(MIN_FILL, 1.0))).collect();
+    }
+}
+
+/// The box of a cell.
+pub(super) fn block_of(grid: &Grid, cells: &Cells, cell: usize) -> Block {
+    let low = grid.cell(cells.keys[cell]);
+    Block::cells(low, low.map(|i| i + 1))
+}
+
+/// Joins triangles of a cell that share an edge within it.
+fn join_patches(
+    grid: &Grid,
+    cells: &Cells,
+    surface: &Surface,
+    points: &[DVec3],
+    cell: usize,
+    sets: &mut DisjointSets,
+) {
+    // Less than triangles are given: both triangles at an edge that is found are in the cell's list.
+    let block = block_of(grid, cells, cell).enlarged(0.5 * SLACK);
+    for (number, triangle) in cells.triangles(cell).iter().enumerate() {
+        let face = surface.faces[*triangle as usize];
+        for (k, other) in surface.across[*triangle as usize].iter().enumerate() {
+            let [from, to] = [face[k], face[(k + 1) % 3]].map(|v| points[v as usize]);
+            if let Some(other) = cells.find_triangle(cell, *other)
+                && block.meets_segment(from, to)
+            {
+                sets.unite(cells.triangle_element(cell, number), other);
+            }
+        }
+    }
+}
+
+/// How much the lines of each axis count in a cell. Lengths of lines are exact along the line and counted in whole
+/// lines across it: lines that meet the surface steeply know more. The squares of the normal's components.
+fn axis_weights(parts: &[(DVec3, DVec3)]) -> [f64; 3] {
+    let mut sum = DVec3::ZERO;
+    for (_, area) in parts {
+        if *area != DVec3::ZERO {
+            sum += *area * *area / area.length();
+        }
+    }
+    let total = sum.element_sum();
+    if total > 0.0 { (sum / total).to_array() } else { [1.0 / 3.0; 3] }
+}

@@ -1,0 +1,103 @@
+//! A closed surface in a lattice of cubes, for finite elements: no tetrahedra are needed.
+//!
+//! Parts that are close in space but apart along the shape are not glued together: an ear on the back, a coil of a
+//! spring on the next one, lips with a gap of a millionth. Where a cell of the grid holds several pieces of the
+//! solid that are not connected within it, each has a copy of the cell with nodes of its own (Molino, Bao and
+//! Fedkiw 2004, "A virtual node algorithm"; Nesme et al. 2009, "Preserving topology and elasticity for embedded
+//! deformable models"). What is connected is decided by
+//! - lines through the solid, 16 through each cell along each axis: an inside is one piece, however thin, and a gap
+//!   makes two of it, however narrow;
+//! - the surface: triangles that share an edge within a cell belong to one piece.
+
+use glam::DVec3;
+use sscc::{Progress, TriMesh};
+
+use crate::ModesError;
+use cells::Cells;
+use copies::Copies;
+use crossings::intervals;
+use grid::Grid;
+pub(crate) use interpolation::Interpolation;
+use nodes::Nodes;
+use orientation::check_orientation;
+use surface::{Surface, check_rest};
+
+mod cells;
+mod copies;
+mod crossings;
+mod disjoint_sets;
+mod grid;
+mod interpolation;
+mod nodes;
+mod orientation;
+mod overlap;
+mod pieces;
+mod probe;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+/// Steps of the work, for progress.
+const STEPS: usize = 7;
+
+/// Cubes about a solid, some of them copies of the same cell.
+pub(crate) struct Lattice {
+    /// Positions of the nodes (model unit).
+    pub vertices: Vec<DVec3>,
+    /// The nodes at the corners 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z) of each cube.
+    pub cubes: Vec<[u32; 8]>,
+    /// For each cube and each of its octants (the one next to corner k) the share that is inside the solid: at
+    /// least 1e-3, so that there is mass and stiffness everywhere.
+    pub fill: Vec<[f64; 8]>,
+    /// The side of a cube (model unit).
+    pub spacing: f64,
+    /// How the surface moves with the nodes.
+    pub interpolation: Interpolation,
+}
+
+impl Lattice {
+    /// Cubes about the solid within a closed surface: so many along its longest side, or none for about 10,000
+    /// cubes. They are in the order of cells, x fastest; nodes are in the order of their first use.
+    ///
+    /// # Errors
+    /// When the surface is open, not oriented alike, without volume, collides with itself or is in several
+    /// pieces; when the resolution is 0 or needs too much memory; when cancelled.
+    pub fn around(mesh: &TriMesh, cells: Option<usize>, progress: &dyn Progress) -> Result<Self, ModesError> {
+        let step = |done: usize| {
+            progress.report(done, STEPS);
+            check_cancelled(progress)
+        };
+        step(0)?;
+        let surface = Surface::new(mesh)?;
+        let grid = Grid::around(&surface, cells)?;
+        check_rest(mesh, progress)?;
+        step(1)?;
+        let points: Vec<DVec3> = mesh.rest_positions().iter().map(|p| grid.coordinates(*p)).collect();
+        let (mut inside, mut odd) = ([const { Vec::new() }; 3], Vec::new());
+        for axis in 0..3 {
+            inside[axis] = intervals(axis, &points, &surface.faces, &mut odd, progress)?;
+            step(2 + axis)?;
+        }
+        check_orientation(&surface, &inside, &odd)?;
+        let cells = Cells::new(&grid, &points, &surface.faces, &inside[0], progress)?;
+        step(5)?;
+        let copies = Copies::new(&grid, &cells, &surface, &points, &inside, progress)?;
+        step(6)?;
+        let nodes = Nodes::new(&grid, &cells, &surface, &points, &inside, &copies)?;
+        let interpolation = Interpolation::new(&grid, &cells, &surface, &points, &copies, &nodes.of_copy);
+        step(STEPS)?;
+        Ok(Self {
+            vertices: nodes.positions,
+            cubes: nodes.of_copy,
+            fill: copies.fill,
+            spacing: grid.spacing,
+            interpolation,
+        })
+    }
+}
+
+/// # Errors
+/// When the work is to stop.
+fn check_cancelled(progress: &dyn Progress) -> Result<(), sscc::Error> {
+    if progress.is_cancelled() { Err(sscc::Error::Cancelled) } else { Ok(()) }
+}

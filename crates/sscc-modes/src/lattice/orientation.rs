@@ -1,0 +1,36 @@
+//! Whether each part of a surface is oriented as the border of a solid.
+
+use super::crossings::Interval;
+use super::disjoint_sets::DisjointSets;
+use super::surface::Surface;
+use crate::ModesError;
+
+/// Looks at the parts of the surface that are connected by edges: at most of a part's crossings with lines, the line must
+/// pass from outside to inside or back. Not at all of them, as triangles that share a vertex may be folded.
+///
+/// # Errors
+/// For a body within a body, or one that is inside out beside others.
+pub(super) fn check_orientation(
+    surface: &Surface,
+    inside: &[Vec<Interval>; 3],
+    odd: &[u32],
+) -> Result<(), ModesError> {
+    if odd.is_empty() {
+        return Ok(());
+    }
+    let mut parts = DisjointSets::new(surface.faces.len());
+    for (face, others) in (0_u32..).zip(&surface.across) {
+        others.iter().for_each(|other| parts.unite(face, *other));
+    }
+    let mut excess = vec![0_i64; surface.faces.len()];
+    for end in inside.iter().flatten().flat_map(|interval| [interval.enter, interval.leave]) {
+        excess[parts.find(end.1) as usize] -= 1;
+    }
+    for triangle in odd {
+        excess[parts.find(*triangle) as usize] += 1;
+    }
+    match (0_u32..).zip(&excess).find(|(_, excess)| **excess > 0) {
+        Some((triangle, _)) => Err(ModesError::Nested { triangle }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,96 @@
+//! The surface that a lattice is made for: closed, oriented outward, free of collisions with itself.
+
+use glam::DVec3;
+use sscc::{Method, Modes, Progress, Query, ReducedModel, Scope, TriMesh};
+
+use crate::ModesError;
+
+/// A closed surface, oriented outward, and its measures.
+pub(super) struct Surface {
+    /// The faces of the mesh in its order, all turned over where the mesh is oriented inward.
+    pub faces: Vec<[u32; 3]>,
+    /// For each face and each of its edges (from corner k to k + 1) the next face at this edge. The faces
+    /// at an edge are a ring, nearly always of two.
+    pub across: Vec<[u32; 3]>,
+    /// The middle of the bounding box (model unit). Vertices that no face uses do not count.
+    pub middle: DVec3,
+    /// Sides of the bounding box (model unit).
+    pub extent: DVec3,
+    /// Volume, as a share of the cube of the longest side.
+    pub volume: f64,
+    /// Area, as a share of the square of the longest side.
+    pub area: f64,
+}
+
+impl Surface {
+    /// # Errors
+    /// When the surface is open, not oriented alike, or without volume.
+    pub fn new(mesh: &TriMesh) -> Result<Self, ModesError> {
+        let across = pair_edges(mesh.faces())?;
+        let p = mesh.rest_positions();
+        let used = || mesh.faces().iter().flatten().map(|v| p[*v as usize]);
+        let low = used().fold(DVec3::INFINITY, DVec3::min);
+        let extent = used().fold(DVec3::NEG_INFINITY, DVec3::max) - low;
+        let (middle, longest) = (low + 0.5 * extent, extent.max_element());
+        // Twice the area vectors and six times the volume, in the unit of the longest side.
+        let (mut volume, mut area) = (0.0, 0.0);
+        for face in mesh.faces() {
+            let [a, b, c] = face.map(|v| (p[v as usize] - middle) / longest);
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += (b - a).cross(c - a).length() / 2.0;
+        }
+        // What rounding makes of a flat surface.
+        let noise = f64::EPSILON * area;
+        if extent.min_element() <= 0.0 || volume.is_nan() || volume.abs() <= noise {
+            return Err(ModesError::NoVolume);
+        }
+        let mut faces = mesh.faces().to_vec();
+        let mut surface_across = across;
+        if volume < 0.0 {
+            faces.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+            surface_across.iter_mut().for_each(|[ab, _, ca]| std::mem::swap(ab, ca));
+        }
+        Ok(Self { faces, across: surface_across, middle, extent, volume: volume.abs(), area })
+    }
+}
+
+/// The ring of faces at each edge.
+fn pair_edges(faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, ModesError> {
+    let mut edges = Vec::with_capacity(3 * faces.len());
+    for (number, face) in (0_u32..).zip(faces) {
+        for k in 0..3 {
+            let (from, to) = (face[k], face[(k + 1) % 3]);
+            edges.push((from.min(to), from.max(to), number, k as u8, from < to));
+        }
+    }
+    edges.sort_unstable();
+    let mut across: Vec<[u32; 3]> = (0..faces.len() as u32).map(|f| [f; 3]).collect();
+    for ring in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let (from, to, ..) = ring[0];
+        let forward = ring.iter().filter(|edge| edge.4).count();
+        // A face that repeats a vertex has an edge from there to there: nothing to close.
+        if from != to && 2 * forward != ring.len() {
+            return Err(ModesError::OpenEdge { from, to, forward, backward: ring.len() - forward });
+        }
+        for (i, (_, _, face, k, _)) in ring.iter().enumerate() {
+            across[*face as usize][*k as usize] = ring[(i + 1) % ring.len()].2;
+        }
+    }
+    Ok(across)
+}
+
+/// Whether triangles without a common vertex collide at rest.
+///
+/// # Errors
+/// [`ModesError::CollidesAtRest`] if they do; when cancelled.
+pub(super) fn check_rest(mesh: &TriMesh, progress: &dyn Progress) -> Result<(), ModesError> {
+    // The core speaks of models, and a model has a mode: any will do, at q = 0.
+    let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
+    let model = ReducedModel::new(mesh.clone(), modes)?;
+    let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional)?;
+    query = query.cancelled_by(progress);
+    match query.first(&[0.0])? {
+        Some((a, b)) => Err(ModesError::CollidesAtRest { a, b }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,87 @@
+//! Surfaces and resolutions that are refused, with words that say why.
+
+use glam::DVec3;
+use sscc::{Progress, TriMesh};
+
+use super::super::Lattice;
+use super::bodies::{cuboid, inverted, joined, mesh, moved, sphere};
+use crate::ModesError;
+
+fn refusal(mesh: &TriMesh, cells: Option<usize>) -> ModesError {
+    let error = Lattice::around(mesh, cells, &()).err().expect("refused");
+    assert!(!error.to_string().contains('\n'));
+    error
+}
+
+#[test]
+fn open_and_mixed_surfaces() {
+    let ball = sphere(2);
+    let open = mesh(ball.rest_positions().to_vec(), ball.faces()[1..].to_vec());
+    let ModesError::OpenEdge { from, to, forward, backward } = refusal(&open, None) else { panic!() };
+    assert!(ball.faces()[0].contains(&from) && ball.faces()[0].contains(&to));
+    assert_eq!(forward + backward, 1);
+
+    let mut faces = ball.faces().to_vec();
+    faces[5].swap(0, 1);
+    let mixed = refusal(&mesh(ball.rest_positions().to_vec(), faces), None);
+    assert!(matches!(mixed, ModesError::OpenEdge { .. }), "{mixed}");
+}
+
+#[test]
+fn without_volume() {
+    let flat = moved(&sphere(2), |p| DVec3::new(p.x, p.y, 0.0));
+    assert_eq!(refusal(&flat, None), ModesError::NoVolume);
+    assert_eq!(refusal(&moved(&flat, |p| p + 1e6), None), ModesError::NoVolume);
+    assert_eq!(refusal(&moved(&flat, |_| DVec3::ONE), Some(3)), ModesError::NoVolume);
+    let sheet = mesh(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2], [0, 2, 1]]);
+    assert_eq!(refusal(&sheet, None), ModesError::NoVolume);
+}
+
+#[test]
+fn collisions_at_rest() {
+    let boxes = [DVec3::ZERO, DVec3::new(0.4, 0.3, 0.2)].map(|p| cuboid(p, p + 1.0));
+    let crossing = refusal(&joined(&boxes), None);
+    assert!(matches!(crossing, ModesError::CollidesAtRest { a: 0..12, b: 12..24 }), "{crossing}");
+}
+
+#[test]
+fn several_bodies() {
+    let [a, b, c] = [0.0, 1.001, 3.0].map(|x| cuboid(DVec3::X * x, DVec3::X * x + 1.0));
+    for cells in [None, Some(1), Some(3), Some(50)] {
+        assert_eq!(refusal(&joined(&[a.clone(), b.clone()]), cells), ModesError::Pieces { count: 2 });
+        assert_eq!(
+            refusal(&joined(&[c.clone(), a.clone(), b.clone()]), cells),
+            ModesError::Pieces { count: 3 }
+        );
+        // A body within a body, and one that is inside out.
+        let inner = cuboid(DVec3::splat(0.3), DVec3::splat(0.7));
+        assert_eq!(refusal(&joined(&[a.clone(), inner]), cells), ModesError::Nested { triangle: 12 });
+        let inverse = refusal(&joined(&[a.clone(), inverted(&sphere(2)), c.clone()]), cells);
+        assert!(matches!(inverse, ModesError::CollidesAtRest { .. }));
+        let small = moved(&inverted(&sphere(2)), |p| 0.2 * p + DVec3::X * 2.0);
+        assert_eq!(refusal(&joined(&[a.clone(), small]), cells), ModesError::Nested { triangle: 12 });
+    }
+}
+
+#[test]
+fn resolutions() {
+    let ball = sphere(3);
+    for cells in [0, 1_000_000_000_000] {
+        let ModesError::Resolution { cells: asked, most } = refusal(&ball, Some(cells)) else { panic!() };
+        assert!(asked == cells && (100..400).contains(&most), "{most}");
+        assert_eq!(refusal(&ball, Some(most + 1)), ModesError::Resolution { cells: most + 1, most });
+    }
+}
+
+#[test]
+fn cancelled() {
+    struct Stopped;
+    impl Progress for Stopped {
+        fn report(&self, _: usize, _: usize) {}
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let error = Lattice::around(&sphere(2), None, &Stopped).err();
+    assert_eq!(error, Some(ModesError::Core(sscc::Error::Cancelled)));
+}
