@@ -91,10 +91,15 @@ impl<'a> Body<'a> {
             0..3 => DVec3::AXES[k],
             _ => DVec3::AXES[k - 3].cross((p - centre) / size),
         };
-        let fixed: Vec<DVec3> = self.rows.iter().zip(self.solid.vertices()).filter(|(r, _)| **r == FIXED).map(|(_, p)| *p).collect();
-        let held = Mat::from_fn(6, 6, |i, j| {
-            fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>()
-        });
+        let fixed: Vec<DVec3> = self
+            .rows
+            .iter()
+            .zip(self.solid.vertices())
+            .filter(|(r, _)| **r == FIXED)
+            .map(|(_, p)| *p)
+            .collect();
+        let held =
+            Mat::from_fn(6, 6, |i, j| fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>());
         let eigen = held.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
         let allowed: Vec<usize> = (0..6).filter(|k| eigen.S()[*k] <= HELD).collect();
         let motions = Mat::from_fn(3 * self.free.len(), allowed.len(), |row, column| {
@@ -106,7 +111,12 @@ impl<'a> Body<'a> {
 
 /// An M-orthonormal basis of the columns: the `most` directions of the largest mass, without those of less than `least`
 /// times the largest.
-pub(crate) fn m_orthonormal(mass: &BlockSparse, mut x: Mat<f64>, least: f64, most: usize) -> Result<Mat<f64>, ModesError> {
+pub(crate) fn m_orthonormal(
+    mass: &BlockSparse,
+    mut x: Mat<f64>,
+    least: f64,
+    most: usize,
+) -> Result<Mat<f64>, ModesError> {
     for _ in 0..2 {
         if x.ncols() == 0 {
             break; // faer decomposes no empty matrix
@@ -115,7 +125,8 @@ pub(crate) fn m_orthonormal(mass: &BlockSparse, mut x: Mat<f64>, least: f64, mos
         let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
         let size = gram.nrows();
         let largest = eigen.S()[size - 1];
-        let kept: Vec<usize> = (0..size).rev().filter(|k| eigen.S()[*k] > least * largest).take(most).collect();
+        let kept: Vec<usize> =
+            (0..size).rev().filter(|k| eigen.S()[*k] > least * largest).take(most).collect();
         let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
         x = &x * &turn;
     }
@@ -139,7 +150,8 @@ fn assemble(solid: &Solid, rows: &[u32], free: usize) -> (BlockSparse, BlockSpar
                 for point in element.points() {
                     let (g, h) = (point.gradients[a], point.gradients[b]);
                     let outer = |x: DVec3, y: DVec3| DMat3::from_cols(x * y.x, x * y.y, x * y.z);
-                    let sum = outer(g, h) * lambda + (outer(h, g) + DMat3::from_diagonal(DVec3::splat(g.dot(h)))) * mu;
+                    let sum = outer(g, h) * lambda
+                        + (outer(h, g) + DMat3::from_diagonal(DVec3::splat(g.dot(h)))) * mu;
                     block += sum * point.volume;
                 }
                 let block = block.transpose().to_cols_array();

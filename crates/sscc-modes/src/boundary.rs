@@ -110,7 +110,8 @@ mod tests {
 
     #[test]
     fn the_boundary_of_a_cube_and_a_tetrahedron_is_closed() {
-        let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+        let corners =
+            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
         let mut vertices: Vec<DVec3> = corners.iter().map(|c| DVec3::from_array(c.map(f64::from))).collect();
         vertices.push(DVec3::new(0.5, 0.5, 2.0));
         let tets = vec![[4, 5, 6, 8], [4, 6, 7, 8]];
@@ -120,11 +121,19 @@ mod tests {
         let solid = Solid::uniform(vertices[..8].to_vec(), vec![], cube, Material::default()).unwrap();
         let boundary = solid.boundary().unwrap();
         assert_eq!((boundary.mesh.faces().len(), boundary.vertices.len()), (12, 8));
-        let volume: f64 = boundary.mesh.faces().iter().map(|f| f.map(|v| vertices[v as usize])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+        let volume: f64 = boundary
+            .mesh
+            .faces()
+            .iter()
+            .map(|f| f.map(|v| vertices[v as usize]))
+            .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
+            .sum();
         assert!((volume - 1.0).abs() < 1e-15);
         let three = vec![[0, 1, 3, 4], [0, 1, 3, 5], [0, 1, 3, 2]];
         let overlapping = Solid::uniform(
-            [[0., 0., 0.], [1., 0., 0.], [0., 0., 3.], [0., 1., 0.], [0., 0., 1.], [0., 0., 2.]].map(DVec3::from_array).to_vec(),
+            [[0., 0., 0.], [1., 0., 0.], [0., 0., 3.], [0., 1., 0.], [0., 0., 1.], [0., 0., 2.]]
+                .map(DVec3::from_array)
+                .to_vec(),
             three,
             vec![],
             Material::default(),

@@ -28,7 +28,8 @@ impl Embedded {
         material: Material,
         progress: &dyn Progress,
     ) -> Result<Self, ModesError> {
-        let Lattice { vertices, cubes, fill, spacing, interpolation } = Lattice::around(surface, cells, progress)?;
+        let Lattice { vertices, cubes, fill, spacing, interpolation } =
+            Lattice::around(surface, cells, progress)?;
         let elements = cubes.len();
         let solid = Solid::filled(vertices, Vec::new(), cubes, fill, vec![material], vec![0; elements])?;
         Ok(Self { solid, interpolation, spacing })

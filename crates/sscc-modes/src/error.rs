@@ -84,7 +84,9 @@ pub enum ModesError {
     #[error("the solid has no element: a body needs at least one tetrahedron or cube")]
     NoElements,
     /// Numbers of materials that do not fit the elements.
-    #[error("{found} material numbers for {elements} elements: each element needs one, of a material that is there")]
+    #[error(
+        "{found} material numbers for {elements} elements: each element needs one, of a material that is there"
+    )]
     ElementMaterials {
         /// Number of elements.
         elements: usize,
@@ -106,13 +108,17 @@ pub enum ModesError {
         vertex: usize,
     },
     /// A vertex out of range.
-    #[error("vertex {vertex} (counted from 0) of the solid has a coordinate that is not finite or beyond 2^200")]
+    #[error(
+        "vertex {vertex} (counted from 0) of the solid has a coordinate that is not finite or beyond 2^200"
+    )]
     SolidVertex {
         /// The vertex, from 0.
         vertex: usize,
     },
     /// A tetrahedron without volume.
-    #[error("tetrahedron {tet} (counted from 0, vertices {corners:?}) is flat: mesh the solid anew, or remove it")]
+    #[error(
+        "tetrahedron {tet} (counted from 0, vertices {corners:?}) is flat: mesh the solid anew, or remove it"
+    )]
     FlatTet {
         /// The tetrahedron, from 0.
         tet: usize,
@@ -140,7 +146,9 @@ pub enum ModesError {
         cube: usize,
     },
     /// A face of more than two elements.
-    #[error("the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew")]
+    #[error(
+        "the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew"
+    )]
     OverlappingElements {
         /// Its vertices.
         face: Vec<u32>,

@@ -10,8 +10,8 @@ use sscc::{Error, Progress};
 
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
-use crate::elasticity::second_derivative;
 use crate::eigen::Lowest;
+use crate::elasticity::second_derivative;
 
 /// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
 const LINEAR_SHARE: f64 = 2.0 / 3.0;
@@ -60,11 +60,7 @@ fn linear_count(rank: usize) -> usize {
 }
 
 /// The modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
-fn derivatives(
-    body: &Body,
-    lowest: &Lowest,
-    progress: &dyn Progress,
-) -> Result<Mat<f64>, ModesError> {
+fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let count = lowest.eigenvalues.len();
     let fields: Vec<_> = (0..count).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i..count).map(move |j| (i, j))).collect();

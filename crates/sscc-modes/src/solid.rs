@@ -197,7 +197,9 @@ fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), ModesError> {
         tets.iter_mut().for_each(|corners| corners.swap(2, 3));
     } else if let Some(tet) = negative.first() {
         // The fewer are wrong.
-        let minority = if 2 * negative.len() <= tets.len() { *tet } else {
+        let minority = if 2 * negative.len() <= tets.len() {
+            *tet
+        } else {
             (0..tets.len()).find(|t| negative.binary_search(t).is_err()).unwrap_or(*tet)
         };
         let count = negative.len().min(tets.len() - negative.len());

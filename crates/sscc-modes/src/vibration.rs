@@ -5,9 +5,9 @@ use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 
 use crate::body::Body;
+use crate::eigen::fix_signs;
 use crate::elasticity::{ReducedForces, reduced_forces};
 use crate::nonlinear;
-use crate::eigen::fix_signs;
 use crate::{ModesError, Solid};
 
 /// Modes of a solid's vertices in which mass is the identity and the stiffness at rest is diagonal.
@@ -46,8 +46,7 @@ pub fn linear_modes(
 ) -> Result<SolidModes, ModesError> {
     let body = Body::new(solid, fixed)?;
     let lowest = body.lowest(rank, progress)?;
-    let columns: Vec<Vec<DVec3>> =
-        (0..rank).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
+    let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
     Ok(SolidModes { modes: from_columns(&columns)?, eigenvalues: lowest.eigenvalues, forces: None })
 }
 
@@ -92,7 +91,8 @@ pub fn polynomial_solid_modes(
     let fields = |points: &[DVec3]| {
         Mat::from_fn(3 * points.len(), 3 * POLYNOMIALS, |row, k| {
             let p = (points[row / 3] - centre) / size;
-            let scalars = [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y];
+            let scalars =
+                [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y];
             if k % 3 == row % 3 { scalars[k / 3] } else { 0.0 }
         })
     };
@@ -120,7 +120,8 @@ fn rotation(body: &Body, basis: &Mat<f64>) -> Result<(Mat<f64>, Vec<f64>), Modes
     let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
     let size = gram.nrows();
     let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > 1e-13 * eigen.S()[size - 1]).collect();
-    let orthonormal = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
+    let orthonormal =
+        Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
     let stiffness = basis.transpose() * body.stiffness.multiply(basis.as_ref());
     let stiffness = orthonormal.transpose() * stiffness * &orthonormal;
     let eigen = stiffness.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;

@@ -49,7 +49,8 @@ fn a_bar_sounds_as_the_closed_forms_say() {
         println!("{:?}", modes.frequencies());
         let axial = (2e11_f64 / 7800.0).sqrt() / 2.0 / length;
         let bending = 4.730_041_f64.powi(2) / std::f64::consts::TAU
-            * (2e11 * thick.powi(2) / 12.0 / 7800.0_f64).sqrt() / (length * length);
+            * (2e11 * thick.powi(2) / 12.0 / 7800.0_f64).sqrt()
+            / (length * length);
         println!("axial {axial} bending {bending}");
         errors.push(modes.frequencies()[0] / bending - 1.0);
     }

@@ -118,10 +118,16 @@ mod tests {
 
     #[test]
     fn wrong_forces_are_refused() {
-        let stiffness = |values: [f64; 4]| move |writer: &mut SealedWriter| {
-            writer.f64(STIFFNESS, &[2, 2], &values);
+        let stiffness = |values: [f64; 4]| {
+            move |writer: &mut SealedWriter| {
+                writer.f64(STIFFNESS, &[2, 2], &values);
+            }
         };
-        assert!(read_back(stiffness([1.0, 2.0, 3.0, 1.0])).unwrap_err().contains("not symmetric at row 1, column 0"));
+        assert!(
+            read_back(stiffness([1.0, 2.0, 3.0, 1.0]))
+                .unwrap_err()
+                .contains("not symmetric at row 1, column 0")
+        );
         assert!(read_back(stiffness([1.0, 0.0, 0.0, f64::NAN])).unwrap_err().contains("not finite"));
         let wrong = read_back(|writer| {
             writer.f64(STIFFNESS, &[1, 1], &[1.0]);

@@ -50,7 +50,9 @@ impl ReducedForces {
             dot(&coefficients[i * values.len()..][..values.len()], values)
         };
         (0..r)
-            .map(|i| row(&self.linear, i, q) + row(&self.quadratic, i, &squares) + row(&self.cubic, i, &cubes))
+            .map(|i| {
+                row(&self.linear, i, q) + row(&self.quadratic, i, &squares) + row(&self.cubic, i, &cubes)
+            })
             .collect()
     }
 

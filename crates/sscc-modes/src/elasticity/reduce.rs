@@ -81,9 +81,8 @@ pub(crate) fn reduced_forces(
 fn add_strains(element: &Element, modes: &Modes, strains: &mut Mat<f64>, mut row: usize) -> usize {
     let r = modes.rank();
     for point in element.points() {
-        let gradients: Vec<DMat3> = (0..r)
-            .map(|k| gradient(element, point, |v| modes.displacements()[v as usize * r + k]))
-            .collect();
+        let gradients: Vec<DMat3> =
+            (0..r).map(|k| gradient(element, point, |v| modes.displacements()[v as usize * r + k])).collect();
         let root = point.volume.sqrt();
         let mut column = 0;
         let mut put = |strain: DMat3| {

@@ -22,7 +22,9 @@ fn solid() -> Solid {
     let mut vertices = Vec::new();
     for z in 0..3 {
         for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-            vertices.push(DVec3::new(x as f64, y as f64, z as f64) + 0.1 * DVec3::from_array([next(), next(), next()]));
+            vertices.push(
+                DVec3::new(x as f64, y as f64, z as f64) + 0.1 * DVec3::from_array([next(), next(), next()]),
+            );
         }
     }
     vertices.push(DVec3::new(0.4, 0.5, 3.0));
@@ -54,7 +56,13 @@ fn reduced_forces_are_the_full_ones() {
             let q: Vec<f64> = (0..rank).map(|_| size * next()).collect();
             let (energy, forces) = energy_and_forces(&solid, &displacement(&modes, &q));
             let full: Vec<f64> = (0..rank)
-                .map(|k| forces.iter().zip(modes.displacements().chunks_exact(rank)).map(|(f, u)| f.dot(u[k])).sum())
+                .map(|k| {
+                    forces
+                        .iter()
+                        .zip(modes.displacements().chunks_exact(rank))
+                        .map(|(f, u)| f.dot(u[k]))
+                        .sum()
+                })
                 .collect();
             let found = reduced.at(&q);
             let difference: Vec<f64> = found.iter().zip(&full).map(|(a, b)| a - b).collect();
@@ -83,7 +91,8 @@ fn reduced_forces_are_the_full_ones() {
 #[test]
 fn full_forces_are_the_gradient_of_the_energy() {
     let (solid, mut next) = (solid(), random(2));
-    let mut field = || -> Vec<DVec3> { (0..13).map(|_| 0.2 * DVec3::from_array([next(), next(), next()])).collect() };
+    let mut field =
+        || -> Vec<DVec3> { (0..13).map(|_| 0.2 * DVec3::from_array([next(), next(), next()])).collect() };
     let (u, along) = (field(), field());
     let at = |h: f64| -> Vec<DVec3> { u.iter().zip(&along).map(|(u, a)| *u + *a * h).collect() };
     let h = 1e-5;
@@ -96,7 +105,8 @@ fn full_forces_are_the_gradient_of_the_energy() {
 #[test]
 fn the_second_derivative_is_that_of_the_forces() {
     let (solid, mut next) = (solid(), random(4));
-    let mut field = || -> Vec<DVec3> { (0..13).map(|_| DVec3::from_array([next(), next(), next()])).collect() };
+    let mut field =
+        || -> Vec<DVec3> { (0..13).map(|_| DVec3::from_array([next(), next(), next()])).collect() };
     let (a, b) = (field(), field());
     // Forces at h a + h b, less those at h a - h b and so on: 4 h^2 times the mixed derivative, plus h^4.
     let h = 1e-3;

@@ -38,9 +38,11 @@ impl Model {
             metric: model.metric().kind().name(),
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
-            frequencies_hz: info.elasticity.as_ref().and_then(Elasticity::diagonal).map(|all| {
-                all.iter().map(|x| x.max(0.0).sqrt() / std::f64::consts::TAU).collect()
-            }),
+            frequencies_hz: info
+                .elasticity
+                .as_ref()
+                .and_then(Elasticity::diagonal)
+                .map(|all| all.iter().map(|x| x.max(0.0).sqrt() / std::f64::consts::TAU).collect()),
             nonlinear_forces: matches!(info.elasticity, Some(Elasticity::Nonlinear(_))),
             units: info.units,
             provenance: info.provenance,

@@ -47,7 +47,8 @@ pub fn make(args: &args::Modes) -> Result<Made> {
         ModesKind::Linear => found.eigenvalues.clone(),
         _ => filter_eigenvalues(&found.eigenvalues, DEFAULT_ELL)?,
     };
-    let (elements, freedom) = (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
+    let (elements, freedom) =
+        (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
     let provenance = format!(
         "{} {}, {} modes, {} elements, {} degrees of freedom, youngs={:e} poisson={} density={}",
         if source.is_embedded() { "mesh" } else { "solid" },

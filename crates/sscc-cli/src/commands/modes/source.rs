@@ -28,7 +28,12 @@ pub fn is_solid(path: &Path) -> bool {
 }
 
 impl Source {
-    pub fn read(path: &Path, resolution: Option<u32>, material: Material, progress: &dyn Progress) -> Result<Self> {
+    pub fn read(
+        path: &Path,
+        resolution: Option<u32>,
+        material: Material,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         if !is_solid(path) {
             let mesh = read_mesh(path)?;
             let embedded = Embedded::new(&mesh, resolution.map(|cells| cells as usize), material, progress)?;
