@@ -15,7 +15,7 @@ pub(super) const BLOCK: usize = 16;
 /// A Ritz value counts when its residual is at most this share of it. The eigenvalue's own error is about the square.
 const CONVERGED: f64 = 1e-10;
 
-/// Steps for each block of wanted values, before giving up. About 4 are usual.
+/// Steps for each block of wanted values, before giving up. About 6 are usual.
 const STEPS: usize = 60;
 
 /// `(K + s M)^-1 M` beside the rigid motions: its eigenvalues are `1 / (lambda + s)`.
