@@ -68,6 +68,13 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// The diagonal of the solid's bounding box (model unit).
+    pub fn diagonal(&self) -> f64 {
+        let vertices = self.solid.vertices();
+        let low = vertices.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
+        vertices.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p)).distance(low)
+    }
+
     /// A field on the free vertices as a field on all.
     pub fn on_all(&self, field: &[f64]) -> Vec<DVec3> {
         let at = |row: &u32| match *row {

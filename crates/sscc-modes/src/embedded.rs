@@ -55,13 +55,11 @@ impl Embedded {
         if modes.vertices() != self.solid.vertices().len() {
             return Err(ModesError::ElementIndex { index: 0, vertices: self.solid.vertices().len() });
         }
-        let mut displacements = vec![DVec3::ZERO; r * self.interpolation.vertices.len()];
-        for (to, shares) in displacements.chunks_exact_mut(r).zip(&self.interpolation.vertices) {
-            for (vertex, share) in shares {
-                let from = &modes.displacements()[*vertex as usize * r..][..r];
-                to.iter_mut().zip(from).for_each(|(to, from)| *to += *from * *share);
-            }
-        }
+        let field =
+            |k: usize| -> Vec<DVec3> { modes.displacements().iter().skip(k).step_by(r).copied().collect() };
+        let columns: Vec<Vec<DVec3>> = (0..r).map(|k| self.interpolation.apply(&field(k))).collect();
+        let vertices = self.interpolation.vertices.len();
+        let displacements = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
         Ok(Modes::new(r, displacements)?)
     }
 

@@ -1,9 +1,10 @@
 //! Modal derivatives, and the basis that they and the linear modes give (Barbic and James 2005).
 //!
 //! A linear mode cannot bend far: what a large bend needs beside it is, to second order, its derivative. `K d_ij =
-//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much they are likely to occur,
-//! modes by `lambda_1 / lambda_i`, derivatives by `lambda_1^2 / (lambda_i lambda_j)`; then the directions of the most mass
-//! are taken.
+//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much of them is likely to occur,
+//! modes by `q_i = a lambda_1 / lambda_i`, derivatives by `q_i q_j`; then the directions of the most mass are taken. With the
+//! amplitude a, which the original does not have, the basis does not depend on units: a first mode of that amplitude moves
+//! some vertex by a fifth of the body's diagonal.
 
 use faer::Mat;
 use sscc::{Error, Progress};
@@ -15,6 +16,9 @@ use crate::elasticity::second_derivative;
 
 /// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
 const LINEAR_SHARE: f64 = 2.0 / 3.0;
+
+/// The largest displacement by the first mode that the basis is made for, as a share of the body's diagonal.
+const AMPLITUDE: f64 = 0.2;
 
 /// Right-hand sides solved at once.
 const BATCH: usize = 16;
@@ -35,21 +39,22 @@ pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result
     let lowest = body.lowest(linear, progress)?;
     let derivatives = derivatives(body, &lowest, progress)?;
 
-    let least = lowest.eigenvalues[0];
-    let size = lowest.vectors.nrows();
-    let mut all = Mat::zeros(size, linear + derivatives.ncols());
-    for (i, lambda) in lowest.eigenvalues.iter().enumerate() {
-        let scale = least / lambda;
-        for (to, from) in all.col_as_slice_mut(i).iter_mut().zip(lowest.vectors.col_as_slice(i)) {
-            *to = scale * from;
-        }
+    let first = body.on_all(lowest.vectors.col_as_slice(0));
+    let farthest = first.iter().map(|u| u.length()).fold(0.0, f64::max);
+    let amplitude = AMPLITUDE * body.diagonal() / farthest;
+    let likely: Vec<f64> = lowest.eigenvalues.iter().map(|x| amplitude * lowest.eigenvalues[0] / x).collect();
+    let mut all = Mat::zeros(lowest.vectors.nrows(), linear + derivatives.ncols());
+    let mut scaled = |to: usize, scale: f64, from: &[f64]| {
+        all.col_as_slice_mut(to).iter_mut().zip(from).for_each(|(to, from)| *to = scale * from);
+    };
+    for (i, q) in likely.iter().enumerate() {
+        scaled(i, *q, lowest.vectors.col_as_slice(i));
     }
     let pairs = (0..linear).flat_map(|i| (i..linear).map(move |j| (i, j)));
     for (k, (i, j)) in pairs.enumerate() {
-        let scale = (least / lowest.eigenvalues[i]) * (least / lowest.eigenvalues[j]);
-        for (to, from) in all.col_as_slice_mut(linear + k).iter_mut().zip(derivatives.col_as_slice(k)) {
-            *to = scale * from;
-        }
+        // The term of second order: q_i q_j d_ij for i < j, half of it for i = j.
+        let share = if i == j { 0.5 } else { 1.0 };
+        scaled(linear + k, share * likely[i] * likely[j], derivatives.col_as_slice(k));
     }
     principal(body, all, rank)
 }

@@ -8,7 +8,7 @@ use super::basis::{Random, Space};
 use super::count::{Count, count_below_gap};
 use super::dense::all_modes;
 use super::lanczos::{BLOCK, Inverse, Ritz, largest};
-use super::shift::{Shifted, factor_shifted, negligible};
+use super::shift::{Shifted, factor_below, factor_shifted, negligible};
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 
@@ -33,6 +33,7 @@ pub(crate) struct Lowest {
     /// The factor of `K + shift M`.
     pub factor: Cholesky,
     /// 0 for a body without rigid motions.
+    #[cfg_attr(not(test), expect(dead_code, reason = "tests look at it"))]
     pub shift: f64,
 }
 
@@ -87,7 +88,9 @@ impl Pencil<'_> {
     fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
         self.refuse_mechanisms(&values)?;
-        Ok((values, vectors, self.shifted()?))
+        let Some(lowest) = values.first() else { return Err(ModesError::NoEigenvalues) };
+        let shifted = factor_below(self.stiffness, self.mass, &self.analysis, self.rigid.ncols(), *lowest)?;
+        Ok((values, vectors, shifted))
     }
 
     /// The factor of the shifted stiffness.

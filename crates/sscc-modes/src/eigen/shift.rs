@@ -33,6 +33,20 @@ pub(super) fn negligible(stiffness: &BlockSparse, mass: &BlockSparse) -> f64 {
     ZERO * stiffness.trace() / mass.trace()
 }
 
+/// Factors `K + s M` where the lowest eigenvalue beside the rigid motions is known.
+pub(super) fn factor_below(
+    stiffness: &BlockSparse,
+    mass: &BlockSparse,
+    analysis: &Analysis,
+    rigid: usize,
+    lowest: f64,
+) -> Result<Shifted, ModesError> {
+    let mean = stiffness.trace() / mass.trace();
+    let shift = if rigid == 0 { 0.0 } else { (SHARE * lowest).min(SHIFT * mean).max(LEAST * mean) };
+    let factor = analysis.factor(&stiffness.combined(1.0, mass, shift))?;
+    Ok(Shifted { factor, shift })
+}
+
 /// Factors `K + s M`. Without rigid motions s is 0, unless the body can move all the same.
 pub(super) fn factor_shifted(
     stiffness: &BlockSparse,

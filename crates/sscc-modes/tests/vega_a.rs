@@ -1,0 +1,24 @@
+//! VegaFEM's reduced forces of the letter A.
+
+use sscc::Modes;
+use sscc_modes::{ReducedForces, diagonalize};
+
+#[test]
+fn the_forces_of_vega_a_are_a_gradient() {
+    let Some(models) = sscc_testdata::models("the_forces_of_vega_a_are_a_gradient") else { return };
+    let sscc_io::Cubic { rank, linear, quadratic, cubic } =
+        sscc_io::read_cubic(&models.join("vega_A/A.cub")).unwrap();
+    let forces = ReducedForces { rank, linear, quadratic, cubic };
+    assert_eq!(forces.rank, 20);
+    assert!(forces.asymmetry() < 1e-12, "{}", forces.asymmetry());
+    // Positive definite: all eigenvalues of the linear part are positive.
+    let unit = Modes::from_matrix(20, 20, |row, k| f64::from(u8::from(row == k))).unwrap();
+    let eigenvalues = diagonalize(&unit, &forces.linear).unwrap().eigenvalues;
+    assert!(eigenvalues[0] > 0.0, "{eigenvalues:?}");
+    // The energy is what the forces say, along a line: its derivative by central differences.
+    let q: Vec<f64> = (0..20).map(|k| 0.01 * f64::from(k % 7 - 3)).collect();
+    let at = |t: f64| forces.energy(&q.iter().map(|x| t * x).collect::<Vec<_>>());
+    let slope = (at(1.0 + 1e-4) - at(1.0 - 1e-4)) / 2e-4;
+    let expected: f64 = forces.at(&q).iter().zip(&q).map(|(f, q)| f * q).sum();
+    assert!((slope / expected - 1.0).abs() < 1e-6);
+}
