@@ -1,5 +1,7 @@
 //! VegaFEM's reduced forces of the letter A.
 
+#![allow(clippy::unwrap_used)]
+
 use sscc::Modes;
 use sscc_modes::{ReducedForces, diagonalize};
 

@@ -1,5 +1,7 @@
 //! Natural vibrations against closed forms, and bodies that have none.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::TAU;
 
 use glam::DVec3;
