@@ -60,12 +60,14 @@ pub struct Demo {
 Examples:
   sscc modes bunny.obj -o bunny.model.safetensors --kind nonlinear --rank 30
   sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial
+  sscc modes frames/ -o horse.model.safetensors --kind pca --rank 10
   sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0
 
 A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not
 glued. Modes are mass-orthonormal, and the metric is strain energy.")]
 pub struct Modes {
-    /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele)
+    /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele);
+    /// for pca a folder of meshes with the same faces, the frames
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors
@@ -74,7 +76,8 @@ pub struct Modes {
     /// Where the modes come from
     #[arg(long, value_enum)]
     pub kind: ModesKind,
-    /// Number of modes [default: 20 linear, 30 nonlinear]
+    /// Number of modes [default: 20 linear, 30 nonlinear, pca as many as explain 99.9% of the
+    /// variance]
     #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=500))]
     pub rank: Option<u32>,
     /// Vertices that do not move: numbers from 0, as in 0,5,7; box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text)
@@ -102,6 +105,8 @@ pub enum ModesKind {
     /// The 24 quadratic polynomials of the rest position, rigid motions taken out; with --resolution or --material also
     /// the stiffness and forces of a solid
     Polynomial,
+    /// The mean and the principal components of an animation; q counts standard deviations
+    Pca,
 }
 
 impl ModesKind {
@@ -111,6 +116,7 @@ impl ModesKind {
             Self::Linear => "linear",
             Self::Nonlinear => "nonlinear",
             Self::Polynomial => "polynomial",
+            Self::Pca => "pca",
         }
     }
 }

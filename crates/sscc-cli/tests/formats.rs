@@ -251,3 +251,60 @@ fn a_mesh_for_drawing_can_be_given_modes() {
         sscc(folder, &["certify", "s.model.safetensors", "--weld", "-o", "s.sscc.safetensors", "--json"]);
     assert_eq!(welded.json()[0]["rest_collisions"], json!(0), "{welded:?}");
 }
+
+/// The frames of an animation that two modes made: the mean and those modes are found again.
+#[test]
+fn an_animation_becomes_a_model() {
+    let directory = strips();
+    let folder = directory.path();
+    let strips = model(folder);
+    fs::create_dir(folder.join("frames")).unwrap();
+    let coordinates = [[0.2, 0.0], [-0.2, 0.0], [0.0, 0.1], [0.0, -0.1], [0.0, 0.0]];
+    for (i, q) in coordinates.iter().enumerate() {
+        let mut text = String::new();
+        for p in strips.positions(q).unwrap() {
+            writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
+        }
+        for [a, b, c] in strips.mesh().faces() {
+            writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+        }
+        fs::write(folder.join(format!("frames/{i}.obj")), text).unwrap();
+    }
+    let output = "pca.model.safetensors";
+    let args = ["modes", "frames", "-o", output, "--kind", "pca"];
+    let report = sscc(folder, &[&args[..], &["--json"]].concat()).json().remove(0);
+    assert_eq!((&report["rank"], &report["frames"]), (&json!(2), &json!(5)));
+    assert!((report["explained"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    let (read, info) = sscc_io::read_model(&folder.join(output)).unwrap();
+    assert_eq!(info.provenance, "mean and principal components of 5 meshes in frames");
+    // Unit variance: the coordinates of the first frame are those of its mode, over their root mean square.
+    let deviation = (2.0_f64 * 0.2 * 0.2 / 4.0).sqrt();
+    for (v, p) in strips.mesh().rest_positions().iter().enumerate() {
+        assert!(p.distance(read.mesh().rest_positions()[v]) < 1e-12);
+        let (known, found) = (strips.modes().of_vertex(v as u32)[0], read.modes().of_vertex(v as u32)[0]);
+        assert!(found.distance(known * deviation) < 1e-12, "{found} {known}");
+    }
+    let certify = sscc(folder, &["certify", output, "-o", "pca.sscc.safetensors"]);
+    assert_eq!(certify.code, Some(0), "{certify:?}");
+    let text = sscc(folder, &[&args[..], &["--rank", "1"]].concat()).stdout;
+    assert!(
+        text.starts_with("20 triangles, 24 vertices, 1 principal component of 5 frames (80.00%"),
+        "{text}"
+    );
+
+    let refusal = |args: &[&str]| sscc(folder, args).refusal().to_owned();
+    let more = refusal(&[&args[..], &["--rank", "3"]].concat());
+    assert!(
+        more.starts_with("error: frames: 3 components were asked for, but the frames differ in 2 "),
+        "{more}"
+    );
+    let file = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "pca"]);
+    assert!(file.contains("mesh.obj: is a file; principal components are those of a folder"), "{file}");
+    let rank = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "polynomial", "--rank", "3"]);
+    assert!(rank.contains("polynomial modes are always all 24"), "{rank}");
+    fs::write(folder.join("frames/5.obj"), "v 0 0 0\n").unwrap();
+    assert!(refusal(&args).contains("5.obj: this frame has 1 vertices, the first one (0.obj) 24"));
+    fs::create_dir(folder.join("none")).unwrap();
+    let none = refusal(&["modes", "none", "-o", output, "--kind", "pca"]);
+    assert!(none.ends_with("none: there is no frame mesh in this folder"), "{none}");
+}

@@ -37,6 +37,7 @@
 //! | --- | --- |
 //! | meshes: OBJ, PLY, OFF, STL | [`read_mesh`], [`mesh`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
+//! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
@@ -73,7 +74,7 @@ pub use error::{FormatError, IoError, Place};
 pub use file::{read_whole, write_whole};
 pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};
 pub use mesh::read_mesh;
-pub use modes::{read_modes, read_modes_for};
+pub use modes::{Frames, read_frames, read_modes, read_modes_for};
 pub use npy::write_npy;
 pub use npz::read_npz_model;
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};

@@ -102,7 +102,7 @@ pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, Mod
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
 /// matrix. On one thread, so that the order of sums is fixed.
-fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
     // Divided by a power of two, so that the largest entry is about 1 and no square leaves the range.
     let largest = matrix.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (_, exponent) = libm::frexp(largest);
@@ -126,7 +126,7 @@ fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError
 }
 
 /// Turns each column so that its largest component is positive, the first one of equals.
-fn fix_signs(rank: usize, columns: &mut [f64]) {
+pub(crate) fn fix_signs(rank: usize, columns: &mut [f64]) {
     for k in 0..rank {
         let column = || (0..rank).map(|j| j * rank + k);
         let largest = column().fold(0.0_f64, |m, at| m.max(columns[at].abs()));

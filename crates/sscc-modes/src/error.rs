@@ -1,4 +1,4 @@
-//! Why a surface or a stiffness gives no modes.
+//! Why a surface, a stiffness or an animation gives no modes.
 
 /// No modes could be made. One line, naming the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -266,6 +266,50 @@ pub enum ModesError {
     Pieces {
         /// How many pieces there are.
         count: usize,
+    },
+    /// Fewer than two frames do not differ.
+    #[error("{found} frames are too few: principal components need at least two")]
+    TooFewFrames {
+        /// Number of frames.
+        found: usize,
+    },
+    /// A frame of another mesh.
+    #[error(
+        "frame {frame} (counted from 0) has {found} vertices, the mesh {expected}: all frames must be of the same mesh"
+    )]
+    FrameVertices {
+        /// The frame, from 0.
+        frame: usize,
+        /// Its number of vertices.
+        found: usize,
+        /// That of the mesh.
+        expected: usize,
+    },
+    /// A position out of range.
+    #[error(
+        "vertex {vertex} of frame {frame} (counted from 0) has a coordinate that is not finite or beyond 2^200"
+    )]
+    FramePosition {
+        /// The frame, from 0.
+        frame: usize,
+        /// The vertex, from 0.
+        vertex: usize,
+    },
+    /// Nothing moves.
+    #[error("all {frames} frames are equal, up to rounding: give frames that differ")]
+    StillFrames {
+        /// Number of frames.
+        frames: usize,
+    },
+    /// More components than the frames have.
+    #[error(
+        "{asked} components were asked for, but the frames differ in {available} independent ways: ask for at most that many"
+    )]
+    TooManyComponents {
+        /// Components asked for.
+        asked: usize,
+        /// Components there are.
+        available: usize,
     },
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]

@@ -4,6 +4,7 @@
 //!   section 7), for any surface, without a material or a solid mesh;
 //! - [`diagonalize`]: modes rotated so that a given stiffness becomes diagonal (paper, section 6), with
 //!   [`reduced_stiffness`] before it, and [`filter_eigenvalues`] and [`energy_metric`] after it;
+//! - [`pca_modes`]: the principal components of an animation;
 //! - [`shapes`]: example meshes made in code, so that nothing has to be downloaded.
 //!
 //! A model in two lines, for a first try or a test:
@@ -25,8 +26,8 @@
 //! the stiffness of the solid, an example at [`diagonalize`] makes a model whose metric is strain energy.
 //!
 //! Everything here gives the same bits on every machine: sums have a fixed order, and sines and
-//! cosines come from `libm`, not from the platform. The exception is [`diagonalize`]: its eigenvectors are
-//! rounded as the vector instructions of the processor do.
+//! cosines come from `libm`, not from the platform. The exceptions are [`diagonalize`] and
+//! [`pca_modes`]: their eigenvectors are rounded as the vector instructions of the processor do.
 
 mod body;
 mod boundary;
@@ -39,6 +40,7 @@ mod error;
 mod lattice;
 mod nonlinear;
 mod orthonormal;
+mod pca;
 mod polynomial;
 pub mod shapes;
 mod solid;
@@ -52,6 +54,7 @@ pub use elasticity::ReducedForces;
 pub use embedded::Embedded;
 pub use energy::{DEFAULT_ELL, energy_metric, filter_eigenvalues};
 pub use error::ModesError;
+pub use pca::{Pca, pca_modes};
 pub use polynomial::polynomial_modes;
 pub use solid::{Material, Solid};
 pub use stiffness::reduced_stiffness;

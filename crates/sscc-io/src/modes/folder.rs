@@ -24,31 +24,30 @@ const MOST: usize = 10_000;
 /// another number of vertices, has faces that differ from the neutral ones (it may have none), or a
 /// coordinate that is not finite or too large.
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<(Modes, Vec<String>), IoError> {
-    let paths = targets(folder, neutral_path)?;
     let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
-    if paths.is_empty() {
-        return Err(request("there is no target mesh in this folder".into()));
-    }
-    if paths.len() > MOST {
-        return Err(request(format!("{} meshes are more than {MOST} targets", paths.len())));
-    }
+    // The same file by another name (links, `..`) is the neutral one all the same.
+    let paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
+    let rest = neutral.rest_positions();
+    let displacements = |path: &PathBuf| {
+        let mut positions = positions_like(path, neutral, "target", "the neutral mesh")?;
+        positions.iter_mut().zip(rest).for_each(|(moved, rest)| *moved -= rest);
+        Ok::<_, IoError>(positions)
+    };
     // What a target takes in memory is borne out by its file, which has all vertices in it.
-    let columns = paths.iter().map(|path| displacements(path, neutral)).collect::<Result<Vec<_>, _>>()?;
-    let vertices = neutral.rest_positions().len();
+    let columns = paths.iter().map(displacements).collect::<Result<Vec<_>, _>>()?;
+    let vertices = rest.len();
     let by_vertex = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
     let modes = Modes::new(columns.len(), by_vertex).map_err(|error| request(error.to_string()))?;
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok((modes, paths.iter().map(name).collect()))
 }
 
-/// The mesh files of a folder but for the neutral one, sorted.
-fn targets(folder: &Path, neutral: &Path) -> Result<Vec<PathBuf>, IoError> {
+/// The mesh files of a folder but for the neutral one (its canonical path), sorted; at least one. They are called `what`.
+pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
     let refused = |cause: std::io::Error| match cause.kind() {
         ErrorKind::NotFound => IoError::NotFound { path: folder.to_owned() },
         _ => IoError::System { path: folder.to_owned(), action: "read", cause },
     };
-    // The same file by another name (links, `..`) is the neutral one all the same.
-    let neutral = fs::canonicalize(neutral).ok();
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).map_err(refused)? {
         let name = entry.map_err(refused)?.file_name();
@@ -57,36 +56,44 @@ fn targets(folder: &Path, neutral: &Path) -> Result<Vec<PathBuf>, IoError> {
         if hidden || !is_mesh_name(&path) || path.is_dir() {
             continue;
         }
-        if neutral.is_none() || fs::canonicalize(&path).ok() != neutral {
+        if neutral.is_none() || fs::canonicalize(&path).ok().as_deref() != neutral {
             names.push(name);
         }
     }
-    names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes()));
+    let request = |cause: String| Err(IoError::Request { path: folder.to_owned(), cause });
+    match names.len() {
+        0 => return request(format!("there is no {what} mesh in this folder")),
+        count if count > MOST => return request(format!("{count} meshes are more than {MOST} {what}s")),
+        _ => names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes())),
+    }
     Ok(names.iter().map(|name| folder.join(name)).collect())
 }
 
-fn displacements(path: &Path, neutral: &TriMesh) -> Result<Vec<DVec3>, IoError> {
-    let target = read_soup(path)?;
+/// The positions of a mesh that is to be like another: as many vertices, and the same faces or none.
+pub(super) fn positions_like(
+    path: &Path,
+    model: &TriMesh,
+    what: &str,
+    other: &str,
+) -> Result<Vec<DVec3>, IoError> {
+    let read = read_soup(path)?;
     let refused = |cause: String| Err(FormatError::whole(cause).of(path));
-    let rest = neutral.rest_positions();
-    if target.positions.len() != rest.len() {
-        let (there, wanted) = (target.positions.len(), rest.len());
-        return refused(format!("this target has {there} vertices, the neutral mesh {wanted}"));
+    let (there, wanted) = (read.positions.len(), model.rest_positions().len());
+    if there != wanted {
+        return refused(format!("this {what} has {there} vertices, {other} {wanted}"));
     }
-    if !target.faces.is_empty() && target.faces != neutral.faces() {
-        let (there, wanted) = (target.faces.len(), neutral.faces().len());
-        let cause = match target.faces.iter().zip(neutral.faces()).position(|(a, b)| a != b) {
-            Some(face) if there == wanted => format!("triangle {face} (counted from 0) of this target"),
+    if !read.faces.is_empty() && read.faces != model.faces() {
+        let (there, wanted) = (read.faces.len(), model.faces().len());
+        let cause = match read.faces.iter().zip(model.faces()).position(|(a, b)| a != b) {
+            Some(face) if there == wanted => format!("triangle {face} (counted from 0) of this {what}"),
             _ => format!("the number of triangles, {there} for {wanted},"),
         };
-        return refused(format!(
-            "{cause} differs from the neutral mesh: are the vertices in the same order?"
-        ));
+        return refused(format!("{cause} differs from {other}: are the vertices in the same order?"));
     }
-    if let Some(vertex) = target.positions.iter().position(|p| !limits::contains(*p)) {
+    if let Some(vertex) = read.positions.iter().position(|p| !limits::contains(*p)) {
         return refused(format!("vertex {vertex} (counted from 0) is not finite, or too large"));
     }
-    Ok(target.positions.iter().zip(rest).map(|(moved, rest)| moved - rest).collect())
+    Ok(read.positions)
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
-//! Deformation modes from files: NumPy arrays and archives, VegaFEM modal matrices, folders of target meshes.
+//! Deformation modes from files: NumPy arrays and archives, VegaFEM modal matrices, folders of target meshes. And
+//! animations, of which modes can be made.
 
 pub mod array;
 pub mod folder;
+mod frames;
 pub mod vega;
 
 use std::path::Path;
@@ -10,6 +12,8 @@ use sscc::{Modes, TriMesh};
 
 use crate::file::{ending, read_whole};
 use crate::{FormatError, IoError, npz};
+
+pub use frames::{Frames, read_frames};
 
 /// What [`read_modes_for`] knows. Of these, [`read_modes`] reads those that need no mesh.
 const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32); \

@@ -69,6 +69,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
         elements: Some(elements),
         degrees_of_freedom: Some(freedom),
         frequencies: Some(frequencies),
+        components: None,
         provenance,
     })
 }

@@ -1,8 +1,9 @@
-//! `sscc modes`: a mesh or a solid becomes a model.
+//! `sscc modes`: a mesh, a solid or the frames of an animation become a model.
 
 mod elastic;
 mod fix;
 mod material;
+mod pca;
 mod source;
 
 use anyhow::{Context, Result, bail};
@@ -12,6 +13,7 @@ use sscc_io::{Elasticity, ModelInfo, read_mesh, write_model};
 use sscc_modes::polynomial_modes;
 
 use crate::args::{self, ModesKind};
+use pca::Components;
 use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
 
@@ -27,6 +29,8 @@ struct Report {
     degrees_of_freedom: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
+    #[serde(flatten)]
+    components: Option<Components>,
 }
 
 /// A surface with modes, and what else was found.
@@ -39,6 +43,7 @@ struct Made {
     elements: Option<usize>,
     degrees_of_freedom: Option<usize>,
     frequencies: Option<Vec<f64>>,
+    components: Option<Components>,
     provenance: String,
 }
 
@@ -47,6 +52,7 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     let in_source = || args.source.display().to_string();
     let made = match args.kind {
         ModesKind::Polynomial if !asks_for_solid(args) => surface_polynomials(args)?,
+        ModesKind::Pca => pca::make(args)?,
         _ => elastic::make(args).with_context(in_source)?,
     };
     let model = match made.metric {
@@ -69,6 +75,7 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         elements: made.elements,
         degrees_of_freedom: made.degrees_of_freedom,
         frequencies_hz: made.frequencies,
+        components: made.components,
     };
     let mut out = Output::new();
     if args.json.json {
@@ -76,7 +83,15 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     } else {
         let kind = args.kind.name();
         let (triangles, vertices) = (grouped(report.triangles as u64), grouped(report.vertices as u64));
-        out.line(format_args!("{triangles} triangles, {vertices} vertices, {} {kind} modes", report.rank))?;
+        let modes = match &report.components {
+            None => format!("{} {kind} modes", report.rank),
+            Some(Components { frames, explained, .. }) => format!(
+                "{} of {frames} frames ({:.2}% of the variance)",
+                counted(report.rank as u64, "principal component"),
+                100.0 * explained
+            ),
+        };
+        out.line(format_args!("{triangles} triangles, {vertices} vertices, {modes}"))?;
         if let (Some(elements), Some(freedom)) = (report.elements, report.degrees_of_freedom) {
             let elements = counted(elements as u64, "element");
             out.line(format_args!("solid of {elements}, {} degrees of freedom", grouped(freedom as u64)))?;
@@ -87,7 +102,8 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         out.line(format_args!("written: {}", args.output.display()))?;
     }
     out.finish()?;
-    if sscc_io::splits_vertices(&args.source) {
+    let file = report.components.as_ref().map_or(&args.source, |components| &components.first);
+    if sscc_io::splits_vertices(file) {
         eprintln!("note: this format splits vertices: certify it with --weld");
     }
     Ok(Outcome::Done)
@@ -113,6 +129,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<Made> {
         elements: None,
         degrees_of_freedom: None,
         frequencies: None,
+        components: None,
         provenance,
     })
 }

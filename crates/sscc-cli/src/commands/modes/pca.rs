@@ -1,0 +1,56 @@
+//! Principal components of an animation.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use serde::Serialize;
+use sscc_io::read_frames;
+use sscc_modes::pca_modes;
+
+use super::{Made, name};
+use crate::args;
+
+/// What is known of principal components.
+#[derive(Serialize)]
+pub struct Components {
+    pub frames: usize,
+    /// The share of the variance that all modes together explain.
+    pub explained: f64,
+    pub deviations: Vec<f64>,
+    /// The file of the first frame, whose format tells whether its vertices are split.
+    #[serde(skip)]
+    pub first: PathBuf,
+}
+
+pub fn make(args: &args::Modes) -> Result<Made> {
+    let shown = args.source.display();
+    ensure!(
+        args.fix.is_none() && args.material.is_none() && args.resolution.is_none(),
+        "--fix, --material and --resolution: principal components know no solid; leave them out"
+    );
+    ensure!(
+        !args.source.is_file(),
+        "{shown}: is a file; principal components are those of a folder of meshes, the frames"
+    );
+    let frames = read_frames(&args.source)?;
+    let rank = args.rank.map(|rank| rank as usize);
+    let pca = pca_modes(&frames.mesh, &frames.positions, rank).with_context(|| shown.to_string())?;
+    let count = frames.paths.len();
+    let components = Components {
+        frames: count,
+        explained: pca.shares.iter().sum(),
+        deviations: pca.deviations,
+        first: frames.paths[0].clone(),
+    };
+    Ok(Made {
+        mesh: pca.mesh,
+        modes: pca.modes,
+        metric: None,
+        elasticity: None,
+        elements: None,
+        degrees_of_freedom: None,
+        frequencies: None,
+        components: Some(components),
+        provenance: format!("mean and principal components of {count} meshes in {}", name(args)),
+    })
+}

@@ -1,0 +1,148 @@
+//! Modes of an animation: the principal components of its frames.
+
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::{Accum, Mat, Par};
+use glam::DVec3;
+use sscc::{Modes, TriMesh, limits};
+
+use crate::ModesError;
+use crate::diagonalize::{eigen, fix_signs};
+
+/// Without a rank, as many components as explain this share of the variance.
+const EXPLAINED: f64 = 0.999;
+
+/// A component of at most this share of the largest variance is none: products of frames leave about 1e-15 for each
+/// frame.
+const ZERO_SHARE: f64 = 1e-12;
+
+/// The mean of an animation, and the principal components about it: see [`pca_modes`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pca {
+    /// The mean of all frames, with the given faces.
+    pub mesh: TriMesh,
+    /// The principal directions, the strongest first, each times its standard deviation: q counts standard deviations.
+    /// The largest of a mode's frame coordinates is positive.
+    pub modes: Modes,
+    /// The standard deviation along each unit direction (model unit; n - 1 in the denominator).
+    pub deviations: Vec<f64>,
+    /// Which share of the whole variance each mode explains.
+    pub shares: Vec<f64>,
+}
+
+/// Principal component analysis of frames with common topology: `frame = mean + U q`, exactly (up to rounding) for all
+/// frames where `rank` is the number of independent directions.
+///
+/// The inner product is the plain sum over the vertices that some face uses, as usual for animations: where the mesh
+/// is finer, motion counts more. `mesh` gives the faces; its positions are not used. Frames hold one position for each of
+/// its vertices. `rank`: how many components; none: as many as explain 99.9% of the variance. There are fewer than
+/// frames.
+///
+/// By the eigenvectors of the Gram matrix (frames x frames). The same input gives the same bits again, but other
+/// processors may round differently. Vertices that coincide in all frames still do in all modes.
+///
+/// # Errors
+/// When there are fewer than two frames, one has another number of vertices or a position out of range, all are equal,
+/// or fewer independent directions exist than were asked for.
+pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> Result<Pca, ModesError> {
+    let vertices = mesh.rest_positions().len();
+    check(frames, vertices)?;
+    let count = frames.len() as f64;
+    // Relative to the first frame: the mean of equal positions is that position, to the last bit.
+    let mean = |v: usize| {
+        let sum: DVec3 = frames.iter().map(|frame| frame[v] - frames[0][v]).sum();
+        frames[0][v] + sum / count
+    };
+    let mean: Vec<DVec3> = (0..vertices).map(mean).collect();
+    let (mut variances, mut vectors, noise) = components(&mesh.used_vertices(), frames, &mean)?;
+    variances.reverse();
+    let total: f64 = variances.iter().map(|x| x.max(0.0)).sum();
+    let least = (ZERO_SHARE * variances[0]).max(noise);
+    let available = variances.iter().take(frames.len() - 1).take_while(|x| **x > least).count();
+    let rank = match rank {
+        _ if available == 0 => return Err(ModesError::StillFrames { frames: frames.len() }),
+        Some(asked) if asked > available => return Err(ModesError::TooManyComponents { asked, available }),
+        Some(asked) => asked,
+        None => explaining(EXPLAINED * total, &variances[..available]),
+    };
+    variances.truncate(rank);
+
+    // U_k = sum_t (frame_t - mean) v_tk / sqrt(n - 1): the length of the sum is the root of the eigenvalue.
+    let last = frames.len() - 1;
+    fix_signs(frames.len(), &mut vectors);
+    let root = (last as f64).sqrt();
+    let mut displacements = vec![DVec3::ZERO; vertices * rank];
+    for (v, modes) in displacements.chunks_exact_mut(rank.max(1)).enumerate() {
+        for (frame, of_frame) in frames.iter().zip(vectors.chunks_exact(frames.len())) {
+            let moved = frame[v] - mean[v];
+            modes.iter_mut().enumerate().for_each(|(k, u)| *u += moved * (of_frame[last - k] / root));
+        }
+    }
+    Ok(Pca {
+        mesh: TriMesh::new(mean, mesh.faces().to_vec())?,
+        modes: Modes::new(rank, displacements)?,
+        deviations: variances.iter().map(|x| x.sqrt() / root).collect(),
+        shares: variances.iter().map(|x| x / total).collect(),
+    })
+}
+
+/// Refuses frames that are none of a mesh with so many vertices.
+fn check(frames: &[Vec<DVec3>], vertices: usize) -> Result<(), ModesError> {
+    if frames.len() < 2 {
+        return Err(ModesError::TooFewFrames { found: frames.len() });
+    }
+    for (index, frame) in frames.iter().enumerate() {
+        if frame.len() != vertices {
+            return Err(ModesError::FrameVertices { frame: index, found: frame.len(), expected: vertices });
+        }
+        if let Some(vertex) = frame.iter().position(|p| !limits::contains(*p)) {
+            return Err(ModesError::FramePosition { frame: index, vertex });
+        }
+    }
+    Ok(())
+}
+
+/// The eigenvalues, ascending, and eigenvectors (T x T, row-major, in columns) of the frames' Gram matrix about their
+/// mean, and what rounding of positions can leave in an eigenvalue.
+fn components(
+    used: &[u32],
+    frames: &[Vec<DVec3>],
+    mean: &[DVec3],
+) -> Result<(Vec<f64>, Vec<f64>, f64), ModesError> {
+    let moved = |row: usize, frame: usize| {
+        let v = used[row / 3] as usize;
+        (frames[frame][v] - mean[v])[row % 3]
+    };
+    let count = frames.len();
+    let centred = Mat::from_fn(3 * used.len(), count, moved);
+    let mut gram = Mat::zeros(count, count);
+    matmul(
+        gram.as_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        centred.transpose(),
+        BlockStructure::Rectangular,
+        &centred,
+        BlockStructure::Rectangular,
+        1.0,
+        Par::Seq,
+    );
+    let whole: Vec<f64> = (0..count * count)
+        .map(|at| (at / count, at % count))
+        .map(|(i, j)| gram[(i.max(j), i.min(j))])
+        .collect();
+    let (values, vectors) = eigen(count, &whole)?;
+    // A position is rounded by half a unit in the last place; so is the mean.
+    let reach = used.iter().fold(0.0_f64, |m, v| m.max(mean[*v as usize].abs().max_element()));
+    let rounding = f64::EPSILON * reach;
+    Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
+}
+
+/// How many of the largest variances it takes to explain so much.
+fn explaining(wanted: f64, variances: &[f64]) -> usize {
+    let mut sum = 0.0;
+    let reached = variances.iter().position(|x| {
+        sum += x;
+        sum >= wanted
+    });
+    reached.map_or(variances.len(), |last| last + 1)
+}

@@ -1,0 +1,136 @@
+//! Principal components of animations that are known to be of low rank.
+
+#[allow(dead_code)] // other tests use the rest
+mod common;
+
+use common::Random;
+use glam::DVec3;
+use sscc::{TriMesh, deformed_position};
+use sscc_modes::{Pca, pca_modes};
+
+const VERTICES: usize = 40;
+
+/// A strip of triangles; its last vertex is used by none.
+fn strip() -> TriMesh {
+    let positions = (0..VERTICES).map(|i| DVec3::new(i as f64, (i % 2) as f64, 0.0)).collect();
+    let faces = (0..VERTICES as u32 - 3).map(|i| [i, i + 1, i + 2]).collect();
+    TriMesh::new(positions, faces).unwrap()
+}
+
+/// Two orthonormal directions.
+fn directions() -> [Vec<DVec3>; 2] {
+    let used = (VERTICES - 1) as f64;
+    [DVec3::Z, DVec3::Y].map(|axis| (0..VERTICES).map(|_| axis / used.sqrt()).collect())
+}
+
+/// Frames with coordinates along the directions: their means are (1, 0), their deviations 3 and 1, and they are
+/// uncorrelated.
+fn frames() -> Vec<Vec<DVec3>> {
+    let along = [[3.0, 1.0], [3.0, -1.0], [-3.0, 1.0], [-3.0, -1.0]].map(|[a, b]| {
+        let scale = 3.0_f64.sqrt() / 2.0; // four frames, so n - 1 is 3
+        [1.0 + a * scale, b * scale]
+    });
+    let [z, y] = directions();
+    let rest = strip().rest_positions().to_vec();
+    along
+        .map(|[a, b]| rest.iter().zip(z.iter().zip(&y)).map(|(p, (z, y))| *p + *z * a + *y * b).collect())
+        .to_vec()
+}
+
+/// The coordinates of a frame: modes are orthogonal, with their deviations as lengths.
+fn coordinates(pca: &Pca, frame: &[DVec3]) -> Vec<f64> {
+    let rank = pca.modes.rank();
+    let dot = |k: usize| -> f64 {
+        let used = 0..VERTICES - 1;
+        used.map(|v| (frame[v] - pca.mesh.rest_positions()[v]).dot(pca.modes.of_vertex(v as u32)[k])).sum()
+    };
+    (0..rank).map(|k| dot(k) / (pca.deviations[k] * pca.deviations[k])).collect()
+}
+
+#[test]
+fn known_components_are_found() {
+    for rank in [None, Some(2)] {
+        let pca = pca_modes(&strip(), &frames(), rank).unwrap();
+        assert_eq!((pca.modes.rank(), pca.mesh.faces()), (2, strip().faces()));
+        for (found, known) in pca.deviations.iter().zip([3.0, 1.0]) {
+            assert!((found - known).abs() < 1e-12, "{:?}", pca.deviations);
+        }
+        assert!((pca.shares[0] - 0.9).abs() < 1e-12 && (pca.shares[1] - 0.1).abs() < 1e-12);
+        let [z, y] = directions();
+        for (v, p) in strip().rest_positions().iter().enumerate() {
+            assert!(pca.mesh.rest_positions()[v].distance(*p + z[v]) < 1e-12);
+            let modes = pca.modes.of_vertex(v as u32);
+            assert!(modes[0].distance(z[v] * 3.0) < 1e-12 && modes[1].distance(y[v]) < 1e-12, "{modes:?}");
+        }
+    }
+    let one = pca_modes(&strip(), &frames(), Some(1)).unwrap();
+    assert_eq!((one.modes.rank(), one.deviations.len(), one.shares.len()), (1, 1, 1));
+}
+
+#[test]
+fn every_frame_is_recovered_from_all_components() {
+    let mut random = Random(7);
+    let mut moved = || random.vector() * 1e-3 + DVec3::X * 50.0;
+    let frames: Vec<Vec<DVec3>> = (0..9).map(|_| (0..VERTICES).map(|_| moved()).collect()).collect();
+    let pca = pca_modes(&strip(), &frames, Some(8)).unwrap();
+    assert!((pca.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!(pca.deviations.is_sorted_by(|a, b| a >= b));
+    for frame in &frames {
+        let q = coordinates(&pca, frame);
+        for v in 0..VERTICES - 1 {
+            let found = deformed_position(pca.mesh.rest_positions()[v], pca.modes.of_vertex(v as u32), &q);
+            assert!(found.distance(frame[v]) < 1e-12);
+        }
+    }
+    // Coordinates have mean 0 and deviation 1.
+    for k in 0..8 {
+        let squares: f64 = frames.iter().map(|frame| coordinates(&pca, frame)[k].powi(2)).sum();
+        assert!((squares / 8.0 - 1.0).abs() < 1e-9);
+    }
+    assert_eq!(pca_modes(&strip(), &frames, Some(8)).unwrap(), pca);
+    assert_eq!(
+        pca_modes(&strip(), &frames, Some(9)).unwrap_err().to_string(),
+        "9 components were asked for, but the frames differ in 8 independent ways: ask for at most that many"
+    );
+}
+
+#[test]
+fn the_range_of_numbers_does_not_matter() {
+    let expected = pca_modes(&strip(), &frames(), None).unwrap();
+    for exponent in [-190, 190] {
+        let scale = 2.0_f64.powi(exponent);
+        let scaled: Vec<Vec<DVec3>> =
+            frames().iter().map(|f| f.iter().map(|p| *p * scale).collect()).collect();
+        let found = pca_modes(&strip(), &scaled, None).unwrap();
+        assert_eq!(found.deviations[0], expected.deviations[0] * scale);
+        assert_eq!(found.modes.of_vertex(3)[0], expected.modes.of_vertex(3)[0] * scale);
+    }
+}
+
+#[test]
+fn frames_without_components_are_refused() {
+    let message = |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank).unwrap_err().to_string();
+    let frame = frames().remove(0);
+    assert!(message(&[], None).starts_with("0 frames"));
+    assert!(message(&[frame.clone()], None).starts_with("1 frames"));
+    assert!(
+        message(&[frame.clone(), frame.clone(), frame.clone()], Some(1))
+            .starts_with("all 3 frames are equal")
+    );
+    // Only a vertex that no face uses moves; or nothing but the last bit does.
+    let mut unused = frame.clone();
+    unused[VERTICES - 1] += DVec3::ONE;
+    assert!(message(&[frame.clone(), unused], None).starts_with("all 2 frames are equal"));
+    let mut rounded = frame.clone();
+    rounded[1].x = rounded[1].x.next_up();
+    assert!(message(&[frame.clone(), rounded], None).starts_with("all 2 frames are equal"));
+    assert_eq!(
+        message(&[frame.clone(), frame[1..].to_vec()], None),
+        "frame 1 (counted from 0) has 39 vertices, the mesh 40: all frames must be of the same mesh"
+    );
+    let mut nan = frame.clone();
+    nan[5].z = f64::NAN;
+    assert!(message(&[frame.clone(), nan], None).starts_with("vertex 5 of frame 1 (counted from 0)"));
+    assert!(message(&frames(), Some(0)).contains("no modes"));
+    assert!(message(&frames(), Some(3)).contains("differ in 2 independent ways"));
+}
