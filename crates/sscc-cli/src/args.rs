@@ -211,13 +211,17 @@ pub enum Scheme {
 Examples:
   sscc certify bunny.model.safetensors -o bunny.sscc.safetensors
   sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass
-  sscc certify head.glb --mesh-name Head -o head.sscc.safetensors")]
+  sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png")]
 pub struct Certify {
     #[command(flatten)]
     pub model: Model,
     /// The certificate file to write: *.sscc.safetensors
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+    /// Also draw what is certified (.png): the shape at the centre, and as far along each of the first four modes as
+    /// the root's radius reaches
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

@@ -10,6 +10,7 @@ mod commands;
 mod interrupt;
 mod load;
 mod output;
+mod picture;
 mod progress;
 mod usage;
 

@@ -11,7 +11,7 @@ use sscc_io::write_whole;
 
 use crate::args::Certify;
 use crate::output::{Output, counted, grouped, length};
-use crate::{Outcome, interrupt, load};
+use crate::{Outcome, interrupt, load, picture};
 
 #[derive(Serialize)]
 struct Report {
@@ -36,13 +36,24 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
             .flatten()
             .collect();
     load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
+    if let Some(path) = &args.picture {
+        picture::check(path, &inputs)?;
+    }
     let model = load::model(&args.model)?.model;
     let options = load::options(&model, &args.model, &args.options)?;
     let start = Instant::now();
     let certificates = load::certify(&model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();
     let bytes = certificates_to_bytes(&certificates).context("certificates")?;
+    let picture = args
+        .picture
+        .as_ref()
+        .map(|path| picture::draw(&model, &certificates).with_context(|| path.display().to_string()));
+    let picture = picture.transpose()?;
     interrupt::check()?;
+    if let (Some(path), Some(picture)) = (&args.picture, &picture) {
+        write_whole(path, &picture.png)?;
+    }
     write_whole(&args.output, &bytes)?;
 
     let report = Report {
@@ -67,9 +78,13 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         for line in report.lines(metric, &args.output) {
             out.line(line)?;
         }
+        if let Some(path) = &args.picture {
+            out.line(format_args!("picture        {}", path.display()))?;
+        }
     }
     out.finish()?;
-    if let Some(note) = note(&certificates, args.options.max_exceptions) {
+    let notes = [note(&certificates, args.options.max_exceptions), picture.and_then(|drawn| drawn.note)];
+    for note in notes.into_iter().flatten() {
         eprintln!("note: {note}");
     }
     Ok(Outcome::Done)

@@ -1,0 +1,71 @@
+//! Light and colours.
+
+use std::sync::LazyLock;
+
+use glam::{DVec3, Vec3};
+
+/// Behind everything (sRGB).
+pub const BACKGROUND: [u8; 3] = [246, 246, 244];
+
+/// What does not move, and what moves farthest (sRGB).
+const STILL: [u8; 3] = [176, 186, 198];
+const MOVED: [u8; 3] = [216, 130, 72];
+
+static ENDS: LazyLock<[Linear; 2]> = LazyLock::new(|| [STILL, MOVED].map(Linear::of));
+
+/// From the left, above, and in front of the surface.
+const KEY: DVec3 = DVec3::new(-0.45, 0.65, 0.75);
+
+/// A colour in units of light, in which means are taken.
+#[derive(Clone, Copy)]
+pub struct Linear(Vec3);
+
+impl Linear {
+    /// Of sRGB bytes.
+    pub fn of(bytes: [u8; 3]) -> Self {
+        let decode = |x: u8| {
+            let x = f64::from(x) / 255.0;
+            (if x <= 0.04045 { x / 12.92 } else { libm::pow((x + 0.055) / 1.055, 2.4) }) as f32
+        };
+        Self(Vec3::from_array(bytes.map(decode)))
+    }
+
+    /// As sRGB bytes.
+    pub fn to_bytes(self) -> [u8; 3] {
+        self.0.to_array().map(|x| {
+            let x = f64::from(x.clamp(0.0, 1.0));
+            let coded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 };
+            (255.0 * coded).round() as u8
+        })
+    }
+}
+
+/// The colour of a surface with a normal (y up, z towards the viewer) that has moved by a share of the farthest.
+pub fn lit(normal: DVec3, moved: f64) -> Linear {
+    let key = normal.dot(KEY.normalize()).max(0.0);
+    let sky = 0.5 + 0.5 * normal.y;
+    let edge = 1.0 - normal.z.max(0.0);
+    let rim = edge * edge * edge;
+    let light = 0.16 + 0.22 * sky + 0.72 * key - 0.10 * rim;
+    let [still, far] = *ENDS;
+    let base = still.0.lerp(far.0, moved.clamp(0.0, 1.0) as f32);
+    Linear(base * light as f32)
+}
+
+/// The mean of some colours.
+pub fn mean(colors: impl Iterator<Item = Linear>) -> Linear {
+    let (sum, count) = colors.fold((Vec3::ZERO, 0.0), |(sum, count), color| (sum + color.0, count + 1.0));
+    Linear(sum / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive() {
+        for bytes in [BACKGROUND, STILL, MOVED, [0, 1, 255]] {
+            assert_eq!(Linear::of(bytes).to_bytes(), bytes);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! One view of one shape.
+
+use glam::DVec3;
+
+use super::camera::Camera;
+use super::color::{BACKGROUND, Linear, lit, mean};
+use super::raster::Raster;
+
+/// Samples along each side of a pixel.
+const SAMPLES: usize = 3;
+
+/// The cosine of an angle between two triangles beyond which an edge is seen, and not smoothed away (60 degrees).
+const CREASE: f64 = 0.5;
+
+/// Triangles around a vertex over which normals are smoothed, at most: the hub of a fan may have any number.
+const AROUND: usize = 32;
+
+/// A shape with what colours it.
+pub struct Panel<'a> {
+    pub faces: &'a [[u32; 3]],
+    pub positions: &'a [DVec3],
+    /// Of the corners of each face: see [`normals`].
+    pub normals: &'a [[DVec3; 3]],
+    /// How far each vertex has moved, from 0 to 1.
+    pub amounts: &'a [f64],
+}
+
+impl Panel<'_> {
+    /// The pixels, RGB, row by row.
+    pub fn draw(&self, camera: &Camera) -> Vec<u8> {
+        let mut raster = Raster::new(camera.size().map(|n| n * SAMPLES), Linear::of(BACKGROUND));
+        let seen: Vec<DVec3> = self.positions.iter().map(|p| camera.project(*p, SAMPLES)).collect();
+        for (face, normals) in self.faces.iter().zip(self.normals) {
+            let corners = face.map(|v| v as usize);
+            // Either side looks the same. Which one is seen, the triangle decides and not its smoothed normals, which
+            // turn away too early along outlines.
+            let flat = normal(corners.map(|v| self.positions[v]));
+            let side = if camera.turn(flat).z < 0.0 { -1.0 } else { 1.0 };
+            let [na, nb, nc] = normals.map(|n| camera.turn(n).normalize_or_zero() * side);
+            let [ta, tb, tc] = corners.map(|v| self.amounts[v]);
+            raster.fill(corners.map(|v| seen[v]), |[a, b, c]| {
+                lit((na * a + nb * b + nc * c).normalize_or_zero(), ta * a + tb * b + tc * c)
+            });
+        }
+        raster.blocks(SAMPLES).flat_map(|block| mean(block).to_bytes()).collect()
+    }
+}
+
+/// Normals of the corners of all faces: the mean of the faces around a vertex, by area, of those that are turned like
+/// the corner's own. Not of unit length.
+pub fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[DVec3; 3]> {
+    let flat: Vec<DVec3> = faces.iter().map(|face| normal(face.map(|v| positions[v as usize]))).collect();
+    let units: Vec<DVec3> = flat.iter().map(|normal| normal.normalize_or_zero()).collect();
+    let mut around = vec![Vec::new(); positions.len()];
+    for (i, v) in faces.iter().enumerate().flat_map(|(i, face)| face.map(|v| (i, v as usize))) {
+        if around[v].len() < AROUND {
+            around[v].push(i);
+        }
+    }
+    let smooth = |own: usize, v: u32| {
+        let alike = around[v as usize].iter().filter(|i| units[**i].dot(units[own]) > CREASE);
+        alike.fold(DVec3::ZERO, |sum, i| sum + flat[*i])
+    };
+    let with_own = |own: usize, v: u32| match smooth(own, v) {
+        DVec3::ZERO => flat[own],
+        sum => sum,
+    };
+    faces.iter().enumerate().map(|(own, face)| face.map(|v| with_own(own, v))).collect()
+}
+
+/// Of the triangle's plane, twice its area long.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_bent_is_smooth_and_what_is_folded_is_not() {
+        let bent = |height: f64| {
+            let positions = [DVec3::ZERO, DVec3::Y, DVec3::NEG_X, DVec3::new(1.0, 0.0, height)];
+            normals(&[[0, 1, 2], [0, 3, 1]], &positions)
+        };
+        let [left, right] = bent(0.5)[..] else { panic!() };
+        assert!(left[0] == right[0] && left[1] == right[2] && left[2] == DVec3::Z);
+        let [left, right] = bent(5.0)[..] else { panic!() };
+        assert!(left == [DVec3::Z; 3] && right == [DVec3::new(-5.0, 0.0, 1.0); 3]);
+        // The hub of a fan, and triangles without an area.
+        let faces = vec![[0, 1, 2]; 1000];
+        assert_eq!(normals(&faces, &[DVec3::ZERO, DVec3::X, DVec3::Y])[999][0], DVec3::Z * AROUND as f64);
+        assert_eq!(normals(&faces, &[DVec3::ZERO; 3])[0], [DVec3::ZERO; 3]);
+    }
+}
