@@ -40,6 +40,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
             (found, modes)
         }
         ModesKind::Polynomial => polynomial_solid_modes(solid, source.mesh(), progress)?,
+        ModesKind::Pca => unreachable!("principal components are made without a solid"),
     };
     drop(bar);
     // Natural frequencies are as they are; those of other modes may be very high, and are filtered (paper, section 6).

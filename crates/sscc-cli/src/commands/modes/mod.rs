@@ -13,9 +13,9 @@ use sscc_io::{Elasticity, ModelInfo, read_mesh, write_model};
 use sscc_modes::polynomial_modes;
 
 use crate::args::{self, ModesKind};
-use pca::Components;
 use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
+use pca::Components;
 
 #[derive(Serialize)]
 struct Report {
