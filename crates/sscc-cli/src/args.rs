@@ -88,7 +88,7 @@ pub struct Modes {
     /// density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,
-    /// Cubes along the longest side of the lattice around a surface [default: for about 10,000 cubes in all]
+    /// Cubes along the longest side of the lattice around a surface [default: for about 20,000 cubes in all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub resolution: Option<u32>,
     #[command(flatten)]

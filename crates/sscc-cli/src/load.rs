@@ -26,11 +26,11 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
         Some("identity") => Metric::identity(model.rank()),
         Some("energy") if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
         Some("energy") => bail!(
-            "--metric energy: the model carries no stiffness (sscc modes --kind linear makes one that does); use displacement, mass, identity or a file"
+            "--metric energy: the model has no stiffness; make it with sscc modes --kind linear or nonlinear, or give a file"
         ),
         _ => {
             let numbers = sscc_io::read_matrix(wanted).with_context(
-                || "--metric is neither displacement, mass nor identity, so a file was looked for",
+                || "--metric is neither displacement, mass, energy nor identity, so a file was looked for",
             )?;
             let rank = model.rank();
             let made = match (numbers.rows, numbers.columns) {

@@ -190,7 +190,7 @@ fn metrics_that_do_not_fit() {
     }
     write_npy(&folder.join("inf.npy"), &[2], &[1.0, f64::INFINITY]).unwrap();
     for (metric, named) in [
-        ("energy", "--metric energy: the model carries no stiffness"),
+        ("energy", "--metric energy: the model has no stiffness; make it with sscc modes"),
         ("missing.npy", "missing.npy: not found"),
         ("short", "short: the metric has 1 weights, the model has 2 modes"),
         ("zero", "zero: metric weight 1 (counted from 0) is 0: weights must be positive"),

@@ -192,6 +192,34 @@ fn modes_and_info() {
     assert_eq!(certificates["levels"][0]["min"], certificates["root_radius"]);
 }
 
+/// What a model made with its stiffness can do beyond others.
+#[test]
+fn elasticity() {
+    let folder = strips();
+    let (strips, info) = sscc_io::read_model(&folder.path().join(MODEL)).unwrap();
+    let energy = sscc::Metric::from_weights(sscc::MetricKind::Energy, &[2.0, 8.0]).unwrap();
+    let model =
+        sscc::ReducedModel::with_metric(strips.mesh().clone(), strips.modes().clone(), energy).unwrap();
+    let hz = std::f64::consts::TAU * std::f64::consts::TAU;
+    let forces = sscc_io::Elasticity::Linear(vec![hz, 0.0, 0.0, 9.0 * hz]);
+    let path = folder.path().join("solid.model.safetensors");
+    sscc_io::write_model(&path, &model, &info.with_elasticity(forces)).unwrap();
+
+    let known = sscc(folder.path(), &["info", "solid.model.safetensors", "--json"]).json().remove(0);
+    assert_eq!((&known["frequencies_hz"], &known["nonlinear"]), (&json!([1.0, 3.0]), &json!(false)));
+    let text = sscc(folder.path(), &["info", "solid.model.safetensors"]).stdout;
+    assert!(text.contains("frequencies    1.000, 3.000 Hz (linear forces)\n"), "{text}");
+    let unknown = sscc(folder.path(), &["info", MODEL, "--json"]).json().remove(0);
+    assert!(unknown.get("frequencies_hz").is_none() && unknown.get("nonlinear").is_none());
+
+    let output = "solid.sscc.safetensors";
+    let args = ["certify", "solid.model.safetensors", "-o", output, "--metric", "energy"];
+    let run = sscc(folder.path(), &args);
+    assert!(run.code == Some(0) && run.stdout.contains("metric         energy\n"), "{run:?}");
+    let certified = sscc_io::read_certificates(&folder.path().join(output)).unwrap();
+    assert_eq!(certified.metric(), model.metric());
+}
+
 #[test]
 fn help_and_usage() {
     let folder = tempfile::tempdir().unwrap();

@@ -55,7 +55,7 @@ pub fn parse_cubic(bytes: &[u8]) -> Result<Cubic, FormatError> {
     }
     // Below 2^31 r is: the products stay below 2^93.
     let r = u128::from(rank);
-    let expected = [r, r * (r + 1) / 2, r * (r + 1) * (r + 2) / 6];
+    let expected = monomials(r);
     for (i, (size, expected)) in sizes.iter().zip(expected).enumerate() {
         let (size, degree) = (i32::from_le_bytes(*size), i + 1);
         if u128::try_from(size) != Ok(expected) {
@@ -79,6 +79,11 @@ pub fn parse_cubic(bytes: &[u8]) -> Result<Cubic, FormatError> {
     let (quadratic, cubic) = rest.split_at(quadratic);
     let (linear, quadratic, cubic) = (linear.to_vec(), quadratic.to_vec(), cubic.to_vec());
     Ok(Cubic { rank: rank as usize, linear, quadratic, cubic })
+}
+
+/// The numbers of monomials of degree 1, 2 and 3 in r variables, for r below 2^40.
+pub(crate) fn monomials(r: u128) -> [u128; 3] {
+    [r, r * (r + 1) / 2, r * (r + 1) * (r + 2) / 6]
 }
 
 #[cfg(test)]

@@ -100,6 +100,17 @@ pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, Mod
     Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
 }
 
+/// The eigenvalues, ascending, of a symmetric matrix (r x r, row-major), such as a reduced stiffness: of modes that are
+/// mass-orthonormal, squared natural angular frequencies. Rounding leaves about 1e-14 of the largest, of either sign,
+/// of those that are 0.
+///
+/// # Errors
+/// When it is not r x r, has an entry that is not finite or beyond 2^200, or is not symmetric (to 1e-9 of its largest
+/// entry; the mean with its mirror image is used).
+pub fn symmetric_eigenvalues(rank: usize, matrix: &[f64]) -> Result<Vec<f64>, ModesError> {
+    Ok(eigen(rank, &symmetrised(rank, matrix)?)?.0)
+}
+
 /// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
 /// matrix. On one thread, so that the order of sums is fixed.
 pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {

@@ -17,7 +17,7 @@ pub struct Embedded {
 }
 
 impl Embedded {
-    /// `cells` cubes along the longest side of the surface; if not given, about 10,000 cubes in all.
+    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all.
     ///
     /// # Errors
     /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there would be too

@@ -49,7 +49,7 @@ mod stiffness;
 mod vibration;
 
 pub use boundary::{Boundary, tets_within};
-pub use diagonalize::{Diagonalized, diagonalize};
+pub use diagonalize::{Diagonalized, diagonalize, symmetric_eigenvalues};
 pub use elasticity::ReducedForces;
 pub use embedded::Embedded;
 pub use energy::{DEFAULT_ELL, energy_metric, filter_eigenvalues};

@@ -8,7 +8,7 @@ mod matrix;
 use common::{Random, bumpy};
 use matrix::{diagonal, difference, numbers, product, random_modes, times, transpose, with_spectrum};
 use sscc::{Metric, Modes, ReducedModel};
-use sscc_modes::{Diagonalized, diagonalize};
+use sscc_modes::{Diagonalized, diagonalize, symmetric_eigenvalues};
 
 /// Diagonalizes random modes and checks what holds for every stiffness with these eigenvalues.
 fn check(name: &str, modes: &Modes, stiffness: &[f64], spectrum: &[f64]) -> Diagonalized {
@@ -24,6 +24,8 @@ fn check(name: &str, modes: &Modes, stiffness: &[f64], spectrum: &[f64]) -> Diag
     assert!(found.eigenvalues.is_sorted(), "{name}");
     assert!(found.eigenvalues.iter().all(|x| *x >= 0.0), "{name}");
     assert!(difference(&found.eigenvalues, &spectrum) <= tolerance, "{name}");
+    let alone = symmetric_eigenvalues(n, stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
+    assert!(alone.is_sorted() && difference(&alone, &spectrum) <= tolerance, "{name}");
 
     let identity = diagonal(&vec![1.0; n]);
     assert!(difference(&product(n, &qt, q), &identity) < 1e-12, "{name}: orthogonal");

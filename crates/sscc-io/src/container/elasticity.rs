@@ -1,27 +1,36 @@
-//! Elastic forces in a model container: `stiffness` (r x r), and for large deformations `forces_quadratic` and
-//! `forces_cubic`.
+//! What a model file knows of the elastic forces, and their tensors: `stiffness` (r x r), and for large deformations
+//! `forces_quadratic` and `forces_cubic`.
+
+use sscc::limits;
 
 use super::{Sealed, SealedWriter};
-use crate::{Cubic, FormatError};
+use crate::cubic::monomials;
+use crate::{Cubic, FormatError, Place};
 
 pub(super) const STIFFNESS: &str = "stiffness";
 pub(super) const QUADRATIC: &str = "forces_quadratic";
 pub(super) const CUBIC: &str = "forces_cubic";
 
-/// Mirrored entries of a stiffness may differ by this share of the largest.
-const SYMMETRIC: f64 = 1e-9;
+/// The text entry that states the reduced mass matrix.
+const MASS: &str = "mass";
+/// Its one value: `M~` is the identity.
+const IDENTITY: &str = "identity";
 
-/// The elastic forces of a model whose modes are mass-orthonormal: its reduced mass matrix is the identity.
+/// Mirrored entries differ by at most this share of the largest entry: more is a mistake, not rounding.
+const SYMMETRY_SHARE: f64 = 1e-9;
+
+/// What a model file knows of the elastic forces: the reduced internal forces at q, for modes of which the reduced mass
+/// matrix is the identity. So the eigenvalues of the stiffness are squared natural angular frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elasticity {
-    /// Forces are `K q`: the stiffness K (r x r, row after row), symmetric.
+    /// The stiffness `K~` at rest (r x r, row-major, symmetric): the forces are `K~ q`.
     Linear(Vec<f64>),
-    /// Forces of large deformations; their linear part is the stiffness at rest.
+    /// The forces of large deformations (St. Venant-Kirchhoff); their linear part is the stiffness at rest.
     Nonlinear(Cubic),
 }
 
 impl Elasticity {
-    /// The stiffness at rest (r x r, row after row).
+    /// The stiffness at rest (r x r, row-major).
     pub fn stiffness(&self) -> &[f64] {
         match self {
             Self::Linear(stiffness) => stiffness,
@@ -29,123 +38,96 @@ impl Elasticity {
         }
     }
 
-    /// The squared angular frequencies, where the stiffness is diagonal.
-    pub fn diagonal(&self) -> Option<Vec<f64>> {
-        let stiffness = self.stiffness();
-        let rank = stiffness.len().isqrt();
-        let largest = stiffness.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let off = |at: &usize| at / rank != at % rank && stiffness[*at].abs() > 1e-9 * largest;
-        let diagonal = !(0..stiffness.len()).any(|at| off(&at));
-        diagonal.then(|| (0..rank).map(|k| stiffness[k * (rank + 1)]).collect())
+    /// Number of modes r.
+    pub fn rank(&self) -> usize {
+        match self {
+            Self::Linear(stiffness) => stiffness.len().isqrt(),
+            Self::Nonlinear(forces) => forces.rank,
+        }
     }
 }
 
-/// Adds the forces.
-pub(super) fn write(writer: &mut SealedWriter, elasticity: &Elasticity, rank: usize) {
-    writer.f64(STIFFNESS, &[rank, rank], elasticity.stiffness());
-    if let Elasticity::Nonlinear(forces) = elasticity {
-        let [two, three] = monomials(rank);
-        writer.f64(QUADRATIC, &[rank, two], &forces.quadratic).f64(CUBIC, &[rank, three], &forces.cubic);
-    }
+/// The shapes of the three tensors.
+fn shapes(rank: usize) -> [(&'static str, [usize; 2]); 3] {
+    // A length that no `usize` holds fits no tensor; the largest one means any.
+    let length = |n: u128| usize::try_from(n).unwrap_or(usize::MAX).min(usize::MAX - 1);
+    let [one, two, three] = monomials(rank as u128).map(|n| [rank, length(n)]);
+    [(STIFFNESS, one), (QUADRATIC, two), (CUBIC, three)]
 }
 
-/// Reads the forces of so many modes, if there are any.
+/// Adds the forces of a model of that many modes, and its mass as text.
+///
+/// # Errors
+/// When they would be refused by the reader.
+pub(super) fn write(
+    writer: &mut SealedWriter,
+    elasticity: &Elasticity,
+    rank: usize,
+) -> Result<(), FormatError> {
+    let values = match elasticity {
+        Elasticity::Linear(stiffness) => vec![stiffness],
+        Elasticity::Nonlinear(Cubic { linear, quadratic, cubic, .. }) => vec![linear, quadratic, cubic],
+    };
+    writer.text(MASS, IDENTITY);
+    for ((name, shape), values) in shapes(rank).into_iter().zip(values) {
+        let fits = shape[0].checked_mul(shape[1]) == Some(values.len());
+        if fits {
+            check(name, shape, values)?;
+        }
+        writer.f64(name, &shape, values); // which refuses values that do not fit
+    }
+    Ok(())
+}
+
+/// Reads the forces of a model of that many modes; none where the file has none.
 pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Option<Elasticity>, FormatError> {
-    let has = |name: &str| file.names().iter().any(|n| n == name);
-    if !has(STIFFNESS) && !has(QUADRATIC) && !has(CUBIC) {
+    let names = file.names();
+    let there = |name: &str| names.iter().any(|known| known == name);
+    if ![STIFFNESS, QUADRATIC, CUBIC].into_iter().any(there) {
         return Ok(None);
     }
-    let stiffness = file.f64(STIFFNESS)?.shaped(&[rank, rank])?;
-    let largest = stiffness.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    for i in 0..rank {
-        for j in 0..=i {
-            let (entry, mirrored) = (stiffness.values[i * rank + j], stiffness.values[j * rank + i]);
-            if !entry.is_finite() || !mirrored.is_finite() || (entry - mirrored).abs() > SYMMETRIC * largest {
-                let cause = format!("it is not finite or not symmetric at row {i}, column {j}");
-                return Err(stiffness.refused(cause));
-            }
-        }
+    let mass = file.text(MASS)?;
+    if mass != IDENTITY {
+        let cause = format!("unknown mass {}", crate::error::quoted(mass));
+        return Err(FormatError::new(Place::Key(MASS.into()), cause));
     }
-    if !has(QUADRATIC) && !has(CUBIC) {
-        return Ok(Some(Elasticity::Linear(stiffness.values)));
-    }
-    let [two, three] = monomials(rank);
-    let part = |name: &str, monomials: usize| {
-        let tensor = file.f64(name)?.shaped(&[rank, monomials])?;
-        match tensor.values.iter().all(|x| x.is_finite()) {
-            true => Ok(tensor.values),
-            false => Err(tensor.refused("a coefficient is not finite")),
-        }
+    let tensor = |(name, shape): (&str, [usize; 2])| {
+        let tensor = file.f64(name)?.shaped(&shape)?;
+        check(name, shape, &tensor.values)?;
+        Ok::<_, FormatError>(tensor.values)
     };
-    let (quadratic, cubic) = (part(QUADRATIC, two)?, part(CUBIC, three)?);
-    Ok(Some(Elasticity::Nonlinear(Cubic { rank, linear: stiffness.values, quadratic, cubic })))
+    let [linear, quadratic, cubic] = shapes(rank);
+    let linear = tensor(linear)?;
+    if !there(QUADRATIC) && !there(CUBIC) {
+        return Ok(Some(Elasticity::Linear(linear)));
+    }
+    let (quadratic, cubic) = (tensor(quadratic)?, tensor(cubic)?);
+    Ok(Some(Elasticity::Nonlinear(Cubic { rank, linear, quadratic, cubic })))
 }
 
-/// Monomials of degree 2 and 3. `rank` is that of modes that are in the file, so nothing overflows.
-fn monomials(rank: usize) -> [usize; 2] {
-    let two = rank * (rank + 1) / 2;
-    [two, two.saturating_mul(rank + 2) / 3]
+/// Refuses entries out of range, and a stiffness that is not symmetric.
+fn check(name: &str, [rows, columns]: [usize; 2], values: &[f64]) -> Result<(), FormatError> {
+    let refused = |cause: String| Err(FormatError::new(Place::Tensor(name.into()), cause));
+    let place = |at: usize| format!("at row {}, column {} (counted from 0)", at / columns, at % columns);
+    if let Some(at) = values.iter().position(|x| x.is_nan() || x.abs() > limits::LARGEST) {
+        return refused(format!("{:e} {}: not finite, or beyond 2^200", values[at], place(at)));
+    }
+    if name != STIFFNESS {
+        return Ok(());
+    }
+    let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    for (row, column) in (0..rows).flat_map(|row| (0..row).map(move |column| (row, column))) {
+        let at = row * columns + column;
+        let [entry, mirrored] = [values[at], values[column * columns + row]];
+        if (entry - mirrored).abs() > SYMMETRY_SHARE * largest {
+            return refused(format!(
+                "{entry:e} {}, but {mirrored:e} mirrored: it must be symmetric",
+                place(at)
+            ));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::MODEL;
-    use super::*;
-
-    fn read_back(fill: impl Fn(&mut SealedWriter)) -> Result<Option<Elasticity>, String> {
-        let mut writer = SealedWriter::new(MODEL);
-        fill(&mut writer);
-        let bytes = writer.finish().unwrap();
-        read(&Sealed::parse(&bytes, MODEL).unwrap(), 2).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn forces_are_kept() {
-        let cubic = Cubic {
-            rank: 2,
-            linear: vec![2.0, 1.0, 1.0, 3.0],
-            quadratic: (0..6).map(f64::from).collect(),
-            cubic: (0..8).map(f64::from).collect(),
-        };
-        for forces in [Elasticity::Linear(vec![1.0, 0.0, 0.0, 4.0]), Elasticity::Nonlinear(cubic)] {
-            let read = read_back(|writer| write(writer, &forces, 2)).unwrap();
-            assert_eq!(read, Some(forces));
-        }
-        assert_eq!(read_back(|_| ()).unwrap(), None);
-        assert_eq!(Elasticity::Linear(vec![1.0, 0.0, 0.0, 4.0]).diagonal(), Some(vec![1.0, 4.0]));
-        assert_eq!(Elasticity::Linear(vec![2.0, 1.0, 1.0, 4.0]).diagonal(), None);
-    }
-
-    #[test]
-    fn wrong_forces_are_refused() {
-        let stiffness = |values: [f64; 4]| {
-            move |writer: &mut SealedWriter| {
-                writer.f64(STIFFNESS, &[2, 2], &values);
-            }
-        };
-        assert!(
-            read_back(stiffness([1.0, 2.0, 3.0, 1.0]))
-                .unwrap_err()
-                .contains("not symmetric at row 1, column 0")
-        );
-        assert!(read_back(stiffness([1.0, 0.0, 0.0, f64::NAN])).unwrap_err().contains("not finite"));
-        let wrong = read_back(|writer| {
-            writer.f64(STIFFNESS, &[1, 1], &[1.0]);
-        });
-        assert!(wrong.unwrap_err().contains("was expected"));
-        let lonely = read_back(|writer| {
-            writer.f64(QUADRATIC, &[2, 3], &[0.0; 6]);
-        });
-        assert!(lonely.unwrap_err().contains("stiffness"));
-        let half = read_back(|writer| {
-            stiffness([1.0, 0.0, 0.0, 1.0])(writer);
-            writer.f64(QUADRATIC, &[2, 3], &[0.0; 6]);
-        });
-        assert!(half.unwrap_err().contains("forces_cubic"));
-        let infinite = read_back(|writer| {
-            stiffness([1.0, 0.0, 0.0, 1.0])(writer);
-            writer.f64(QUADRATIC, &[2, 3], &[0.0; 6]).f64(CUBIC, &[2, 4], &[f64::INFINITY; 8]);
-        });
-        assert!(infinite.unwrap_err().contains("not finite"));
-    }
-}
+mod tests;

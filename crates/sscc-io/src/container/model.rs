@@ -7,23 +7,24 @@
 //! | `modes` | F64 | V x 3 x r | NumPy's `modes.reshape(3 * V, r)` is U |
 //! | `metric_scales` | F64 | r | the diagonal of the default metric's factor S, or |
 //! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
-//! | `stiffness` | F64 | r x r | where known: elastic forces at rest are `stiffness q`; the reduced mass is the identity |
-//! | `forces_quadratic` | F64 | r x r(r+1)/2 | where known: those of large deformations, as in VegaFEM's `.cub` |
-//! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | |
+//! | `stiffness` | F64 | r x r | optional: the reduced stiffness `K~` at rest, symmetric |
+//! | `forces_quadratic` | F64 | r x r(r+1)/2 | optional, beside it: coefficients of `q_i q_j` in each force, i <= j |
+//! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with the former: of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
 //!
-//! Text: `metric` (the name of the metric's kind), `units`, `provenance`.
+//! Text: `metric` (the name of the metric's kind), `units`, `provenance`; beside a stiffness `mass`, which is
+//! "identity": the modes are mass-orthonormal, `M~` is the identity, and the natural frequencies in Hz are the roots
+//! of the stiffness's eigenvalues over 2 pi (where it is in SI units, or in others with the second as unit of time).
 
 use std::path::Path;
 
 use glam::DVec3;
 use sscc::{Modes, ReducedModel, TriMesh};
 
-use super::elasticity::Elasticity;
-use super::{ANY, MODEL, Sealed, SealedWriter, elasticity, metric};
+use super::{ANY, Elasticity, MODEL, Sealed, SealedWriter, elasticity, metric};
 use crate::file::{read_whole, write_whole};
-use crate::{FormatError, IoError, Place};
+use crate::{FormatError, IoError};
 
-/// What a model file says beside the numbers. Free text; empty where nothing is known.
+/// What a model file says beside the model. Texts are free, and empty where nothing is known.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelInfo {
@@ -31,17 +32,17 @@ pub struct ModelInfo {
     pub units: String,
     /// Where the mesh and the modes come from.
     pub provenance: String,
-    /// The elastic forces, where they are known; of the rank of the modes.
+    /// The elastic forces, where they are known.
     pub elasticity: Option<Elasticity>,
 }
 
 impl ModelInfo {
-    /// Of these texts.
+    /// Of these texts, and no forces.
     pub fn new(units: impl Into<String>, provenance: impl Into<String>) -> Self {
         Self { units: units.into(), provenance: provenance.into(), elasticity: None }
     }
 
-    /// With elastic forces.
+    /// The same with elastic forces, of a model whose modes are mass-orthonormal.
     #[must_use]
     pub fn with_elasticity(self, elasticity: Elasticity) -> Self {
         Self { elasticity: Some(elasticity), ..self }
@@ -51,7 +52,8 @@ impl ModelInfo {
 /// Writes a model. Reading it back gives the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, the elastic forces are of another rank, or the file cannot be written.
+/// When the texts are beyond 1 MiB, the elastic forces are of another rank, out of range or not symmetric, or the file
+/// cannot be written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -67,7 +69,7 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// The bytes of a model file.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB.
+/// When the texts are beyond 1 MiB, or the elastic forces are of another rank, out of range or not symmetric.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());
@@ -79,12 +81,8 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .collect();
     let mut writer = SealedWriter::new(MODEL);
     metric::write(&mut writer, model.metric());
-    if let Some(elasticity) = &info.elasticity {
-        if elasticity.stiffness().len() != rank * rank {
-            let cause = format!("its stiffness is not that of {rank} modes");
-            return Err(FormatError::new(Place::Tensor(elasticity::STIFFNESS.into()), cause));
-        }
-        elasticity::write(&mut writer, elasticity, rank);
+    if let Some(forces) = &info.elasticity {
+        elasticity::write(&mut writer, forces, rank)?;
     }
     writer
         .text("units", &info.units)
@@ -101,9 +99,16 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 /// As [`read_model`], but for the file's name.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
     let file = Sealed::parse(bytes, MODEL)?;
-    let metrics = [metric::FACTOR, metric::SCALES];
-    let forces = [elasticity::STIFFNESS, elasticity::QUADRATIC, elasticity::CUBIC];
-    file.only(&[&["faces", "modes", "rest_positions"], &metrics[..], &forces].concat())?;
+    file.only(&[
+        "faces",
+        elasticity::CUBIC,
+        elasticity::QUADRATIC,
+        metric::FACTOR,
+        metric::SCALES,
+        "modes",
+        "rest_positions",
+        elasticity::STIFFNESS,
+    ])?;
     let positions = file.f64("rest_positions")?.shaped(&[ANY, 3])?;
     let vertices = positions.shape[0];
     let positions = positions.values.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
@@ -111,10 +116,11 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     let modes = file.f64("modes")?.shaped(&[vertices, 3, ANY])?;
     let rank = modes.shape[2];
     let metric = metric::read(&file, rank)?;
-    let elasticity = elasticity::read(&file, rank)?;
     let mesh = TriMesh::new(positions, faces)?;
     let modes = Modes::from_matrix(vertices, rank, |row, k| modes.values[row * rank + k])?;
     let model = ReducedModel::with_metric(mesh, modes, metric)?;
+    // Of a model with at least one vertex: its modes bear out the rank.
+    let elasticity = elasticity::read(&file, rank)?;
     let info = ModelInfo::new(file.text("units")?, file.text("provenance")?);
     Ok((model, ModelInfo { elasticity, ..info }))
 }

@@ -3,8 +3,10 @@
 use faer::{Mat, MatRef};
 use sscc::{Error, Progress};
 
-use super::basis::{Random, Space, add_product, inner};
+use super::basis::Basis;
 use super::dense::symmetric_eigen;
+use super::space::Space;
+use super::tall::{Random, inner};
 use crate::ModesError;
 use crate::sparse::Cholesky;
 
@@ -34,12 +36,11 @@ pub(super) struct Ritz {
 }
 
 impl Inverse<'_> {
-    /// The operator applied to all columns.
-    pub fn apply(&self, x: MatRef<f64>) -> Result<Mat<f64>, ModesError> {
-        let mut y = self.space.mass.multiply(x);
-        self.factor.solve(&mut y)?;
-        self.space.deflate(&mut y);
-        Ok(y)
+    /// The operator applied to columns of which M times them is given.
+    pub fn apply(&self, mut heavy: Mat<f64>) -> Result<Mat<f64>, ModesError> {
+        self.factor.solve(&mut heavy)?;
+        self.space.deflate(&mut heavy);
+        Ok(heavy)
     }
 }
 
@@ -59,30 +60,29 @@ pub(super) fn largest(
 ) -> Result<Ritz, ModesError> {
     let space = operator.space;
     let capacity = wanted + BLOCK + wanted.max(6 * BLOCK);
-    let mut basis = Mat::zeros(space.size(), capacity);
+    let mut basis = Basis::new(space.size(), capacity);
     let mut projected = Mat::zeros(capacity, capacity);
-    // Columns of the basis on which the projection is complete.
-    let mut done = known.values.len();
-    basis.as_mut().subcols_mut(0, done).copy_from(&known.vectors);
+    basis.extend(known.vectors.as_ref(), space.mass.multiply(known.vectors.as_ref()).as_ref());
     known.values.iter().enumerate().for_each(|(k, value)| projected[(k, k)] = *value);
     drop(known);
     let mut block = random.matrix(space.size(), BLOCK);
     space.deflate(&mut block);
-    space.take_out(&mut block, basis.as_ref().subcols(0, done));
-    space
-        .orthonormalise(&mut block, basis.as_ref().subcols(0, done), random)
-        .ok_or(ModesError::NoEigenvalues)?;
+    basis.take_out(&mut block);
+    let (mut heavy, _) = space.orthonormalise(&mut block, &basis, random).ok_or(ModesError::NoEigenvalues)?;
     for _ in 0..STEPS * (1 + wanted / BLOCK) {
         if progress.is_cancelled() {
             return Err(Error::Cancelled.into());
         }
+        // The projection is complete on the columns before the block.
+        let done = basis.size();
         let size = done + BLOCK;
-        basis.as_mut().subcols_mut(done, BLOCK).copy_from(&block);
-        let mut next = operator.apply(block.as_ref())?;
-        let coupling = space.take_out(&mut next, basis.as_ref().subcols(0, size));
+        basis.extend(block.as_ref(), heavy.as_ref());
+        let mut next = operator.apply(heavy)?;
+        let coupling = basis.take_out(&mut next);
         extend(&mut projected, &coupling, done);
-        let rest = space.orthonormalise(&mut next, basis.as_ref().subcols(0, size), random);
-        let rest = rest.ok_or(ModesError::NoEigenvalues)?;
+        let rest;
+        (heavy, rest) = space.orthonormalise(&mut next, &basis, random).ok_or(ModesError::NoEigenvalues)?;
+        block = next;
         let full = size + BLOCK > capacity;
         if size >= wanted {
             let (values, turn) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
@@ -94,24 +94,17 @@ pub(super) fn largest(
             let good = |k: &usize| residuals.col(*k).norm_l2() <= CONVERGED * values[*k];
             let found = (0..wanted).take_while(good).count();
             progress.report(found.min(shown), shown);
-            let keep = if found == wanted { wanted } else { wanted + BLOCK };
-            if found == wanted || full {
-                let mut vectors = Mat::zeros(space.size(), keep);
-                let turn = turn.as_ref().subcols(0, keep);
-                add_product(vectors.as_mut(), basis.as_ref().subcols(0, size), turn, 1.0);
-                if found == wanted {
-                    return Ok(Ritz { values: values[..wanted].to_vec(), vectors });
-                }
-                basis.as_mut().subcols_mut(0, keep).copy_from(&vectors);
+            if found == wanted {
+                let vectors = basis.times(turn.as_ref().subcols(0, wanted));
+                return Ok(Ritz { values: values[..wanted].to_vec(), vectors });
+            }
+            if full {
+                let keep = wanted + BLOCK;
+                basis.turn(turn.as_ref().subcols(0, keep));
                 projected.fill(0.0);
                 values[..keep].iter().enumerate().for_each(|(k, value)| projected[(k, k)] = *value);
-                done = keep;
-                block = next;
-                continue;
             }
         }
-        done = size;
-        block = next;
     }
     Err(ModesError::NoEigenvalues)
 }
@@ -119,14 +112,15 @@ pub(super) fn largest(
 /// The largest eigenvalue, roughly (never too large), by a few steps of the block power method.
 pub(super) fn roughly_largest(operator: &Inverse, random: &mut Random) -> Result<f64, ModesError> {
     let space = operator.space;
-    let nothing = Mat::zeros(space.size(), 0);
+    let nothing = Basis::new(space.size(), 0);
     let mut block = random.matrix(space.size(), BLOCK);
     let mut value = 0.0;
     for _ in 0..3 {
         space.deflate(&mut block);
-        space.orthonormalise(&mut block, nothing.as_ref(), random).ok_or(ModesError::NoEigenvalues)?;
-        let next = operator.apply(block.as_ref())?;
-        let projected = inner(block.as_ref(), space.mass.multiply(next.as_ref()).as_ref());
+        let (heavy, _) =
+            space.orthonormalise(&mut block, &nothing, random).ok_or(ModesError::NoEigenvalues)?;
+        let next = operator.apply(heavy.clone())?;
+        let projected = inner(heavy.as_ref(), next.as_ref());
         value = descending(projected.as_ref())?.0[0];
         block = next;
     }

@@ -3,7 +3,9 @@
 use faer::Mat;
 use glam::DVec3;
 
-use super::basis::{Random, Space};
+use super::basis::Basis;
+use super::space::Space;
+use super::tall::Random;
 use crate::sparse::BlockSparse;
 
 /// Poisson's number and Young's modulus.
@@ -74,7 +76,7 @@ impl Lattice {
         });
         let nothing = Mat::zeros(rigid.nrows(), 0);
         let space = Space::new(&mass, nothing.as_ref());
-        space.orthonormalise(&mut rigid, nothing.as_ref(), &mut Random(0)).unwrap();
+        space.orthonormalise(&mut rigid, &Basis::new(nothing.nrows(), 0), &mut Random(0)).unwrap();
         Self { stiffness, mass, positions, rigid }
     }
 }

@@ -4,11 +4,12 @@ use faer::{Mat, MatRef};
 use glam::DVec3;
 use sscc::{Error, Progress};
 
-use super::basis::{Random, Space};
 use super::count::{Count, count_below_gap};
 use super::dense::all_modes;
 use super::lanczos::{BLOCK, Inverse, Ritz, largest};
 use super::shift::{Shifted, factor_below, factor_shifted, negligible};
+use super::space::Space;
+use super::tall::Random;
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 

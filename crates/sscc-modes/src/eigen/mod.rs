@@ -8,6 +8,8 @@ mod lanczos;
 pub(crate) mod lattice;
 mod lowest;
 mod shift;
+mod space;
+mod tall;
 #[cfg(test)]
 pub(crate) mod tests;
 

@@ -1,7 +1,8 @@
 //! The shift that makes the stiffness of a free body positive definite.
 
-use super::basis::{Random, Space};
 use super::lanczos::{Inverse, roughly_largest};
+use super::space::Space;
+use super::tall::Random;
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, Cholesky};
 

@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::{Mat, Side};
 use sscc::{Error, Progress};
 
-use super::basis::{Random, Space};
 use super::lanczos::{Inverse, Ritz, largest};
 use super::lattice::{Lattice, dense};
+use super::space::Space;
+use super::tall::Random;
 use super::{Lowest, lowest_modes};
 use crate::ModesError;
 use crate::sparse::Analysis;

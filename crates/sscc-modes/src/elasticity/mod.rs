@@ -8,7 +8,7 @@ mod stvk;
 pub(crate) use element::cube_is_inverted;
 pub use forces::ReducedForces;
 pub(crate) use reduce::reduced_forces;
-pub(crate) use stvk::second_derivative;
+pub(crate) use stvk::second_derivatives;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use sscc::{Error, Modes, Progress};
 
@@ -80,9 +80,12 @@ pub(crate) fn reduced_forces(
 /// Writes the strains of an element's points below the given row; returns the next free row.
 fn add_strains(element: &Element, modes: &Modes, strains: &mut Mat<f64>, mut row: usize) -> usize {
     let r = modes.rank();
+    let at_corners = |k: usize| -> Vec<DVec3> {
+        element.vertices.iter().map(|v| modes.displacements()[*v as usize * r + k]).collect()
+    };
+    let fields: Vec<Vec<DVec3>> = (0..r).map(at_corners).collect();
     for point in element.points() {
-        let gradients: Vec<DMat3> =
-            (0..r).map(|k| gradient(element, point, |v| modes.displacements()[v as usize * r + k])).collect();
+        let gradients: Vec<DMat3> = fields.iter().map(|u| gradient(point, u)).collect();
         let root = point.volume.sqrt();
         let mut column = 0;
         let mut put = |strain: DMat3| {

@@ -6,9 +6,13 @@
 //! gradient. Linear in `A` it is linear elasticity; it turns with large rotations, as linear elasticity does not.
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
-use super::element::{Element, Point};
+use super::element::Point;
 use crate::{Material, Solid};
+
+/// Pairs for which one thread walks over the elements.
+const PAIRS: usize = 8;
 
 /// The stress of a symmetric strain.
 pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
@@ -16,12 +20,11 @@ pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(material.lame_lambda() * trace)) + strain * (2.0 * material.lame_mu())
 }
 
-/// The gradient of a displacement at a point.
-pub(crate) fn gradient(element: &Element, point: &Point, displacements: impl Fn(u32) -> DVec3) -> DMat3 {
+/// The gradient at a point of displacements of its element's corners.
+pub(crate) fn gradient(point: &Point, displacements: &[DVec3]) -> DMat3 {
     let mut sum = DMat3::ZERO;
-    for (vertex, g) in element.vertices.iter().zip(&point.gradients) {
-        let u = displacements(*vertex);
-        sum += DMat3::from_cols(u * g.x, u * g.y, u * g.z);
+    for (u, g) in displacements.iter().zip(&point.gradients) {
+        sum += DMat3::from_cols(*u * g.x, *u * g.y, *u * g.z);
     }
     sum
 }
@@ -35,38 +38,66 @@ pub(crate) fn symmetric(a: DMat3) -> DMat3 {
 /// the reduced polynomial.
 #[cfg(test)]
 pub(crate) fn energy_and_forces(solid: &Solid, displacements: &[DVec3]) -> (f64, Vec<DVec3>) {
-    let mut energy = 0.0;
-    let forces = integrate(solid, |element, point| {
-        let a = gradient(element, point, |v| displacements[v as usize]);
-        let strain = symmetric(a) + a.transpose() * a * 0.5;
-        let s = stress(element.material, strain);
-        energy += 0.5 * point.volume * (0..3).map(|k| s.col(k).dot(strain.col(k))).sum::<f64>();
-        (DMat3::IDENTITY + a) * s
-    });
+    let (mut energy, mut forces) = (0.0, vec![DVec3::ZERO; solid.vertices().len()]);
+    for index in 0..solid.element_count() {
+        let element = solid.element(index);
+        let corners: Vec<DVec3> = element.vertices.iter().map(|v| displacements[*v as usize]).collect();
+        let mut own = [DVec3::ZERO; 8];
+        for point in element.points() {
+            let a = gradient(point, &corners);
+            let strain = symmetric(a) + a.transpose() * a * 0.5;
+            let s = stress(element.material, strain);
+            energy += 0.5 * point.volume * (0..3).map(|k| s.col(k).dot(strain.col(k))).sum::<f64>();
+            add_forces(point, (DMat3::IDENTITY + a) * s, &mut own);
+        }
+        element.vertices.iter().zip(own).for_each(|(v, f)| forces[*v as usize] += f);
+    }
     (energy, forces)
 }
 
-/// The second derivative of the forces at rest along two displacements: the Hessian stiffness `H : a b`
-/// (Barbic and James 2005), one vector for each vertex. Symmetric in `a` and `b`.
-pub(crate) fn second_derivative(solid: &Solid, a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
-    integrate(solid, |element, point| {
-        let [a, b] = [a, b].map(|u| gradient(element, point, |v| u[v as usize]));
-        let [s_a, s_b] = [a, b].map(|x| stress(element.material, symmetric(x)));
-        a * s_b + b * s_a + stress(element.material, symmetric(a.transpose() * b))
-    })
-}
-
-/// The forces of a first Piola-Kirchhoff stress given at each point.
-fn integrate(solid: &Solid, mut stress: impl FnMut(&Element, &Point) -> DMat3) -> Vec<DVec3> {
-    let mut forces = vec![DVec3::ZERO; solid.vertices().len()];
-    for index in 0..solid.element_count() {
-        let element = solid.element(index);
-        for point in element.points() {
-            let p = stress(&element, point) * point.volume;
-            for (vertex, g) in element.vertices.iter().zip(&point.gradients) {
-                forces[*vertex as usize] += p * *g;
+/// The second derivatives of the forces at rest along pairs of displacements: the Hessian stiffness `H : a b`
+/// (Barbic and James 2005), for each pair one vector for each vertex. Symmetric in `a` and `b`.
+pub(crate) fn second_derivatives(
+    solid: &Solid,
+    fields: &[Vec<DVec3>],
+    pairs: &[(usize, usize)],
+) -> Vec<Vec<DVec3>> {
+    let some = |pairs: &[(usize, usize)]| {
+        let mut forces = vec![vec![DVec3::ZERO; solid.vertices().len()]; pairs.len()];
+        let used = |k: &usize| pairs.iter().any(|(i, j)| i == k || j == k);
+        let used: Vec<usize> = (0..fields.len()).filter(used).collect();
+        let mut at_corners = vec![[DVec3::ZERO; 8]; fields.len()];
+        let mut at_point = vec![(DMat3::ZERO, DMat3::ZERO); fields.len()];
+        for index in 0..solid.element_count() {
+            let element = solid.element(index);
+            let mut own = [[DVec3::ZERO; 8]; PAIRS];
+            for k in &used {
+                let corners = at_corners[*k].iter_mut().zip(element.vertices);
+                corners.for_each(|(u, v)| *u = fields[*k][*v as usize]);
+            }
+            for point in element.points() {
+                for k in &used {
+                    let a = gradient(point, &at_corners[*k][..element.vertices.len()]);
+                    at_point[*k] = (a, stress(element.material, symmetric(a)));
+                }
+                for ((i, j), own) in pairs.iter().zip(&mut own) {
+                    let ((a, s_a), (b, s_b)) = (at_point[*i], at_point[*j]);
+                    let both = stress(element.material, symmetric(a.transpose() * b));
+                    add_forces(point, a * s_b + b * s_a + both, own);
+                }
+            }
+            for (forces, own) in forces.iter_mut().zip(own) {
+                element.vertices.iter().zip(own).for_each(|(v, f)| forces[*v as usize] += f);
             }
         }
-    }
-    forces
+        forces
+    };
+    // Each pair's sums are in the order of the elements, whatever the number of threads.
+    pairs.par_chunks(PAIRS).flat_map_iter(some).collect()
+}
+
+/// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's corners.
+fn add_forces(point: &Point, stress: DMat3, forces: &mut [DVec3; 8]) {
+    let stress = stress * point.volume;
+    forces.iter_mut().zip(&point.gradients).for_each(|(f, g)| *f += stress * *g);
 }

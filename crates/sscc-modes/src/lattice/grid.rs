@@ -7,7 +7,7 @@ use crate::ModesError;
 
 /// How many cells the solid is to touch unless a resolution is asked for: the vibrations of the lowest
 /// few dozen modes are many cells long then, and their computation takes seconds.
-pub(super) const DEFAULT_CELLS: f64 = 10_000.0;
+pub(super) const DEFAULT_CELLS: f64 = 20_000.0;
 
 /// The most cells that the solid may touch: nodes and links of more need gigabytes.
 const MOST_CELLS: f64 = 5e6;

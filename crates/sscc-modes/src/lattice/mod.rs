@@ -56,7 +56,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Cubes about the solid within a closed surface: so many along its longest side, or none for about 10,000
+    /// Cubes about the solid within a closed surface: so many along its longest side, or none for about 20,000
     /// cubes. They are in the order of cells, x fastest; nodes are in the order of their first use.
     ///
     /// # Errors

@@ -9,6 +9,9 @@ pub(crate) const FIXED: u32 = u32::MAX;
 /// A row in the making is tidied when it is longer than this, so that vertices of many elements need little memory.
 const UNTIDY: usize = 256;
 
+/// Rows that one thread copies at once.
+const ROWS: usize = 1024;
+
 /// Both triangles, row after row of blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockSparse {
@@ -100,8 +103,10 @@ impl BlockSparse {
         }
         // Row-major copies, because a block takes three whole rows of x.
         let mut packed = vec![0.0; x.nrows() * width];
-        packed.par_chunks_mut(width).enumerate().for_each(|(i, row)| {
-            row.iter_mut().enumerate().for_each(|(j, to)| *to = x[(i, j)]);
+        packed.par_chunks_mut(ROWS * width).zip(x.par_row_chunks(ROWS)).for_each(|(packed, x)| {
+            for (j, column) in x.col_iter().enumerate() {
+                packed[j..].iter_mut().step_by(width).zip(column.iter()).for_each(|(to, x)| *to = *x);
+            }
         });
         let mut product = vec![0.0; packed.len()];
         product.par_chunks_mut(3 * width).enumerate().for_each(|(row, sums)| {
@@ -116,7 +121,13 @@ impl BlockSparse {
                 }
             }
         });
-        Mat::from_fn(x.nrows(), width, |i, j| product[i * width + j])
+        let mut unpacked = Mat::zeros(x.nrows(), width);
+        unpacked.par_row_chunks_mut(ROWS).zip(product.par_chunks(ROWS * width)).for_each(|(to, from)| {
+            for (j, column) in to.col_iter_mut().enumerate() {
+                column.iter_mut().zip(from[j..].iter().step_by(width)).for_each(|(to, x)| *to = *x);
+            }
+        });
+        unpacked
     }
 
     /// The lower triangle, compressed by columns: where each column starts, the rows, ascending, and the entries.

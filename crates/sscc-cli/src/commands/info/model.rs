@@ -4,12 +4,13 @@ use serde::Serialize;
 use sscc::{Digest, ReducedModel, Scope};
 use sscc_io::{Elasticity, ModelInfo};
 
+use super::frequencies::frequencies;
 use super::surface::Surface;
 use super::{form, hexadecimal, range};
 use crate::output::length;
 
-/// Frequencies that are shown.
-const SHOWN: usize = 6;
+/// Frequencies that are told to people; the JSON has all.
+const SHOWN: usize = 8;
 
 #[derive(Serialize)]
 pub struct Model {
@@ -19,13 +20,14 @@ pub struct Model {
     metric: &'static str,
     metric_form: &'static str,
     metric_scales: Vec<f64>,
-    units: String,
-    provenance: String,
-    /// Natural frequencies of the modes (Hz, if the material is in SI units), where the stiffness is known and diagonal.
+    /// Whether forces of large deformations are known: absent where no stiffness is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nonlinear: Option<bool>,
+    /// Natural frequencies, of a file with a stiffness that has some.
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
-    /// Whether forces of large deformations are known.
-    nonlinear_forces: bool,
+    units: String,
+    provenance: String,
     /// The digest that certificates by the defaults would have.
     digest: String,
 }
@@ -38,28 +40,12 @@ impl Model {
             metric: model.metric().kind().name(),
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
-            frequencies_hz: info
-                .elasticity
-                .as_ref()
-                .and_then(Elasticity::diagonal)
-                .map(|all| all.iter().map(|x| x.max(0.0).sqrt() / std::f64::consts::TAU).collect()),
-            nonlinear_forces: matches!(info.elasticity, Some(Elasticity::Nonlinear(_))),
+            nonlinear: info.elasticity.as_ref().map(|known| matches!(known, Elasticity::Nonlinear(_))),
+            frequencies_hz: info.elasticity.as_ref().and_then(frequencies),
             units: info.units,
             provenance: info.provenance,
             digest: hexadecimal(Digest::of(model, &Scope::of(model))),
         }
-    }
-
-    /// The frequencies, as far as a line holds them.
-    fn frequencies(&self) -> String {
-        let Some(all) = &self.frequencies_hz else { return "not known".into() };
-        let shown: Vec<String> = all.iter().take(SHOWN).map(|f| length(*f)).collect();
-        let rest = match all.last() {
-            Some(last) if all.len() > SHOWN => format!(", ... {}", length(*last)),
-            _ => String::new(),
-        };
-        let forces = if self.nonlinear_forces { "; forces of large deformations known" } else { "" };
-        format!("{}{rest} Hz{forces}", shown.join(", "))
     }
 
     pub fn lines(&self) -> Vec<String> {
@@ -70,11 +56,26 @@ impl Model {
         lines.extend([
             format!("modes          {}", self.rank),
             format!("default metric {} ({}), {}", self.metric, self.metric_form, range(&self.metric_scales)),
-            format!("frequencies    {}", self.frequencies()),
+        ]);
+        lines.extend(self.elasticity());
+        lines.extend([
             format!("units          {}", known(&self.units)),
             format!("provenance     {}", known(&self.provenance)),
             format!("digest         {}", self.digest),
         ]);
         lines
+    }
+
+    /// What is known of the elastic forces.
+    fn elasticity(&self) -> Option<String> {
+        let forces = if self.nonlinear? { "nonlinear" } else { "linear" };
+        Some(match &self.frequencies_hz {
+            Some(all) => {
+                let shown: Vec<String> = all.iter().take(SHOWN).map(|hz| length(*hz)).collect();
+                let more = if all.len() > SHOWN { ", ..." } else { "" };
+                format!("frequencies    {}{more} Hz ({forces} forces)", shown.join(", "))
+            }
+            None => format!("frequencies    none: the stiffness has a negative eigenvalue ({forces} forces)"),
+        })
     }
 }

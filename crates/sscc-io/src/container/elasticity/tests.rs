@@ -1,0 +1,108 @@
+use super::*;
+use crate::ModelInfo;
+use crate::container::{MODEL, model_from_bytes, model_to_bytes};
+use glam::DVec3;
+use sscc::{Modes, ReducedModel, TriMesh};
+
+/// A triangle with two modes.
+fn model() -> ReducedModel {
+    let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+    let modes = Modes::from_matrix(3, 2, |row, k| (1 + row + k) as f64).unwrap();
+    ReducedModel::new(mesh, modes).unwrap()
+}
+
+fn nonlinear() -> Elasticity {
+    let count = |n: usize| (0..n).map(|i| i as f64 - 2.5).collect();
+    let linear = vec![2.0, -0.5, -0.5, 1e9];
+    Elasticity::Nonlinear(Cubic { rank: 2, linear, quadratic: count(6), cubic: count(8) })
+}
+
+fn write_model(elasticity: Elasticity) -> Result<Vec<u8>, FormatError> {
+    model_to_bytes(&model(), &ModelInfo::new("m", "test").with_elasticity(elasticity))
+}
+
+#[test]
+fn forces_are_kept_to_the_last_bit() {
+    // Symmetric up to rounding only.
+    let linear = Elasticity::Linear(vec![2.0, -0.5, -0.5 + 1e-12, 3.0]);
+    for elasticity in [linear, nonlinear()] {
+        assert_eq!((elasticity.rank(), elasticity.stiffness()[0]), (2, 2.0));
+        let bytes = write_model(elasticity.clone()).unwrap();
+        let (model, info) = model_from_bytes(&bytes).unwrap();
+        assert_eq!((info.units.as_str(), info.elasticity.as_ref()), ("m", Some(&elasticity)));
+        assert_eq!(model_to_bytes(&model, &info).unwrap(), bytes);
+        assert_eq!(Sealed::parse(&bytes, MODEL).unwrap().text("mass").unwrap(), "identity");
+        for at in 0..bytes.len() {
+            let mut flipped = bytes.clone();
+            flipped[at] ^= 1 << (at % 8);
+            assert!(model_from_bytes(&flipped).is_err(), "byte {at}");
+            assert!(model_from_bytes(&bytes[..at]).is_err(), "length {at}");
+        }
+    }
+}
+
+#[test]
+fn a_model_without_forces_is_written_as_ever() {
+    let bytes = model_to_bytes(&model(), &ModelInfo::new("m", "test")).unwrap();
+    let file = Sealed::parse(&bytes, MODEL).unwrap();
+    assert_eq!(file.names(), ["faces", "metric_scales", "modes", "rest_positions"]);
+    assert!(file.text("mass").is_err());
+    assert_eq!(model_from_bytes(&bytes).unwrap().1.elasticity, None);
+}
+
+#[test]
+fn what_could_not_be_read_is_not_written() {
+    let message = |elasticity| write_model(elasticity).unwrap_err().to_string();
+    let linear = |values: &[f64]| message(Elasticity::Linear(values.to_vec()));
+    assert!(linear(&[1.0]).contains("tensor 'stiffness': 1 values do not fill the shape [2, 2]"));
+    assert!(linear(&[1.0, 0.0, f64::NAN, 1.0]).contains("NaN at row 1, column 0 (counted from 0)"));
+    assert!(linear(&[1.0, 0.5, 0.4, 1.0]).contains("but 5e-1 mirrored: it must be symmetric"));
+    let mut short = nonlinear();
+    if let Elasticity::Nonlinear(forces) = &mut short {
+        forces.cubic.pop();
+    }
+    assert!(message(short).contains("tensor 'forces_cubic': 7 values do not fill the shape [2, 4]"));
+}
+
+/// Reads forces of rank 2 from these tensors, all of ones, under a good seal.
+fn message(mass: Option<&str>, tensors: &[(&str, &[usize], &[f64])]) -> String {
+    let mut writer = SealedWriter::new(MODEL);
+    if let Some(mass) = mass {
+        writer.text("mass", mass);
+    }
+    tensors.iter().for_each(|(name, shape, values)| {
+        writer.f64(name, shape, values);
+    });
+    let bytes = writer.finish().unwrap();
+    let read = read(&Sealed::parse(&bytes, MODEL).unwrap(), 2);
+    read.map_or_else(|error| error.to_string(), |found| format!("{found:?}"))
+}
+
+#[test]
+fn forces_that_are_none_are_refused() {
+    let stiffness = |shape, values| message(Some("identity"), &[("stiffness", shape, values)]);
+    let good: (&str, &[usize], &[f64]) = ("stiffness", &[2, 2], &[1.0; 4]);
+    assert!(message(Some("identity"), &[good]).starts_with("Some(Linear"));
+    assert_eq!(message(None, &[good]), "metadata 'mass': missing");
+    assert_eq!(message(Some("lumped"), &[good]), "metadata 'mass': unknown mass 'lumped'");
+    assert!(stiffness(&[4], &[1.0; 4]).contains("it has the shape [4], [2, 2] was expected"));
+    assert!(stiffness(&[3, 3], &[1.0; 9]).contains("[2, 2] was expected"));
+    assert!(stiffness(&[2, 2], &[1.0, 0.0, 0.0, f64::INFINITY]).contains("inf at row 1, column 1"));
+    assert!(stiffness(&[2, 2], &[1.0, 0.0, 0.0, 1e70]).contains("beyond 2^200"));
+    assert!(stiffness(&[2, 2], &[1.0, 1e-8, 0.0, 1.0]).contains("0e0 at row 1, column 0"));
+    let (quadratic, cubic): (&[usize], &[usize]) = (&[2, 3], &[2, 4]);
+    let with = |more: &[(&str, &[usize], &[f64])]| message(Some("identity"), &[&[good], more].concat());
+    assert!(with(&[("forces_quadratic", quadratic, &[1.0; 6])]).contains("'forces_cubic': missing"));
+    assert!(with(&[("forces_cubic", cubic, &[1.0; 8])]).contains("'forces_quadratic': missing"));
+    let wrong = [("forces_quadratic", quadratic, &[1.0; 6][..]), ("forces_cubic", &[2, 5], &[1.0; 10])];
+    assert!(with(&wrong).contains("tensor 'forces_cubic': it has the shape [2, 5], [2, 4] was expected"));
+    let nan = [("forces_quadratic", quadratic, &[f64::NAN; 6][..]), ("forces_cubic", cubic, &[1.0; 8])];
+    assert!(with(&nan).contains("tensor 'forces_quadratic': NaN at row 0, column 0"));
+    let alone = message(Some("identity"), &[("forces_quadratic", quadratic, &[1.0; 6])]);
+    assert_eq!(alone, "tensor 'stiffness': missing");
+}
+
+#[test]
+fn no_rank_overflows() {
+    assert_eq!(shapes(usize::MAX >> 24)[2].1[1], usize::MAX - 1);
+}
