@@ -1,6 +1,7 @@
 //! Example shapes, made in code: the same bits on every machine.
 
 mod capped_tube;
+mod elastic;
 mod hare;
 mod implicit;
 mod marching;
@@ -10,6 +11,7 @@ mod spring;
 mod surface;
 mod tube;
 
+pub use elastic::{ElasticShape, elastic_hare, elastic_spring};
 pub use hare::hare;
 pub use serpent::serpent;
 pub use spring::spring;

@@ -6,33 +6,26 @@ use sscc_io::Rows;
 /// Number of frames: three seconds at thirty frames a second.
 const FRAMES: usize = 90;
 
-/// `|z|` of the last frame, as a share of the spring's height: about four times the root radius.
-const LARGEST: f64 = 0.2;
-
-/// Polynomial modes that bring coils together: stretch along the axis, bending about x and y, and squashing of
-/// one end. The others swing with a quarter of their width.
-const WIDE: [usize; 4] = [2, 12, 13, 14];
+/// `|z|` of the last frame, as a multiple of the root radius.
+const LARGEST: f64 = 4.0;
 
 /// One q for each frame: every mode swings with a frequency of its own, the amplitude grows from 0. The same on
 /// every machine.
-pub fn animate(model: &ReducedModel) -> Rows {
+pub fn animate(model: &ReducedModel, root_radius: f64) -> Rows {
     let rank = model.rank();
-    let positions = model.mesh().rest_positions();
-    let height = 2.0 * positions.iter().map(|p| p.z).fold(0.0, f64::max);
     let mut data = Vec::with_capacity(FRAMES * rank);
     for frame in 0..FRAMES {
         let time = frame as f64 / (FRAMES - 1) as f64;
         let z: Vec<f64> = (0..rank).map(|k| swing(k, time)).collect();
         let norm = z.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let goal = LARGEST * height * time;
+        let goal = LARGEST * root_radius * time;
         data.extend(z.iter().zip(model.metric().scales()).map(|(x, scale)| x * goal / (norm * scale)));
     }
     Rows { rows: FRAMES, columns: rank, data }
 }
 
-/// Where mode k swings at a time from 0 to 1.
+/// Where mode k swings at a time from 0 to 1: high modes have less energy.
 fn swing(k: usize, time: f64) -> f64 {
-    let width = if WIDE.contains(&k) { 1.0 } else { 0.25 };
     let (k, turn) = (k as f64, std::f64::consts::TAU);
-    width * libm::sin(turn * ((3.0 + 0.37 * k) * time + 0.17 * k))
+    libm::sin(turn * ((3.0 + 0.37 * k) * time + 0.17 * k)) / (1.0 + 0.25 * k)
 }

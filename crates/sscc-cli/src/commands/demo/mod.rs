@@ -9,11 +9,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, ensure};
-use sscc::{CertifyOptions, ReducedModel};
-use sscc_modes::{polynomial_modes, shapes::spring};
+use sscc::CertifyOptions;
+use sscc_modes::shapes::elastic_spring;
 
 use crate::args::{Demo, Threads};
 use crate::output::Output;
+use crate::progress::Bar;
 use crate::{Outcome, load};
 use frames::Frames;
 use report::Report;
@@ -22,19 +23,20 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     if let Some(folder) = &args.out {
         save::prepare(folder)?;
     }
-    let mesh = spring();
-    let modes = polynomial_modes(&mesh).context("the embedded spring")?;
-    let model = ReducedModel::new(mesh, modes).context("the embedded spring")?;
+    let start = Instant::now();
+    let spring = elastic_spring(&Bar::new("modes")).context("the embedded spring")?;
+    let modes_seconds = start.elapsed().as_secs_f64();
+    let model = &spring.model;
 
     let threads = load::threads(&Threads { threads: None });
     let start = Instant::now();
     let options = CertifyOptions { threads: Some(threads), ..CertifyOptions::default() };
-    let certificates = load::certify(&model, Path::new("the embedded spring"), &options)?;
-    let certify_seconds = start.elapsed().as_secs_f64();
+    let certificates = load::certify(model, Path::new("the embedded spring"), &options)?;
+    let seconds = [modes_seconds, start.elapsed().as_secs_f64()];
 
-    let animation = animation::animate(&model);
-    let frames = Frames::check(&model, &certificates, &animation)?;
-    let report = Report::new(&model, &certificates, &frames, certify_seconds, threads);
+    let animation = animation::animate(model, certificates.root_radius());
+    let frames = Frames::check(model, &certificates, &animation)?;
+    let report = Report::new(model, &certificates, &frames, seconds, threads);
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
@@ -42,7 +44,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         report.lines().into_iter().try_for_each(|line| out.line(line))?;
     }
     if let Some(folder) = &args.out {
-        save::save(folder, &model, &certificates, &animation)?;
+        save::save(folder, spring, &certificates, &animation)?;
         if !args.json.json {
             save::what_next(folder).into_iter().try_for_each(|line| out.line(line))?;
         }

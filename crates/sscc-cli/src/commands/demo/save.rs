@@ -4,9 +4,11 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
+use crate::commands::modes::elasticity;
 use anyhow::{Context, Result};
-use sscc::{Certificates, ReducedModel, TriMesh};
+use sscc::{Certificates, TriMesh};
 use sscc_io::{ModelInfo, Rows, write_certificates, write_model, write_npy, write_whole};
+use sscc_modes::shapes::ElasticShape;
 
 const MESH: &str = "spring.obj";
 const MODEL: &str = "spring.model.safetensors";
@@ -24,13 +26,15 @@ pub fn prepare(folder: &Path) -> Result<()> {
 /// Writes the four files.
 pub fn save(
     folder: &Path,
-    model: &ReducedModel,
+    spring: ElasticShape,
     certificates: &Certificates,
     animation: &Rows,
 ) -> Result<()> {
+    let ElasticShape { model, eigenvalues, forces } = spring;
     write_whole(&folder.join(MESH), to_obj(model.mesh()).as_bytes())?;
-    let info = ModelInfo::new("m", "embedded double-helix spring, polynomial modes");
-    write_model(&folder.join(MODEL), model, &info)?;
+    let info = ModelInfo::new("m", "embedded double-helix spring, linear modes")
+        .with_elasticity(elasticity(eigenvalues, forces));
+    write_model(&folder.join(MODEL), &model, &info)?;
     write_certificates(&folder.join(CERTIFICATES), certificates)?;
     write_npy(&folder.join(ANIMATION), &[animation.rows, animation.columns], &animation.data)?;
     Ok(())
@@ -48,7 +52,11 @@ pub fn what_next(folder: &Path) -> Vec<String> {
         format!("  {sscc} info {certificates}"),
         format!("  {sscc} check {model} --certificates {certificates} --trajectory {}", file(ANIMATION)),
         format!("  {sscc} audit {model} --certificates {certificates} --samples 1000"),
-        format!("  {sscc} modes {} -o {} --kind polynomial", file(MESH), file("again.model.safetensors")),
+        format!(
+            "  {sscc} modes {} -o {} --kind linear --resolution 30",
+            file(MESH),
+            file("again.model.safetensors")
+        ),
     ]
 }
 

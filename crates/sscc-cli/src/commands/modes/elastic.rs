@@ -76,7 +76,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
 }
 
 /// The forces as a model file holds them.
-fn elasticity(eigenvalues: Vec<f64>, forces: Option<ReducedForces>) -> Elasticity {
+pub fn elasticity(eigenvalues: Vec<f64>, forces: Option<ReducedForces>) -> Elasticity {
     let rank = eigenvalues.len();
     let mut stiffness = vec![0.0; rank * rank];
     eigenvalues.iter().enumerate().for_each(|(k, x)| stiffness[k * (rank + 1)] = *x);

@@ -15,6 +15,7 @@ use sscc_modes::polynomial_modes;
 use crate::args::{self, ModesKind};
 use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
+pub use elastic::elasticity;
 use pca::Components;
 
 #[derive(Serialize)]

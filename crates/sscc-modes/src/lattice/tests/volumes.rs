@@ -20,7 +20,7 @@ fn boxes() {
             assert_eq!(duplicates(&lattice), 0);
         }
         let about = lattice(mesh, None).cubes.len();
-        assert!((8_000..12_000).contains(&about), "{about} cubes by default");
+        assert!((18_000..22_000).contains(&about), "{about} cubes by default");
     }
     // A box of one cell, and all corners of a box.
     let one = lattice(&aligned, Some(1));
