@@ -93,7 +93,7 @@ impl<'a> Body<'a> {
     /// Translations and rotations that vanish at the fixed vertices, M-orthonormal.
     fn rigid_motions(&self) -> Result<Mat<f64>, ModesError> {
         let centre = self.free.iter().sum::<DVec3>() / self.free.len() as f64;
-        let size = self.free.iter().map(|p| p.distance(centre)).fold(f64::MIN_POSITIVE, f64::max);
+        let size = self.diagonal();
         let motion = |p: DVec3, k: usize| match k {
             0..3 => DVec3::AXES[k],
             _ => DVec3::AXES[k - 3].cross((p - centre) / size),

@@ -187,6 +187,16 @@ pub enum ModesError {
         /// Degrees of freedom, without fixed vertices and rigid motions.
         available: usize,
     },
+    /// More modes for large deformations than their forces have room for.
+    #[error(
+        "{asked} nonlinear modes were asked for: their forces have rank^4 coefficients; ask for at most {most}"
+    )]
+    NonlinearRank {
+        /// Modes asked for.
+        asked: usize,
+        /// The most there may be.
+        most: usize,
+    },
     /// A deformation of a solid has a negative energy, or none.
     #[error(
         "the stiffness is not positive at free vertex {vertex} (counted from 0): check the elements and materials around it"
@@ -197,7 +207,7 @@ pub enum ModesError {
     },
     /// Parts that hang together by less than a face.
     #[error(
-        "the body has {found} motions that cost no energy, a connected one has {expected}: parts hang together by an edge or a vertex only, or by nothing; join them or fix more vertices"
+        "the body has {found} motions that cost no energy, a connected one has {expected}: parts hang together by an edge or a vertex only, or by nothing (join them, or fix more vertices); or the body is so slender, or its materials so unlike, that rounding hides its lowest vibrations (take larger elements)"
     )]
     Mechanism {
         /// Motions found.
@@ -216,7 +226,7 @@ pub enum ModesError {
         counted: usize,
     },
     /// Not enough memory for the factor of the stiffness.
-    #[error("the stiffness of this body is too large for the memory: take a coarser mesh")]
+    #[error("the stiffness of this body is too large for the memory: take a coarser mesh, or fewer cubes")]
     Memory,
     /// A surface with a hole, or with triangles that are oriented differently.
     #[error(

@@ -26,8 +26,8 @@
 //! the stiffness of the solid, an example at [`diagonalize`] makes a model whose metric is strain energy.
 //!
 //! Everything here gives the same bits on every machine: sums have a fixed order, and sines and
-//! cosines come from `libm`, not from the platform. The exceptions are [`diagonalize`] and
-//! [`pca_modes`]: their eigenvectors are rounded as the vector instructions of the processor do.
+//! cosines come from `libm`, not from the platform. The exceptions are [`diagonalize`],
+//! [`pca_modes`] and the modes of solids: their linear algebra is rounded as the vector instructions of the processor do.
 
 mod body;
 mod boundary;

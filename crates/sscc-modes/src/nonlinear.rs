@@ -57,6 +57,7 @@ pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result
         let share = if i == j { 0.5 } else { 1.0 };
         scaled(linear + k, share * likely[i] * likely[j], derivatives.col_as_slice(k));
     }
+    drop(derivatives);
     principal(body, all, rank)
 }
 

@@ -62,9 +62,19 @@ pub fn nonlinear_modes(
     rank: usize,
     progress: &dyn Progress,
 ) -> Result<SolidModes, ModesError> {
+    if rank == 0 {
+        return Err(sscc::Error::RankZero.into());
+    }
+    if rank > MOST_NONLINEAR {
+        return Err(ModesError::NonlinearRank { asked: rank, most: MOST_NONLINEAR });
+    }
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
-    let (turn, eigenvalues) = rotation(&body, &basis)?;
+    // Rigid motions are not in the basis: a soft direction is a soft one.
+    let (turn, eigenvalues) = rotation(&body, &basis, 0.0)?;
+    if eigenvalues.len() < rank {
+        return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });
+    }
     let vectors = basis * turn;
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
     let modes = from_columns(&columns)?;
@@ -96,7 +106,7 @@ pub fn polynomial_solid_modes(
             if k % 3 == row % 3 { scalars[k / 3] } else { 0.0 }
         })
     };
-    let (turn, eigenvalues) = rotation(&body, &fields(vertices))?;
+    let (turn, eigenvalues) = rotation(&body, &fields(vertices), RIGID)?;
     let on = |points: &[DVec3]| {
         let fields = fields(points) * &turn;
         let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
@@ -107,6 +117,9 @@ pub fn polynomial_solid_modes(
     Ok((SolidModes { modes, eigenvalues, forces }, of_surface))
 }
 
+/// The most modes for large deformations: the products of their strains take 2 GB, the derivatives as much.
+const MOST_NONLINEAR: usize = 100;
+
 /// Monomials of degree 2 or less in three variables.
 const POLYNOMIALS: usize = 10;
 
@@ -114,8 +127,8 @@ const POLYNOMIALS: usize = 10;
 const RIGID: f64 = 1e-11;
 
 /// The matrix T for which the columns of `X T` are M-orthonormal and their stiffness is diagonal, and that diagonal.
-/// Dependent columns and motions without energy fall away.
-fn rotation(body: &Body, basis: &Mat<f64>) -> Result<(Mat<f64>, Vec<f64>), ModesError> {
+/// Dependent columns fall away, and motions whose stiffness is at most the share `rigid` of the largest.
+fn rotation(body: &Body, basis: &Mat<f64>, rigid: f64) -> Result<(Mat<f64>, Vec<f64>), ModesError> {
     let gram = basis.transpose() * body.mass.multiply(basis.as_ref());
     let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
     let size = gram.nrows();
@@ -126,7 +139,7 @@ fn rotation(body: &Body, basis: &Mat<f64>) -> Result<(Mat<f64>, Vec<f64>), Modes
     let stiffness = orthonormal.transpose() * stiffness * &orthonormal;
     let eigen = stiffness.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
     let size = stiffness.nrows();
-    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > RIGID * eigen.S()[size - 1]).collect();
+    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > rigid * eigen.S()[size - 1]).collect();
     let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])]);
     let mut turn = orthonormal * turn;
     fix_signs(&mut turn);

@@ -152,6 +152,19 @@ fn bodies_without_a_spectrum_are_refused() {
     );
     assert_eq!(linear_modes(&cube, &[], 18, &()).unwrap().eigenvalues.len(), 18);
     assert!(matches!(nonlinear_modes(&cube, &[], 19, &()), Err(ModesError::TooManyModes { .. })));
+    assert_eq!(nonlinear_modes(&cube, &[], 0, &()), Err(ModesError::Core(sscc::Error::RankZero)));
+    let many = ModesError::NonlinearRank { asked: 101, most: 100 };
+    assert_eq!(nonlinear_modes(&cube, &[], 101, &()), Err(many));
+}
+
+#[test]
+fn one_free_vertex_has_three_modes() {
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let corners = vec![p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.)];
+    let tet = Solid::uniform(corners, vec![[0, 1, 2, 3]], vec![], Material::default()).unwrap();
+    let found = linear_modes(&tet, &[0, 1, 2], 3, &()).unwrap();
+    assert!(found.eigenvalues.len() == 3 && found.eigenvalues[0] > 0.0);
+    assert!(linear_modes(&tet, &[0, 1, 2], 4, &()).is_err());
 }
 
 #[test]

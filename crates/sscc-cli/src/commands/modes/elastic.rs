@@ -4,8 +4,8 @@ use anyhow::{Result, bail};
 use sscc::{Modes, Progress};
 use sscc_io::{Cubic, Elasticity};
 use sscc_modes::{
-    DEFAULT_ELL, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
-    polynomial_solid_modes,
+    DEFAULT_ELL, Material, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes,
+    nonlinear_modes, polynomial_solid_modes,
 };
 
 use super::source::Source;
@@ -50,16 +50,18 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     };
     let (elements, freedom) =
         (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
+    let of_source = if source.is_embedded() { "mesh" } else { "solid" };
+    // A file's own materials are in the file.
+    let made_of = if source.is_embedded() {
+        let Material { density, youngs_modulus, poisson_ratio } = material;
+        format!("youngs={youngs_modulus:e} poisson={poisson_ratio} density={density}")
+    } else {
+        "materials of the file".into()
+    };
     let provenance = format!(
-        "{} {}, {} modes, {} elements, {} degrees of freedom, youngs={:e} poisson={} density={}",
-        if source.is_embedded() { "mesh" } else { "solid" },
+        "{of_source} {}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
         name(args),
         args.kind.name(),
-        elements,
-        freedom,
-        material.youngs_modulus,
-        material.poisson_ratio,
-        material.density,
     );
     let frequencies = found.frequencies();
     Ok(Made {

@@ -97,8 +97,12 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
             let elements = counted(elements as u64, "element");
             out.line(format_args!("solid of {elements}, {} degrees of freedom", grouped(freedom as u64)))?;
         }
-        if let Some([first, .., last]) = report.frequencies_hz.as_deref() {
-            out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
+        match report.frequencies_hz.as_deref() {
+            Some([only]) => out.line(format_args!("frequency {} Hz", length(*only)))?,
+            Some([first, .., last]) => {
+                out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
+            }
+            _ => {}
         }
         out.line(format_args!("written: {}", args.output.display()))?;
     }
