@@ -16,7 +16,8 @@ pub(super) const CLUSTER: usize = LANES * LANES;
 /// What never changes with q about the clusters of a hierarchy.
 ///
 /// A cluster's triangles are not split as the hierarchy does it: its leaves hold 4 triangles on average, less
-/// than one comparison takes. Blocks are cut full. On the spring this leaves a third of the pairs of leaves.
+/// than one comparison takes. Blocks are cut full. On the spring at rest 5,516 pairs of nodes are opened instead of
+/// 37,695.
 pub(super) struct Clusters {
     /// For each node the cluster that it is, or lies in.
     of_node: Vec<Option<u32>>,
