@@ -1,7 +1,7 @@
 //! The traditional and the BD-tree query beside parry3d: `cargo bench -p sscc-cli --bench peer`.
 //!
-//! parry moves the vertices, refits its tree as its own `TriMesh` does (each leaf, then `refit_without_opt`, which
-//! is faster than `refit`), traverses it against itself, leaves out triangles that share a vertex, and asks our exact test
+//! parry moves the vertices, refits its tree as its own `TriMesh` does (each leaf, then `refit_without_opt`, by its
+//! documentation the faster one), traverses it against itself, leaves out triangles that share a vertex, and asks our exact test
 //! about the rest. Of its two ways to build a tree the better one counts. All run by turns in one process on one
 //! thread and must give the same pairs; the times are processor times, the fastest ones, the ratios medians of the rounds. Moving the vertices is in every time, and
 //! in a column of its own. Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
