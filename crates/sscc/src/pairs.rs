@@ -122,6 +122,17 @@ impl PairFilter {
         self
     }
 
+    /// Vertex classes are numbers below this.
+    pub(crate) fn class_count(&self) -> usize {
+        self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
+    }
+
+    /// The vertex classes of a triangle.
+    #[inline]
+    pub(crate) fn classes(&self, triangle: u32) -> [u32; 3] {
+        self.classes[triangle as usize]
+    }
+
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
         let (x, y) = (self.classes[a as usize], self.classes[b as usize]);

@@ -33,6 +33,21 @@ pub fn all() -> Result<Vec<Case>> {
     Ok(cases)
 }
 
+/// The spring, and the bunny and the dragon where they are there, with 24 polynomial modes.
+pub fn polynomial() -> Result<Vec<Case>> {
+    let mut meshes = vec![("spring", shapes::spring())];
+    if let Some(folder) = sscc_testdata::models("the benches on real models") {
+        for (name, file) in [("bunny", "bunny_14964_closed.obj"), ("dragon", "dragon_77202_closed.ply")] {
+            meshes.push((name, read_mesh(&folder.join(file))?));
+        }
+    }
+    let case = |(name, mesh): (_, TriMesh)| -> Result<Case> {
+        let modes = polynomial_modes(&mesh)?;
+        Ok(Case::new(name, ReducedModel::new(mesh, modes)?))
+    };
+    meshes.into_iter().map(case).collect()
+}
+
 impl Case {
     fn new(name: &'static str, model: ReducedModel) -> Self {
         Self { name, model, options: CertifyOptions::default() }

@@ -3,10 +3,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::aabb::Aabb;
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, Node, bounding_box};
 
-/// For each inner node of more than `tight` triangles, how its box moves and grows with q:
+/// For the root and each inner node of more than `tight` triangles, how its box moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 pub(super) struct BdTree {
     rank: usize,
@@ -22,7 +23,7 @@ impl BdTree {
     pub(super) fn new(model: &ReducedModel, hierarchy: &Hierarchy, tight: u32) -> Self {
         let (mesh, modes) = (model.mesh(), model.modes());
         let rank = modes.rank();
-        let node_rates = |node| {
+        let node_rates = |node: &Node| {
             let vertices = hierarchy.vertices(node, mesh.faces());
             let (lower, upper) = bounding_box(vertices.iter().map(|&v| mesh.rest_positions()[v as usize]));
             let centre = lower * 0.5 + upper * 0.5;
@@ -40,11 +41,13 @@ impl BdTree {
             }
             (rest, rates)
         };
-        let large = |node: &&Node| !node.is_leaf() && node.triangle_count > tight;
-        let all: Vec<_> = hierarchy.nodes().par_iter().filter(large).map(node_rates).collect();
+        let large = |n: usize, node: &Node| n == 0 || (!node.is_leaf() && node.triangle_count > tight);
+        let nodes = hierarchy.nodes().par_iter().enumerate();
+        let all: Vec<_> =
+            nodes.filter(|(n, node)| large(*n, node)).map(|(_, node)| node_rates(node)).collect();
         let mut next = 0..;
-        let place = |node| if large(&node) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
-        let places = hierarchy.nodes().iter().map(place).collect();
+        let place = |(n, node)| if large(n, node) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
+        let places = hierarchy.nodes().iter().enumerate().map(place).collect();
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
         Self { rank, places, rest, rates }
@@ -52,15 +55,24 @@ impl BdTree {
 
     /// A box that contains the computed positions of all vertices of a node at q, or none for a small node.
     /// `margin` covers rounding: at least `(4 r + 64)` units of the last place of the shape's reach.
-    pub(super) fn at(&self, node: u32, q: &[f64], margin: f64) -> Option<(DVec3, DVec3)> {
+    pub(super) fn at(&self, node: u32, q: &[f64], margin: f64) -> Option<Aabb> {
         let place = self.places[node as usize] as usize;
-        let (mut centre, mut half) = *self.rest.get(place)?;
+        (place < self.rest.len()).then(|| self.at_place(place, q, margin))
+    }
+
+    /// The same for the whole shape.
+    pub(super) fn root(&self, q: &[f64], margin: f64) -> Aabb {
+        self.at_place(0, q, margin)
+    }
+
+    fn at_place(&self, place: usize, q: &[f64], margin: f64) -> Aabb {
+        let (mut centre, mut half) = self.rest[place];
         for ((mean, growth), &x) in self.rates[place * self.rank..][..self.rank].iter().zip(q) {
             centre += *mean * x;
             half += *growth * x.abs();
         }
         half += DVec3::splat(margin);
-        Some((centre - half, centre + half))
+        (centre - half, centre + half)
     }
 }
 
@@ -105,7 +117,7 @@ mod tests {
                     let Some((lower, upper)) =
                         tree.at(n as u32, &q, super::super::boxes::margin(reach, rank))
                     else {
-                        assert!(node.is_leaf());
+                        assert!(n != 0 && node.is_leaf());
                         continue;
                     };
                     for v in hierarchy.vertices(node, model.mesh().faces()) {

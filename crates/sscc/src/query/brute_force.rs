@@ -1,7 +1,7 @@
 //! Every pair of triangles: the oracle for all other methods.
 
 use super::Query;
-use super::boxes::{disjoint, triangle_box};
+use super::aabb::{disjoint, triangle_box};
 use crate::Error;
 
 impl Query<'_> {

@@ -1,6 +1,6 @@
 //! Exceptions: pairs that no radius speaks of, tested exactly in every query, whatever else is skipped.
 
-use super::boxes::{disjoint, triangle_box};
+use super::aabb::{disjoint, triangle_box};
 use super::{Method, Query};
 use crate::{Certificates, Pair};
 

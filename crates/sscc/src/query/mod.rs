@@ -1,10 +1,16 @@
 //! Queries: which pairs of triangles collide at q (paper, Algorithm 1).
 
+mod aabb;
 mod batch;
 mod bd_tree;
+mod between;
 mod boxes;
 mod brute_force;
+mod clusters;
 mod exceptions;
+mod frame;
+mod never;
+mod pack;
 mod safe_scale;
 mod traversal;
 
@@ -128,9 +134,10 @@ impl<'a> Query<'a> {
     ) -> Self {
         let is_centered = scope.center.iter().all(|x| *x == 0.0);
         let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
+        let filter = PairFilter::new(model, &scope.rule);
         Self {
-            boxes: Boxes::new(model, &hierarchy, method),
-            filter: Arc::new(PairFilter::new(model, &scope.rule)),
+            boxes: Boxes::new(model, &hierarchy, &filter, method),
+            filter: Arc::new(filter),
             model,
             certificates,
             scope,
@@ -207,19 +214,6 @@ impl<'a> Query<'a> {
     /// As [`Query::discrete`].
     pub fn count(&mut self, q: &[f64]) -> Result<usize, Error> {
         Ok(self.discrete(q)?.len())
-    }
-
-    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node
-    /// (n = m), exceptions left out, found without certificates: for audits.
-    pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[Pair], Error> {
-        debug_assert_ne!(self.method, Method::Certified);
-        let reach = self.begin(q, usize::MAX)?;
-        self.boxes.update(self.model, &self.hierarchy, q, reach);
-        self.traverse((n, m), q)?;
-        let exceptions = self.certificates.map_or(&[][..], Certificates::exceptions);
-        self.pairs.retain(|pair| exceptions.binary_search(pair).is_err());
-        self.pairs.sort_unstable();
-        Ok(&self.pairs)
     }
 
     /// Forgets the last answer; gives the reach of the shape at q.

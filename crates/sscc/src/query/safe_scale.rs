@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::Query;
-use super::boxes::{Aabb, triangle_box};
+use super::aabb::{Aabb, triangle_box};
 use crate::bounds::Path;
 use crate::certificates::child_pairs;
 use crate::hierarchy::Hierarchy;

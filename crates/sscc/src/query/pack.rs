@@ -1,0 +1,142 @@
+//! Eight boxes side by side, so that one box is compared with all of them at once.
+//!
+//! [`Vec4`] is one SSE2 (or NEON) register, which every 64-bit processor of the kind has: nothing has to be chosen at
+//! run time.
+
+use glam::Vec4;
+
+/// Boxes in a pack.
+pub(super) const LANES: usize = 8;
+
+/// A box in the single-precision coordinates of a [`Frame`](super::frame::Frame): lower and upper corner; the fourth
+/// components mean nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Box32 {
+    pub(super) lower: Vec4,
+    pub(super) upper: Vec4,
+}
+
+impl Box32 {
+    /// Contains nothing, and overlaps no box with finite corners.
+    pub(super) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
+
+    /// The box of three points.
+    #[inline]
+    pub(super) fn of([a, b, c]: [Vec4; 3]) -> Self {
+        Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
+    }
+
+    /// The least box that contains both.
+    #[inline]
+    pub(super) fn union(&self, other: &Self) -> Self {
+        Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
+    }
+}
+
+/// Up to eight boxes: for each axis the lower and the upper ends of all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub(super) struct Pack {
+    lower: [[f32; LANES]; 3],
+    upper: [[f32; LANES]; 3],
+}
+
+impl Pack {
+    /// Eight empty boxes.
+    pub(super) const EMPTY: Self =
+        Self { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3] };
+
+    /// Puts a box in one of the lanes.
+    #[inline]
+    pub(super) fn set(&mut self, lane: usize, b: &Box32) {
+        for axis in 0..3 {
+            self.lower[axis][lane] = b.lower[axis];
+            self.upper[axis][lane] = b.upper[axis];
+        }
+    }
+
+    /// Which of the eight overlap a box: bit i for lane i.
+    #[inline]
+    pub(super) fn overlapping(&self, other: &Box32) -> Lanes {
+        let (lower, upper) = (other.lower, other.upper);
+        self.compare(
+            [lower.x, lower.y, lower.z].map(Vec4::splat),
+            [upper.x, upper.y, upper.z].map(Vec4::splat),
+        )
+    }
+
+    /// Which of the eight overlap one of another pack.
+    #[inline]
+    pub(super) fn overlapping_lane(&self, other: &Self, lane: usize) -> Lanes {
+        self.compare(
+            [0, 1, 2].map(|axis| Vec4::splat(other.lower[axis][lane])),
+            [0, 1, 2].map(|axis| Vec4::splat(other.upper[axis][lane])),
+        )
+    }
+
+    #[inline(always)]
+    fn compare(&self, lower: [Vec4; 3], upper: [Vec4; 3]) -> Lanes {
+        let half = |from: usize| {
+            let of = |ends: &[f32; LANES]| Vec4::from_slice(&ends[from..from + 4]);
+            let beyond = |axis: usize| {
+                of(&self.lower[axis]).cmpgt(upper[axis]) | of(&self.upper[axis]).cmplt(lower[axis])
+            };
+            (beyond(0) | beyond(1) | beyond(2)).bitmask()
+        };
+        Lanes(!(half(0) | half(4) << 4) & 0xff)
+    }
+}
+
+/// One bit for each lane of a pack; as an iterator, the numbers of those that are set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Lanes(pub(super) u32);
+
+impl Iterator for Lanes {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        let lane = (self.0 != 0).then(|| self.0.trailing_zeros());
+        self.0 &= self.0.wrapping_sub(1);
+        lane
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lanes_are_compared_one_by_one() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 61) as f32
+        };
+        let mut overlaps = 0;
+        for _ in 0..2000 {
+            let mut one = || {
+                let [a, b] = [(); 2].map(|()| Vec4::new(random(), random(), random(), random()));
+                Box32::of([a, b, b])
+            };
+            let boxes: [Box32; 5] = std::array::from_fn(|_| one());
+            let mut pack = Pack::EMPTY;
+            boxes.iter().enumerate().for_each(|(lane, b)| pack.set(lane, b));
+            let other = one();
+            let mut expected = 0;
+            for (lane, b) in boxes.iter().enumerate() {
+                let meet =
+                    |axis: usize| b.lower[axis] <= other.upper[axis] && other.lower[axis] <= b.upper[axis];
+                expected |= u32::from((0..3).all(meet)) << lane;
+            }
+            assert_eq!(pack.overlapping(&other), Lanes(expected));
+            for (lane, b) in boxes.iter().enumerate() {
+                assert_eq!(pack.overlapping_lane(&pack, lane), pack.overlapping(b));
+            }
+            assert_eq!(Lanes(expected).map(|lane| 1 << lane).sum::<u32>(), expected);
+            overlaps += expected.count_ones();
+        }
+        assert!((1000..9000).contains(&overlaps), "{overlaps}");
+        assert_eq!(Pack::EMPTY.overlapping(&Box32 { lower: Vec4::MIN, upper: Vec4::MAX }), Lanes(0));
+    }
+}
