@@ -248,6 +248,7 @@
 mod audit;
 mod bounds;
 mod certificates;
+mod continuous;
 mod error;
 pub mod hierarchy;
 mod intersect;
@@ -263,6 +264,7 @@ mod threads;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, Scope};
+pub use continuous::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub use error::Error;
 pub use intersect::{intersect_beyond_vertex, intersect_triangle_triangle};
 pub use mesh::TriMesh;
