@@ -7,7 +7,7 @@ use glam::DVec3;
 use sscc::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 use sscc_testdata::models;
 
-/// Relative to the largest distance between two corners.
+/// Shares of the size of the two.
 const TOLERANCES: [f64; 5] = [1e-3, 1e-6, 1e-9, 1e-12, 0.0];
 
 /// Eight points, four at time 0, then the same four at time 1: a vertex and a face's corners, or two edges.
@@ -38,12 +38,6 @@ impl Kind {
             }
         }
     }
-}
-
-/// The largest difference of two coordinates.
-fn size(corners: &Corners) -> f64 {
-    let (lower, upper) = corners.iter().fold((corners[0], corners[0]), |(l, u), p| (l.min(*p), u.max(*p)));
-    (upper - lower).max_element()
 }
 
 /// A fraction as a double: exactly, or not at all. Denominators are powers of two of up to 112 bits.
@@ -89,7 +83,7 @@ impl Counts {
         self.queries += 1;
         self.colliding += usize::from(known.collides);
         for (count, tolerance) in self.false_positives.iter_mut().zip(TOLERANCES) {
-            let impact = kind.impact(&known.corners, tolerance * size(&known.corners));
+            let impact = kind.impact(&known.corners, tolerance);
             assert!(impact.is_none_or(|t| (0.0..=1.0).contains(&t)));
             self.missed += usize::from(known.collides && impact.is_none());
             *count += usize::from(!known.collides && impact.is_some());
@@ -209,9 +203,7 @@ fn no_pair_of_the_cloth_is_missed() {
     let folder = folder.join("ccd_frames/cloth-funnel");
     let frames = Frames::read(&folder);
     assert_eq!((frames.vertices[0].len(), frames.edges.len(), frames.faces.len()), (9_450, 27_930, 18_484));
-    for (name, kind, expected) in
-        [("ee", Kind::EdgeEdge, (263, 107)), ("vf", Kind::VertexFace, (92, 27))]
-    {
+    for (name, kind, expected) in [("ee", Kind::EdgeEdge, (263, 107)), ("vf", Kind::VertexFace, (92, 27))] {
         let mut counts = Counts::default();
         for (pair, collides) in read_pairs(&folder, name) {
             counts.add(kind, &Known { corners: frames.corners(kind, pair), collides });

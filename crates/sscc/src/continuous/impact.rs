@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use super::MovingTriangle;
-use super::separation::{Direction, Separation};
-use crate::bounds::nearest_to_origin;
+use super::closest::Closest;
+use super::separation::Separation;
 use crate::limits;
 
-/// Intervals of time tried at the most; what is free until then is proven, the rest counts as contact. Three to ten are
-/// common; the most that was ever seen with a tolerance above rounding is 130.
+/// Intervals of time tried at the most; what is free until then is proven, the rest counts as contact. Of the published
+/// queries 65% are settled by the first two, and the longest took 65.
 const STEPS: usize = 512;
 
 /// Steps shorter than this are beyond what t can tell.
@@ -17,8 +17,9 @@ const SHORTEST: f64 = f64::EPSILON / 16.0;
 /// The time of impact of two triangles whose corners move linearly: none if they provably have no point in
 /// common at any time t in [0, 1]; else a time t such that
 /// - they have none before: t is never later than the true time of impact, and
-/// - at t they are at most `tolerance` apart (any unit, the same for all), or too close for `f64` to tell them apart:
-///   about 1e-13 of the largest distance between two of the twelve corners.
+/// - at t they are at most `tolerance` times their size apart, or too close for `f64` to tell them apart: about
+///   1e-13 of their size. That is the largest difference, at either end and in any coordinate, of a corner from
+///   the first one of x.
 ///
 /// Triangles are closed hulls of their corners, in any order, degenerate ones included; touching counts, also
 /// throughout, and so does whatever meets at an end. Time and memory are bounded for any input: should 512 steps not
@@ -45,7 +46,7 @@ pub fn impact_triangle_triangle(x: &MovingTriangle, y: &MovingTriangle, toleranc
         "corner out of range: {x:?} {y:?}"
     );
     let pair = Separation::new(x, y);
-    if planes_separate(&pair) { None } else { advance(&pair, tolerance) }
+    if planes_separate(&pair) { None } else { advance(&pair, tolerance * pair.size()) }
 }
 
 /// The time of impact of a moving vertex and a moving face: as [`impact_triangle_triangle`].
@@ -109,48 +110,3 @@ fn advance(pair: &Separation, tolerance: f64) -> Option<f64> {
 
 /// Where the turning direction fails, it is tried next for this many times what the fixed one gained.
 const AHEAD: f64 = 4.0;
-
-/// The closest points of the two triangles at a time.
-struct Closest {
-    /// At least how far apart the triangles are at the most: the distance of two of their points, rounded.
-    distance: f64,
-    /// A direction that should separate them then.
-    direction: Option<Direction>,
-}
-
-impl Closest {
-    fn at(pair: &Separation, t: f64) -> Self {
-        let (x, y) = pair.at(t);
-        let differences: [DVec3; 9] = std::array::from_fn(|i| y[i % 3] - x[i / 3]);
-        // Squares of small numbers would vanish.
-        let size = differences.iter().fold(0.0_f64, |size, d| size.max(d.abs().max_element()));
-        if size == 0.0 {
-            return Self { distance: 0.0, direction: None };
-        }
-        let scaled = differences.map(|d| d / size);
-        let nearest = nearest_to_origin(&scaled);
-        let distance = nearest.point.length();
-        let n = if distance < CLOSE { normal(&scaled, &nearest.weights, nearest.point) } else { nearest.point };
-        Self { distance: distance * size, direction: pair.along(n) }
-    }
-}
-
-/// Closer than this, in units of the largest difference, the vector between two closest points is too short to
-/// tell the direction between them.
-const CLOSE: f64 = 1e-5;
-
-/// The direction of the closest points from the face or edge of the difference of the triangles on which they lie: as
-/// precise for a narrow gap as for a wide one.
-fn normal(differences: &[DVec3; 9], weights: &[f64; 9], point: DVec3) -> DVec3 {
-    let mut corners = (0..9).filter(|&i| weights[i] > 0.0).map(|i| differences[i]);
-    let Some(a) = corners.next() else { return point };
-    let n = match (corners.next(), corners.next()) {
-        (None, _) => a,
-        (Some(b), None) => {
-            let edge = b - a;
-            a - edge * (a.dot(edge) / edge.length_squared())
-        }
-        (Some(b), Some(c)) => (b - a).cross(c - a),
-    };
-    if n.dot(a) < 0.0 { -n } else { n }
-}

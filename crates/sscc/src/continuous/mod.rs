@@ -21,6 +21,7 @@
 //! inclusion, in Bernstein form, on parts of the domain. Here only t is subdivided, because directions do what u and v
 //! do there; and a pair that is pierced all the way, which has no event of a vertex or of two edges, is no special case.
 
+mod closest;
 mod impact;
 mod moving;
 mod separation;

@@ -27,4 +27,17 @@ impl MovingTriangle {
     pub(super) fn at(&self, t: f64) -> [DVec3; 3] {
         std::array::from_fn(|i| self.t0[i] * (1.0 - t) + self.t1[i] * t)
     }
+
+    /// Whether the boxes around the two ways overlap, exactly. Triangles whose boxes do not never meet.
+    #[inline]
+    pub(crate) fn swept_box_meets(&self, other: &Self) -> bool {
+        let [(a, b), (c, d)] = [self, other].map(|m| {
+            let corners = || m.t0.iter().chain(&m.t1);
+            (
+                corners().fold(DVec3::INFINITY, |l, p| l.min(*p)),
+                corners().fold(DVec3::NEG_INFINITY, |u, p| u.max(*p)),
+            )
+        });
+        a.cmple(d).all() && c.cmple(b).all()
+    }
 }

@@ -1,8 +1,8 @@
 //! Directions that provably separate two moving triangles during an interval of time.
 //!
 //! Directions come from any heuristic; whether they separate is evaluated with all rounding accounted for. With
-//! `u = 2^-53`: all corners are taken relative to one of them, `p - o`, which errs by `u |p - o|` in each
-//! component; with `M` the largest magnitudes of these (over all corners and both ends) and `m = sum_c |n_c| M_c`, a projection
+//! `u = 2^-53`: at each end all corners are taken relative to one of them, `p - o`, which errs by `u |p - o|` in each
+//! component (a common motion of both triangles, however large, does no harm); with `M` the largest magnitudes of these (over all corners and both ends) and `m = sum_c |n_c| M_c`, a projection
 //! `n.(p - o)` errs by at most `4 u m` (that rounding, a product, two sums), the gap of two projections by `10 u m`.
 //! Interpolating it to a time t, `g0 + t (g1 - g0)`, rounds three more times, magnitudes of at most `4 m`: `10 u m`.
 //! The root of a linear function is rounded three times relative to itself, where the function changes by at
@@ -20,7 +20,7 @@ const RELATIVE: f64 = 40.0 * (f64::EPSILON / 2.0);
 /// ... and this, for underflow: 2^-1022.
 const ABSOLUTE: f64 = f64::MIN_POSITIVE;
 
-/// Two moving triangles, relative to the first corner of the first.
+/// Two moving triangles, relative to the first corner of the first, which moves linearly like all others.
 pub(super) struct Separation {
     x: MovingTriangle,
     y: MovingTriangle,
@@ -40,10 +40,9 @@ pub(super) struct Direction {
 impl Separation {
     #[inline]
     pub(super) fn new(x: &MovingTriangle, y: &MovingTriangle) -> Self {
-        let origin = x.t0[0];
         let relative = |triangle: &MovingTriangle| MovingTriangle {
-            t0: triangle.t0.map(|p| p - origin),
-            t1: triangle.t1.map(|p| p - origin),
+            t0: triangle.t0.map(|p| p - x.t0[0]),
+            t1: triangle.t1.map(|p| p - x.t1[0]),
         };
         let (x, y) = (relative(x), relative(y));
         let corners = x.t0.iter().chain(&x.t1).chain(&y.t0).chain(&y.t1);
@@ -51,6 +50,11 @@ impl Separation {
         Self { x, y, reach }
     }
 
+    /// The largest coordinate of a corner relative to that one: the unit of tolerances.
+    #[inline]
+    pub(super) fn size(&self) -> f64 {
+        self.reach.max_element()
+    }
 
     /// The corners of both at a time, rounded: for heuristics.
     #[inline]
@@ -75,7 +79,14 @@ impl Direction {
     /// The same direction the other way round.
     #[inline]
     pub(super) fn reversed(&self) -> Self {
-        Self { x: self.y, y: self.x, error: self.error }
+        let minus = |ends: [[f64; 3]; 2]| ends.map(|p| p.map(|p| -p));
+        Self { x: minus(self.x), y: minus(self.y), error: self.error }
+    }
+
+    /// How far x is below y along this direction at a time, beyond rounding: if positive, they are apart.
+    #[inline]
+    pub(super) fn gap(&self, t: f64) -> f64 {
+        least(between(&self.y, t)) - greatest(between(&self.x, t)) - self.error
     }
 
     /// Whether x stays below y along this direction all the time.
@@ -111,16 +122,19 @@ impl Direction {
     /// and that along m at s.
     #[inline]
     pub(super) fn separates_turning(&self, t: f64, to: &Self, s: f64) -> bool {
-        let at = |ends: &[[f64; 3]; 2], t: f64| -> [f64; 3] {
-            std::array::from_fn(|i| ends[0][i] + t * (ends[1][i] - ends[0][i]))
-        };
         let both = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| a[i] + b[i]) };
         let gap = |x: [f64; 3], y: [f64; 3]| least(y) - greatest(x);
-        gap(at(&self.x, t), at(&self.y, t)) > self.error
-            && gap(at(&to.x, s), at(&to.y, s)) > to.error
-            && gap(both(at(&self.x, s), at(&to.x, t)), both(at(&self.y, s), at(&to.y, t)))
+        self.gap(t) > 0.0
+            && to.gap(s) > 0.0
+            && gap(both(between(&self.x, s), between(&to.x, t)), both(between(&self.y, s), between(&to.y, t)))
                 > self.error + to.error
     }
+}
+
+/// Between the values at both ends.
+#[inline]
+fn between(ends: &[[f64; 3]; 2], t: f64) -> [f64; 3] {
+    std::array::from_fn(|i| ends[0][i] + t * (ends[1][i] - ends[0][i]))
 }
 
 #[inline]

@@ -4,6 +4,7 @@ mod batch;
 mod bd_tree;
 mod boxes;
 mod brute_force;
+mod continuous;
 mod exceptions;
 mod safe_scale;
 mod traversal;
@@ -16,8 +17,10 @@ use crate::metric::check_scaled_modes;
 use crate::pairs::PairFilter;
 use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
 use boxes::Boxes;
+use continuous::Continuous;
 
 pub use batch::Answer;
+pub use continuous::Impact;
 
 /// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +69,7 @@ pub struct Query<'a> {
     method: Method,
     progress: &'a dyn Progress,
     boxes: Boxes,
+    continuous: Option<Box<Continuous>>,
     stack: Vec<Pair>,
     pairs: Vec<Pair>,
     /// The query ends with this many pairs.
@@ -130,6 +134,7 @@ impl<'a> Query<'a> {
         let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
         Self {
             boxes: Boxes::new(model, &hierarchy, method),
+            continuous: None,
             filter: Arc::new(PairFilter::new(model, &scope.rule)),
             model,
             certificates,
@@ -243,7 +248,8 @@ impl<'a> Query<'a> {
         self.full
     }
 
-    /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it.
+    /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it; the pairs of
+    /// [`Query::continuous`].
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
@@ -253,7 +259,8 @@ impl<'a> Query<'a> {
         self.statistics
     }
 
-    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope.
+    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
+    /// continuous query the larger one of both ends.
     pub fn norm(&self) -> f64 {
         self.norm
     }
