@@ -8,7 +8,8 @@ use super::separation::Separation;
 use crate::limits;
 
 /// Intervals of time tried at the most; what is free until then is proven, the rest counts as contact. Of the published
-/// queries 65% are settled by the first two, and the longest took 65.
+/// queries that planes do not settle, at tolerances from 1e-12 to 1e-3, four in five take one or two, the longest 65;
+/// of the first 115,000 in `tests/continuous.rs`, most of them motions as large as the triangles, 9 took all.
 const STEPS: usize = 512;
 
 /// Steps shorter than this are beyond what t can tell.
