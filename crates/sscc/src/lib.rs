@@ -43,8 +43,8 @@
 //!   same on every machine and for every number of threads.
 //! - Both speak of one shape: the f64 positions given by [`deformed_position`].
 //!
-//! Queries are about one q, not yet about the way from one q to another; [`Query::safe_scale`] is the
-//! exception. Certificates hold for the mesh, the modes and the metric they were computed for, to the last bit, and
+//! Continuous queries are about the straight way of every vertex from one q to another: none that meets is missed, and
+//! what is listed without need has come within a stated tolerance ([`Query::continuous`]). Certificates hold for the mesh, the modes and the metric they were computed for, to the last bit, and
 //! say so: [`Query::new`] refuses any other model.
 //!
 //! # Which question, which method
@@ -57,6 +57,7 @@
 //! | How many? | [`Query::count`] |
 //! | The same for many q? | [`Query::batch`], on all cores |
 //! | What did that cost, and was it proven by the root alone? | [`Query::statistics`] |
+//! | Which meet on the way from one q to another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
 //! | How far towards q is the shape free all the way? | [`Query::safe_scale`] |
 //! | The q on the way there at which one comparison is proof? | [`Certificates::clamp`] |
 //! | Where are the vertices at q? | [`ReducedModel::positions`] |
@@ -64,6 +65,7 @@
 //! | The same by another method, to compare? | [`Query::with_method`], [`Method`] |
 //! | Can the certificates be trusted, and how tight are they? | [`audit()`] |
 //! | Do two triangles meet? | [`intersect_triangle_triangle`] |
+//! | Do two moving triangles, and when? | [`impact_triangle_triangle`] |
 //!
 //! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, whatever the size of the
 //! mesh. Above it a query costs about as much as refitting all boxes: what is fast is knowing that nothing collides.
@@ -248,6 +250,7 @@
 mod audit;
 mod bounds;
 mod certificates;
+mod continuous;
 mod error;
 pub mod hierarchy;
 mod intersect;
@@ -263,6 +266,7 @@ mod threads;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, Scope};
+pub use continuous::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub use error::Error;
 pub use intersect::{intersect_beyond_vertex, intersect_triangle_triangle};
 pub use mesh::TriMesh;
@@ -271,4 +275,4 @@ pub use model::ReducedModel;
 pub use modes::{Modes, deformed_position};
 pub use pairs::{Neighbours, Pair, PairRule};
 pub use progress::Progress;
-pub use query::{Answer, Method, Query, Statistics};
+pub use query::{Answer, Impact, Method, Query, Statistics};

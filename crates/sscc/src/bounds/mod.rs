@@ -21,6 +21,7 @@ mod tests;
 mod triangle_pair;
 
 pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use min_norm::nearest_to_origin;
 pub(crate) use path::Path;
 pub(crate) use scaled::ScaledModel;
 pub(crate) use triangle_pair::{PairRefiner, Target};

@@ -69,6 +69,11 @@ impl Boxes {
         }
     }
 
+    /// The tree of a lazy method: continuous queries use the same.
+    pub(super) fn bd_tree(&self) -> Option<Arc<BdTree>> {
+        self.is_lazy.then(|| Arc::clone(&self.bd_tree))
+    }
+
     /// Starts a new q: forgets all boxes, or (traditional) refits all of them.
     pub(super) fn update(&mut self, model: &ReducedModel, hierarchy: &Hierarchy, q: &[f64], reach: f64) {
         self.margin = margin(reach, q.len());

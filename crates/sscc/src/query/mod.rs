@@ -7,6 +7,7 @@ mod between;
 mod boxes;
 mod brute_force;
 mod clusters;
+mod continuous;
 mod exceptions;
 mod frame;
 mod never;
@@ -22,8 +23,10 @@ use crate::metric::check_scaled_modes;
 use crate::pairs::PairFilter;
 use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
 use boxes::Boxes;
+use continuous::Continuous;
 
 pub use batch::Answer;
+pub use continuous::Impact;
 
 /// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +75,7 @@ pub struct Query<'a> {
     method: Method,
     progress: &'a dyn Progress,
     boxes: Boxes,
+    continuous: Option<Box<Continuous>>,
     stack: Vec<Pair>,
     pairs: Vec<Pair>,
     /// The query ends with this many pairs.
@@ -137,6 +141,7 @@ impl<'a> Query<'a> {
         let filter = PairFilter::new(model, &scope.rule);
         Self {
             boxes: Boxes::new(model, &hierarchy, &filter, method),
+            continuous: None,
             filter: Arc::new(filter),
             model,
             certificates,
@@ -237,7 +242,8 @@ impl<'a> Query<'a> {
         self.full
     }
 
-    /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it.
+    /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it; the pairs of
+    /// [`Query::continuous`].
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
@@ -247,7 +253,8 @@ impl<'a> Query<'a> {
         self.statistics
     }
 
-    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope.
+    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
+    /// continuous query the larger one of both ends.
     pub fn norm(&self) -> f64 {
         self.norm
     }
