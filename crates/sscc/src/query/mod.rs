@@ -66,7 +66,8 @@ pub struct Query<'a> {
     method: Method,
     progress: &'a dyn Progress,
     boxes: Boxes,
-    stack: Vec<Pair>,
+    /// Pairs of nodes, each with its place in the pair tree.
+    stack: Vec<(u32, u32, u32)>,
     pairs: Vec<Pair>,
     /// The query ends with this many pairs.
     limit: usize,

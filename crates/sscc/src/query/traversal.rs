@@ -4,19 +4,22 @@ use super::boxes::disjoint;
 use super::{Method, Query};
 use crate::certificates::child_pairs;
 use crate::pairs::Relation;
-use crate::{Error, Pair};
+use crate::{Error, Pair, PairTree};
+
+/// The place of a pair of nodes that the pair tree does not hold.
+const NOWHERE: u32 = u32::MAX;
 
 /// Between two looks at whether the query was cancelled. A step takes at most about 10 microseconds.
 const STEPS: u32 = 1024;
 
-impl Query<'_> {
+impl<'a> Query<'a> {
     /// Appends all colliding pairs at q between the nodes of `start`. On the stack, `(n, n)` stands for a node
-    /// against itself, `(n, m)` for two nodes without common triangles.
+    /// against itself, `(n, m)` for two nodes without common triangles, with their place in the pair tree.
     pub(super) fn traverse(&mut self, start: Pair, q: &[f64]) -> Result<(), Error> {
         self.stack.clear();
-        self.stack.push(start);
+        self.stack.push((start.0, start.1, NOWHERE));
         let mut steps = 0_u32;
-        while let Some((n, m)) = self.stack.pop() {
+        while let Some((n, m, place)) = self.stack.pop() {
             if self.is_full() {
                 break;
             }
@@ -24,7 +27,7 @@ impl Query<'_> {
             if steps.is_multiple_of(STEPS) && self.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            if n == m { self.intra(n, q) } else { self.inter(n, m, q) }
+            if n == m { self.intra(n, q) } else { self.inter(n, m, place, q) }
         }
         Ok(())
     }
@@ -32,6 +35,12 @@ impl Query<'_> {
     /// The certificates, if this method uses them.
     fn used_certificates(&self) -> Option<&crate::CertificateParts> {
         self.certificates.filter(|_| self.method == Method::Certified).map(crate::Certificates::parts)
+    }
+
+    /// The pair tree, if this method uses it and it is complete for this norm.
+    fn pair_tree(&self) -> Option<&'a PairTree> {
+        let tree = self.certificates.filter(|_| self.method == Method::Certified).map(|c| &c.parts().pair_tree)?;
+        (self.norm < tree.limit()).then_some(tree)
     }
 
     /// Lines 1 to 14: a node against itself.
@@ -51,19 +60,33 @@ impl Query<'_> {
             }
             return;
         }
-        self.stack.extend(node.children().map(|child| (child, child)));
+        self.stack.extend(node.children().map(|child| (child, child, NOWHERE)));
+        if let Some(tree) = self.pair_tree() {
+            let pairs: [Option<Pair>; 6] = std::array::from_fn({
+                let mut pairs = child_pairs(&node);
+                move |_| pairs.next()
+            });
+            for (place, entry) in tree.of_node(n) {
+                if f64::from(entry.radius) <= self.norm
+                    && let Some((a, b)) = pairs[entry.which() as usize]
+                {
+                    self.stack.push((a, b, place));
+                }
+            }
+            return;
+        }
         // Only the root's children have certificates as pairs.
         for (pair, (a, b)) in child_pairs(&node).enumerate() {
             let certified =
                 n == 0 && self.used_certificates().is_some_and(|c| self.norm < c.root_pair_radii[pair]);
             if !certified {
-                self.stack.push((a, b));
+                self.stack.push((a, b, NOWHERE));
             }
         }
     }
 
     /// Lines 15 to 30: two nodes against each other.
-    fn inter(&mut self, n: u32, m: u32, q: &[f64]) {
+    fn inter(&mut self, n: u32, m: u32, place: u32, q: &[f64]) {
         self.statistics.box_tests += 1;
         let box_n = self.boxes.node(self.model, &self.hierarchy, n, q);
         let box_m = self.boxes.node(self.model, &self.hierarchy, m, q);
@@ -71,8 +94,8 @@ impl Query<'_> {
             return;
         }
         self.statistics.opened += 1;
-        let (node_n, node_m) = (self.hierarchy.nodes()[n as usize], self.hierarchy.nodes()[m as usize]);
-        if node_n.is_leaf() && node_m.is_leaf() {
+        let Some(split) = self.hierarchy.split(n, m) else {
+            let (node_n, node_m) = (self.hierarchy.nodes()[n as usize], self.hierarchy.nodes()[m as usize]);
             let first = node_m.first_triangle as usize;
             for i in node_n.first_triangle as usize..(node_n.first_triangle + node_n.triangle_count) as usize
             {
@@ -85,10 +108,17 @@ impl Query<'_> {
                     self.test(i, j);
                 }
             }
-        } else if node_m.is_leaf() || (!node_n.is_leaf() && node_n.triangle_count >= node_m.triangle_count) {
-            node_n.children().for_each(|child| self.stack.push((child, m)));
-        } else {
-            node_m.children().for_each(|child| self.stack.push((n, child)));
+            return;
+        };
+        if place == NOWHERE {
+            self.stack.extend(split.pairs().map(|(a, b)| (a, b, NOWHERE)));
+        } else if let Some(tree) = self.pair_tree() {
+            for (place, entry) in tree.below(place) {
+                if f64::from(entry.radius) <= self.norm {
+                    let (a, b) = split.pair(entry.which());
+                    self.stack.push((a, b, place));
+                }
+            }
         }
     }
 
