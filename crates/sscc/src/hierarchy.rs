@@ -61,6 +61,37 @@ impl Node {
     }
 }
 
+/// How a pair of nodes is split: one of them into its children.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Split {
+    /// The first node is split.
+    First(Node, u32),
+    /// The second node is split.
+    Second(u32, Node),
+}
+
+impl Split {
+    /// The children of the node that is split.
+    pub(crate) fn children(&self) -> std::ops::Range<u32> {
+        match self {
+            Self::First(node, _) | Self::Second(_, node) => node.children(),
+        }
+    }
+
+    /// The pair with the child of that place.
+    pub(crate) fn pair(&self, which: u32) -> (u32, u32) {
+        match self {
+            Self::First(node, m) => (node.first_child + which, *m),
+            Self::Second(n, node) => (*n, node.first_child + which),
+        }
+    }
+
+    /// All pairs, child by child.
+    pub(crate) fn pairs(self) -> impl Iterator<Item = (u32, u32)> {
+        (0..self.children().len() as u32).map(move |which| self.pair(which))
+    }
+}
+
 /// A tree over all triangles: each node's triangles are the disjoint union of its children's. Nodes are
 /// stored level by level, the root first, siblings side by side.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,6 +205,19 @@ impl Hierarchy {
     /// All triangles, sorted so that each node's are contiguous.
     pub fn order(&self) -> &[u32] {
         &self.order
+    }
+
+    /// How a pair of nodes is split: the one of more triangles, the first of equals; none where both are leaves.
+    #[inline]
+    pub(crate) fn split(&self, n: u32, m: u32) -> Option<Split> {
+        let (node_n, node_m) = (self.nodes[n as usize], self.nodes[m as usize]);
+        if node_n.is_leaf() && node_m.is_leaf() {
+            None
+        } else if node_m.is_leaf() || (!node_n.is_leaf() && node_n.triangle_count >= node_m.triangle_count) {
+            Some(Split::First(node_n, m))
+        } else {
+            Some(Split::Second(n, node_m))
+        }
     }
 
     /// The triangles of a node.

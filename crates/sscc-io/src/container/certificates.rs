@@ -179,6 +179,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         global_radius: limit,
         node_radii,
         root_pair_radii,
+        pair_tree: Default::default(),
         rest_collisions: file.u64("rest_collisions")?.shaped(&[1])?.values[0],
     })?)
 }

@@ -3,6 +3,8 @@
 
 mod digest;
 mod global;
+mod grow;
+mod pair_tree;
 mod precompute;
 mod scope;
 mod search;
@@ -11,6 +13,7 @@ use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
 pub use digest::Digest;
+pub use pair_tree::PairTree;
 pub(crate) use precompute::child_pairs;
 pub use scope::Scope;
 pub(crate) use search::Search;
@@ -33,6 +36,9 @@ pub struct CertifyOptions {
     /// in every query. Where more pairs collide there are none, and radii of parts that contain such
     /// a pair are 0. None: [`CertifyOptions::default_exceptions`].
     pub max_exceptions: Option<usize>,
+    /// Memory for the pair tree, in bytes for each triangle of the mesh; 0: none, which is the paper's scheme of one
+    /// radius for each node and each pair of the root's children.
+    pub budget: usize,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
 }
@@ -46,12 +52,16 @@ impl Default for CertifyOptions {
             rule: PairRule::default(),
             ignore_rest: false,
             max_exceptions: None,
+            budget: Self::DEFAULT_BUDGET,
             threads: None,
         }
     }
 }
 
 impl CertifyOptions {
+    /// Bytes for each triangle, if nothing is said.
+    pub const DEFAULT_BUDGET: usize = 512;
+
     /// How many exceptions a mesh may have if nothing is said: half the number of its triangles. Testing more costs
     /// as much as radii can save.
     pub fn default_exceptions(triangles: usize) -> usize {
@@ -86,6 +96,8 @@ pub struct CertificateParts {
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,
+    /// Radii of pairs of nodes, all below its limit.
+    pub pair_tree: PairTree,
     /// Number of colliding pairs at rest (q = 0), ignored ones included.
     pub rest_collisions: u64,
 }

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::global::global_radius;
+use super::grow::{Grove, grow};
+use super::pair_tree::Entry;
 use super::search::Search;
 use super::{CertificateParts, CertifyOptions, Digest, Scope};
 use crate::bounds::{ClusterBounds, ScaledModel};
@@ -70,7 +72,9 @@ fn compute_here(
         global_radius,
         progress,
     };
-    let (node_radii, root_pair_radii) = work.run()?;
+    let budget = options.budget.saturating_mul(triangles) / size_of::<Entry>();
+    let grove = grow(&hierarchy, global_radius, budget, || work.search(), progress)?;
+    let (node_radii, root_pair_radii) = work.run(&grove)?;
     Ok(CertificateParts {
         digest: Digest::of(model, &scope),
         scope,
@@ -80,6 +84,7 @@ fn compute_here(
         global_radius,
         node_radii,
         root_pair_radii,
+        pair_tree: grove.tree,
     })
 }
 
@@ -96,7 +101,7 @@ struct Work<'a> {
 impl Work<'_> {
     /// Nodes of one level are independent of each other: level by level from the leaves, each result
     /// depends only on the model, whatever the number of threads.
-    fn run(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    fn run(&self, grove: &Grove) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let nodes = self.hierarchy.nodes();
         let mut radii = vec![self.global_radius; nodes.len()];
         let tally = Tally::new(self.progress, nodes.len() + child_pairs(&nodes[0]).count());
@@ -109,7 +114,7 @@ impl Work<'_> {
                 .into_par_iter()
                 .map_init(
                     || self.search(),
-                    |search, n| tally.step(|| self.node(search, n as u32, &nodes[n], &radii)),
+                    |search, n| tally.step(|| self.node(search, n as u32, &nodes[n], &radii, grove)),
                 )
                 .collect();
             radii[level].copy_from_slice(&computed);
@@ -117,13 +122,18 @@ impl Work<'_> {
         let root = &nodes[0];
         let mut pair_radii = Vec::new();
         if root.is_leaf() {
-            radii[0] = self.node(&mut self.search(), 0, root, &radii);
+            radii[0] = self.node(&mut self.search(), 0, root, &radii, grove);
         } else {
             // Between the children of the root each pair has a radius of its own.
             pair_radii = child_pairs(root)
                 .collect::<Vec<_>>()
                 .into_par_iter()
-                .map(|pair| tally.step(|| self.search().between([pair], self.global_radius)))
+                .enumerate()
+                .map(|(which, pair)| {
+                    let known = grove.radii[0].iter().find(|(place, _)| *place == which);
+                    let search = || self.search().between([pair], self.global_radius);
+                    tally.step(|| known.map_or_else(search, |(_, radius)| *radius))
+                })
                 .collect();
             radii[0] = self.least_child(root, &radii);
             radii[0] = pair_radii.iter().copied().fold(radii[0], f64::min);
@@ -141,8 +151,13 @@ impl Work<'_> {
         node.children().map(|child| radii[child as usize]).fold(self.global_radius, f64::min)
     }
 
-    fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64]) -> f64 {
+    fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64], grove: &Grove) -> f64 {
         let cap = self.least_child(node, radii);
+        // What the tree does not hold is at least its limit.
+        let known = grove.radii[n as usize].iter().map(|(_, radius)| *radius).fold(cap, f64::min);
+        if !node.is_leaf() && known <= grove.tree.limit() {
+            return known;
+        }
         if cap <= 0.0 {
             return 0.0;
         }

@@ -94,6 +94,11 @@ impl<'a> Search<'a> {
         self.hottest
     }
 
+    /// A certified lower bound for all triangle pairs between two nodes; from `enough` on it is not made better.
+    pub(crate) fn bound(&mut self, n: u32, m: u32, enough: f64) -> f64 {
+        cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
+    }
+
     /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
     pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
         self.start(cap);

@@ -12,6 +12,7 @@ mod exceptions;
 mod frame;
 mod never;
 mod pack;
+mod pair_walk;
 mod safe_scale;
 mod traversal;
 
@@ -77,6 +78,8 @@ pub struct Query<'a> {
     boxes: Boxes,
     continuous: Option<Box<Continuous>>,
     stack: Vec<Pair>,
+    /// Pairs of nodes of the pair tree still to be looked at, each with its place there.
+    walk: Vec<(u32, u32, u32)>,
     pairs: Vec<Pair>,
     /// The query ends with this many pairs.
     limit: usize,
@@ -150,6 +153,7 @@ impl<'a> Query<'a> {
             method,
             progress: &(),
             stack: Vec::new(),
+            walk: Vec::new(),
             pairs: Vec::new(),
             limit: usize::MAX,
             full: false,
@@ -197,7 +201,10 @@ impl<'a> Query<'a> {
             self.boxes.update(self.model, &self.hierarchy, q, reach);
             self.test_exceptions(q);
             if !self.statistics.root_certified {
-                self.traverse((0, 0), q)?;
+                match self.complete_pair_tree() {
+                    Some(tree) => self.walk_pairs(tree, q)?,
+                    None => self.traverse((0, 0), q)?,
+                }
             }
         }
         self.pairs.sort_unstable();

@@ -26,6 +26,13 @@ impl Box32 {
         Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
     }
 
+    /// Whether the boxes have a point in common.
+    #[inline]
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        let apart = self.lower.cmpgt(other.upper) | other.lower.cmpgt(self.upper);
+        apart.bitmask() & 0b111 == 0
+    }
+
     /// The least box that contains both.
     #[inline]
     pub(super) fn union(&self, other: &Self) -> Self {

@@ -1,0 +1,207 @@
+//! The certified pair tree: radii of pairs of nodes, so that a query ends where two neighbours touch.
+//!
+//! With radii of nodes alone a query walks along every common border of siblings that are not certified together: their
+//! boxes always overlap. The tree stores the radius of every pair of nodes below a limit. It is built by the splitting
+//! rule alone ([`Hierarchy::split`]), never by boxes: boxes that are apart at rest may meet later. So below the limit a pair
+//! that is missing is certified; from the limit on, absence means nothing.
+
+use crate::Error;
+use crate::hierarchy::Hierarchy;
+
+/// A link's flag: no sibling follows.
+const LAST: u32 = 1 << 31;
+/// Where a link says which child it is.
+const WHICH: u32 = 28;
+/// The part of a link that says where the children start.
+const START: u32 = (1 << WHICH) - 1;
+
+/// The most entries: as many as links can name.
+pub(super) const MOST_ENTRIES: usize = START as usize;
+
+/// A pair of nodes that may collide below the limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Entry {
+    /// The radius, rounded down.
+    pub(crate) radius: f32,
+    /// Where its children start (0: none, both nodes are leaves), which child of its parent it is, and whether it is the last one.
+    pub(crate) link: u32,
+}
+
+impl Entry {
+    /// `which`: the child of the node that is split, or the place among the pairs of children of one node.
+    pub(super) fn new(radius: f64, start: usize, which: usize, last: bool) -> Self {
+        let rounded = radius as f32;
+        let radius = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+        let link = start as u32 | (which as u32) << WHICH | if last { LAST } else { 0 };
+        Self { radius: radius.clamp(0.0, f32::MAX), link }
+    }
+
+    /// Where its children start; 0 for none.
+    pub(crate) fn start(self) -> u32 {
+        self.link & START
+    }
+
+    /// Which child of its parent it is.
+    pub(crate) fn which(self) -> u32 {
+        (self.link & !LAST) >> WHICH
+    }
+
+    fn is_last(self) -> bool {
+        self.link & LAST != 0
+    }
+}
+
+/// The pairs of nodes that may collide below a limit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PairTree {
+    limit: f64,
+    /// For each node where its pairs of children start; `u32::MAX` where none is stored.
+    starts: Vec<u32>,
+    entries: Vec<Entry>,
+}
+
+impl PairTree {
+    /// Below this a pair that is not stored is certified. 0 where no pairs are stored.
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// Number of pairs stored.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether no pair is stored: none may collide below the limit.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// For each node where its pairs of children start; `u32::MAX` where none is stored.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
+    /// For each pair its radius, rounded down, and its link: bits 0 to 27 say where its children start (0: none, both
+    /// nodes are leaves), bits 28 to 30 which child it is, bit 31 that no sibling follows.
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = (f32, u32)> {
+        self.entries.iter().map(|entry| (entry.radius, entry.link))
+    }
+
+    pub(super) fn new(limit: f64, starts: Vec<u32>, entries: Vec<Entry>) -> Self {
+        Self { limit, starts, entries }
+    }
+
+    /// Takes a tree from its parts, as read from a file: all of it is over this hierarchy, in order.
+    ///
+    /// # Errors
+    /// When the parts are no tree of pairs in the documented order.
+    pub fn from_parts(
+        limit: f64,
+        starts: Vec<u32>,
+        entries: impl IntoIterator<Item = (f32, u32)>,
+        hierarchy: &Hierarchy,
+    ) -> Result<Self, Error> {
+        let entries = entries.into_iter().map(|(radius, link)| Entry { radius, link }).collect();
+        let tree = Self { limit, starts, entries };
+        match tree.check(hierarchy) {
+            Ok(()) => Ok(tree),
+            Err(what) => Err(Error::Certificates(format!("pair tree: {what}"))),
+        }
+    }
+
+    fn check(&self, hierarchy: &Hierarchy) -> Result<(), &'static str> {
+        if self.limit.is_nan() || self.limit < 0.0 || self.limit.is_infinite() {
+            return Err("its limit is negative or not finite");
+        }
+        if self.limit == 0.0 {
+            return if self.entries.is_empty() && self.starts.is_empty() {
+                Ok(())
+            } else {
+                Err("it has no limit")
+            };
+        }
+        let nodes = hierarchy.nodes();
+        if self.starts.len() != nodes.len() || self.entries.len() > MOST_ENTRIES {
+            return Err("there is not one start for each node");
+        }
+        // Breadth first, each list of siblings right after the one before: what is visited is visited once.
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        for (n, start) in self.starts.iter().enumerate() {
+            if *start == u32::MAX {
+                continue;
+            }
+            if *start as usize != pairs.len() {
+                return Err("pairs of children are out of order");
+            }
+            let all: Vec<_> = super::child_pairs(&nodes[n]).collect();
+            self.append(*start, all.len(), |which| all[which], &mut pairs)?;
+        }
+        let mut at = 0;
+        while let Some(&(n, m)) = pairs.get(at) {
+            let entry = self.entries[at];
+            if entry.radius.is_nan() || entry.radius < 0.0 {
+                return Err("a radius is negative or not a number");
+            }
+            match hierarchy.split(n, m) {
+                None if entry.start() != 0 => return Err("a pair of leaves has children"),
+                None => {}
+                Some(split) => {
+                    if entry.start() as usize != pairs.len() {
+                        return Err("children are out of order");
+                    }
+                    let count = split.children().len();
+                    self.append(entry.start(), count, |which| split.pair(which as u32), &mut pairs)?;
+                }
+            }
+            at += 1;
+        }
+        if at == self.entries.len() { Ok(()) } else { Err("some pairs have no parent") }
+    }
+
+    /// Appends the pairs of a list of siblings.
+    fn append(
+        &self,
+        start: u32,
+        count: usize,
+        pair: impl Fn(usize) -> (u32, u32),
+        pairs: &mut Vec<(u32, u32)>,
+    ) -> Result<(), &'static str> {
+        let mut next = 0;
+        for entry in self.entries.get(start as usize..).unwrap_or_default() {
+            let which = entry.which() as usize;
+            if which < next || which >= count {
+                return Err("a child is listed twice or does not exist");
+            }
+            next = which + 1;
+            pairs.push(pair(which));
+            if entry.is_last() {
+                return Ok(());
+            }
+        }
+        Err("a list of siblings does not end")
+    }
+
+    /// The stored siblings that start there, each with its place.
+    #[inline]
+    pub(crate) fn siblings(&self, start: u32) -> impl Iterator<Item = (u32, Entry)> {
+        let mut next = if start == u32::MAX { None } else { Some(start) };
+        std::iter::from_fn(move || {
+            let at = next?;
+            let entry = self.entries[at as usize];
+            next = if entry.is_last() { None } else { Some(at + 1) };
+            Some((at, entry))
+        })
+    }
+
+    /// The stored pairs of a node's children.
+    #[inline]
+    pub(crate) fn of_node(&self, node: u32) -> impl Iterator<Item = (u32, Entry)> {
+        self.siblings(self.starts[node as usize])
+    }
+
+    /// The stored children of a pair that has some.
+    #[inline]
+    pub(crate) fn below(&self, place: u32) -> impl Iterator<Item = (u32, Entry)> {
+        self.siblings(self.entries[place as usize].start())
+    }
+}
