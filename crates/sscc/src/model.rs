@@ -86,9 +86,20 @@ impl ReducedModel {
         self.rest_reach + self.moved(q)
     }
 
-    /// An upper bound (up to rounding) of every `sum_k |U_k q_k|`.
+    /// An upper bound (up to rounding) of every `sum_k |U_k q_k|`. Not finite where an entry of q is not.
+    #[inline]
     pub(crate) fn moved(&self, q: &[f64]) -> f64 {
-        self.mode_reach.iter().zip(q).fold(0.0, |moved, (u, x)| moved + u * x.abs())
+        // Four sums side by side.
+        let mut lanes = [0.0; 4];
+        let (reaches, rest) = self.mode_reach.as_chunks::<4>();
+        let (coordinates, last) = q.as_chunks::<4>();
+        for (u, x) in reaches.iter().zip(coordinates) {
+            for i in 0..4 {
+                lanes[i] += u[i] * x[i].abs();
+            }
+        }
+        let last: f64 = rest.iter().zip(last).map(|(u, x)| u * x.abs()).sum();
+        (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last
     }
 
     /// Refuses a q that is no configuration of this model; else gives the reach of the shape at q, an upper
@@ -101,10 +112,10 @@ impl ReducedModel {
             return Err(Error::CoordinatesLength { found: q.len(), rank: self.rank() });
         }
         let reach = self.reach(q);
-        let zero: f64 = q.iter().map(|x| x * 0.0).sum(); // NaN exactly when some entry is NaN or infinite
-        if zero != 0.0 || reach.is_nan() {
-            let index = q.iter().position(|x| !x.is_finite()).unwrap_or(0);
-            return Err(Error::CoordinatesValue { index, value: q[index] });
+        if !reach.is_finite() {
+            let index = q.iter().position(|x| !x.is_finite());
+            let refused = |index| Error::CoordinatesValue { index, value: q[index] };
+            return Err(index.map_or(Error::CoordinatesRange, refused));
         }
         // Rounding may carry a position a little beyond the exact reach.
         let rounding = 1.0 + (2 * q.len() + 8) as f64 * f64::EPSILON;

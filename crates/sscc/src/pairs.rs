@@ -184,12 +184,18 @@ impl PairFilter {
     /// ray from the vertex through a common point until it leaves the first of the two.
     pub(crate) fn hulls(&self, a: u32, b: u32) -> impl Iterator<Item = ([u32; 3], [u32; 3])> {
         let (x, y) = (self.faces[a as usize], self.faces[b as usize]);
-        let edge = |face: [u32; 3], [i, j]: [usize; 2]| [face[i], face[j], face[j]];
+        self.hulls_of_corners(a, b).map(move |(i, j)| (i.map(|i| x[i]), j.map(|j| y[j])))
+    }
+
+    /// The same, by the corners (0 to 2) of each triangle.
+    pub(crate) fn hulls_of_corners(&self, a: u32, b: u32) -> impl Iterator<Item = ([usize; 3], [usize; 3])> {
+        let whole = [0, 1, 2];
+        let edge = |[i, j]: [usize; 2]| [i, j, j];
         let hulls = match self.relation(a, b) {
             Relation::Adjacent => [None, None],
-            Relation::Apart => [Some((x, y)), None],
+            Relation::Apart => [Some((whole, whole)), None],
             Relation::OneVertex(v) => match (self.opposite(a, v), self.opposite(b, v)) {
-                (Some(e), Some(f)) => [Some((edge(x, e), y)), Some((x, edge(y, f)))],
+                (Some(e), Some(f)) => [Some((edge(e), whole)), Some((whole, edge(f)))],
                 _ => [None, None],
             },
         };

@@ -16,7 +16,7 @@ struct Budget(std::sync::atomic::AtomicUsize);
 impl Progress for Budget {
     fn report(&self, _done: usize, _total: usize) {}
     fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 600
     }
 }
 

@@ -23,6 +23,11 @@ impl MovingTriangle {
         Self { t0: corners(e_t0), t1: corners(e_t1) }
     }
 
+    /// The hull of some of the corners.
+    pub(crate) fn hull(&self, corners: [usize; 3]) -> Self {
+        Self { t0: corners.map(|i| self.t0[i]), t1: corners.map(|i| self.t1[i]) }
+    }
+
     /// The corners at time t, rounded (t = 0 and t = 1 are exact).
     pub(super) fn at(&self, t: f64) -> [DVec3; 3] {
         std::array::from_fn(|i| self.t0[i] * (1.0 - t) + self.t1[i] * t)

@@ -6,6 +6,9 @@ use super::{Factor, Metric};
 /// 1e-280, and what underflows in the others is at most r 2^-1074.
 const FAST: std::ops::Range<f64> = 1e-140..1e140;
 
+/// The same for the sum of squares.
+const FAST_SUM: std::ops::Range<f64> = 1e-280..1e280;
+
 impl Metric {
     /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is not a
     /// number. (For radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
@@ -34,29 +37,23 @@ fn up(count: usize) -> f64 {
 }
 
 fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
-    let mut lanes = [[0.0_f64; 4]; 2];
-    let mut scale_chunks = scales.chunks_exact(4);
-    let mut coordinates = q.chunks_exact(4);
-    for (s, x) in (&mut scale_chunks).zip(&mut coordinates) {
+    // Four sums side by side: [`up`] covers any order.
+    let mut lanes = [0.0_f64; 4];
+    let (scale_chunks, scale_rest) = scales.as_chunks::<4>();
+    let (chunks, rest) = q.as_chunks::<4>();
+    for (s, x) in scale_chunks.iter().zip(chunks) {
         for i in 0..4 {
-            let z = (s[i] * x[i]).abs();
-            lanes[0][i] += z * z;
-            lanes[1][i] = lanes[1][i].max(z);
+            let z = s[i] * x[i];
+            lanes[i] += z * z;
         }
     }
-    for (s, x) in scale_chunks.remainder().iter().zip(coordinates.remainder()) {
-        let z = (s * x).abs();
-        lanes[0][0] += z * z;
-        lanes[1][0] = lanes[1][0].max(z);
+    let last: f64 = scale_rest.iter().zip(rest).map(|(s, x)| (s * x) * (s * x)).sum();
+    let sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last;
+    if FAST_SUM.contains(&sum) {
+        return sum.sqrt() * up(q.len());
     }
-    let largest = lanes[1].into_iter().fold(0.0, f64::max);
-    let [a, b, c, d] = lanes[0];
-    let sum = (a + b) + (c + d);
     if sum.is_nan() {
         return f64::INFINITY;
-    }
-    if FAST.contains(&largest) {
-        return sum.sqrt() * up(q.len());
     }
     // A product that underflows is rounded up to the smallest normal number: it is not 0.
     let scaled = |(s, x): (&f64, &f64)| if *x == 0.0 { 0.0 } else { (s * x).abs().max(f64::MIN_POSITIVE) };

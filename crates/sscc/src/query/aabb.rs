@@ -16,3 +16,10 @@ pub(super) fn disjoint(a: &Aabb, b: &Aabb) -> bool {
 pub(super) fn triangle_box([a, b, c]: [DVec3; 3]) -> Aabb {
     (a.min(b).min(c), a.max(b).max(c))
 }
+
+/// The box around a triangle at each end of its way.
+#[inline]
+pub(super) fn around<const E: usize>(corners: &[[DVec3; 3]; E]) -> Aabb {
+    let ends = corners.map(triangle_box);
+    ends.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+}

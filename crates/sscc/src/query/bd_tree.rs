@@ -7,11 +7,12 @@ use super::aabb::Aabb;
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, Node, bounding_box};
 
-/// For the root and each inner node of more than `tight` triangles, how its box moves and grows with q:
+/// For the nodes that have one, how their box moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
+#[derive(Default)]
 pub(super) struct BdTree {
     rank: usize,
-    /// For each node its place in the lists below, or `u32::MAX` for a small one.
+    /// For each node its place in the lists below, or `u32::MAX`.
     places: Vec<u32>,
     /// `(c, h)`
     rest: Vec<(DVec3, DVec3)>,
@@ -20,7 +21,12 @@ pub(super) struct BdTree {
 }
 
 impl BdTree {
-    pub(super) fn new(model: &ReducedModel, hierarchy: &Hierarchy, tight: u32) -> Self {
+    /// For the root and all other nodes that are wanted.
+    pub(super) fn new(
+        model: &ReducedModel,
+        hierarchy: &Hierarchy,
+        is_wanted: impl Fn(u32) -> bool + Sync,
+    ) -> Self {
         let (mesh, modes) = (model.mesh(), model.modes());
         let rank = modes.rank();
         let node_rates = |node: &Node| {
@@ -41,38 +47,41 @@ impl BdTree {
             }
             (rest, rates)
         };
-        let large = |n: usize, node: &Node| n == 0 || (!node.is_leaf() && node.triangle_count > tight);
+        let has = |n: usize| n == 0 || is_wanted(n as u32);
         let nodes = hierarchy.nodes().par_iter().enumerate();
-        let all: Vec<_> =
-            nodes.filter(|(n, node)| large(*n, node)).map(|(_, node)| node_rates(node)).collect();
+        let all: Vec<_> = nodes.filter(|(n, _)| has(*n)).map(|(_, node)| node_rates(node)).collect();
         let mut next = 0..;
-        let place = |(n, node)| if large(n, node) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
-        let places = hierarchy.nodes().iter().enumerate().map(place).collect();
+        let place = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
+        let places = (0..hierarchy.nodes().len()).map(place).collect();
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
         Self { rank, places, rest, rates }
     }
 
-    /// A box that contains the computed positions of all vertices of a node at q, or none for a small node.
-    /// `margin` covers rounding: at least `(4 r + 64)` units of the last place of the shape's reach.
-    pub(super) fn at(&self, node: u32, q: &[f64], margin: f64) -> Option<Aabb> {
+    /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none where the
+    /// node has none. `margin` covers rounding: at least `(4 r + 64)` units of the last place of the shape's reach.
+    pub(super) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: f64) -> Option<Aabb> {
         let place = self.places[node as usize] as usize;
         (place < self.rest.len()).then(|| self.at_place(place, q, margin))
     }
 
     /// The same for the whole shape.
-    pub(super) fn root(&self, q: &[f64], margin: f64) -> Aabb {
+    pub(super) fn root<const E: usize>(&self, q: [&[f64]; E], margin: f64) -> Aabb {
         self.at_place(0, q, margin)
     }
 
-    fn at_place(&self, place: usize, q: &[f64], margin: f64) -> Aabb {
-        let (mut centre, mut half) = self.rest[place];
-        for ((mean, growth), &x) in self.rates[place * self.rank..][..self.rank].iter().zip(q) {
-            centre += *mean * x;
-            half += *growth * x.abs();
+    fn at_place<const E: usize>(&self, place: usize, q: [&[f64]; E], margin: f64) -> Aabb {
+        let mut boxes = [self.rest[place]; E];
+        let rates = &self.rates[place * self.rank..][..self.rank];
+        let q = q.map(|q| &q[..rates.len()]);
+        for (k, (mean, growth)) in rates.iter().enumerate() {
+            for ((centre, half), q) in boxes.iter_mut().zip(q) {
+                *centre += *mean * q[k];
+                *half += *growth * q[k].abs();
+            }
         }
-        half += DVec3::splat(margin);
-        (centre - half, centre + half)
+        let ends = boxes.map(|(centre, half)| (centre - (half + margin), centre + (half + margin)));
+        ends.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
     }
 }
 
@@ -107,7 +116,7 @@ mod tests {
         for rank in [1, 2, 7, 30] {
             let model = model(rank, &mut state);
             let hierarchy = Hierarchy::build(&model, model.metric());
-            let tree = BdTree::new(&model, &hierarchy, 0);
+            let tree = BdTree::new(&model, &hierarchy, |n| !hierarchy.nodes()[n as usize].is_leaf());
             let mut checked = 0;
             for case in 0..200 {
                 let size = 10.0_f64.powi(case % 25 - 12);
@@ -115,7 +124,7 @@ mod tests {
                 let reach = model.check_coordinates(&q).unwrap();
                 for (n, node) in hierarchy.nodes().iter().enumerate() {
                     let Some((lower, upper)) =
-                        tree.at(n as u32, &q, super::super::boxes::margin(reach, rank))
+                        tree.at(n as u32, [&q], super::super::boxes::margin(reach, rank))
                     else {
                         assert!(n != 0 && node.is_leaf());
                         continue;

@@ -9,21 +9,22 @@ impl Query<'_> {
     /// The colliding pairs between the triangles of two nodes without common triangles, or within one node
     /// (n = m), exceptions left out, found without certificates: for audits.
     pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[Pair], Error> {
-        debug_assert_ne!(self.method, Method::Certified);
-        let reach = self.begin(q, usize::MAX)?;
-        self.boxes.update(self.model, &self.hierarchy, q, reach);
-        self.traverse((n, m), q)?;
-        let exceptions = self.certificates.map_or(&[][..], Certificates::exceptions);
-        let [x, y] = [n, m].map(|n| &self.hierarchy.nodes()[n as usize]);
+        debug_assert_ne!(self.asked.method, Method::Certified);
+        let ends = self.begin([q], usize::MAX)?;
+        let (asked, finder) = (&self.asked, &mut self.discrete);
+        finder.boxes.update(&asked.hierarchy, &ends);
+        finder.traverse(asked, (n, m), &ends)?;
+        let exceptions = asked.certificates.map_or(&[][..], Certificates::exceptions);
+        let [x, y] = [n, m].map(|n| &asked.hierarchy.nodes()[n as usize]);
         let has = |node: &Node, t| {
-            node.triangle_count as usize > CLUSTER || self.hierarchy.triangles(node).contains(&t)
+            node.triangle_count as usize > CLUSTER || asked.hierarchy.triangles(node).contains(&t)
         };
-        self.pairs.retain(|pair| {
+        finder.found.retain(|pair| {
             let (i, j) = *pair;
             exceptions.binary_search(pair).is_err() && (has(x, i) && has(y, j) || has(x, j) && has(y, i))
         });
-        self.pairs.sort_unstable();
-        Ok(&self.pairs)
+        finder.found.sort_unstable();
+        Ok(&finder.found)
     }
 }
 
@@ -53,7 +54,7 @@ mod tests {
         let query = |method| Query::without_certificates(&model, Scope::of(&model), method).unwrap();
         let all = query(Method::BruteForce).discrete(&[0.5]).unwrap().to_vec();
         let mut queries = [query(Method::Traditional), query(Method::BdTree)];
-        let hierarchy = queries[0].hierarchy.clone();
+        let hierarchy = queries[0].asked.hierarchy.clone();
         let mut found = 0;
         for (n, x) in hierarchy.nodes().iter().enumerate() {
             for (m, y) in hierarchy.nodes().iter().enumerate().skip(n) {

@@ -1,18 +1,23 @@
 //! Every pair of triangles: the oracle for all other methods.
 
-use super::Query;
-use super::aabb::{disjoint, triangle_box};
+use glam::DVec3;
+
+use super::aabb::{Aabb, around, disjoint};
+use super::asked::{Asked, Ends};
+use super::finder::Finder;
+use super::found::Found;
 use crate::Error;
 
-impl Query<'_> {
-    /// Appends all colliding pairs at q. No hierarchy, no certificates; only boxes of single triangles, compared
-    /// exactly.
-    pub(super) fn brute_force(&mut self, q: &[f64]) -> Result<(), Error> {
-        let (model, mesh) = (self.model, self.model.mesh());
-        let corners: Vec<_> = mesh.faces().iter().map(|face| face.map(|v| model.position(v, q))).collect();
-        let boxes: Vec<_> = corners.iter().map(|c| triangle_box(*c)).collect();
+impl<F: Found<E>, const E: usize> Finder<F, E> {
+    /// Adds all that counts among all pairs of triangles. No hierarchy, no certificates;
+    /// only boxes of single triangles, compared exactly.
+    pub(super) fn brute_force(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+        let faces = asked.model.mesh().faces();
+        let corners: Vec<[[DVec3; 3]; E]> =
+            faces.iter().map(|face| ends.q.map(|q| face.map(|v| asked.model.position(v, q)))).collect();
+        let boxes: Vec<Aabb> = corners.iter().map(around).collect();
         for i in 0..corners.len() {
-            if self.progress.is_cancelled() {
+            if asked.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             for j in i + 1..corners.len() {
@@ -21,13 +26,12 @@ impl Query<'_> {
                 }
                 self.statistics.box_tests += 1;
                 let pair = (i as u32, j as u32);
-                if disjoint(&boxes[i], &boxes[j]) || self.filter.leaves_out(pair.0, pair.1) {
+                if disjoint(&boxes[i], &boxes[j]) || asked.filter.leaves_out(pair.0, pair.1) {
                     continue;
                 }
                 self.statistics.triangle_tests += 1;
-                if self.filter.collide(pair, &corners[i], &corners[j]) {
-                    self.pairs.push(pair);
-                }
+                let relation = asked.filter.relation(pair.0, pair.1);
+                self.found.extend(F::of(&asked.filter, relation, pair, &corners[i], &corners[j]));
             }
         }
         Ok(())

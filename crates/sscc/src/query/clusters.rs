@@ -18,6 +18,7 @@ pub(super) const CLUSTER: usize = LANES * LANES;
 /// A cluster's triangles are not split as the hierarchy does it: its leaves hold 4 triangles on average, less
 /// than one comparison takes. Blocks are cut full. On the spring at rest 5,516 pairs of nodes are opened instead of
 /// 37,695.
+#[derive(Default)]
 pub(super) struct Clusters {
     /// For each node the cluster that it is, or lies in.
     of_node: Vec<Option<u32>>,
@@ -27,7 +28,7 @@ pub(super) struct Clusters {
     blocks: Vec<u32>,
     /// For each block the place of its first triangle, and the end.
     places: Vec<u32>,
-    /// The triangle at each place, and its vertices.
+    /// The triangle at each place, and its vertices, by their places in [`Vertices`](super::vertices::Vertices).
     triangles: Vec<u32>,
     corners: Vec<[u32; 3]>,
     /// For each cluster where its vertices begin, and the end.
@@ -76,6 +77,11 @@ impl Clusters {
         self.of_node[node as usize]
     }
 
+    /// How many nodes the hierarchy has.
+    pub(super) fn node_count(&self) -> usize {
+        self.of_node.len()
+    }
+
     /// The node of a cluster.
     pub(super) fn node(&self, cluster: u32) -> u32 {
         self.nodes[cluster as usize]
@@ -94,7 +100,7 @@ impl Clusters {
 
     /// How many blocks there are.
     pub(super) fn block_count(&self) -> usize {
-        self.places.len() - 1
+        self.places.len().saturating_sub(1)
     }
 
     /// The places of a block's triangles.
@@ -115,7 +121,17 @@ impl Clusters {
         &self.corners
     }
 
-    /// The vertices of a cluster, ascending, each once.
+    /// The vertices of all clusters, one after the other.
+    pub(super) fn all_vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// Gives each vertex another number.
+    pub(super) fn renumber(&mut self, new: impl Fn(u32) -> u32) {
+        self.vertices.iter_mut().chain(self.corners.as_flattened_mut()).for_each(|v| *v = new(*v));
+    }
+
+    /// The vertices of a cluster, each once.
     pub(super) fn vertices(&self, cluster: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|i| self.vertex_starts[cluster as usize + i] as usize);
         &self.vertices[start..end]

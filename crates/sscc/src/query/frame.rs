@@ -11,7 +11,7 @@ use super::aabb::Aabb;
 /// one of these steps is monotone. So where one mapped box ends strictly before another one begins, the exact boxes
 /// do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to
 /// overlap, far from the centre (a shape of size 1 at 1e8) or below the smallest numbers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
     center: DVec3,
     scale: f64,

@@ -1,6 +1,7 @@
 //! Queries: which pairs of triangles collide at q (paper, Algorithm 1).
 
 mod aabb;
+mod asked;
 mod batch;
 mod bd_tree;
 mod between;
@@ -9,12 +10,17 @@ mod brute_force;
 mod clusters;
 mod continuous;
 mod exceptions;
+mod finder;
+mod found;
 mod frame;
 mod never;
 mod pack;
 mod pair_walk;
+mod positions;
 mod safe_scale;
+mod tables;
 mod traversal;
+mod vertices;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -23,8 +29,9 @@ use crate::hierarchy::Hierarchy;
 use crate::metric::check_scaled_modes;
 use crate::pairs::PairFilter;
 use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
-use boxes::Boxes;
-use continuous::Continuous;
+use asked::{Asked, Ends};
+use finder::Finder;
+use tables::Tables;
 
 pub use batch::Answer;
 pub use continuous::Impact;
@@ -68,24 +75,11 @@ pub struct Statistics {
 /// [`deformed_position`](crate::deformed_position), have a point in common.
 #[derive(Clone)]
 pub struct Query<'a> {
-    model: &'a ReducedModel,
-    certificates: Option<&'a Certificates>,
-    scope: Cow<'a, Scope>,
-    hierarchy: Cow<'a, Hierarchy>,
-    filter: Arc<PairFilter>,
-    method: Method,
-    progress: &'a dyn Progress,
-    boxes: Boxes,
-    continuous: Option<Box<Continuous>>,
-    stack: Vec<Pair>,
-    /// Pairs of nodes of the pair tree still to be looked at, each with its place there.
-    walk: Vec<(u32, u32, u32)>,
-    pairs: Vec<Pair>,
-    /// The query ends with this many pairs.
-    limit: usize,
-    /// Whether it did, with something left to look at.
-    full: bool,
-    statistics: Statistics,
+    asked: Asked<'a>,
+    /// Holds the last answer, of continuous queries the pairs.
+    discrete: Finder<Pair, 1>,
+    /// Made by the first continuous query.
+    continuous: Option<Box<Finder<Impact, 2>>>,
     norm: f64,
     /// Scratch for `q - center`; empty where the centre is 0.
     offset: Vec<f64>,
@@ -141,32 +135,16 @@ impl<'a> Query<'a> {
     ) -> Self {
         let is_centered = scope.center.iter().all(|x| *x == 0.0);
         let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
-        let filter = PairFilter::new(model, &scope.rule);
-        Self {
-            boxes: Boxes::new(model, &hierarchy, &filter, method),
-            continuous: None,
-            filter: Arc::new(filter),
-            model,
-            certificates,
-            scope,
-            hierarchy,
-            method,
-            progress: &(),
-            stack: Vec::new(),
-            walk: Vec::new(),
-            pairs: Vec::new(),
-            limit: usize::MAX,
-            full: false,
-            statistics: Statistics::default(),
-            norm: 0.0,
-            offset,
-        }
+        let filter = Arc::new(PairFilter::new(model, &scope.rule));
+        let asked = Asked { model, certificates, scope, hierarchy, filter, method, progress: &() };
+        let discrete = Finder::new(&Arc::new(Tables::new(&asked)), method);
+        Self { asked, discrete, continuous: None, norm: 0.0, offset }
     }
 
     /// The same query, which looks now and then whether it was cancelled. Nothing is reported.
     #[must_use]
     pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
-        self.progress = progress;
+        self.asked.progress = progress;
         self
     }
 
@@ -185,31 +163,9 @@ impl<'a> Query<'a> {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
-        let reach = self.begin(q, limit)?;
-        if self.method == Method::Certified
-            && self.certificates.is_some_and(|certificates| self.norm < certificates.root_radius())
-        {
-            self.statistics.root_certified = true;
-            if self.exceptions().is_empty() {
-                self.statistics.complete = true;
-                return Ok(&self.pairs);
-            }
-        }
-        if self.method == Method::BruteForce {
-            self.brute_force(q)?;
-        } else {
-            self.boxes.update(self.model, &self.hierarchy, q, reach);
-            self.test_exceptions(q);
-            if !self.statistics.root_certified {
-                match self.complete_pair_tree() {
-                    Some(tree) => self.walk_pairs(tree, q)?,
-                    None => self.traverse((0, 0), q)?,
-                }
-            }
-        }
-        self.pairs.sort_unstable();
-        self.statistics.complete = !self.full;
-        Ok(&self.pairs)
+        let ends = self.begin([q], limit)?;
+        self.discrete.find(&self.asked, &ends)?;
+        Ok(&self.discrete.found)
     }
 
     /// One colliding pair at q, if there is any; which one is not fixed.
@@ -228,36 +184,33 @@ impl<'a> Query<'a> {
         Ok(self.discrete(q)?.len())
     }
 
-    /// Forgets the last answer; gives the reach of the shape at q.
-    fn begin(&mut self, q: &[f64], limit: usize) -> Result<f64, Error> {
-        self.pairs.clear();
-        self.limit = limit;
-        self.full = false;
-        self.statistics = Statistics::default();
-        let reach = self.model.check_coordinates(q)?;
-        self.norm = if self.offset.is_empty() {
-            self.scope.metric.norm(q)
-        } else {
-            self.scope.metric.norm_from(q, &self.scope.center, &mut self.offset)
-        };
-        Ok(reach)
-    }
-
-    /// Whether the limit is reached while there is still something to look at: then the answer is not complete.
-    fn is_full(&mut self) -> bool {
-        self.full |= self.pairs.len() >= self.limit;
-        self.full
+    /// Forgets the last answer; checks what is asked, and measures it.
+    #[inline]
+    fn begin<'t, const E: usize>(&mut self, q: [&'t [f64]; E], limit: usize) -> Result<Ends<'t, E>, Error> {
+        self.discrete.begin(limit);
+        let mut ends = Ends { q, norm: 0.0, reach: 0.0 };
+        for q in q {
+            ends.reach = ends.reach.max(self.asked.model.check_coordinates(q)?);
+            let scope = &self.asked.scope;
+            ends.norm = ends.norm.max(if self.offset.is_empty() {
+                scope.metric.norm(q)
+            } else {
+                scope.metric.norm_from(q, &scope.center, &mut self.offset)
+            });
+        }
+        self.norm = ends.norm;
+        Ok(ends)
     }
 
     /// What the last query found, as [`Query::discrete`] or [`Query::discrete_at_most`] gave it; the pairs of
     /// [`Query::continuous`].
     pub fn pairs(&self) -> &[Pair] {
-        &self.pairs
+        &self.discrete.found
     }
 
     /// What the last query cost.
     pub fn statistics(&self) -> Statistics {
-        self.statistics
+        self.discrete.statistics
     }
 
     /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
@@ -268,7 +221,7 @@ impl<'a> Query<'a> {
 
     /// What is asked: metric and centre of [`Query::norm`], and which pairs count.
     pub fn scope(&self) -> &Scope {
-        &self.scope
+        &self.asked.scope
     }
 }
 
@@ -284,8 +237,8 @@ pub(crate) fn colliding_pairs(
     let query = Query::build(model, None, scope, Cow::Borrowed(hierarchy), Method::Traditional);
     let mut query = query.cancelled_by(progress);
     query.discrete_at_most(q, MOST_PAIRS)?;
-    if query.statistics.complete {
-        Ok(query.pairs)
+    if query.statistics().complete {
+        Ok(query.discrete.found)
     } else {
         Err(Error::TooManyCollisions { most: MOST_PAIRS })
     }

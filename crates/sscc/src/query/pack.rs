@@ -20,10 +20,14 @@ impl Box32 {
     /// Contains nothing, and overlaps no box with finite corners.
     pub(super) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
-    /// The box of three points.
+    /// The box of three points, around all the places where each is.
     #[inline]
-    pub(super) fn of([a, b, c]: [Vec4; 3]) -> Self {
-        Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
+    pub(super) fn around<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
+        let [a, b, c] = corners.map(|ends| {
+            let first = Self { lower: ends[0], upper: ends[0] };
+            ends[1..].iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
+        });
+        a.union(&b).union(&c)
     }
 
     /// Whether the boxes have a point in common.
@@ -124,7 +128,7 @@ mod tests {
         for _ in 0..2000 {
             let mut one = || {
                 let [a, b] = [(); 2].map(|()| Vec4::new(random(), random(), random(), random()));
-                Box32::of([a, b, b])
+                Box32::around([[a], [b], [b]])
             };
             let boxes: [Box32; 5] = std::array::from_fn(|_| one());
             let mut pack = Pack::EMPTY;

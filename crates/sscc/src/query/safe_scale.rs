@@ -24,15 +24,15 @@ impl Query<'_> {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
-        self.begin(q, usize::MAX)?;
-        let path = Path::new(self.model, &self.scope.center, q);
-        let global = self.certificates.map_or(f64::INFINITY, Certificates::global_radius);
+        self.begin([q], usize::MAX)?;
+        let path = Path::new(self.asked.model, &self.asked.scope.center, q);
+        let global = self.asked.certificates.map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(path.farthest) * DOWN;
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
-        let boxes = PathBoxes::new(&path, &self.hierarchy, self.model.mesh().faces());
-        for &(x, y) in self.certificates.map_or(&[][..], Certificates::exceptions) {
+        let boxes = PathBoxes::new(&path, &self.asked.hierarchy, self.asked.model.mesh().faces());
+        for &(x, y) in self.asked.certificates.map_or(&[][..], Certificates::exceptions) {
             best = best.min(self.follow(&path, (x, y), 0.0, best));
         }
         let mut waiting = BinaryHeap::new();
@@ -42,20 +42,20 @@ impl Query<'_> {
             if lower >= best {
                 break;
             }
-            if self.progress.is_cancelled() {
+            if self.asked.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            self.statistics.opened += 1;
+            self.discrete.statistics.opened += 1;
             let mut consider = |n: u32, m: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
                 if lower < best {
                     waiting.push(Entry { lower, n, m });
                 }
             };
-            let [node_n, node_m] = [n, m].map(|n| self.hierarchy.nodes()[n as usize]);
+            let [node_n, node_m] = [n, m].map(|n| self.asked.hierarchy.nodes()[n as usize]);
             if node_n.is_leaf() && node_m.is_leaf() {
                 let goal = (lower * AHEAD).max(best * LEAST).min(best);
-                let triangles = |node| self.hierarchy.triangles(node);
+                let triangles = |node| self.asked.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
                     let box_x = &boxes.triangles[x as usize];
@@ -64,9 +64,9 @@ impl Query<'_> {
                     }
                     let first = if n == m { i + 1 } else { 0 };
                     for &y in &triangles(&node_m)[first..] {
-                        self.statistics.box_tests += 1;
+                        self.discrete.statistics.box_tests += 1;
                         if path.boxes_apart(box_x, &boxes.triangles[y as usize]) < goal {
-                            self.statistics.triangle_tests += 1;
+                            self.discrete.statistics.triangle_tests += 1;
                             best = best.min(self.follow(&path, (x, y), lower, goal.min(best)));
                         }
                     }
@@ -77,7 +77,8 @@ impl Query<'_> {
                     consider(child, child, self.certified_scale(child), best);
                 }
                 for (pair, (a, b)) in child_pairs(&node_n).enumerate() {
-                    let radii = self.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
+                    let radii =
+                        self.asked.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
                     let certified = radii.map_or(0.0, |radii| self.scale(radii[pair]));
                     consider(a, b, certified.max(boxes.apart(&path, a, b)), best);
                 }
@@ -89,13 +90,13 @@ impl Query<'_> {
                 node_m.children().for_each(|child| consider(n, child, boxes.apart(&path, n, child), best));
             }
         }
-        self.statistics.complete = true;
+        self.discrete.statistics.complete = true;
         Ok(best)
     }
 
     /// The scale up to which a node's own radius certifies it.
     fn certified_scale(&self, node: u32) -> f64 {
-        self.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
+        self.asked.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
     }
 
     /// The scale at which a radius is reached; [`Query::norm`] is that of scale 1.
@@ -107,10 +108,10 @@ impl Query<'_> {
     /// Follows two triangles that do not collide before `t`: infinite when they do not before `goal`, or do not count;
     /// else a scale below which they do not, about where they meet.
     fn follow(&self, path: &Path, (x, y): Pair, t: f64, goal: f64) -> f64 {
-        if self.filter.leaves_out(x, y) {
+        if self.asked.filter.leaves_out(x, y) {
             return f64::INFINITY;
         }
-        let hulls = self.filter.hulls(x, y);
+        let hulls = self.asked.filter.hulls(x, y);
         hulls.map(|(x, y)| path.follow(x, y, t, goal)).fold(f64::INFINITY, f64::min)
     }
 }

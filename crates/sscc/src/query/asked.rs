@@ -1,0 +1,64 @@
+//! What a query is asked of: all that stays the same from one q to the next.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::Method;
+use crate::hierarchy::Hierarchy;
+use crate::pairs::PairFilter;
+use crate::{CertificateParts, Certificates, Pair, PairTree, Progress, ReducedModel, Scope};
+
+#[derive(Clone)]
+pub(super) struct Asked<'a> {
+    pub(super) model: &'a ReducedModel,
+    pub(super) certificates: Option<&'a Certificates>,
+    pub(super) scope: Cow<'a, Scope>,
+    pub(super) hierarchy: Cow<'a, Hierarchy>,
+    pub(super) filter: Arc<PairFilter>,
+    pub(super) method: Method,
+    pub(super) progress: &'a dyn Progress,
+}
+
+impl Asked<'_> {
+    /// The certificates, if this method uses them.
+    #[inline]
+    pub(super) fn used_certificates(&self) -> Option<&CertificateParts> {
+        self.certificates.filter(|_| self.method == Method::Certified).map(Certificates::parts)
+    }
+
+    /// The pair tree, if this method uses it and it is complete at this norm: then a pair that it does not hold is
+    /// certified.
+    pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&PairTree> {
+        self.used_certificates().map(|parts| &parts.pair_tree).filter(|tree| norm < tree.limit())
+    }
+
+    /// Whether the root's certificate alone proves that nothing collides at this norm, exceptions apart.
+    #[inline]
+    pub(super) fn root_certifies(&self, norm: f64) -> bool {
+        self.used_certificates().is_some_and(|parts| norm < parts.node_radii[0])
+    }
+
+    /// The pairs that this query must test by itself: those of the certificates it uses.
+    #[inline]
+    pub(super) fn exceptions(&self) -> &[Pair] {
+        self.used_certificates().map_or(&[], |parts| &parts.scope.exceptions)
+    }
+
+    /// Whether a pair has been tested as an exception.
+    #[inline]
+    pub(super) fn is_exception(&self, pair: Pair) -> bool {
+        let exceptions = self.exceptions();
+        !exceptions.is_empty() && exceptions.binary_search(&pair).is_ok()
+    }
+}
+
+/// One configuration, or the two ends of a motion.
+#[derive(Clone, Copy)]
+pub(super) struct Ends<'t, const E: usize> {
+    pub(super) q: [&'t [f64]; E],
+    /// The larger one of the norms at both ends: a certificate holds on the way when it holds at both, because its
+    /// region is convex.
+    pub(super) norm: f64,
+    /// The larger one of the reaches.
+    pub(super) reach: f64,
+}

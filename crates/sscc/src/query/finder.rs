@@ -1,0 +1,105 @@
+//! One search after the other for what counts, at one configuration or between two.
+
+use std::sync::Arc;
+
+use super::asked::{Asked, Ends};
+use super::boxes::Boxes;
+use super::found::Found;
+use super::tables::Tables;
+use super::{Method, Statistics};
+use crate::pairs::Relation;
+use crate::{Error, Pair};
+
+/// Finds what counts, and owns the memory for it. `E` is the number of configurations: 1, or the 2 ends of a motion.
+#[derive(Clone)]
+pub(super) struct Finder<F, const E: usize> {
+    pub(super) boxes: Boxes<E>,
+    /// Pairs of nodes still to be looked at: see [`Finder::traverse`].
+    pub(super) stack: Vec<Pair>,
+    /// The same for [`Finder::walk_pairs`].
+    pub(super) walk: Vec<(u32, u32, u32)>,
+    pub(super) found: Vec<F>,
+    /// The search ends with this many.
+    limit: usize,
+    /// Whether it did, with something left to look at.
+    full: bool,
+    pub(super) statistics: Statistics,
+}
+
+impl<F: Found<E>, const E: usize> Finder<F, E> {
+    pub(super) fn new(tables: &Arc<Tables>, method: Method) -> Self {
+        Self {
+            boxes: Boxes::new(tables, method != Method::Traditional),
+            stack: Vec::new(),
+            walk: Vec::new(),
+            found: Vec::new(),
+            limit: usize::MAX,
+            full: false,
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Forgets what was found, and starts a search for at most `limit`.
+    #[inline]
+    pub(super) fn begin(&mut self, limit: usize) {
+        self.found.clear();
+        self.limit = limit;
+        self.full = false;
+        self.statistics = Statistics::default();
+    }
+
+    /// Finds what counts, sorted.
+    #[inline]
+    pub(super) fn find(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+        self.statistics.root_certified = asked.root_certifies(ends.norm);
+        if !self.statistics.root_certified || !asked.exceptions().is_empty() {
+            self.search(asked, ends)?;
+        }
+        self.statistics.complete = !self.full;
+        Ok(())
+    }
+
+    fn search(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+        if asked.method == Method::BruteForce {
+            self.brute_force(asked, ends)?;
+        } else {
+            self.boxes.update(&asked.hierarchy, ends);
+            self.test_exceptions(asked, ends);
+            if !self.statistics.root_certified {
+                match asked.complete_pair_tree(ends.norm) {
+                    Some(tree) => self.walk_pairs(asked, tree, ends)?,
+                    None => self.traverse(asked, (0, 0), ends)?,
+                }
+            }
+        }
+        self.found.sort_unstable_by_key(Found::pair);
+        Ok(())
+    }
+
+    /// Whether the limit is reached while there is still something to look at: then the answer is not complete.
+    #[inline]
+    pub(super) fn is_full(&mut self) -> bool {
+        self.full |= self.found.len() >= self.limit;
+        self.full
+    }
+
+    /// Two triangles whose boxes overlap, each with the places of its corners.
+    #[inline]
+    pub(super) fn test(&mut self, asked: &Asked<'_>, x: (u32, [u32; 3]), y: (u32, [u32; 3])) {
+        let (x, y) = if x.0 < y.0 { (x, y) } else { (y, x) };
+        let pair = (x.0, y.0);
+        let relation = asked.filter.relation(pair.0, pair.1);
+        if relation == Relation::Adjacent {
+            return;
+        }
+        self.statistics.triangle_tests += 1;
+        let [x, y] = [x, y].map(|(_, corners)| self.boxes.corners(corners));
+        if let Some(found) = F::of(&asked.filter, relation, pair, &x, &y)
+            && !asked.filter.leaves_out(pair.0, pair.1)
+            && !asked.is_exception(pair)
+            && !self.is_full()
+        {
+            self.found.push(found);
+        }
+    }
+}

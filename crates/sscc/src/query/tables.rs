@@ -1,0 +1,32 @@
+//! What no q changes, shared by all clones of a query and by its discrete and continuous searches.
+
+use super::Method;
+use super::asked::Asked;
+use super::bd_tree::BdTree;
+use super::clusters::Clusters;
+use super::vertices::Vertices;
+
+#[derive(Default)]
+pub(super) struct Tables {
+    pub(super) vertices: Vertices,
+    pub(super) clusters: Clusters,
+    pub(super) bd_tree: BdTree,
+}
+
+impl Tables {
+    pub(super) fn new(asked: &Asked<'_>) -> Self {
+        let is_lazy = match asked.method {
+            Method::BruteForce => return Self::default(),
+            Method::Traditional => false,
+            Method::Certified | Method::BdTree => true,
+        };
+        let (model, hierarchy) = (asked.model, &asked.hierarchy);
+        let mut clusters = Clusters::new(model.mesh(), hierarchy, &asked.filter);
+        let vertices = Vertices::new(model, clusters.all_vertices());
+        clusters.renumber(|v| vertices.place(v));
+        // Nodes down to clusters.
+        let has_box = |n| is_lazy && clusters.of_node(n).is_none_or(|cluster| clusters.node(cluster) == n);
+        let bd_tree = BdTree::new(model, hierarchy, has_box);
+        Self { vertices, clusters, bd_tree }
+    }
+}
