@@ -242,7 +242,7 @@
 //! | section | here |
 //! | --- | --- |
 //! | 3, hierarchy | [`hierarchy`] |
-//! | 3 and 4, Algorithm 1 | [`Query`] (`query/traversal.rs`, with BD-tree boxes in `query/bd_tree.rs`) |
+//! | 3 and 4, Algorithm 1 | [`Query`] (`query/traversal.rs` and `query/pair_walk.rs`, with BD-tree boxes in `query/bd_tree.rs`) |
 //! | 5.1, two triangles | `bounds/triangle_pair.rs`, `direction.rs`, `affine.rs` |
 //! | 5.2, nodes and precomputation | `bounds/cluster.rs`, `certificates/` |
 //! | 6, scaling | [`Metric`] |

@@ -136,11 +136,15 @@ impl<const E: usize> Boxes<E> {
     /// Makes the box of a node current that is a cluster or larger.
     #[inline]
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
-        if self.node_query[n as usize] != self.query
-            && let Some((lower, upper)) = self.tables.bd_tree.at(n, ends.q, self.margin)
-        {
+        if self.node_query[n as usize] != self.query {
             let frame = self.positions.frame();
-            self.set_node(n, Box32 { lower: frame.map(lower), upper: frame.map(upper) });
+            let aabb = self.tables.bd_tree.at(n, ends.q, self.margin);
+            // What has no box of its own overlaps everything.
+            let aabb = aabb.map_or(Box32::ALL, |(lower, upper)| Box32 {
+                lower: frame.map(lower),
+                upper: frame.map(upper),
+            });
+            self.set_node(n, aabb);
         }
     }
 

@@ -39,8 +39,8 @@ pub use continuous::Impact;
 /// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Certificates, then lazily updated boxes (paper, Algorithm 1): BD-tree boxes for large nodes, tight
-    /// ones for nodes of at most 64 triangles.
+    /// Certificates of nodes and pairs of nodes, then lazily updated boxes (paper, Algorithm 1): BD-tree boxes
+    /// for nodes down to about 64 triangles, tight ones below.
     Certified,
     /// The same boxes without certificates (James and Pai 2004).
     BdTree,

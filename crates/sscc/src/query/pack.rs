@@ -20,6 +20,9 @@ impl Box32 {
     /// Contains nothing, and overlaps no box with finite corners.
     pub(super) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
+    /// Contains everything.
+    pub(super) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
+
     /// The box of three points, around all the places where each is.
     #[inline]
     pub(super) fn around<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
@@ -148,6 +151,6 @@ mod tests {
             overlaps += expected.count_ones();
         }
         assert!((1000..9000).contains(&overlaps), "{overlaps}");
-        assert_eq!(Pack::EMPTY.overlapping(&Box32 { lower: Vec4::MIN, upper: Vec4::MAX }), Lanes(0));
+        assert_eq!(Pack::EMPTY.overlapping(&Box32::ALL), Lanes(0));
     }
 }
