@@ -88,9 +88,8 @@ pub(super) fn compare(
 /// A pair listed by one answer alone that collides at an end of the way. Methods may differ in pairs that only come
 /// close; between the ends rounding moves a shape off the straight way, so exact tests there would prove nothing.
 fn missed(minimum: &Minimum<'_>, a: &[Impact], b: &[Impact], way: &[Vec<f64>; 2]) -> Option<Pair> {
-    let lacks = |all: &[Impact], impact: &Impact| {
-        all.binary_search_by_key(&impact.pair, |other| other.pair).is_err()
-    };
+    let lacks =
+        |all: &[Impact], impact: &Impact| all.binary_search_by_key(&impact.pair, |other| other.pair).is_err();
     let mut only = a.iter().filter(|i| lacks(b, i)).chain(b.iter().filter(|i| lacks(a, i)));
     let missed = only.find(|impact| way.iter().any(|q| minimum.collides(impact.pair, q)));
     missed.map(|impact| impact.pair)
