@@ -81,6 +81,19 @@ pub fn threads(typed: &args::Threads) -> usize {
     }
 }
 
+/// Bytes for each triangle that pairs of nodes may take; none where no flag speaks of it.
+fn budget(typed: &args::Options) -> Result<Option<usize>> {
+    let budget = typed.budget.map(|bytes| bytes as usize);
+    Ok(match typed.scheme {
+        Some(args::Scheme::Paper) => {
+            ensure!(budget.is_none(), "--scheme paper stores no pairs of nodes: leave --budget out");
+            Some(0)
+        }
+        Some(args::Scheme::Full) => budget.or(Some(CertifyOptions::DEFAULT_BUDGET)),
+        None => budget,
+    })
+}
+
 /// What was typed about computing certificates.
 pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<CertifyOptions> {
     Ok(CertifyOptions {
@@ -93,6 +106,7 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
         ),
         ignore_rest: typed.ignore_rest,
         max_exceptions: typed.max_exceptions,
+        budget: budget(typed)?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
         threads: Some(threads(&typed.threads)),
     })
 }
@@ -162,6 +176,18 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
         options.weld.map_or(known.weld, |weld| weld == args::Switch::On),
     );
     certificates.check_rule(&typed.ignoring(known.ignored().iter().copied())).with_context(name)?;
+    let tree = &certificates.parts().pair_tree;
+    let (triangles, has_tree) = (certificates.hierarchy().order().len(), tree.limit() > 0.0);
+    budget(options)?;
+    let of_scheme = options.scheme.is_none_or(|scheme| has_tree == (scheme == args::Scheme::Full));
+    let in_budget = |bytes: u32| has_tree && tree.bytes() <= (bytes as usize).saturating_mul(triangles);
+    ensure!(
+        of_scheme && options.budget.is_none_or(in_budget),
+        "{}: certified with {} bytes of pairs of nodes for {triangles} triangles, against --scheme or --budget; \
+         leave the flag out, or certify anew",
+        name(),
+        tree.bytes()
+    );
     ensure!(
         !options.ignore_rest || known.ignored().len() as u64 == certificates.rest_collisions(),
         "{}: certified without --ignore-rest; leave the flag out, or certify anew",

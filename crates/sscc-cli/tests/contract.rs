@@ -94,6 +94,119 @@ fn check() {
     }
 }
 
+/// The ways between the rows of a trajectory: nothing meets, the upper strip goes through the lower one, stays below
+/// it, and comes back to touch it at the very end.
+#[test]
+fn check_continuous() {
+    let folder = strips();
+    let q = [0.5, 0.0, 0.0, 0.0, 1.5, 0.0, 1.25, 0.0, 1.0, 0.0];
+    sscc_io::write_npy(&folder.path().join("q.npy"), &[5, 2], &q).unwrap();
+    let given = ["check", MODEL, "--trajectory", "q.npy", "--continuous"];
+    let run = |args: &[&str]| sscc(folder.path(), &[&given[..], args].concat());
+    let certified = run(&["--certificates", CERTIFICATES, "--json"]);
+    assert_eq!((certified.code, certified.stderr.as_str()), (Some(1), ""));
+    let lines = certified.json();
+    assert_eq!(lines.len(), 4);
+    for (index, line) in lines.iter().enumerate() {
+        assert_eq!(keys(line), sorted(&format!("{CHECK}, times")));
+        let [pairs, times] = ["pairs", "times"].map(|key| line[key].as_array().unwrap().clone());
+        assert_eq!((pairs.len(), &line["count"]), (times.len(), &json!(pairs.len())));
+        assert_eq!((&line["index"], &line["complete"]), (&json!(index), &json!(true)));
+        assert_eq!(line["colliding"], json!(!pairs.is_empty()));
+        // At q_0 = 1, never told too late.
+        let time = [None, Some(2.0 / 3.0), None, Some(1.0)][index];
+        for found in times.iter().map(|t| t.as_f64().unwrap()) {
+            let true_time = time.unwrap();
+            assert!(found <= true_time && found > true_time - 1e-6, "{index}: {found}");
+        }
+        assert_eq!(times.is_empty(), time.is_none(), "{index}");
+    }
+    assert_eq!(lines[0]["root_certified"], json!(true));
+    let norm = lines[1]["norm"].as_f64().unwrap();
+    assert!((norm - 1.5).abs() < 1e-9, "the larger one of both ends: {norm}");
+    for method in ["certified", "bdtree", "traditional", "brute-force"] {
+        for certificates in [&[][..], &["--certificates", CERTIFICATES]] {
+            let other = run(&[&["--method", method, "--json"][..], certificates].concat());
+            assert_eq!(other.code, Some(1), "{other:?}");
+            let answers = |lines: &[Value]| -> Vec<[Value; 2]> {
+                lines.iter().map(|l| ["pairs", "times"].map(|key| l[key].clone())).collect()
+            };
+            assert_eq!(answers(&other.json()), answers(&lines), "{method}");
+        }
+    }
+    // The first to meet, of as many as were asked for.
+    for (limit, count) in [("--first", 1), ("--limit=3", 3)] {
+        let some = run(&["--certificates", CERTIFICATES, limit, "--json"]).json().remove(1);
+        assert_eq!((&some["count"], &some["complete"]), (&json!(count), &json!(false)));
+        assert_eq!(some["times"].as_array().unwrap().len(), count);
+    }
+    let text = run(&["--certificates", CERTIFICATES]);
+    assert_eq!(text.code, Some(1));
+    assert!(text.stdout.contains(" at t = 0.6667\n"), "{}", text.stdout);
+    assert!(text.stdout.contains("\n4 steps: 2 free (1 by the root's certificate alone), 2 colliding; "));
+    sscc_io::write_npy(&folder.path().join("free.npy"), &[2, 2], &[0.5, 0.0, -0.5, 0.1]).unwrap();
+    let args = ["check", MODEL, "--trajectory", "free.npy", "--continuous", "--certificates", CERTIFICATES];
+    let free = sscc(folder.path(), &args);
+    assert!(free.code == Some(0) && free.stdout.starts_with("free: proven by the root's"), "{free:?}");
+    sscc_io::write_npy(&folder.path().join("one.npy"), &[1, 2], &[0.5, 0.0]).unwrap();
+    let args = ["check", MODEL, "--trajectory", "one.npy", "--continuous"];
+    assert!(sscc(folder.path(), &args).refusal().contains("it takes two to move"));
+}
+
+#[test]
+fn schemes() {
+    let folder = strips();
+    let certify = |file: &str, args: &[&str]| {
+        let run = sscc(folder.path(), &[&["certify", MODEL, "-o", file, "--json"], args].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run.json().remove(0)
+    };
+    let info = |file: &str| sscc(folder.path(), &["info", file, "--json"]).json().remove(0);
+    let full = certify("full.sscc.safetensors", &["--scheme", "full"]);
+    let small = certify("small.sscc.safetensors", &["--budget", "16"]);
+    let paper = certify("paper.sscc.safetensors", &["--scheme", "paper"]);
+    let number = |value: &Value| value.as_u64().unwrap();
+    // The pairs of the root's children, and those of the pair tree.
+    let of_root = info("paper.sscc.safetensors")["root_pair_radii"].as_array().unwrap().len() as u64;
+    assert_eq!(number(&paper["pairs"]), of_root);
+    assert!(number(&full["pairs"]) > number(&small["pairs"]) && number(&small["pairs"]) <= of_root + 40);
+    assert!(number(&full["bytes"]) > number(&paper["bytes"]));
+    for (file, report, scheme) in [
+        ("full.sscc.safetensors", &full, "full"),
+        ("small.sscc.safetensors", &small, "full"),
+        ("paper.sscc.safetensors", &paper, "paper"),
+    ] {
+        let known = info(file);
+        assert_eq!((&known["scheme"], &known["pairs"]), (&json!(scheme), &report["pairs"]), "{file}");
+        assert_eq!(known["pair_limit"].as_f64().unwrap() > 0.0, scheme == "full");
+        assert_eq!(number(&known["pair_bytes"]), 8 * (number(&report["pairs"]) - of_root));
+        assert!(sscc(folder.path(), &["info", file]).stdout.contains(&format!("scheme         {scheme}, ")));
+        assert_eq!(known["root_radius"], report["root_radius"]);
+    }
+    let default = fs::read(folder.path().join(CERTIFICATES)).unwrap();
+    assert_eq!(default, fs::read(folder.path().join("full.sscc.safetensors")).unwrap());
+    let contradiction = ["certify", MODEL, "-o", "x.sscc.safetensors", "--scheme", "paper", "--budget", "8"];
+    assert!(sscc(folder.path(), &contradiction).refusal().contains("leave --budget out"));
+    let check = |file: &str, args: &[&str]| {
+        sscc(folder.path(), &[&["check", MODEL, "--certificates", file, "--q=0,0"], args].concat())
+    };
+    for (file, flag) in [
+        ("full.sscc.safetensors", "--scheme=full"),
+        ("full.sscc.safetensors", "--budget=1000"),
+        ("small.sscc.safetensors", "--budget=16"),
+        ("paper.sscc.safetensors", "--scheme=paper"),
+    ] {
+        assert_eq!(check(file, &[flag]).code, Some(0), "{file} {flag}");
+    }
+    for (file, flag) in [
+        ("full.sscc.safetensors", "--scheme=paper"),
+        ("full.sscc.safetensors", "--budget=16"),
+        ("paper.sscc.safetensors", "--scheme=full"),
+    ] {
+        assert!(check(file, &[flag]).refusal().contains("against --scheme or --budget"), "{file} {flag}");
+    }
+}
+
 #[test]
 fn check_at_one_q() {
     let folder = strips();
@@ -237,6 +350,9 @@ fn help_and_usage() {
         &["check", "x.obj", "--q="],
         &["check", "x.obj", "--q=1,x"],
         &["check", "x.obj", "--q=1", "--method", "guess"],
+        &["check", "x.obj", "--q=1", "--continuous"],
+        &["certify", "x.obj", "-o", "x", "--budget", "0"],
+        &["certify", "x.obj", "-o", "x", "--scheme", "best"],
         &["certify", "x.obj", "-o", "x", "--epsilon", "0"],
         &["certify", "x.obj", "-o", "x", "--epsilon", "nan"],
         &["certify", "x.obj", "-o", "x", "--threads", "0"],

@@ -3,8 +3,9 @@
 
 mod common;
 
+use common::pair_trees::{START, edited};
 use common::{random_model, random_options};
-use sscc::{AuditOptions, Certificates, CertifyOptions, Error, PairRule, audit};
+use sscc::{AuditOptions, CertificateParts, Certificates, CertifyOptions, Error, PairRule, PairTree, audit};
 
 struct Budget(std::sync::atomic::AtomicUsize);
 
@@ -75,4 +76,63 @@ fn forged_exceptions_are_refused_or_found() {
         assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
     }
     assert!(found > 1, "{found}");
+}
+
+/// Radii of pairs of nodes 1.5 times as large, and trees that lack the pair of leaves that collides first; nodes and the
+/// pairs of the root's children stay honest.
+#[test]
+fn lies_of_the_pair_tree_are_found() {
+    let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);
+    for seed in 0..150 {
+        let model = random_model(60_000 + seed);
+        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        let tree = &certificates.parts().pair_tree;
+        let of_leaves = tree.entries().enumerate().filter(|(_, (_, link))| link & START == 0);
+        let Some((first, (least, _))) = of_leaves.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { continue };
+        // Where the radius may be far from the truth a lie may be none.
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
+        if least <= 0.0 || report.root_tightness.is_none_or(|tightness| tightness < 0.75) {
+            continue;
+        }
+        let longer = edited(tree, 1.5 * tree.limit(), &[], |_, radius| 1.5 * radius);
+        let shorter = edited(tree, tree.limit(), &[first], |_, radius| radius);
+        let is_lie = [true, f64::from(least) < 0.7 * tree.limit()];
+        for (kind, pair_tree) in [longer, shorter].into_iter().enumerate().filter(|(kind, _)| is_lie[*kind]) {
+            let forged = CertificateParts { pair_tree, ..certificates.parts().clone() };
+            let forged = Certificates::from_parts(forged).unwrap();
+            lies[kind] += 1;
+            if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
+                missed[kind].push(seed);
+            }
+        }
+    }
+    assert!(lies.iter().all(|n| *n > 5), "{lies:?}");
+    for (lies, missed) in lies.iter().zip(&missed) {
+        assert!(missed.len() * 20 <= *lies, "{missed:?} of {lies}");
+    }
+}
+
+/// A tree that claims everything, in a model whose nodes claim nothing beyond the truth.
+#[test]
+fn an_empty_tree_that_claims_too_much_is_found() {
+    let (mut lies, mut found) = (0, 0);
+    for seed in 0..40 {
+        let model = random_model(61_000 + seed);
+        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let parts = certificates.parts();
+        if parts.pair_tree.is_empty() {
+            continue;
+        }
+        let starts = vec![u32::MAX; parts.hierarchy.nodes().len()];
+        let pair_tree = PairTree::from_parts(2.0 * parts.global_radius, starts, []);
+        let forged = Certificates::from_parts(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
+        lies += 1;
+        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        found += usize::from(!audit(&model, &forged, &asked, &()).unwrap().violations.is_empty());
+    }
+    assert!(lies > 5 && found * 20 >= 19 * lies, "{found} of {lies}");
 }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use sscc::hierarchy::{Hierarchy, Node};
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Neighbours,
-    Query, ReducedModel, Scope, TriMesh,
+    PairTree, Query, ReducedModel, Scope, TriMesh,
 };
 
 /// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
@@ -459,6 +459,7 @@ fn one_leaf_is_a_tree() {
         hierarchy: hierarchy.unwrap(),
         node_radii: vec![certificates.root_radius()],
         root_pair_radii: vec![],
+        pair_tree: PairTree::default(),
         ..parts.clone()
     })
     .unwrap();

@@ -120,16 +120,16 @@ fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool
     let tree = &parts.pair_tree;
     let pair_tree = if stored {
         let entries = tree.entries().map(|(_, link)| (radius as f32, link)).collect::<Vec<_>>();
-        PairTree::from_parts(limit, tree.starts().to_vec(), entries, &parts.hierarchy)
+        PairTree::from_parts(limit, tree.starts().to_vec(), entries)
     } else {
-        PairTree::from_parts(limit, vec![u32::MAX; tree.starts().len()], [], &parts.hierarchy)
+        PairTree::from_parts(limit, vec![u32::MAX; tree.starts().len()], [])
     };
     let mut node_radii = vec![radius; parts.node_radii.len()];
     node_radii[0] = 0.0;
     Certificates::from_parts(CertificateParts {
         node_radii,
         root_pair_radii: vec![0.0; parts.root_pair_radii.len()],
-        pair_tree: pair_tree.unwrap(),
+        pair_tree,
         ..parts.clone()
     })
     .unwrap()

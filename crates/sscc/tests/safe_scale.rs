@@ -6,7 +6,8 @@ mod common;
 use common::{Random, at, random_model, random_options};
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Method, Modes, Progress, Query, ReducedModel, Scope, TriMesh,
+    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Progress, Query,
+    ReducedModel, Scope, TriMesh,
 };
 
 /// Stops what takes too long.
@@ -60,6 +61,36 @@ fn the_way_to_a_safe_scale_is_free() {
         }
     }
     assert!(tried > 600 && larger > 200 && tight > 200 && stopped > 30, "{tried} {larger} {tight} {stopped}");
+}
+
+/// Radii of pairs of nodes are further proofs; the way itself is followed from another start, which moves its end by less
+/// than a step that is no longer worth taking.
+#[test]
+fn the_pair_tree_shortens_no_scale() {
+    let (mut compared, mut opened) = (0, [0, 0]);
+    for seed in 0..120 {
+        let model = random_model(70_000 + seed);
+        let random = &mut Random::new(seed + 9_000_000);
+        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let Ok(full) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        if full.parts().pair_tree.is_empty() {
+            continue;
+        }
+        let parts = CertificateParts { pair_tree: PairTree::default(), ..full.parts().clone() };
+        let paper = Certificates::from_parts(parts).unwrap();
+        let mut queries = [&paper, &full].map(|certificates| Query::new(&model, certificates).unwrap());
+        for _ in 0..5 {
+            let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 2.0)).collect();
+            let q = at(&full.parts().scope, &z);
+            let [Ok(before), Ok(after)] = queries.each_mut().map(|query| query.safe_scale(&q)) else {
+                continue;
+            };
+            assert!(after >= before * (1.0 - 2e-4), "model {seed}: {after} after {before}");
+            compared += 1;
+            opened.iter_mut().zip(&queries).for_each(|(n, query)| *n += query.statistics().opened);
+        }
+    }
+    assert!(compared > 50 && opened[1] < opened[0], "{compared} {opened:?}");
 }
 
 #[test]

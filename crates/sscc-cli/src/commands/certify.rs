@@ -56,12 +56,13 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     }
     write_whole(&args.output, &bytes)?;
 
+    let tree = &certificates.parts().pair_tree;
     let report = Report {
         triangles: model.mesh().faces().len(),
         vertices: model.mesh().rest_positions().len(),
         rank: model.rank(),
         nodes: certificates.hierarchy().nodes().len(),
-        pairs: certificates.parts().root_pair_radii.len(),
+        pairs: certificates.parts().root_pair_radii.len() + tree.len(),
         seconds,
         threads: load::threads(&args.options.threads),
         root_radius: certificates.root_radius(),
@@ -75,7 +76,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         out.json(&report)?;
     } else {
         let metric = certificates.metric().kind().name();
-        for line in report.lines(metric, &args.output) {
+        for line in report.lines(metric, tree.limit(), &args.output) {
             out.line(line)?;
         }
         if let Some(path) = &args.picture {
@@ -102,8 +103,13 @@ fn note(certificates: &Certificates, most: Option<usize>) -> Option<String> {
     })
 }
 
+/// Up to where pairs are resolved, if they are.
+fn pairs_up_to(limit: f64) -> String {
+    if limit > 0.0 { format!(", pairs up to {}", length(limit)) } else { String::new() }
+}
+
 impl Report {
-    fn lines(&self, metric: &str, output: &Path) -> Vec<String> {
+    fn lines(&self, metric: &str, pair_limit: f64, output: &Path) -> Vec<String> {
         let promise = match (self.root_radius > 0.0, self.exceptions) {
             (true, 0) => "below it the whole shape is free",
             (true, _) => "below it the whole shape is free, exceptions apart",
@@ -121,13 +127,17 @@ impl Report {
                 grouped(self.vertices as u64),
                 self.rank
             ),
-            format!("certificates   {} nodes, {} pairs", grouped(self.nodes as u64), self.pairs),
+            format!(
+                "certificates   {} nodes, {} pairs",
+                grouped(self.nodes as u64),
+                grouped(self.pairs as u64)
+            ),
             format!("time           {:.2} s on {}", self.seconds, counted(self.threads as u64, "thread")),
             format!("metric         {metric}"),
             format!("at rest        {} collide", counted(self.rest_collisions, "pair")),
             format!("exceptions     {exceptions}"),
             promise,
-            format!("resolved up to {}", length(self.global_radius)),
+            format!("resolved up to {}{}", length(self.global_radius), pairs_up_to(pair_limit)),
             format!("written        {} ({} bytes)", output.display(), grouped(self.bytes as u64)),
         ]
     }

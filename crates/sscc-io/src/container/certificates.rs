@@ -17,16 +17,23 @@
 //! | `exceptions` | U32 | e x 2 | pairs that no radius speaks of and every query tests, sorted |
 //! | `ignored` | U32 | i x 2 | pairs that never count, sorted |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
+//! | `pair_limit` | F64 | 1 | the pair tree is complete below this: a pair of nodes that it lacks is certified up to here; 0: no tree |
+//! | `pair_starts` | U32 | n or 0 | for each node where the pairs of its children start; 2^32 - 1: none is below the limit |
+//! | `pair_radii` | F32 | t | the radius of each pair of nodes, rounded down, below the limit |
+//! | `pair_links` | U32 | t | bits 0 to 27: where its children start (0: none, both nodes are leaves); 28 to 30: which child of its parent it is; 31: no sibling follows |
 //!
-//! Text: `metric` (the kind), `scheme` ("paper"), `pairs` (which pair radii are stored: "root-children"),
-//! `neighbours` ("exclude": triangles that share a vertex are no pair; "include-one-vertex": those that share just one
+//! A pair of nodes is split into the pairs of the children of the one of more triangles (the first of equals; never a leaf) with the
+//! other one. Lists of siblings stand breadth first, those of the nodes' children before all others.
+//!
+//! Text: `metric` (the kind), `scheme` ("full" where there is a pair tree, else "paper"), `neighbours` ("exclude": triangles that share a vertex are no pair; "include-one-vertex": those that share just one
 //! count where they meet beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for
-//! adjacency). Nothing is to be inferred from the scheme's name: it says only how the file came about.
+//! adjacency). Nothing is inferred from the scheme's name. Versions 1 and 2 have no pair tree, and a text `pairs`
+//! ("root-children") instead.
 
 use std::path::Path;
 
 use sscc::hierarchy::{Hierarchy, Node};
-use sscc::{CertificateParts, Certificates, Digest, Neighbours, Pair, PairRule, Scope};
+use sscc::{CertificateParts, Certificates, Digest, Neighbours, Pair, PairRule, PairTree, Scope};
 
 use super::{ANY, CERTIFICATES, Sealed, SealedWriter, metric};
 use crate::error::quoted;
@@ -37,10 +44,12 @@ use crate::{FormatError, IoError, Place};
 const WELD: &str = "equal";
 const NO_WELD: &str = "none";
 
-/// The texts that have only one value in this version: anything else would change what is proven.
-const FIXED: [(&str, &str); 2] = [("scheme", "paper"), ("pairs", "root-children")];
+/// The scheme, as a file names it.
+fn scheme(tree: &PairTree) -> &'static str {
+    if tree.limit() > 0.0 { "full" } else { "paper" }
+}
 
-const TENSORS: [&str; 15] = [
+const TENSORS: [&str; 19] = [
     "center",
     "epsilon",
     "exceptions",
@@ -53,6 +62,10 @@ const TENSORS: [&str; 15] = [
     "node_states",
     "nodes",
     "order",
+    "pair_limit",
+    "pair_links",
+    "pair_radii",
+    "pair_starts",
     "rest_collisions",
     "root_pair_radii",
     "root_pair_states",
@@ -89,12 +102,12 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     let flat = |pairs: &[Pair]| -> Vec<u32> { pairs.iter().flat_map(|&(i, j)| [i, j]).collect() };
     let (exceptions, ignored) = (flat(&scope.exceptions), flat(scope.rule.ignored()));
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
+    let tree = &parts.pair_tree;
+    let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
     let mut writer = SealedWriter::new(CERTIFICATES);
-    for (key, text) in FIXED {
-        writer.text(key, text);
-    }
     metric::write(&mut writer, &scope.metric);
     writer
+        .text("scheme", scheme(tree))
         .text("neighbours", scope.rule.neighbours.name())
         .text("weld", if scope.rule.weld { WELD } else { NO_WELD })
         .u8("model_digest", &[32], &parts.digest.0)
@@ -109,7 +122,11 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
         .f64("center", &[scope.center.len()], &scope.center)
         .u32("exceptions", &[exceptions.len() / 2, 2], &exceptions)
         .u32("ignored", &[ignored.len() / 2, 2], &ignored)
-        .u64("rest_collisions", &[1], &[parts.rest_collisions]);
+        .u64("rest_collisions", &[1], &[parts.rest_collisions])
+        .f64("pair_limit", &[1], &[tree.limit()])
+        .u32("pair_starts", &[tree.starts().len()], tree.starts())
+        .f32("pair_radii", &[tree_radii.len()], &tree_radii)
+        .u32("pair_links", &[tree_links.len()], &tree_links);
     writer.finish()
 }
 
@@ -124,11 +141,16 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         let cause = format!("{} is not known in this version of the format", quoted(found));
         FormatError::new(Place::Key(key.into()), cause)
     };
-    for (key, wanted) in FIXED {
-        let found = file.text(key)?;
-        if found != wanted {
-            return Err(unknown(key, found));
+    if file.version() < 3 && file.text("pairs")? != "root-children" {
+        return Err(unknown("pairs", file.text("pairs")?));
+    }
+    let pair_tree = read_pair_tree(&file)?;
+    match file.text("scheme")? {
+        found if found == scheme(&pair_tree) => {}
+        "full" | "paper" => {
+            return Err(FormatError::new(Place::Key("scheme".into()), "it does not agree with 'pair_limit'"));
         }
+        other => return Err(unknown("scheme", other)),
     }
     let neighbours = file.text("neighbours")?;
     let neighbours = Neighbours::from_name(neighbours).ok_or_else(|| unknown("neighbours", neighbours))?;
@@ -179,7 +201,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         global_radius: limit,
         node_radii,
         root_pair_radii,
-        pair_tree: Default::default(),
+        pair_tree,
         rest_collisions: file.u64("rest_collisions")?.shaped(&[1])?.values[0],
     })?)
 }
@@ -193,6 +215,18 @@ fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
     } else {
         Err(tensor.refused("pairs are not in order"))
     }
+}
+
+/// The pair tree; whether it is one over the hierarchy is told by [`Certificates::from_parts`].
+fn read_pair_tree(file: &Sealed<'_>) -> Result<PairTree, FormatError> {
+    if file.version() < 3 {
+        return Ok(PairTree::default());
+    }
+    let limit = file.f64("pair_limit")?.shaped(&[1])?.values[0];
+    let starts = file.u32("pair_starts")?.shaped(&[ANY])?.values;
+    let links = file.u32("pair_links")?.shaped(&[ANY])?.values;
+    let radii = file.f32("pair_radii")?.shaped(&[links.len()])?.values;
+    Ok(PairTree::from_parts(limit, starts, radii.into_iter().zip(links)))
 }
 
 fn read_hierarchy(file: &Sealed<'_>) -> Result<Hierarchy, FormatError> {

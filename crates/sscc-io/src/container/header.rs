@@ -28,6 +28,7 @@ pub(super) const LARGEST_HEADER: usize = 1 << 20;
 pub(super) enum Item {
     F64,
     U64,
+    F32,
     U32,
     U8,
 }
@@ -37,6 +38,7 @@ impl Item {
         match self {
             Self::F64 => "F64",
             Self::U64 => "U64",
+            Self::F32 => "F32",
             Self::U32 => "U32",
             Self::U8 => "U8",
         }
@@ -45,7 +47,7 @@ impl Item {
     pub fn size(self) -> usize {
         match self {
             Self::F64 | Self::U64 => 8,
-            Self::U32 => 4,
+            Self::F32 | Self::U32 => 4,
             Self::U8 => 1,
         }
     }
@@ -54,6 +56,7 @@ impl Item {
         Some(match dtype {
             Dtype::F64 => Self::F64,
             Dtype::U64 => Self::U64,
+            Dtype::F32 => Self::F32,
             Dtype::U32 => Self::U32,
             Dtype::U8 => Self::U8,
             _ => return None,

@@ -101,6 +101,14 @@ impl<'a> Sealed<'a> {
         self.tensor(name, Item::U64, u64::from_le_bytes)
     }
 
+    /// An array of f32.
+    ///
+    /// # Errors
+    /// As [`Sealed::f64`].
+    pub fn f32(&self, name: &str) -> Result<Tensor<f32>, FormatError> {
+        self.tensor(name, Item::F32, f32::from_le_bytes)
+    }
+
     /// An array of u32.
     ///
     /// # Errors

@@ -53,6 +53,11 @@ impl SealedWriter {
         self.tensor(name, Item::U64, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())
     }
 
+    /// Adds an array of f32 (C order).
+    pub fn f32(&mut self, name: &str, shape: &[usize], values: &[f32]) -> &mut Self {
+        self.tensor(name, Item::F32, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
     /// Adds an array of u32 (C order).
     pub fn u32(&mut self, name: &str, shape: &[usize], values: &[u32]) -> &mut Self {
         self.tensor(name, Item::U32, shape, values.iter().flat_map(|v| v.to_le_bytes()).collect())

@@ -55,6 +55,15 @@ impl Minimum<'_> {
         found.reduce(|a, b| if b.norm < a.norm { b } else { a })
     }
 
+    /// A way from the centre on which random points of two triangles meet; none where they are no pair, or modes do not
+    /// bring them together.
+    pub(super) fn approach(&self, faces: Pair, random: &mut Random) -> Option<Vec<f64>> {
+        let (x, y) = self.filter.hulls(faces.0, faces.1).next()?;
+        let z = PointPairs { scaled: self.scaled, x, y }.solution(random_weights(random));
+        let moves = z.iter().any(|z| *z != 0.0);
+        moves.then(|| self.scope.metric.unscaled(&z[..self.model.rank()]))
+    }
+
     fn of_hulls(&self, faces: Pair, pair: &PointPairs<'_>, random: &mut Random) -> Option<Collision> {
         let mut best = (f64::INFINITY, [DVec3::X; 2]);
         for x in grid() {
@@ -98,7 +107,7 @@ impl Minimum<'_> {
     }
 
     /// Whether two triangles collide at q, on the computed positions.
-    fn collides(&self, faces: Pair, q: &[f64]) -> bool {
+    pub(super) fn collides(&self, faces: Pair, q: &[f64]) -> bool {
         let corners = |face: u32| self.model.mesh().faces()[face as usize].map(|v| self.model.position(v, q));
         self.model.check_coordinates(q).is_ok()
             && self.filter.collide(faces, &corners(faces.0), &corners(faces.1))
@@ -114,11 +123,7 @@ impl Minimum<'_> {
             }
         }
         for _ in 0..24 {
-            let weights = [(); 2].map(|()| {
-                let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
-                w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
-            });
-            let (d, b) = pair.relative(weights);
+            let (d, b) = pair.relative(random_weights(random));
             rays.push((0..rank).map(|k| -b[k].dot(d)).collect());
         }
         let mut best: Option<Collision> = None;
@@ -194,6 +199,14 @@ impl PointPairs<'_> {
         let y = Self::multiplier(d, &b).unwrap_or(DVec3::ZERO);
         b.iter().map(|b| -b.dot(y)).collect()
     }
+}
+
+/// Random barycentric weights of a point in each of two triangles.
+fn random_weights(random: &mut Random) -> [DVec3; 2] {
+    [(); 2].map(|()| {
+        let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
+        w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
+    })
 }
 
 /// Barycentric weights on a regular grid.

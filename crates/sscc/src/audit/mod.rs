@@ -2,15 +2,20 @@
 //!
 //! Three attacks, none of which uses the code that it attacks to decide: q just inside radii, in random
 //! directions and in the directions of the closest collisions known ([`attack`]); the true minimum searched
-//! near the hottest pairs ([`minimum`]), which also says how tight radii are; and the answers of certified
-//! queries compared with the traditional method, itself compared with brute force ([`compare`]).
+//! near the hottest pairs ([`minimum`]), which also says how tight radii are ([`tightness`]); and the answers of certified
+//! queries, continuous ones too, compared with the traditional method, itself compared with brute force
+//! ([`compare`]). Whatever is found to collide is held against all radii that speak of it ([`claims`]): those of nodes, of
+//! pairs of nodes, and the limit of the pair tree where that lacks a pair.
 
 mod attack;
+mod claims;
 mod compare;
 mod minimum;
 mod random;
 mod tightness;
 
+use crate::bounds::ScaledModel;
+use crate::pairs::PairFilter;
 use crate::threads::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
@@ -41,8 +46,8 @@ pub struct AuditReport {
     /// The root's radius over the smallest `|z|` found at which the model really collides; none when the
     /// radius is 0 or capped, or no collision was found.
     pub root_tightness: Option<f64>,
-    /// The median of the same quotient over the root, its pairs of children, and a sample of nodes, those
-    /// with radius 0 or capped left out.
+    /// The median of the same quotient over the root, its pairs of children, and samples of nodes and of the pair
+    /// tree, those with radius 0 or capped left out.
     pub tightness_median: Option<f64>,
     /// The least of them.
     pub tightness_min: Option<f64>,
@@ -60,12 +65,18 @@ pub fn audit(
 ) -> Result<AuditReport, Error> {
     certificates.check_model(model)?;
     let run = || {
-        let tightness = tightness::measure(model, certificates, options.seed, progress);
-        let attack = attack::Attack { model, certificates, hot: &tightness.hot, options, progress };
+        let parts = certificates.parts();
+        let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
+        let filter = PairFilter::new(model, &parts.scope.rule).leaving_out(&parts.scope.exceptions);
+        let minimum = &minimum::Minimum { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
+        let claims = &claims::Claims::new(parts);
+        let tightness = tightness::measure(certificates, claims, minimum, options.seed, progress);
+        let hot = &tightness.hot;
+        let attack = attack::Attack { model, certificates, claims, minimum, hot, options, progress };
         let mut violations = tightness.violations;
         let (samples, broken) = attack.run()?;
         violations.extend(broken);
-        violations.extend(compare::compare(model, certificates, options, progress)?);
+        violations.extend(compare::compare(model, certificates, (claims, minimum), options, progress)?);
         let mut all = tightness.quotients;
         all.sort_by(f64::total_cmp);
         Ok(AuditReport {

@@ -2,15 +2,24 @@
 
 use rayon::prelude::*;
 
+use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Minimum};
 use super::random::Random;
-use crate::bounds::{ClusterBounds, ScaledModel};
+use crate::bounds::ClusterBounds;
 use crate::certificates::{Search, child_pairs};
-use crate::pairs::PairFilter;
-use crate::{Certificates, Progress, ReducedModel};
+use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
 const NODES: usize = 200;
+
+/// Pairs of the pair tree measured.
+const STORED: usize = 100;
+
+/// Pairs measured that the pair tree lacks: those of the least bounds ...
+const ABSENT: usize = 50;
+
+/// ... below so many nodes and pairs.
+const PARENTS: usize = 4096;
 
 /// Closest collisions found, and what follows from them.
 pub(super) struct Tightness {
@@ -21,76 +30,81 @@ pub(super) struct Tightness {
     pub(super) hot: Vec<Collision>,
 }
 
-/// A claim: no pair of these nodes collides below the radius.
-#[derive(Clone, Copy)]
-enum Claim {
-    Node(u32),
-    RootPair(u32, u32),
-}
-
-/// Measures the root, the pairs of its children, and nodes spread evenly over the tree.
+/// Measures the root, the pairs of its children, nodes and pairs of nodes spread evenly over the trees, and
+/// those pairs that the pair tree lacks which seem to collide first.
 pub(super) fn measure(
-    model: &ReducedModel,
     certificates: &Certificates,
+    claims: &Claims<'_>,
+    minimum: &Minimum<'_>,
     seed: u64,
     progress: &dyn Progress,
 ) -> Tightness {
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
-    let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
-    let filter = PairFilter::new(model, &parts.scope.rule).leaving_out(&parts.scope.exceptions);
-    let clusters = ClusterBounds::new(&scaled, &parts.hierarchy);
-    let minimum = Minimum { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
-    let open = |radius: f64| radius > 0.0 && radius < parts.global_radius;
-    let mut claims = vec![(Claim::Node(0), parts.node_radii[0])];
-    claims.extend(
-        child_pairs(&nodes[0]).zip(&parts.root_pair_radii).map(|((n, m), r)| (Claim::RootPair(n, m), *r)),
-    );
-    let stride = nodes.len().div_ceil(NODES);
-    claims.extend((1..nodes.len()).step_by(stride).map(|n| (Claim::Node(n as u32), parts.node_radii[n])));
-    let found: Vec<(bool, f64, Option<Collision>)> = claims
+    let clusters = ClusterBounds::new(minimum.scaled, &parts.hierarchy);
+    let search =
+        || Search::new(minimum.scaled, minimum.filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
+    let limit = parts.pair_tree.limit();
+    let is_capped = |claim: &Claim| {
+        claim.radius >= parts.global_radius || claim.nodes.0 != claim.nodes.1 && claim.radius == limit
+    };
+    let mut measured = vec![claims.node(0)];
+    measured.extend(claims.root_pairs());
+    let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));
+    measured.extend(spread(nodes.len(), NODES).skip(1).map(|n| claims.node(n as u32)));
+    measured.extend(spread(claims.stored_len(), STORED).map(|place| claims.stored(place)));
+    let missing: Vec<Claim> =
+        spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
+    let mut bounded: Vec<(f64, Claim)> = missing
+        .into_par_iter()
+        .map_init(search, |search, claim| (search.bound(claim.nodes.0, claim.nodes.1, 2.0 * limit), claim))
+        .collect();
+    bounded.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.nodes.cmp(&b.1.nodes)));
+    measured.extend(bounded.into_iter().take(ABSENT).map(|(_, claim)| claim));
+    measured.retain(|claim| claim.radius > 0.0);
+    let hottest: Vec<Option<Pair>> = measured
         .par_iter()
-        .enumerate()
-        .filter(|(_, (_, radius))| *radius > 0.0)
-        .map(|(i, &(claim, radius))| {
-            let mut search =
-                Search::new(&scaled, &filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
+        .map_init(search, |search, claim| {
             // Beyond the radius: what is searched only up to it can break no claim.
-            let cap = 2.0 * radius.max(parts.global_radius);
-            match claim {
-                Claim::RootPair(n, m) => search.between([(n, m)], cap),
-                Claim::Node(n) => {
-                    let n = responsible(certificates, n);
-                    let node = &nodes[n as usize];
-                    if node.is_leaf() {
-                        search.within_leaf(n, cap)
-                    } else {
-                        search.between(child_pairs(node), cap)
-                    }
+            let cap = 2.0 * claim.radius.max(parts.global_radius);
+            let (n, m) = claim.nodes;
+            if n != m {
+                search.between([(n, m)], cap);
+            } else {
+                let n = responsible(certificates, n);
+                let node = &nodes[n as usize];
+                if node.is_leaf() {
+                    search.within_leaf(n, cap);
+                } else {
+                    search.between(child_pairs(node), cap);
                 }
-            };
-            let mut random = Random::new(seed, i as u64);
-            let collision = search.hottest().and_then(|faces| minimum.search(faces, &mut random));
-            (i == 0, radius, collision)
+            }
+            search.hottest()
         })
         .collect();
+    // Many claims have one pair of triangles in common.
+    let mut faces: Vec<Pair> = hottest.iter().flatten().copied().collect();
+    faces.sort_unstable();
+    faces.dedup();
+    let collisions: Vec<Option<Collision>> = faces
+        .par_iter()
+        .enumerate()
+        .map(|(i, faces)| minimum.search(*faces, &mut Random::new(seed, i as u64)))
+        .collect();
     let mut result = Tightness { root: None, quotients: vec![], violations: vec![], hot: vec![] };
-    for (is_root, radius, collision) in found {
-        let Some(collision) = collision else { continue };
-        if open(radius) {
-            let quotient = radius / collision.norm;
+    for (claim, hottest) in measured.iter().zip(hottest) {
+        let at = hottest.and_then(|hottest| faces.binary_search(&hottest).ok());
+        if let Some(collision) = at.and_then(|at| collisions[at].as_ref()).filter(|_| !is_capped(claim)) {
+            let quotient = claim.radius / collision.norm;
             result.quotients.push(quotient);
-            if is_root {
+            if claim.nodes == (0, 0) {
                 result.root = Some(quotient);
             }
         }
-        if let Some((norm, q)) = &collision.confirmed
-            && *norm < radius
-        {
-            result.violations.push(format!(
-                "triangles {} and {} collide at |z| = {norm:e}, below the radius {radius:e}; q = {q:?}",
-                collision.faces.0, collision.faces.1
-            ));
+    }
+    for collision in collisions.into_iter().flatten() {
+        if let Some((norm, q)) = &collision.confirmed {
+            result.violations.extend(claims.violation(collision.faces, *norm, q));
         }
         result.hot.push(collision);
     }

@@ -13,6 +13,7 @@ use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
 pub use digest::Digest;
+pub(crate) use pair_tree::Entry as PairEntry;
 pub use pair_tree::PairTree;
 pub(crate) use precompute::child_pairs;
 pub use scope::Scope;
@@ -36,8 +37,11 @@ pub struct CertifyOptions {
     /// in every query. Where more pairs collide there are none, and radii of parts that contain such
     /// a pair are 0. None: [`CertifyOptions::default_exceptions`].
     pub max_exceptions: Option<usize>,
-    /// Memory for the pair tree, in bytes for each triangle of the mesh; 0: none, which is the paper's scheme of one
-    /// radius for each node and each pair of the root's children.
+    /// Memory for the pair tree ([`PairTree`]), in bytes for each triangle of the mesh; a pair takes 8. The pairs of the
+    /// smallest radii are stored, so a budget is a choice of the tree's limit ([`PairTree::limit`]): queries with `|z|` below it
+    /// never open what only touches. 0: no tree, which is the paper's scheme of one radius for each node and each pair of
+    /// the root's children; right where certificates serve a few queries only, since the tree takes most of the
+    /// time of computing them.
     pub budget: usize,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
@@ -103,8 +107,8 @@ pub struct CertificateParts {
 }
 
 impl Certificates {
-    /// Computes the hierarchy and all certificates of a model: every `R_n`, and `R_nm` for the children of the
-    /// root (paper, section 5.2).
+    /// Computes the hierarchy and all certificates of a model: every `R_n`, `R_nm` for the children of the
+    /// root (paper, section 5.2), and the pair tree within [`CertifyOptions::budget`].
     ///
     /// # Errors
     /// When an option is out of range, the metric does not fit the model, or `progress` cancels.
@@ -160,6 +164,9 @@ impl Certificates {
             if node.children().any(|child| parts.node_radii[child as usize] < *radius) {
                 return damaged("a node's radius exceeds that of a child");
             }
+        }
+        if let Err(what) = parts.pair_tree.pairs(&parts.hierarchy) {
+            return damaged(&format!("pair tree: {what}"));
         }
         Ok(Self { parts })
     }

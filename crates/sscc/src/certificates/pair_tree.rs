@@ -5,7 +5,7 @@
 //! rule alone ([`Hierarchy::split`]), never by boxes: boxes that are apart at rest may meet later. So below the limit a pair
 //! that is missing is certified; from the limit on, absence means nothing.
 
-use crate::Error;
+use crate::Pair;
 use crate::hierarchy::Hierarchy;
 
 /// A link's flag: no sibling follows.
@@ -14,6 +14,9 @@ const LAST: u32 = 1 << 31;
 const WHICH: u32 = 28;
 /// The part of a link that says where the children start.
 const START: u32 = (1 << WHICH) - 1;
+
+/// The start of the children of a node without stored pairs.
+const NOTHING: u32 = u32::MAX;
 
 /// The most entries: as many as links can name.
 pub(super) const MOST_ENTRIES: usize = START as usize;
@@ -71,6 +74,11 @@ impl PairTree {
         self.entries.len()
     }
 
+    /// Memory of the pairs in bytes, 8 for each: what [`CertifyOptions::budget`](crate::CertifyOptions::budget) bounds.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.entries.as_slice())
+    }
+
     /// Whether no pair is stored: none may collide below the limit.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
@@ -87,87 +95,86 @@ impl PairTree {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
 
+    /// The entry of that place.
+    pub(crate) fn entry(&self, place: usize) -> Entry {
+        self.entries[place]
+    }
+
     pub(super) fn new(limit: f64, starts: Vec<u32>, entries: Vec<Entry>) -> Self {
         Self { limit, starts, entries }
     }
 
-    /// Takes a tree from its parts, as read from a file: all of it is over this hierarchy, in order.
-    ///
-    /// # Errors
-    /// When the parts are no tree of pairs in the documented order.
-    pub fn from_parts(
-        limit: f64,
-        starts: Vec<u32>,
-        entries: impl IntoIterator<Item = (f32, u32)>,
-        hierarchy: &Hierarchy,
-    ) -> Result<Self, Error> {
+    /// Takes a tree from its parts, as read from a file. Whether they are a tree over some hierarchy is
+    /// checked where the two meet, by [`Certificates::from_parts`](crate::Certificates::from_parts).
+    pub fn from_parts(limit: f64, starts: Vec<u32>, entries: impl IntoIterator<Item = (f32, u32)>) -> Self {
         let entries = entries.into_iter().map(|(radius, link)| Entry { radius, link }).collect();
-        let tree = Self { limit, starts, entries };
-        match tree.check(hierarchy) {
-            Ok(()) => Ok(tree),
-            Err(what) => Err(Error::Certificates(format!("pair tree: {what}"))),
-        }
+        Self { limit, starts, entries }
     }
 
-    fn check(&self, hierarchy: &Hierarchy) -> Result<(), &'static str> {
+    /// The pair of nodes of each entry, once all of the tree has been found to be over this hierarchy, in order.
+    pub(crate) fn pairs(&self, hierarchy: &Hierarchy) -> Result<Vec<Pair>, &'static str> {
         if self.limit.is_nan() || self.limit < 0.0 || self.limit.is_infinite() {
             return Err("its limit is negative or not finite");
         }
         if self.limit == 0.0 {
-            return if self.entries.is_empty() && self.starts.is_empty() {
-                Ok(())
-            } else {
-                Err("it has no limit")
-            };
+            let is_empty = self.entries.is_empty() && self.starts.is_empty();
+            return if is_empty { Ok(Vec::new()) } else { Err("it has pairs, but no limit") };
         }
         let nodes = hierarchy.nodes();
-        if self.starts.len() != nodes.len() || self.entries.len() > MOST_ENTRIES {
+        if self.starts.len() != nodes.len() {
             return Err("there is not one start for each node");
         }
+        if self.entries.len() > MOST_ENTRIES {
+            return Err("it has more pairs than links can name");
+        }
         // Breadth first, each list of siblings right after the one before: what is visited is visited once.
-        let mut pairs: Vec<(u32, u32)> = Vec::new();
-        for (n, start) in self.starts.iter().enumerate() {
-            if *start == u32::MAX {
+        let mut pairs: Vec<Pair> = Vec::new();
+        for (node, start) in nodes.iter().zip(&self.starts) {
+            if *start == NOTHING {
                 continue;
             }
-            if *start as usize != pairs.len() {
-                return Err("pairs of children are out of order");
-            }
-            let all: Vec<_> = super::child_pairs(&nodes[n]).collect();
-            self.append(*start, all.len(), |which| all[which], &mut pairs)?;
+            let all: Vec<_> = super::child_pairs(node).collect();
+            self.append(*start, 0.0, all.len(), |which| all[which], &mut pairs)?;
         }
         let mut at = 0;
         while let Some(&(n, m)) = pairs.get(at) {
             let entry = self.entries[at];
-            if entry.radius.is_nan() || entry.radius < 0.0 {
-                return Err("a radius is negative or not a number");
-            }
             match hierarchy.split(n, m) {
                 None if entry.start() != 0 => return Err("a pair of leaves has children"),
                 None => {}
                 Some(split) => {
-                    if entry.start() as usize != pairs.len() {
-                        return Err("children are out of order");
-                    }
-                    let count = split.children().len();
-                    self.append(entry.start(), count, |which| split.pair(which as u32), &mut pairs)?;
+                    let (count, pair) = (split.children().len(), |which| split.pair(which as u32));
+                    self.append(entry.start(), entry.radius, count, pair, &mut pairs)?;
                 }
             }
             at += 1;
         }
-        if at == self.entries.len() { Ok(()) } else { Err("some pairs have no parent") }
+        if at == self.entries.len() { Ok(pairs) } else { Err("some pairs have no parent") }
     }
 
-    /// Appends the pairs of a list of siblings.
+    /// Appends the pairs of a list of siblings whose parent has the radius `least`.
     fn append(
         &self,
         start: u32,
+        least: f32,
         count: usize,
-        pair: impl Fn(usize) -> (u32, u32),
-        pairs: &mut Vec<(u32, u32)>,
+        pair: impl Fn(usize) -> Pair,
+        pairs: &mut Vec<Pair>,
     ) -> Result<(), &'static str> {
+        if start as usize != pairs.len() {
+            return Err("lists of siblings are out of order");
+        }
         let mut next = 0;
         for entry in self.entries.get(start as usize..).unwrap_or_default() {
+            if entry.radius.is_nan() || entry.radius < 0.0 {
+                return Err("a radius is negative or not a number");
+            }
+            if f64::from(entry.radius) >= self.limit {
+                return Err("a radius is not below the limit");
+            }
+            if entry.radius < least {
+                return Err("a pair's radius exceeds that of a child");
+            }
             let which = entry.which() as usize;
             if which < next || which >= count {
                 return Err("a child is listed twice or does not exist");
@@ -184,7 +191,7 @@ impl PairTree {
     /// The stored siblings that start there, each with its place.
     #[inline]
     pub(crate) fn siblings(&self, start: u32) -> impl Iterator<Item = (u32, Entry)> {
-        let mut next = if start == u32::MAX { None } else { Some(start) };
+        let mut next = if start == NOTHING { None } else { Some(start) };
         std::iter::from_fn(move || {
             let at = next?;
             let entry = self.entries[at as usize];

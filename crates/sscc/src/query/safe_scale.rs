@@ -8,15 +8,15 @@ use glam::DVec3;
 use super::Query;
 use super::aabb::{Aabb, triangle_box};
 use crate::bounds::Path;
-use crate::certificates::child_pairs;
+use crate::certificates::{PairEntry, child_pairs};
 use crate::hierarchy::Hierarchy;
-use crate::{Certificates, Error, Pair};
+use crate::{Certificates, Error, Pair, PairTree};
 
 impl Query<'_> {
     /// A scale s such that the shape is proven free on the whole way `center + t (q - center)`, t in [0, s]: for
     /// certificates about q = 0, at every `t q`. It is at least what the root's radius gives, and about as
-    /// large as the way is free: where that fails, nodes are bounded by their own radii, and what these
-    /// leave open by the way itself. Beyond `R_global` ([`Certificates::global_radius`]) nothing is looked at: s ends
+    /// large as the way is free: where that fails, nodes and pairs of nodes are bounded by their own radii, and what
+    /// these leave open by the way itself. Beyond `R_global` ([`Certificates::global_radius`]) nothing is looked at: s ends
     /// there. 0 where the shape collides at the centre (pairs that are ignored apart); infinite where nothing moves.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
@@ -35,10 +35,11 @@ impl Query<'_> {
         for &(x, y) in self.asked.certificates.map_or(&[][..], Certificates::exceptions) {
             best = best.min(self.follow(&path, (x, y), 0.0, best));
         }
+        let tree = self.asked.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
         let mut waiting = BinaryHeap::new();
-        waiting.push(Entry { lower: self.certified_scale(0), n: 0, m: 0 });
+        waiting.push(Entry { lower: self.certified_scale(0), n: 0, m: 0, place: NONE });
         // Always what could meet first: everything is followed only a little farther than all others are free.
-        while let Some(Entry { lower, n, m }) = waiting.pop() {
+        while let Some(Entry { lower, n, m, place }) = waiting.pop() {
             if lower >= best {
                 break;
             }
@@ -46,14 +47,20 @@ impl Query<'_> {
                 return Err(Error::Cancelled);
             }
             self.discrete.statistics.opened += 1;
-            let mut consider = |n: u32, m: u32, bound: f64, best: f64| {
+            let mut consider = |(n, m): Pair, place: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
                 if lower < best {
-                    waiting.push(Entry { lower, n, m });
+                    waiting.push(Entry { lower, n, m, place });
                 }
             };
             let [node_n, node_m] = [n, m].map(|n| self.asked.hierarchy.nodes()[n as usize]);
-            if node_n.is_leaf() && node_m.is_leaf() {
+            if let Some(split) = self.asked.hierarchy.split(n, m).filter(|_| n != m) {
+                let stored = tree.filter(|_| place != NONE).map(|tree| tree.below(place));
+                let certified = self.certified_pairs(tree, stored.into_iter().flatten());
+                for (pair, (place, bound)) in split.pairs().zip(certified) {
+                    consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
+                }
+            } else if node_n.is_leaf() {
                 let goal = (lower * AHEAD).max(best * LEAST).min(best);
                 let triangles = |node| self.asked.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
@@ -71,23 +78,19 @@ impl Query<'_> {
                         }
                     }
                 }
-                consider(n, m, goal, best);
-            } else if n == m {
+                consider((n, m), place, goal, best);
+            } else {
                 for child in node_n.children() {
-                    consider(child, child, self.certified_scale(child), best);
+                    consider((child, child), NONE, self.certified_scale(child), best);
                 }
-                for (pair, (a, b)) in child_pairs(&node_n).enumerate() {
+                let stored = tree.map(|tree| tree.of_node(n));
+                let certified = self.certified_pairs(tree, stored.into_iter().flatten());
+                for (which, (pair, (place, bound))) in child_pairs(&node_n).zip(certified).enumerate() {
                     let radii =
                         self.asked.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
-                    let certified = radii.map_or(0.0, |radii| self.scale(radii[pair]));
-                    consider(a, b, certified.max(boxes.apart(&path, a, b)), best);
+                    let bound = radii.map_or(bound, |radii| bound.max(self.scale(radii[which])));
+                    consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
                 }
-            } else if node_m.is_leaf()
-                || (!node_n.is_leaf() && node_n.triangle_count >= node_m.triangle_count)
-            {
-                node_n.children().for_each(|child| consider(child, m, boxes.apart(&path, child, m), best));
-            } else {
-                node_m.children().for_each(|child| consider(n, child, boxes.apart(&path, n, child), best));
             }
         }
         self.discrete.statistics.complete = true;
@@ -97,6 +100,20 @@ impl Query<'_> {
     /// The scale up to which a node's own radius certifies it.
     fn certified_scale(&self, node: u32) -> f64 {
         self.asked.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
+    }
+
+    /// For each of some siblings its place in the pair tree and the scale up to which it is certified, where these are
+    /// stored: for the others the scale of the tree's limit.
+    fn certified_pairs(
+        &self,
+        tree: Option<&PairTree>,
+        stored: impl Iterator<Item = (u32, PairEntry)>,
+    ) -> [(u32, f64); MOST_SIBLINGS] {
+        let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MOST_SIBLINGS];
+        for (place, entry) in stored {
+            all[entry.which() as usize] = (place, self.scale(f64::from(entry.radius)));
+        }
+        all
     }
 
     /// The scale at which a radius is reached; [`Query::norm`] is that of scale 1.
@@ -125,11 +142,18 @@ const AHEAD: f64 = 1.5;
 /// ... but at least up to this share of the best known end.
 const LEAST: f64 = 1.0 / 64.0;
 
+/// The place of what is not in the pair tree: a node against itself, and pairs certified up to its limit.
+const NONE: u32 = u32::MAX;
+
+/// The pairs of the four children that a node has at most.
+const MOST_SIBLINGS: usize = 6;
+
 /// A node against itself (n = m), or two nodes, and a scale below which they do not collide.
 struct Entry {
     lower: f64,
     n: u32,
     m: u32,
+    place: u32,
 }
 
 /// Smallest scale first; then by number, so that the order is always the same.
@@ -184,7 +208,7 @@ impl PathBoxes {
     }
 
     /// A scale below which some axis separates the two nodes all the way.
-    fn apart(&self, path: &Path, n: u32, m: u32) -> f64 {
+    fn apart(&self, path: &Path, (n, m): Pair) -> f64 {
         path.boxes_apart(&self.nodes[n as usize], &self.nodes[m as usize])
     }
 }

@@ -1,6 +1,8 @@
 //! Small random models, with every kind of odd mesh and odd modes.
 #![allow(dead_code)] // no test uses all of it
 
+pub mod pair_trees;
+
 use glam::{DMat3, DVec3};
 use sscc::{CertifyOptions, Metric, MetricKind, Modes, Neighbours, PairRule, ReducedModel, Scope, TriMesh};
 

@@ -5,9 +5,9 @@ mod text;
 
 use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use serde::Serialize;
-use sscc::{Certificates, Method, Query, ReducedModel};
+use sscc::{Certificates, Impact, Method, Pair, Query, ReducedModel};
 use sscc_io::{Rows, read_rows};
 
 use crate::args::{self, At, Check};
@@ -16,7 +16,7 @@ use crate::progress::Bar;
 use crate::{Outcome, interrupt, load};
 use text::Summary;
 
-/// The answer for one q.
+/// The answer for one q, or for the way from one to the next.
 #[derive(Serialize)]
 struct Answer<'a> {
     index: usize,
@@ -24,7 +24,10 @@ struct Answer<'a> {
     colliding: bool,
     count: usize,
     complete: bool,
-    pairs: &'a [(u32, u32)],
+    pairs: &'a [Pair],
+    /// Of the way to the next q: when each pair meets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    times: Option<Vec<f64>>,
     microseconds: f64,
     root_certified: bool,
     opened: u64,
@@ -35,13 +38,21 @@ struct Answer<'a> {
 pub fn run(args: &Check) -> Result<Outcome> {
     let model = load::model(&args.model)?.model;
     let rows = coordinates(&args.at, &model)?;
+    ensure!(
+        !args.continuous || rows.rows > 1,
+        "--continuous: the trajectory has one row; it takes two to move from one to the next"
+    );
     if let Some(pose) = &args.pose {
         pose::check(pose, &args.model)?;
     }
     let certificates = match &args.certificates {
         Some(path) => Some(load::certificates(path, &model, &args.options)?),
         None if args.method == args::Method::Certified => {
-            let options = load::options(&model, &args.model, &args.options)?;
+            let mut options = load::options(&model, &args.model, &args.options)?;
+            // The few queries of one run do not make up for the time that pairs of nodes take.
+            if (args.options.scheme, args.options.budget) == (None, None) {
+                options.budget = 0;
+            }
             eprintln!(
                 "note: no --certificates given: computing them first (sscc certify keeps them in a file)"
             );
@@ -58,6 +69,7 @@ pub fn run(args: &Check) -> Result<Outcome> {
         }
     };
     let checking = Checking {
+        continuous: args.continuous,
         limit: args.limit.map_or(if args.first { 1 } else { usize::MAX }, |limit| limit as usize),
         root_radius: certificates.as_ref().map(Certificates::root_radius),
         json: args.json.json,
@@ -100,6 +112,8 @@ fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
 
 /// How to answer.
 struct Checking {
+    /// Whether the questions are about the ways between rows.
+    continuous: bool,
     /// Pairs for each q at the most.
     limit: usize,
     root_radius: Option<f64>,
@@ -107,27 +121,37 @@ struct Checking {
 }
 
 impl Checking {
-    /// Answers every q; whether any collides.
+    /// Answers every question; whether anything collides.
     fn answer_all(&self, query: &mut Query<'_>, rows: &Rows) -> Result<bool> {
         let mut out = Output::new();
         // On a terminal the lines themselves show the progress.
         let bar = Bar::new("checking").only_if(!out.is_watched());
-        let mut summary = Summary::default();
-        for (index, q) in rows.iter().enumerate() {
+        let mut summary = Summary::new(if self.continuous { "step" } else { "configuration" });
+        let rows: Vec<&[f64]> = rows.iter().collect();
+        let questions = if self.continuous { rows.len() - 1 } else { rows.len() };
+        for index in 0..questions {
             interrupt::check()?;
             let start = Instant::now();
-            let found = query.discrete_at_most(q, self.limit).map(|_| ());
+            let found = if self.continuous {
+                query.continuous(rows[index], rows[index + 1]).map(<[Impact]>::to_vec)
+            } else {
+                query.discrete_at_most(rows[index], self.limit).map(|_| Vec::new())
+            };
             let microseconds = start.elapsed().as_secs_f64() * 1e6;
             interrupt::check()?;
-            found?;
-            let (pairs, statistics) = (query.pairs(), query.statistics());
+            let all = found?;
+            let first = earliest(&all, self.limit);
+            let of_first: Vec<Pair> = first.iter().map(|impact| impact.pair).collect();
+            let pairs = if self.continuous { &of_first[..] } else { query.pairs() };
+            let statistics = query.statistics();
             let answer = Answer {
                 index,
                 norm: query.norm(),
                 colliding: !pairs.is_empty(),
                 count: pairs.len(),
-                complete: statistics.complete,
+                complete: statistics.complete && first.len() == all.len(),
                 pairs,
+                times: self.continuous.then(|| first.iter().map(|impact| impact.time).collect()),
                 microseconds,
                 root_certified: statistics.root_certified,
                 opened: statistics.opened,
@@ -137,18 +161,27 @@ impl Checking {
             summary.add(&answer);
             if self.json {
                 out.json(&answer)?;
-            } else if rows.rows == 1 {
+            } else if questions == 1 {
                 text::single(&answer, self.root_radius).into_iter().try_for_each(|line| out.line(line))?;
             } else {
                 out.line(answer.line())?;
             }
-            sscc::Progress::report(&bar, index + 1, rows.rows);
+            sscc::Progress::report(&bar, index + 1, questions);
         }
         drop(bar);
-        if !self.json && rows.rows > 1 {
+        if !self.json && questions > 1 {
             out.line(summary.line())?;
         }
         out.finish()?;
         Ok(summary.colliding > 0)
     }
+}
+
+/// The first so many to meet, sorted by pair.
+fn earliest(impacts: &[Impact], limit: usize) -> Vec<Impact> {
+    let mut kept = impacts.to_vec();
+    kept.sort_by(|a, b| a.time.total_cmp(&b.time));
+    kept.truncate(limit);
+    kept.sort_by_key(|impact| impact.pair);
+    kept
 }

@@ -13,10 +13,17 @@ impl Answer<'_> {
         if self.complete { pairs } else { format!("at least {pairs}") }
     }
 
+    /// The pair listed first, or the one to meet first, and when.
+    fn first(&self) -> Option<String> {
+        let Some(times) = &self.times else { return self.pairs.first().map(|(i, j)| format!("{i} {j}")) };
+        let first = times.iter().zip(self.pairs).min_by(|a, b| a.0.total_cmp(b.0));
+        first.map(|(time, (i, j))| format!("{i} {j} at t = {time:.4}"))
+    }
+
     /// One line of a trajectory.
     pub fn line(&self) -> String {
-        let result = match self.pairs.first() {
-            Some((i, j)) => format!("COLLIDING  {}, first {i} {j}", self.counted()),
+        let result = match self.first() {
+            Some(first) => format!("COLLIDING  {}, first {first}", self.counted()),
             None if self.root_certified => "free       by the root's certificate".to_owned(),
             None => "free".to_owned(),
         };
@@ -29,7 +36,7 @@ impl Answer<'_> {
     }
 }
 
-/// The answer for a q alone.
+/// The answer to a question alone.
 pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     let norm = length(answer.norm);
     let root = root_radius.map(|r| format!(", root radius {}", length(r))).unwrap_or_default();
@@ -50,7 +57,15 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     }
     let pairs = answer.counted();
     let mut lines = vec![format!("COLLIDING: {pairs} of triangles (|z| = {norm}{root})"), cost];
-    lines.extend(answer.pairs.iter().take(LISTED).map(|(i, j)| format!("{i:>8} {j:>8}")));
+    let time = |at: usize| answer.times.as_ref().map(|times| format!("  at t = {:.4}", times[at]));
+    lines.extend(
+        answer
+            .pairs
+            .iter()
+            .take(LISTED)
+            .enumerate()
+            .map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", time(at).unwrap_or_default())),
+    );
     if answer.count > LISTED {
         lines
             .push(format!("     ... and {} more; --json lists all", grouped((answer.count - LISTED) as u64)));
@@ -59,14 +74,19 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
 }
 
 /// What a whole trajectory comes to.
-#[derive(Default)]
 pub struct Summary {
+    /// What was asked about.
+    noun: &'static str,
     root_certified: usize,
     pub colliding: usize,
     microseconds: Vec<f64>,
 }
 
 impl Summary {
+    pub fn new(noun: &'static str) -> Self {
+        Self { noun, root_certified: 0, colliding: 0, microseconds: Vec::new() }
+    }
+
     pub fn add(&mut self, answer: &Answer<'_>) {
         self.root_certified += usize::from(answer.root_certified && !answer.colliding);
         self.colliding += usize::from(answer.colliding);
@@ -78,7 +98,7 @@ impl Summary {
         self.microseconds.sort_by(f64::total_cmp);
         format!(
             "{}: {} free ({} by the root's certificate alone), {} colliding; median {}",
-            counted(all as u64, "configuration"),
+            counted(all as u64, self.noun),
             all - self.colliding,
             self.root_certified,
             self.colliding,

@@ -26,6 +26,9 @@ pub struct Certified {
     root_radius: f64,
     global_radius: f64,
     root_pair_radii: Vec<f64>,
+    pairs: usize,
+    pair_limit: f64,
+    pair_bytes: usize,
     levels: Vec<Level>,
 }
 
@@ -53,10 +56,10 @@ impl Level {
 impl Certified {
     pub fn of(certificates: &Certificates) -> Self {
         let parts = certificates.parts();
-        let levels = parts.hierarchy.levels();
+        let (levels, tree) = (parts.hierarchy.levels(), &parts.pair_tree);
         Self {
             digest: hexadecimal(parts.digest),
-            scheme: "paper", // the only one that a file of this version can have
+            scheme: if tree.limit() > 0.0 { "full" } else { "paper" },
             neighbours: parts.scope.rule.neighbours.name(),
             weld: parts.scope.rule.weld,
             triangles: parts.hierarchy.order().len(),
@@ -73,6 +76,9 @@ impl Certified {
             root_radius: certificates.root_radius(),
             global_radius: parts.global_radius,
             root_pair_radii: parts.root_pair_radii.clone(),
+            pairs: parts.root_pair_radii.len() + tree.len(),
+            pair_limit: tree.limit(),
+            pair_bytes: tree.bytes(),
             levels: levels
                 .into_iter()
                 .map(|l| Level::of(&parts.node_radii[l], parts.global_radius))
@@ -109,6 +115,15 @@ impl Certified {
             format!("root radius    {}", length(self.root_radius)),
             format!("root's pairs   {}", if pairs.is_empty() { "none".into() } else { pairs.join(", ") }),
             format!("resolved up to {}", length(self.global_radius)),
+            match self.pair_bytes {
+                _ if self.pair_limit == 0.0 => "pairs          the root's alone".to_owned(),
+                bytes => format!(
+                    "pairs          {} in all, complete up to {} ({} bytes)",
+                    grouped(self.pairs as u64),
+                    length(self.pair_limit),
+                    grouped(bytes as u64)
+                ),
+            },
             format!(
                 "{:>7} {:>9} {:>11} {:>11} {:>11} {:>8}",
                 "level", "nodes", "least", "median", "largest", "capped"

@@ -7,17 +7,26 @@ use sscc::{CertifyOptions, Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
 /// A strip of triangles folded over itself, with three modes, one of which moves nothing.
 fn model() -> ReducedModel {
-    let positions: Vec<DVec3> = (0..24)
+    strip(24)
+}
+
+/// The same of any length, folded again and again.
+fn strip(vertices: u32) -> ReducedModel {
+    let positions: Vec<DVec3> = (0..vertices)
         .map(|i| {
-            let (s, side) = ((i / 2) as f64 * 0.5, (i % 2) as f64);
-            DVec3::new(fold(s), side, 0.3 * s)
+            let (s, side) = (f64::from(i / 2) * 0.5, f64::from(i % 2));
+            DVec3::new(fold(s % 6.0), side, 0.3 * s)
         })
         .collect();
-    let faces = (0..22).map(|i| [i, i + 1, i + 2]).collect();
-    let modes =
-        Modes::from_matrix(24, 3, |row, k| if k == 2 { 0.0 } else { ((row * (k + 3)) % 7) as f64 - 3.0 });
+    let faces = (0..vertices - 2).map(|i| [i, i + 1, i + 2]).collect();
+    let modes = Modes::from_matrix(vertices as usize, 3, |row, k| {
+        if k == 2 { 0.0 } else { ((row * (k + 3)) % 7) as f64 - 3.0 }
+    });
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes.unwrap()).unwrap()
 }
+
+/// Pairs that collide at rest in the model of [`certificates`].
+const EXCEPTIONS: usize = 0;
 
 /// Something like a cosine: the tests need a fold, not a circle.
 fn fold(x: f64) -> f64 {
@@ -59,17 +68,19 @@ fn sample() -> Vec<u8> {
     certificates_to_bytes(&certificates()).unwrap()
 }
 
-/// Everything in a file but the thing of that name.
-fn copy(file: &Sealed<'_>, writer: &mut SealedWriter, name: &str) {
-    for key in ["metric", "scheme", "pairs", "neighbours", "weld"].iter().filter(|key| **key != name) {
+/// Everything in a file but the things of those names.
+fn copy(file: &Sealed<'_>, writer: &mut SealedWriter, absent: &[&str]) {
+    for key in ["metric", "scheme", "neighbours", "weld"].iter().filter(|key| !absent.contains(*key)) {
         writer.text(key, file.text(key).unwrap());
     }
     let names = file.names();
-    for tensor in names.iter().filter(|tensor| *tensor != name) {
+    for tensor in names.iter().filter(|tensor| !absent.contains(&tensor.as_str())) {
         if let Ok(t) = file.f64(tensor) {
             writer.f64(tensor, &t.shape, &t.values);
         } else if let Ok(t) = file.u32(tensor) {
             writer.u32(tensor, &t.shape, &t.values);
+        } else if let Ok(t) = file.f32(tensor) {
+            writer.f32(tensor, &t.shape, &t.values);
         } else if let Ok(t) = file.u64(tensor) {
             writer.u64(tensor, &t.shape, &t.values);
         } else {
@@ -84,7 +95,7 @@ fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
     let bytes = sample();
     let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
     let mut writer = SealedWriter::new(CERTIFICATES);
-    copy(&file, &mut writer, name);
+    copy(&file, &mut writer, &[name]);
     change(&mut writer);
     certificates_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string()
 }
@@ -98,20 +109,51 @@ fn round_trip_is_exact() {
     assert_eq!(certificates_to_bytes(&read).unwrap(), sample());
 }
 
-/// As they were written before there were rules to choose from.
-#[test]
-fn version_1_is_read() {
-    let options = CertifyOptions { max_exceptions: Some(0), ..CertifyOptions::default() };
+/// As an older version wrote the certificates of the model, under the paper's scheme.
+fn older(
+    version: u32,
+    absent: &[&str],
+    change: impl Fn(&mut SealedWriter),
+) -> Result<Certificates, FormatError> {
+    let options = CertifyOptions { max_exceptions: Some(0), budget: 0, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
     let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
-    let mut writer = SealedWriter::new(super::super::Kind { version: 1, ..CERTIFICATES });
-    copy(&file, &mut writer, "ignored");
-    let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
+    let mut writer = SealedWriter::new(super::super::Kind { version, ..CERTIFICATES });
+    let tree = ["pair_limit", "pair_links", "pair_radii", "pair_starts"];
+    copy(&file, &mut writer, &[absent, &tree].concat());
+    change(&mut writer);
+    let read = certificates_from_bytes(&writer.finish().unwrap())?;
     assert_eq!(read, certificates);
+    Ok(read)
+}
+
+/// As they were written before there were rules to choose from.
+#[test]
+fn version_1_is_read() {
+    let read = older(1, &["ignored"], |w| _ = w.text("pairs", "root-children")).unwrap();
     read.check_model(&model()).unwrap();
     // The digest of this model as that version computed it.
     assert_eq!(read.parts().digest.short(), "01b8aa45");
+}
+
+/// As they were written before there was a pair tree.
+#[test]
+fn version_2_is_read() {
+    older(2, &[], |w| _ = w.text("pairs", "root-children")).unwrap();
+    let message = |changed: Result<_, FormatError>| changed.unwrap_err().to_string();
+    assert!(message(older(2, &[], |_| ())).ends_with("missing"));
+    assert!(message(older(2, &[], |w| _ = w.text("pairs", "all"))).ends_with("of the format"));
+    // Written by version 2 itself, exceptions and all.
+    let bytes = include_bytes!("version_2.sscc.safetensors");
+    let file = Sealed::parse(bytes, CERTIFICATES).unwrap();
+    assert_eq!((file.version(), file.text("pairs").unwrap()), (2, "root-children"));
+    let read = certificates_from_bytes(bytes).unwrap();
+    read.check_model(&model()).unwrap();
+    assert_eq!((read.parts().pair_tree.limit(), read.exceptions().len()), (0.0, EXCEPTIONS));
+    let again = certificates_to_bytes(&read).unwrap();
+    assert_eq!(Sealed::parse(&again, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
+    assert_eq!(certificates_from_bytes(&again).unwrap(), read);
 }
 
 #[test]
@@ -141,14 +183,14 @@ fn other_kinds_and_newer_versions_are_refused() {
     let model_file = SealedWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = SealedWriter::new(super::super::Kind { version: 3, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 3"));
+    let newer = SealedWriter::new(super::super::Kind { version: 4, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 4"));
 }
 
 #[test]
 fn what_this_version_does_not_know_is_refused() {
     let unknown = "is not known in this version of the format";
-    for key in ["scheme", "pairs", "neighbours", "weld"] {
+    for key in ["scheme", "neighbours", "weld"] {
         assert!(with(key, |w| _ = w.text(key, "other")).ends_with(unknown), "{key}");
     }
     assert!(with("", |w| _ = w.u8("kinetic", &[1], &[0])).starts_with("tensor 'kinetic': not known"));
@@ -185,4 +227,86 @@ fn parts_that_do_not_fit_are_refused() {
     assert!(with("metric_scales", |w| _ = w.f64("metric_scales", &[0], &[])).contains("no modes"));
     assert!(with("metric", |w| _ = w.text("metric", "gold")).ends_with("unknown metric 'gold'"));
     assert!(with("model_digest", |w| _ = w.u8("model_digest", &[3], &[0; 3])).contains("[32] was expected"));
+}
+
+/// The scheme is a name for what is there; what is there decides.
+#[test]
+fn the_scheme_agrees_with_the_pair_tree() {
+    assert!(with("scheme", |w| _ = w.text("scheme", "paper")).contains("does not agree"));
+    let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+    let paper = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
+    assert_eq!(Sealed::parse(&paper, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
+    assert_eq!(Sealed::parse(&sample(), CERTIFICATES).unwrap().text("scheme").unwrap(), "full");
+}
+
+/// Every number of the pair tree replaced by others, and every array cut: an error, or a tree that queries can walk.
+#[test]
+fn damaged_pair_trees_are_refused_or_harmless() {
+    let model = strip(60);
+    let good = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let tree = &good.parts().pair_tree;
+    let (radii, links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
+    let starts = tree.starts().to_vec();
+    let of_leaves = links.iter().filter(|link| **link << 4 == 0).count();
+    assert!(of_leaves > 20 && links.len() - of_leaves > 20, "{of_leaves} of {}", links.len());
+    let bytes = certificates_to_bytes(&good).unwrap();
+    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
+    let mut refused = 0;
+    let mut read = |limit: f64, starts: &[u32], radii: &[f32], links: &[u32]| {
+        let mut writer = SealedWriter::new(CERTIFICATES);
+        copy(&file, &mut writer, &["pair_limit", "pair_links", "pair_radii", "pair_starts"]);
+        writer
+            .f64("pair_limit", &[1], &[limit])
+            .u32("pair_starts", &[starts.len()], starts)
+            .f32("pair_radii", &[radii.len()], radii)
+            .u32("pair_links", &[links.len()], links);
+        match certificates_from_bytes(&writer.finish().unwrap()) {
+            Ok(certificates) => {
+                let mut query = sscc::Query::new(&model, &certificates).unwrap();
+                for q in [[0.01, 0.0, 0.0], [0.1, -0.1, 1.0], [1.0, 1.0, 0.0]] {
+                    query.discrete(&q).unwrap();
+                    query.continuous(&[0.0; 3], &q).unwrap();
+                    query.safe_scale(&q).unwrap();
+                }
+                String::new()
+            }
+            Err(error) => {
+                refused += 1;
+                error.to_string()
+            }
+        }
+    };
+    let limit = tree.limit();
+    assert_eq!(read(limit, &starts, &radii, &links), "");
+    for bad in [f64::NAN, -1.0, f64::INFINITY, 0.0, limit / 1e6] {
+        assert!(!read(bad, &starts, &radii, &links).is_empty(), "limit {bad}");
+    }
+    for at in (0..starts.len()).step_by(3) {
+        for other in [0, 1, starts[at].wrapping_add(1), u32::MAX, u32::MAX - 1, 1 << 28] {
+            let mut changed = starts.clone();
+            changed[at] = other;
+            let message = read(limit, &changed, &radii, &links);
+            assert_eq!(message.is_empty(), changed == starts, "start {at}: {other}: {message}");
+        }
+        assert!(!read(limit, &starts[..at], &radii, &links).is_empty());
+    }
+    let stride = links.len().div_ceil(40);
+    for at in (0..links.len()).step_by(stride) {
+        for bit in 0..32 {
+            let mut changed = links.clone();
+            changed[at] ^= 1 << bit;
+            read(limit, &starts, &radii, &changed);
+        }
+        for other in [f32::NAN, -1.0, f32::INFINITY, f32::MAX] {
+            let mut changed = radii.clone();
+            changed[at] = other;
+            assert!(!read(limit, &starts, &changed, &links).is_empty(), "radius {at}: {other}");
+        }
+        assert!(!read(limit, &starts, &radii[..at], &links[..at]).is_empty());
+        assert!(!read(limit, &starts, &radii[..at], &links).is_empty());
+    }
+    assert!(
+        !read(limit, &starts, &[&radii[..], &[0.0]].concat(), &[&links[..], &[1 << 31]].concat()).is_empty()
+    );
+    assert!(refused > 40 * 20, "{refused} with {} links", links.len());
 }
