@@ -64,7 +64,8 @@ Examples:
   sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0
 
 A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not
-glued. Modes are mass-orthonormal, and the metric is strain energy.")]
+glued. Modes of solids are mass-orthonormal, and their metric is strain energy; without a solid (pca, or polynomial modes of a
+surface) it is displacement.")]
 pub struct Modes {
     /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele);
     /// for pca a folder of meshes with the same faces, the frames

@@ -193,3 +193,32 @@ fn what_has_no_modes_is_told() {
     );
     assert!(run.refusal().contains("always all 24"), "{run:?}");
 }
+
+#[test]
+fn a_surface_split_along_seams_is_closed() {
+    let folder = folder();
+    let folder = folder.path();
+    // The box with three vertices of its own for each triangle.
+    let vertices: Vec<&str> = BOX.lines().filter(|line| line.starts_with('v')).collect();
+    let mut text = "solid box\n".to_owned();
+    for line in BOX.lines().filter(|line| line.starts_with('f')) {
+        let f: Vec<usize> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+        for [a, b, c] in [[f[0], f[1], f[2]], [f[0], f[2], f[3]]] {
+            let corner = |i: usize| vertices[i - 1].replacen('v', "vertex", 1);
+            let corners = [a, b, c].map(corner).join("\n");
+            text += &format!("facet normal 0 0 0\nouter loop\n{corners}\nendloop\nendfacet\n");
+        }
+    }
+    fs::write(folder.join("box.stl"), text + "endsolid\n").unwrap();
+    let [whole, split] = ["box.obj", "box.stl"]
+        .map(|name| modes(folder, &[name, "--kind", "linear", "--rank", "6", "--resolution", "4"]));
+    assert_eq!((&whole["vertices"], &split["vertices"]), (&8.into(), &36.into()));
+    assert_eq!(whole["frequencies_hz"], split["frequencies_hz"]);
+    let certify = |weld| {
+        let run =
+            sscc(folder, &["certify", "x.model.safetensors", "-o", "x.sscc.safetensors", "--json", weld]);
+        run.json().remove(0)["rest_collisions"].as_u64().unwrap()
+    };
+    assert_eq!(certify("--weld"), 0);
+    assert!(certify("--weld=off") > 0);
+}

@@ -1,9 +1,11 @@
 //! Bodies: solids with fixed vertices, their mass and stiffness, and what moves in them without energy.
 
-use faer::{Mat, Side};
+use faer::Mat;
 use glam::{DMat3, DVec3};
 use sscc::Progress;
 
+use crate::eigen::dense::symmetric_eigen;
+use crate::eigen::tall::{add_product, inner, product};
 use crate::eigen::{Lowest, lowest_modes};
 use crate::sparse::{BlockSparse, FIXED};
 use crate::{ModesError, Solid};
@@ -62,8 +64,8 @@ impl<'a> Body<'a> {
     pub fn without_rigid(&self, x: &mut Mat<f64>) {
         if self.rigid.ncols() > 0 {
             for _ in 0..2 {
-                let coefficients = self.rigid.transpose() * self.mass.multiply(x.as_ref());
-                *x -= &self.rigid * coefficients;
+                let coefficients = inner(self.rigid.as_ref(), self.mass.multiply(x.as_ref()).as_ref());
+                add_product(x.as_mut(), self.rigid.as_ref(), coefficients.as_ref(), -1.0);
             }
         }
     }
@@ -107,10 +109,10 @@ impl<'a> Body<'a> {
             .collect();
         let held =
             Mat::from_fn(6, 6, |i, j| fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>());
-        let eigen = held.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
-        let allowed: Vec<usize> = (0..6).filter(|k| eigen.S()[*k] <= HELD).collect();
+        let (values, vectors) = symmetric_eigen(held.as_ref())?;
+        let allowed: Vec<usize> = (0..6).filter(|k| values[*k] <= HELD).collect();
         let motions = Mat::from_fn(3 * self.free.len(), allowed.len(), |row, column| {
-            (0..6).map(|k| motion(self.free[row / 3], k)[row % 3] * eigen.U()[(k, allowed[column])]).sum()
+            (0..6).map(|k| motion(self.free[row / 3], k)[row % 3] * vectors[(k, allowed[column])]).sum()
         });
         m_orthonormal(&self.mass, motions, 1e-14, 6)
     }
@@ -128,16 +130,25 @@ pub(crate) fn m_orthonormal(
         if x.ncols() == 0 {
             break; // faer decomposes no empty matrix
         }
-        let gram = x.transpose() * mass.multiply(x.as_ref());
-        let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
-        let size = gram.nrows();
-        let largest = eigen.S()[size - 1];
-        let kept: Vec<usize> =
-            (0..size).rev().filter(|k| eigen.S()[*k] > least * largest).take(most).collect();
-        let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
-        x = &x * &turn;
+        let turn = whitening(mass, &x, least, most)?;
+        x = product(x.as_ref(), turn.as_ref());
     }
     Ok(x)
+}
+
+/// The matrix T for which the columns of `X T` are M-orthonormal; directions as [`m_orthonormal`] takes them.
+pub(crate) fn whitening(
+    mass: &BlockSparse,
+    x: &Mat<f64>,
+    least: f64,
+    most: usize,
+) -> Result<Mat<f64>, ModesError> {
+    let gram = inner(x.as_ref(), mass.multiply(x.as_ref()).as_ref());
+    let (values, vectors) = symmetric_eigen(gram.as_ref())?;
+    let size = values.len();
+    let kept: Vec<usize> =
+        (0..size).rev().filter(|k| values[*k] > least * values[size - 1]).take(most).collect();
+    Ok(Mat::from_fn(size, kept.len(), |i, j| vectors[(i, kept[j])] / values[kept[j]].sqrt()))
 }
 
 /// Stiffness and mass of the free vertices.

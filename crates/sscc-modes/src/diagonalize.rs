@@ -1,22 +1,17 @@
 //! Modes in which the stiffness is diagonal (paper, section 6).
 
-use faer::diag::Diag;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
-use faer::{Mat, Par};
+use faer::Mat;
 use glam::DVec3;
 use sscc::Modes;
 
 use crate::ModesError;
+use crate::eigen::dense::symmetric_eigen;
+use crate::eigen::fix_signs;
 use crate::stiffness::symmetrised;
 
 /// An eigenvalue of at most this share of the largest is 0. Rounding leaves about 1e-14 of a rigid motion's
 /// 0, of either sign, and such noise must not become the smallest positive weight.
 const ZERO_SHARE: f64 = 1e-12;
-
-/// Components of an eigenvector count as equal when they differ by less than this share: rounding must not
-/// decide which one is the largest, and with it the sign.
-const TIE_SHARE: f64 = 1e-8;
 
 /// Modes in which a stiffness is diagonal: see [`diagonalize`].
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +75,7 @@ pub struct Diagonalized {
 /// largest; and when an entry of the new modes is out of range.
 pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, ModesError> {
     let rank = modes.rank();
-    let (mut eigenvalues, mut rotation) = eigen(rank, &symmetrised(rank, stiffness)?)?;
+    let (mut eigenvalues, rotation) = eigen(rank, &symmetrised(rank, stiffness)?)?;
     let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for x in &mut eigenvalues {
         if *x < -ZERO_SHARE * largest {
@@ -90,7 +85,6 @@ pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, Mod
             *x = 0.0;
         }
     }
-    fix_signs(rank, &mut rotation);
     let mut displacements = vec![DVec3::ZERO; modes.displacements().len()];
     for (new, old) in displacements.chunks_exact_mut(rank).zip(modes.displacements().chunks_exact(rank)) {
         for (u, row) in old.iter().zip(rotation.chunks_exact(rank)) {
@@ -112,38 +106,15 @@ pub fn symmetric_eigenvalues(rank: usize, matrix: &[f64]) -> Result<Vec<f64>, Mo
 }
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
-/// matrix. On one thread, so that the order of sums is fixed.
+/// matrix, the largest component of each positive.
 pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
     // Divided by a power of two, so that the largest entry is about 1 and no square leaves the range.
     let largest = matrix.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (_, exponent) = libm::frexp(largest);
     let scaled = Mat::from_fn(rank, rank, |i, j| libm::ldexp(matrix[i * rank + j], -exponent));
-    let mut values = Diag::zeros(rank);
-    let mut vectors = Mat::zeros(rank, rank);
-    let scratch =
-        self_adjoint_evd_scratch::<f64>(rank, ComputeEigenvectors::Yes, Par::Seq, Default::default());
-    self_adjoint_evd(
-        scaled.as_ref(),
-        values.as_mut(),
-        Some(vectors.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    )
-    .map_err(|_| ModesError::NoEigenvalues)?;
-    let values = (0..rank).map(|k| libm::ldexp(values[k], exponent)).collect();
+    let (values, mut vectors) = symmetric_eigen(scaled.as_ref())?;
+    fix_signs(&mut vectors);
+    let values = values.into_iter().map(|x| libm::ldexp(x, exponent)).collect();
     let vectors = (0..rank * rank).map(|at| vectors[(at / rank, at % rank)]).collect();
     Ok((values, vectors))
-}
-
-/// Turns each column so that its largest component is positive, the first one of equals.
-pub(crate) fn fix_signs(rank: usize, columns: &mut [f64]) {
-    for k in 0..rank {
-        let column = || (0..rank).map(|j| j * rank + k);
-        let largest = column().fold(0.0_f64, |m, at| m.max(columns[at].abs()));
-        let first = column().find(|at| columns[*at].abs() >= (1.0 - TIE_SHARE) * largest);
-        if first.is_some_and(|at| columns[at] < 0.0) {
-            column().for_each(|at| columns[at] = -columns[at]);
-        }
-    }
 }

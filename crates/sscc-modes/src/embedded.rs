@@ -14,10 +14,12 @@ pub struct Embedded {
     solid: Solid,
     interpolation: Interpolation,
     spacing: f64,
+    is_split: bool,
 }
 
 impl Embedded {
-    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all.
+    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all. A surface that is open
+    /// is tried again with vertices of equal position as one.
     ///
     /// # Errors
     /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there would be too
@@ -28,11 +30,11 @@ impl Embedded {
         material: Material,
         progress: &dyn Progress,
     ) -> Result<Self, ModesError> {
-        let Lattice { vertices, cubes, fill, spacing, interpolation } =
+        let Lattice { vertices, cubes, fill, spacing, interpolation, is_split } =
             Lattice::around(surface, cells, progress)?;
         let elements = cubes.len();
         let solid = Solid::filled(vertices, Vec::new(), cubes, fill, vec![material], vec![0; elements])?;
-        Ok(Self { solid, interpolation, spacing })
+        Ok(Self { solid, interpolation, spacing, is_split })
     }
 
     /// The lattice.
@@ -43,6 +45,12 @@ impl Embedded {
     /// Length of an edge of a cube (model unit).
     pub fn spacing(&self) -> f64 {
         self.spacing
+    }
+
+    /// Whether the surface is closed only when vertices of equal position count as one (a file split them along seams). Then
+    /// certificates need the same: [`PairRule::weld`](sscc::PairRule::weld).
+    pub fn is_split(&self) -> bool {
+        self.is_split
     }
 
     /// Modes of the solid's vertices as modes of the surface: a vertex moves with its cube (trilinear). Vertices that no

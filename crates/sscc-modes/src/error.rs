@@ -230,7 +230,7 @@ pub enum ModesError {
     Memory,
     /// A surface with a hole, or with triangles that are oriented differently.
     #[error(
-        "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes, weld its seams), and orient its triangles alike"
+        "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes; vertices of exactly equal position are one already), and orient its triangles alike"
     )]
     OpenEdge {
         /// The vertex at one end, from 0.

@@ -12,6 +12,7 @@ use sscc::{Error, Progress};
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
 use crate::eigen::Lowest;
+use crate::eigen::tall::{inner, product};
 use crate::elasticity::second_derivatives;
 
 /// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
@@ -93,20 +94,21 @@ fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<
 fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
     // Rigid motions carry no elastic force: f - M R R'f.
     if body.rigid.ncols() > 0 {
-        let carried = &body.rigid * (body.rigid.transpose() * &right);
+        let along = inner(body.rigid.as_ref(), right.as_ref());
+        let carried = product(body.rigid.as_ref(), along.as_ref());
         right -= body.mass.multiply(carried.as_ref());
     }
     let norm = |x: &Mat<f64>, k: usize| x.col(k).norm_l2();
     let mut x = Mat::zeros(right.nrows(), right.ncols());
     let mut residual = right.clone();
     for _ in 0..REFINEMENTS {
-        let mut coefficients = lowest.vectors.transpose() * &residual;
+        let mut coefficients = inner(lowest.vectors.as_ref(), residual.as_ref());
         for k in 0..coefficients.ncols() {
             for (c, lambda) in coefficients.col_as_slice_mut(k).iter_mut().zip(&lowest.eigenvalues) {
                 *c /= lambda;
             }
         }
-        let low = &lowest.vectors * coefficients;
+        let low = product(lowest.vectors.as_ref(), coefficients.as_ref());
         let mut high = &residual - body.stiffness.multiply(low.as_ref());
         lowest.factor.solve(&mut high)?;
         x += low + high;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh, limits};
 
 use crate::ModesError;
-use crate::diagonalize::{eigen, fix_signs};
+use crate::diagonalize::eigen;
 
 /// Without a rank, as many components as explain this share of the variance.
 const EXPLAINED: f64 = 0.999;
@@ -53,7 +53,7 @@ pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> 
         frames[0][v] + sum / count
     };
     let mean: Vec<DVec3> = (0..vertices).map(mean).collect();
-    let (mut variances, mut vectors, noise) = components(&mesh.used_vertices(), frames, &mean)?;
+    let (mut variances, vectors, noise) = components(&mesh.used_vertices(), frames, &mean)?;
     variances.reverse();
     let total: f64 = variances.iter().map(|x| x.max(0.0)).sum();
     let least = (ZERO_SHARE * variances[0]).max(noise);
@@ -68,7 +68,6 @@ pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> 
 
     // U_k = sum_t (frame_t - mean) v_tk / sqrt(n - 1): the length of the sum is the root of the eigenvalue.
     let last = frames.len() - 1;
-    fix_signs(frames.len(), &mut vectors);
     let root = (last as f64).sqrt();
     let mut displacements = vec![DVec3::ZERO; vertices * rank];
     for (v, modes) in displacements.chunks_exact_mut(rank.max(1)).enumerate() {

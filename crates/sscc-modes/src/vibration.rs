@@ -1,11 +1,13 @@
 //! Linear modes: the lowest natural vibrations of a solid.
 
-use faer::{Mat, Side};
+use faer::Mat;
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 
-use crate::body::Body;
+use crate::body::{Body, whitening};
+use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
+use crate::eigen::tall::{inner, product};
 use crate::elasticity::{ReducedForces, reduced_forces};
 use crate::nonlinear;
 use crate::{ModesError, Solid};
@@ -75,7 +77,7 @@ pub fn nonlinear_modes(
     if eigenvalues.len() < rank {
         return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });
     }
-    let vectors = basis * turn;
+    let vectors = product(basis.as_ref(), turn.as_ref());
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
     let modes = from_columns(&columns)?;
     let forces = Some(reduced_forces(solid, &modes, progress)?);
@@ -108,7 +110,7 @@ pub fn polynomial_solid_modes(
     };
     let (turn, eigenvalues) = rotation(&body, &fields(vertices), RIGID)?;
     let on = |points: &[DVec3]| {
-        let fields = fields(points) * &turn;
+        let fields = product(fields(points).as_ref(), turn.as_ref());
         let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
         from_columns(&(0..turn.ncols()).map(column).collect::<Vec<_>>())
     };
@@ -117,7 +119,8 @@ pub fn polynomial_solid_modes(
     Ok((SolidModes { modes, eigenvalues, forces }, of_surface))
 }
 
-/// The most modes for large deformations: the products of their strains take 2 GB, the derivatives as much.
+/// The most modes for large deformations: memory grows with the fourth power (the cubic terms) and with the number of
+/// pairs of modes (their derivatives); by count, about 4 GB at the default resolution.
 const MOST_NONLINEAR: usize = 100;
 
 /// Monomials of degree 2 or less in three variables.
@@ -129,21 +132,16 @@ const RIGID: f64 = 1e-11;
 /// The matrix T for which the columns of `X T` are M-orthonormal and their stiffness is diagonal, and that diagonal.
 /// Dependent columns fall away, and motions whose stiffness is at most the share `rigid` of the largest.
 fn rotation(body: &Body, basis: &Mat<f64>, rigid: f64) -> Result<(Mat<f64>, Vec<f64>), ModesError> {
-    let gram = basis.transpose() * body.mass.multiply(basis.as_ref());
-    let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
-    let size = gram.nrows();
-    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > 1e-13 * eigen.S()[size - 1]).collect();
-    let orthonormal =
-        Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])] / eigen.S()[kept[j]].sqrt());
-    let stiffness = basis.transpose() * body.stiffness.multiply(basis.as_ref());
-    let stiffness = orthonormal.transpose() * stiffness * &orthonormal;
-    let eigen = stiffness.self_adjoint_eigen(Side::Lower).map_err(|_| ModesError::NoEigenvalues)?;
-    let size = stiffness.nrows();
-    let kept: Vec<usize> = (0..size).filter(|k| eigen.S()[*k] > rigid * eigen.S()[size - 1]).collect();
-    let turn = Mat::from_fn(size, kept.len(), |i, j| eigen.U()[(i, kept[j])]);
-    let mut turn = orthonormal * turn;
+    let orthonormal = whitening(&body.mass, basis, 1e-13, basis.ncols())?;
+    let stiffness = inner(basis.as_ref(), body.stiffness.multiply(basis.as_ref()).as_ref());
+    let stiffness = product(stiffness.as_ref(), orthonormal.as_ref());
+    let (values, vectors) = symmetric_eigen(inner(orthonormal.as_ref(), stiffness.as_ref()).as_ref())?;
+    let size = values.len();
+    let kept: Vec<usize> = (0..size).filter(|k| values[*k] > rigid * values[size - 1]).collect();
+    let vectors = Mat::from_fn(size, kept.len(), |i, j| vectors[(i, kept[j])]);
+    let mut turn = product(orthonormal.as_ref(), vectors.as_ref());
     fix_signs(&mut turn);
-    Ok((turn, kept.into_iter().map(|k| eigen.S()[k]).collect()))
+    Ok((turn, kept.into_iter().map(|k| values[k]).collect()))
 }
 
 /// Modes from one field for each.

@@ -13,7 +13,7 @@ use crate::sparse::BlockSparse;
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix (its lower triangle). On one thread, so
 /// that the order of sums is fixed.
-pub(super) fn symmetric_eigen(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
+pub(crate) fn symmetric_eigen(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
     let size = matrix.nrows();
     let mut values = Diag::zeros(size);
     let mut vectors = Mat::zeros(size, size);

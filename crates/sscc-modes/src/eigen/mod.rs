@@ -2,14 +2,14 @@
 
 mod basis;
 mod count;
-mod dense;
+pub(crate) mod dense;
 mod lanczos;
 #[cfg(test)]
 pub(crate) mod lattice;
 mod lowest;
 mod shift;
 mod space;
-mod tall;
+pub(crate) mod tall;
 #[cfg(test)]
 pub(crate) mod tests;
 

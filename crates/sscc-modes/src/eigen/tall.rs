@@ -8,7 +8,7 @@ use rayon::prelude::*;
 const ROWS: usize = 4096;
 
 /// `a' b`, for tall matrices.
-pub(super) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
+pub(crate) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
     if a.nrows() == 0 || a.ncols() == 0 || b.ncols() == 0 {
         return Mat::zeros(a.ncols(), b.ncols());
     }
@@ -24,8 +24,15 @@ pub(super) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
     parts.iter().fold(Mat::zeros(a.ncols(), b.ncols()), |sum, part| sum + part)
 }
 
+/// `a b`, for tall `a`.
+pub(crate) fn product(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(a.nrows(), b.ncols());
+    add_product(product.as_mut(), a, b, 1.0);
+    product
+}
+
 /// Adds `factor a b` to `to`, for tall `a`.
-pub(super) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, factor: f64) {
+pub(crate) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, factor: f64) {
     if to.nrows() == 0 || to.ncols() == 0 || a.ncols() == 0 {
         return;
     }

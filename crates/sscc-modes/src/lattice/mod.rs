@@ -53,6 +53,8 @@ pub(crate) struct Lattice {
     pub spacing: f64,
     /// How the surface moves with the nodes.
     pub interpolation: Interpolation,
+    /// Whether the surface is closed only when vertices of equal position are one.
+    pub is_split: bool,
 }
 
 impl Lattice {
@@ -70,7 +72,7 @@ impl Lattice {
         step(0)?;
         let surface = Surface::new(mesh)?;
         let grid = Grid::around(&surface, cells)?;
-        check_rest(mesh, progress)?;
+        check_rest(mesh, surface.is_split, progress)?;
         step(1)?;
         let points: Vec<DVec3> = mesh.rest_positions().iter().map(|p| grid.coordinates(*p)).collect();
         let (mut inside, mut odd) = ([const { Vec::new() }; 3], Vec::new());
@@ -92,6 +94,7 @@ impl Lattice {
             fill: copies.fill,
             spacing: grid.spacing,
             interpolation,
+            is_split: surface.is_split,
         })
     }
 }

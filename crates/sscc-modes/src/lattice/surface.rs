@@ -1,7 +1,9 @@
 //! The surface that a lattice is made for: closed, oriented outward, free of collisions with itself.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
-use sscc::{Method, Modes, Progress, Query, ReducedModel, Scope, TriMesh};
+use sscc::{Method, Modes, Neighbours, PairRule, Progress, Query, ReducedModel, Scope, TriMesh};
 
 use crate::ModesError;
 
@@ -12,6 +14,8 @@ pub(super) struct Surface {
     /// For each face and each of its edges (from corner k to k + 1) the next face at this edge. The faces
     /// at an edge are a ring, nearly always of two.
     pub across: Vec<[u32; 3]>,
+    /// Whether it is closed only when vertices of equal position are one: files may split them along seams.
+    pub is_split: bool,
     /// The middle of the bounding box (model unit). Vertices that no face uses do not count.
     pub middle: DVec3,
     /// Sides of the bounding box (model unit).
@@ -26,7 +30,10 @@ impl Surface {
     /// # Errors
     /// When the surface is open, not oriented alike, or without volume.
     pub fn new(mesh: &TriMesh) -> Result<Self, ModesError> {
-        let across = pair_edges(mesh.faces())?;
+        let (across, is_split) = match pair_edges(mesh.faces()) {
+            Ok(across) => (across, false),
+            Err(open) => (pair_edges(&welded(mesh)).map_err(|_| open)?, true),
+        };
         let p = mesh.rest_positions();
         let used = || mesh.faces().iter().flatten().map(|v| p[*v as usize]);
         let low = used().fold(DVec3::INFINITY, DVec3::min);
@@ -50,7 +57,7 @@ impl Surface {
             faces.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
             surface_across.iter_mut().for_each(|[ab, _, ca]| std::mem::swap(ab, ca));
         }
-        Ok(Self { faces, across: surface_across, middle, extent, volume: volume.abs(), area })
+        Ok(Self { faces, across: surface_across, is_split, middle, extent, volume: volume.abs(), area })
     }
 }
 
@@ -79,15 +86,28 @@ fn pair_edges(faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, ModesError> {
     Ok(across)
 }
 
+/// The faces over the first vertex of each position.
+fn welded(mesh: &TriMesh) -> Vec<[u32; 3]> {
+    let mut first = HashMap::new();
+    let classes: Vec<u32> = (0_u32..)
+        .zip(mesh.rest_positions())
+        // 0 + -0 is 0.
+        .map(|(v, p)| *first.entry((*p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(v))
+        .collect();
+    mesh.faces().iter().map(|face| face.map(|v| classes[v as usize])).collect()
+}
+
 /// Whether triangles without a common vertex collide at rest.
 ///
 /// # Errors
 /// [`ModesError::CollidesAtRest`] if they do; when cancelled.
-pub(super) fn check_rest(mesh: &TriMesh, progress: &dyn Progress) -> Result<(), ModesError> {
+pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress) -> Result<(), ModesError> {
     // The core speaks of models, and a model has a mode: any will do, at q = 0.
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
     let model = ReducedModel::new(mesh.clone(), modes)?;
-    let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional)?;
+    let rule = PairRule::new(Neighbours::Exclude, is_split);
+    let scope = Scope { rule, ..Scope::of(&model) };
+    let mut query = Query::without_certificates(&model, scope, Method::Traditional)?;
     query = query.cancelled_by(progress);
     match query.first(&[0.0])? {
         Some((a, b)) => Err(ModesError::CollidesAtRest { a, b }),

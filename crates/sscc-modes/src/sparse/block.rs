@@ -6,9 +6,6 @@ use rayon::prelude::*;
 /// The number of a vertex without a row: it is fixed.
 pub(crate) const FIXED: u32 = u32::MAX;
 
-/// A row in the making is tidied when it is longer than this, so that vertices of many elements need little memory.
-const UNTIDY: usize = 256;
-
 /// Rows that one thread copies at once.
 const ROWS: usize = 1024;
 
@@ -35,8 +32,10 @@ impl BlockSparse {
             for i in element.iter().filter(|i| **i != FIXED) {
                 let row = &mut neighbours[*i as usize];
                 row.extend(element.iter().filter(|j| **j != FIXED));
-                if row.len() > UNTIDY {
+                // Vertices of many elements need little memory and time.
+                if row.len() + element.len() > row.capacity() {
                     tidy(row);
+                    row.reserve(row.len() + element.len());
                 }
             }
         }

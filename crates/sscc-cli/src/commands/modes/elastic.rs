@@ -65,6 +65,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     );
     let frequencies = found.frequencies();
     Ok(Made {
+        is_split: source.is_split(),
         metric: Some(energy_metric(&weights)?),
         elasticity: Some(elasticity(found.eigenvalues, found.forces)),
         mesh: source.into_mesh(),

@@ -36,6 +36,8 @@ struct Report {
 
 /// A surface with modes, and what else was found.
 struct Made {
+    /// Whether vertices are known to be split along seams.
+    is_split: bool,
     mesh: TriMesh,
     modes: Modes,
     /// If not given, displacement.
@@ -108,8 +110,8 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     }
     out.finish()?;
     let file = report.components.as_ref().map_or(&args.source, |components| &components.first);
-    if sscc_io::splits_vertices(file) {
-        eprintln!("note: this format splits vertices: certify it with --weld");
+    if made.is_split || sscc_io::splits_vertices(file) {
+        eprintln!("note: vertices are split along seams: certify it with --weld");
     }
     Ok(Outcome::Done)
 }
@@ -127,6 +129,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<Made> {
     let modes = polynomial_modes(&mesh).with_context(|| args.source.display().to_string())?;
     let provenance = format!("mesh {}, polynomial modes", name(args));
     Ok(Made {
+        is_split: false,
         mesh,
         modes,
         metric: None,

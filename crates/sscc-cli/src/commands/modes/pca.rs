@@ -43,6 +43,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
         first: frames.paths[0].clone(),
     };
     Ok(Made {
+        is_split: false,
         mesh: pca.mesh,
         modes: pca.modes,
         metric: None,

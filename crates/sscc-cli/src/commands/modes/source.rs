@@ -86,6 +86,11 @@ impl Source {
         }
     }
 
+    /// Whether its file split vertices along seams.
+    pub fn is_split(&self) -> bool {
+        matches!(self, Self::Around { embedded, .. } if embedded.is_split())
+    }
+
     pub fn is_embedded(&self) -> bool {
         matches!(self, Self::Around { .. })
     }

@@ -134,3 +134,16 @@ fn unused_vertices() {
     assert_eq!(with.cubes, lattice(&ball, Some(10)).cubes);
     assert_eq!(with.interpolation.apply(&with.vertices).last(), Some(&DVec3::ZERO));
 }
+
+#[test]
+fn surfaces_split_along_seams() {
+    let whole = sphere(3);
+    let apart = whole.faces().iter().flatten().map(|v| whole.rest_positions()[*v as usize]).collect();
+    let split = mesh(apart, (0..whole.faces().len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect());
+    let (of_whole, of_split) = (lattice(&whole, Some(12)), lattice(&split, Some(12)));
+    assert!(of_split.is_split && !of_whole.is_split);
+    assert_eq!((&of_split.vertices, &of_split.cubes), (&of_whole.vertices, &of_whole.cubes));
+    for (at, v) in whole.faces().iter().flatten().enumerate() {
+        assert_eq!(of_split.interpolation.vertices[at], of_whole.interpolation.vertices[*v as usize]);
+    }
+}

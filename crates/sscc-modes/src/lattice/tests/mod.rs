@@ -22,7 +22,7 @@ fn lattice(mesh: &TriMesh, cells: Option<usize>) -> Lattice {
 
 /// What holds for every lattice.
 fn check(lattice: &Lattice, mesh: &TriMesh) {
-    let Lattice { vertices, cubes, fill, spacing, interpolation } = lattice;
+    let Lattice { vertices, cubes, fill, spacing, interpolation, .. } = lattice;
     assert_eq!(cubes.len(), fill.len());
     assert!(fill.iter().flatten().all(|share| (MIN_FILL..=1.0).contains(share)));
     let size = vertices.iter().map(|p| p.length()).fold(0.0, f64::max);
