@@ -93,6 +93,7 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
         ),
         ignore_rest: typed.ignore_rest,
         max_exceptions: typed.max_exceptions,
+        budget: CertifyOptions::DEFAULT_BUDGET,
         threads: Some(threads(&typed.threads)),
     })
 }
