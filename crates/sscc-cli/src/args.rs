@@ -41,6 +41,8 @@ pub enum Command {
     Audit(Audit),
     /// Tell what is in a model, certificate or mesh file
     Info(Info),
+    /// Measure queries by every method, and beside another library
+    Bench(Bench),
 }
 
 /// `sscc demo`
@@ -336,6 +338,44 @@ pub struct Info {
     /// .stl)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc bench`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc bench --list
+  sscc bench amplitudes --models models/
+  sscc bench amplitudes --only spring --samples 4
+  sscc bench bunny128 --steps 50 --json
+
+All methods answer the same questions by turns, on one thread, and must list the same pairs.
+Exit codes: 0 done, 2 error, or two exact methods differ.")]
+pub struct Bench {
+    /// What to measure; --list tells what there is
+    #[arg(value_name = "SCENARIO", required_unless_present = "list")]
+    pub scenario: Option<String>,
+    /// List the scenarios
+    #[arg(long)]
+    pub list: bool,
+    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded shapes
+    /// stand in]
+    #[arg(long, value_name = "DIR")]
+    pub models: Option<PathBuf>,
+    /// Of scenes: steps to measure, in 10 blocks spread evenly over it [default: 100]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub steps: Option<u32>,
+    /// Of amplitudes and growth: samples at each amplitude [default: 64, growth 20]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: Option<u32>,
+    /// Of amplitudes and growth: this model alone
+    #[arg(long, value_name = "MODEL")]
+    pub only: Option<String>,
+    /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
 }

@@ -1,13 +1,11 @@
 //! Two moving triangles against exact arithmetic.
 #![allow(clippy::unwrap_used)]
 
-mod exact_time;
-
-use exact_time::first_contact;
 use glam::DVec3;
 use num_traits::ToPrimitive;
 use proptest::prelude::*;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
+use sscc_exact::first_contact;
 
 /// Corners on a grid of integers: contacts that are exact, of every kind, at times that are not.
 fn corners(size: i32) -> impl Strategy<Value = [DVec3; 3]> {

@@ -1,10 +1,15 @@
 //! The models of the benches.
 #![allow(dead_code)]
 
+#[path = "../../src/commands/bench/random.rs"]
+mod random;
+
 use anyhow::{Context, Result};
 use sscc::{CertifyOptions, ReducedModel, TriMesh};
 use sscc_io::{load_model, read_mesh};
 use sscc_modes::{polynomial_modes, shapes};
+
+pub use random::Random;
 
 /// A model and how to certify it.
 pub struct Case {
@@ -33,21 +38,6 @@ pub fn all() -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The spring, and the bunny and the dragon where they are there, with 24 polynomial modes.
-pub fn polynomial() -> Result<Vec<Case>> {
-    let mut meshes = vec![("spring", shapes::spring())];
-    if let Some(folder) = sscc_testdata::models("the benches on real models") {
-        for (name, file) in [("bunny", "bunny_14964_closed.obj"), ("dragon", "dragon_77202_closed.ply")] {
-            meshes.push((name, read_mesh(&folder.join(file))?));
-        }
-    }
-    let case = |(name, mesh): (_, TriMesh)| -> Result<Case> {
-        let modes = polynomial_modes(&mesh)?;
-        Ok(Case::new(name, ReducedModel::new(mesh, modes)?))
-    };
-    meshes.into_iter().map(case).collect()
-}
-
 impl Case {
     fn new(name: &'static str, model: ReducedModel) -> Self {
         Self { name, model, options: CertifyOptions::default() }
@@ -65,22 +55,4 @@ pub fn face() -> Result<Option<(ReducedModel, Vec<Vec<f64>>)>> {
     let cases = json["cases"].as_array().context("cases")?;
     let q = cases.iter().map(|case| Ok(serde_json::from_value(case["q"].clone())?));
     Ok(Some((model, q.collect::<Result<_>>()?)))
-}
-
-/// Small pseudo-random numbers (SplitMix64).
-pub struct Random(pub u64);
-
-impl Random {
-    /// In [0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Nearly normal, mean 0 and variance 1.
-    pub fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
 }

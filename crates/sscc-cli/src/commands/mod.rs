@@ -1,6 +1,7 @@
 //! What the commands mean, one file for each.
 
 mod audit;
+mod bench;
 mod certify;
 mod check;
 mod demo;
@@ -19,5 +20,6 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Check(args) => check::run(&args),
         Command::Audit(args) => audit::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Bench(args) => bench::run(&args),
     }
 }

@@ -14,4 +14,4 @@ mod tube;
 pub use elastic::{ElasticShape, elastic_hare, elastic_spring};
 pub use hare::hare;
 pub use serpent::serpent;
-pub use spring::spring;
+pub use spring::{spring, spring_of};

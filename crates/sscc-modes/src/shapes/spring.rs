@@ -39,7 +39,15 @@ const AROUND: usize = 16;
 /// About 0.42 wide and 0.93 high. Neighbouring coils are about one tube radius (0.03) apart, so a
 /// modest deformation brings them together. Takes a millisecond or so.
 pub fn spring() -> TriMesh {
-    Tube { radius: TUBE_RADIUS, rings: RINGS, around: AROUND }.along(centreline)
+    spring_of(RINGS, AROUND)
+}
+
+/// The same shape in other numbers of triangles, `2 rings around`: the [`spring`] has 500 rings of 16 vertices.
+///
+/// # Panics
+/// When there are fewer than 4 rings or an odd number, or fewer than 3 vertices in each.
+pub fn spring_of(rings: usize, around: usize) -> TriMesh {
+    Tube { radius: TUBE_RADIUS, rings, around }.along(centreline)
 }
 
 /// The centreline: `t` from 0 (bottom, on the axis) up to 1/2 (top, on the axis) and down to 1.

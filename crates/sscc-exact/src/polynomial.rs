@@ -5,7 +5,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 /// Coefficients, the constant one first, the last one not 0.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Polynomial(Vec<BigRational>);
+pub(crate) struct Polynomial(Vec<BigRational>);
 
 /// The only root of a polynomial in an interval, or a rational number.
 #[derive(Clone, Debug)]
@@ -35,27 +35,27 @@ fn two() -> BigRational {
 }
 
 fn sign(x: &BigRational) -> i8 {
-    x.signum().to_i8().unwrap()
+    x.signum().to_i8().expect("-1, 0 or 1")
 }
 
 impl Polynomial {
-    pub fn new(mut coefficients: Vec<BigRational>) -> Self {
+    pub(crate) fn new(mut coefficients: Vec<BigRational>) -> Self {
         while coefficients.last().is_some_and(Zero::is_zero) {
             coefficients.pop();
         }
         Self(coefficients)
     }
 
-    pub fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
 
-    pub fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         let at = |p: &Self, i: usize| p.0.get(i).cloned().unwrap_or_else(BigRational::zero);
         Self::new((0..self.0.len().max(other.0.len())).map(|i| at(self, i) + at(other, i)).collect())
     }
 
-    pub fn times(&self, other: &Self) -> Self {
+    pub(crate) fn times(&self, other: &Self) -> Self {
         let mut product = vec![BigRational::zero(); (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {
@@ -65,7 +65,7 @@ impl Polynomial {
         Self::new(product)
     }
 
-    pub fn negated(&self) -> Self {
+    pub(crate) fn negated(&self) -> Self {
         Self(self.0.iter().map(|c| -c).collect())
     }
 
@@ -115,7 +115,7 @@ impl Polynomial {
     }
 
     /// All different roots in [0, 1], each in an interval shorter than 2^-48.
-    pub fn roots(&self) -> Vec<Root> {
+    pub(crate) fn roots(&self) -> Vec<Root> {
         let of = self.without_repeated_roots();
         let chain = of.chain();
         let ends = [BigRational::zero(), BigRational::one()];
@@ -143,12 +143,12 @@ impl Polynomial {
 }
 
 impl Root {
-    pub fn at(x: BigRational) -> Self {
+    pub(crate) fn at(x: BigRational) -> Self {
         Self { of: Polynomial::new(vec![]), interval: [x.clone(), x] }
     }
 
     /// The same in an interval that is so many times halved.
-    pub fn refined(mut self, times: usize) -> Self {
+    fn refined(mut self, times: usize) -> Self {
         for _ in 0..times {
             let [lower, upper] = &self.interval;
             let middle = (lower + upper) / two();
@@ -163,24 +163,27 @@ impl Root {
         self
     }
 
+    /// Not above it.
     pub fn lower(&self) -> &BigRational {
         &self.interval[0]
     }
 
+    /// Not below it, and less than 2^-48 above the lower one.
     pub fn upper(&self) -> &BigRational {
         &self.interval[1]
     }
 
     /// The exact sign of a polynomial at this root.
-    pub fn sign(&self, p: &Polynomial) -> i8 {
+    pub(crate) fn sign(&self, p: &Polynomial) -> i8 {
         let [lower, upper] = &self.interval;
         if p.is_zero() || lower == upper {
             return sign(&p.at(lower));
         }
         // Clear cases: the interval is shorter than 1e-14, doubles are precise to 1e-16.
-        let x = lower.to_f64().unwrap();
+        let double = |x: &BigRational| x.to_f64().expect("a rational number has a double near it");
+        let x = double(lower);
         let (mut value, mut size) = (0.0, 0.0);
-        for c in p.0.iter().rev().map(|c| c.to_f64().unwrap()) {
+        for c in p.0.iter().rev().map(double) {
             (value, size) = (value * x + c, size + c.abs());
         }
         if value.abs() > 1e-9 * size {

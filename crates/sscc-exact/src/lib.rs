@@ -1,4 +1,5 @@
-//! When two moving triangles first meet, in exact arithmetic: slow, and as simple as can be.
+//! When two moving triangles first meet, in exact arithmetic: slow, and as simple as can be. The oracle of tests and
+//! benches.
 //!
 //! Two hulls meet exactly when some of the corners of one and some of the other, at most five together, form a Radon
 //! partition: their homogeneous coordinates have exactly one linear dependency, and it is positive on the one
@@ -6,21 +7,25 @@
 //! at most four, which are then in one plane: the time is a root of a determinant of those corners. Where that
 //! vanishes all the time, it is a root of a smaller one. So it is enough to try time 0 and all these roots.
 
-pub mod polynomial;
+mod polynomial;
 
 use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
-use polynomial::{Polynomial, Root};
+use polynomial::Polynomial;
+pub use polynomial::Root;
 use sscc::MovingTriangle;
 
 /// The corners of x, then of y: homogeneous coordinates, linear in t.
 type Corners = [[Polynomial; 4]; 6];
 
-/// The time at which they first meet, if they do in [0, 1].
+/// The exact time at which they first have a point in common, if they do in [0, 1]. Touching counts.
+///
+/// # Panics
+/// When a corner is not finite.
 pub fn first_contact(x: &MovingTriangle, y: &MovingTriangle) -> Option<Root> {
     let of = |p: DVec3, q: DVec3| -> [Polynomial; 4] {
-        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let exact = |x: f64| BigRational::from_float(x).expect("corners are finite");
         let linear = |i: usize| Polynomial::new(vec![exact(p[i]), exact(q[i]) - exact(p[i])]);
         [linear(0), linear(1), linear(2), Polynomial::new(vec![BigRational::one()])]
     };

@@ -1,0 +1,48 @@
+//! `amplitudes`: what queries cost over how far the shape is displaced.
+
+use anyhow::Result;
+
+use super::Session;
+use super::case::Case;
+use super::measure::{Asked, Step, measure};
+use super::recipe::{BUNNY, DRAGON, SPRING};
+use super::report::Report;
+use super::sample::{directions, scaled, to_unit};
+use crate::output::Output;
+use crate::progress::Bar;
+
+/// Largest displacements in percent of half the diagonal of the box.
+const SHARES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0];
+
+/// Samples at each of them.
+const SAMPLES: usize = 64;
+
+/// A continuous query goes so much farther.
+const ONWARD: f64 = 1.01;
+
+/// Gives the number of mismatches.
+pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
+    let recipes = [BUNNY, DRAGON, SPRING];
+    session.check_only(&recipes.map(|recipe| recipe.name))?;
+    let mut mismatches = 0;
+    for recipe in recipes.iter().filter(|recipe| session.wants(recipe.name)) {
+        let case = Case::get(recipe, session)?;
+        let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
+        let mut reports = Vec::new();
+        for share in SHARES {
+            let steps = steps(&unit, share);
+            let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
+            mismatches += measured.mismatches;
+            let name = format!("amplitudes/{}", recipe.name);
+            reports.push(Report::new(name, Some(share), &case, &measured, 1, None));
+        }
+        session.print(&reports, out)?;
+    }
+    Ok(mismatches)
+}
+
+/// Steps at a share (percent) of the q that displace by all of it.
+pub fn steps(unit: &[Vec<f64>], share: f64) -> Vec<Step> {
+    let at = |q: &[f64], factor: f64| vec![scaled(q, share / 100.0 * factor)];
+    unit.iter().map(|q| Step { q_t0: at(q, 1.0), q_t1: at(q, ONWARD) }).collect()
+}

@@ -1,0 +1,83 @@
+//! The methods that are compared: a line for each.
+
+use anyhow::Result;
+use parry3d_f64::partitioning::BvhBuildStrategy;
+use sscc::{Certificates, Error, Impact, Method, Pair, Query};
+
+use super::case::Case;
+use super::peer::Peer;
+
+/// One column of the tables. Where several have the same key, the one with the smallest mean counts.
+pub struct Column {
+    /// Its name in tables and JSON.
+    pub key: &'static str,
+    pub role: Role,
+    make: for<'a> fn(&'a Case) -> Result<Box<dyn Engine + 'a>>,
+}
+
+/// Where a method takes part.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Ours: runs on all steps.
+    Certified,
+    /// What it is compared to: on some of the steps, where these are many.
+    Comparator,
+}
+
+use Role::{Certified, Comparator};
+
+/// All of them, in the order in which they take turns.
+pub const COLUMNS: &[Column] = &[
+    Column { key: "traditional", role: Comparator, make: |case| plain(case, Method::Traditional) },
+    Column { key: "bdtree", role: Comparator, make: |case| plain(case, Method::BdTree) },
+    Column { key: "paper", role: Certified, make: |case| certified(case, &case.paper.certificates) },
+    Column { key: "full", role: Certified, make: |case| certified(case, &case.full.certificates) },
+    Column { key: "parry", role: Comparator, make: |case| peer(case, BvhBuildStrategy::Binned) },
+    Column { key: "parry", role: Comparator, make: |case| peer(case, BvhBuildStrategy::Ploc) },
+];
+
+impl Column {
+    pub fn engine<'a>(&self, case: &'a Case) -> Result<Box<dyn Engine + 'a>> {
+        (self.make)(case)
+    }
+}
+
+fn plain(case: &Case, method: Method) -> Result<Box<dyn Engine + '_>> {
+    Ok(Box::new(Query::with_method(&case.model, &case.full.certificates, method)?))
+}
+
+fn certified<'a>(case: &'a Case, certificates: &'a Certificates) -> Result<Box<dyn Engine + 'a>> {
+    Ok(Box::new(Query::new(&case.model, certificates)?))
+}
+
+fn peer(case: &Case, how: BvhBuildStrategy) -> Result<Box<dyn Engine + '_>> {
+    Ok(Box::new(Peer::new(&case.model, how)))
+}
+
+/// A method at work: everything that it needs for an answer is done within the call.
+pub trait Engine {
+    /// The pairs that collide at q, sorted.
+    fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error>;
+    /// The pairs that meet on the way, sorted.
+    fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error>;
+}
+
+impl Engine for Query<'_> {
+    fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
+        self.discrete(q)
+    }
+
+    fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
+        self.continuous(q_t0, q_t1)
+    }
+}
+
+impl Engine for Peer<'_> {
+    fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
+        self.discrete(q)
+    }
+
+    fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
+        self.continuous(q_t0, q_t1)
+    }
+}

@@ -1,0 +1,133 @@
+//! Reports of one model as a table for people.
+
+use super::report::{Means, Report};
+use crate::output::{counted, grouped};
+
+/// What ratios are of: the time of the others over this one's.
+const OURS: &str = "full";
+const OVER: [&str; 2] = ["parry", "traditional"];
+
+/// Rows with a time for each column.
+pub struct Table<'a> {
+    reports: &'a [Report],
+}
+
+/// A line of the table: what it is, how many of the steps collide or fail at the root, the times.
+struct Row<'a> {
+    label: String,
+    steps: String,
+    means: &'a Means,
+}
+
+impl<'a> Table<'a> {
+    /// Reports of the same model.
+    pub fn of(reports: &'a [Report]) -> Self {
+        Self { reports }
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let Some(first) = self.reports.first() else { return Vec::new() };
+        let bodies = if first.objects == 1 { "one body".into() } else { format!("{} bodies", first.objects) };
+        let mut lines = vec![format!(
+            "{}: {bodies} of {} triangles, {} modes ({})",
+            first.scenario,
+            grouped(first.triangles as u64),
+            first.rank,
+            first.source
+        )];
+        let memory = first.certify_peak_bytes.map(|bytes| format!(", {} MB", grouped(bytes / 1_000_000)));
+        lines.push(format!(
+            "certified in {:.2} s on {}{}",
+            first.certify_seconds,
+            counted(first.certify_threads as u64, "thread"),
+            memory.unwrap_or_default()
+        ));
+        if first.objects > 1 || first.share.is_none() {
+            lines.push(format!(
+                "whole scene: {} of {} steps collide, {} of {} with each body counted",
+                first.scene_colliding_steps,
+                first.scene_steps,
+                grouped(first.scene_colliding_body_steps as u64),
+                grouped(first.scene_body_steps as u64)
+            ));
+        }
+        lines.extend(first.note.iter().map(|note| format!("note: {note}")));
+        let label = |report: &Report| report.share.map_or("all".into(), |share| format!("{share}%"));
+        let discrete = self.reports.iter().flat_map(|report| {
+            let all = Row {
+                label: label(report),
+                steps: format!("{} of {}", report.colliding_steps, report.steps),
+                means: &report.discrete_ms,
+            };
+            let failed = Row {
+                label: "  root fails".into(),
+                steps: format!("{} of {}", report.root_failed_steps, report.steps),
+                means: &report.discrete_ms_root_failed,
+            };
+            // Where it fails always, it would be the same line again.
+            let same = report.root_failed_steps == report.steps || report.root_failed_steps == 0;
+            [Some(all), (!same).then_some(failed)].into_iter().flatten()
+        });
+        lines.extend(block("discrete, ms", discrete));
+        let continuous = self.reports.iter().map(|report| Row {
+            label: label(report),
+            steps: counted(report.continuous_steps as u64, "step"),
+            means: &report.continuous_ms,
+        });
+        lines.extend(block("continuous, ms", continuous));
+        let mismatches: usize = self.reports.iter().map(|report| report.mismatches).sum();
+        lines.push(match mismatches {
+            0 => "all exact methods list the same pairs".into(),
+            n => format!("DEFECT: exact methods differ in {n} of the steps"),
+        });
+        lines.push(String::new());
+        lines
+    }
+}
+
+fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
+    let rows: Vec<Row<'_>> = rows.filter(|row| !row.means.is_empty()).collect();
+    let Some(first) = rows.first() else { return Vec::new() };
+    let keys: Vec<&str> = first.means.0.iter().map(|(key, _)| *key).collect();
+    let heads: String = keys.iter().map(|key| format!("{key:>13}")).collect();
+    let over: String = OVER.iter().map(|key| format!("{:>18}", format!("{key}/{OURS}"))).collect();
+    let mut lines = vec![format!("  {title:<16}{:>12}{heads}{over}", "collide")];
+    for row in &rows {
+        let cells: String = keys.iter().map(|key| format!("{:>13}", shown(row.means.get(key)))).collect();
+        let ratio = |key: &str| Some(row.means.get(key)? / row.means.get(OURS)?);
+        let ratios: String = OVER.iter().map(|key| format!("{:>18}", times(ratio(key)))).collect();
+        lines.push(format!("  {:<16}{:>12}{cells}{ratios}", row.label, row.steps));
+    }
+    lines
+}
+
+/// Milliseconds, four digits of them.
+fn shown(ms: Option<f64>) -> String {
+    match ms {
+        None => "-".into(),
+        Some(ms) => {
+            let decimals = (3 - ms.max(1e-9).log10().floor() as i32).clamp(0, 8) as usize;
+            format!("{ms:.decimals$}")
+        }
+    }
+}
+
+fn times(ratio: Option<f64>) -> String {
+    match ratio {
+        None => "-".into(),
+        Some(ratio) if ratio < 100.0 => format!("{ratio:.2} x"),
+        Some(ratio) => format!("{} x", grouped(ratio.round() as u64)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_for_people() {
+        assert_eq!([123.456, 1.5, 0.000_05].map(|ms| shown(Some(ms))), ["123.5", "1.500", "0.00005000"]);
+        assert_eq!([0.5, 99.0, 12_345.6].map(|x| times(Some(x))), ["0.50 x", "99.00 x", "12,346 x"]);
+        assert_eq!((shown(None), times(None)), ("-".into(), "-".into()));
+    }
+}
