@@ -21,7 +21,7 @@ pub(super) const MOST_ENTRIES: usize = START as usize;
 /// A pair of nodes that may collide below the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Entry {
-    /// The radius, rounded down.
+    /// The radius, rounded down ([`round_down`]).
     pub(crate) radius: f32,
     /// Where its children start (0: none, both nodes are leaves), which child of its parent it is, and whether it is the last one.
     pub(crate) link: u32,
@@ -29,11 +29,9 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// `which`: the child of the node that is split, or the place among the pairs of children of one node.
-    pub(super) fn new(radius: f64, start: usize, which: usize, last: bool) -> Self {
-        let rounded = radius as f32;
-        let radius = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+    pub(super) fn new(radius: f32, start: usize, which: usize, last: bool) -> Self {
         let link = start as u32 | (which as u32) << WHICH | if last { LAST } else { 0 };
-        Self { radius: radius.clamp(0.0, f32::MAX), link }
+        Self { radius, link }
     }
 
     /// Where its children start; 0 for none.
@@ -49,6 +47,13 @@ impl Entry {
     fn is_last(self) -> bool {
         self.link & LAST != 0
     }
+}
+
+/// A radius in single precision, rounded down.
+pub(super) fn round_down(radius: f64) -> f32 {
+    let rounded = radius as f32;
+    let rounded = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+    rounded.clamp(0.0, f32::MAX)
 }
 
 /// The pairs of nodes that may collide below a limit.
