@@ -61,6 +61,9 @@ impl Node {
     }
 }
 
+/// Nodes of at most this many triangles are looked at as a whole in queries.
+pub(crate) const SMALL: usize = 64;
+
 /// How a pair of nodes is split: one of them into its children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Split {
@@ -218,6 +221,13 @@ impl Hierarchy {
         } else {
             Some(Split::Second(n, node_m))
         }
+    }
+
+    /// The same as far as the certified pair tree goes: none where both are small.
+    #[inline]
+    pub(crate) fn split_large(&self, n: u32, m: u32) -> Option<Split> {
+        let count = |n: u32| self.nodes[n as usize].triangle_count as usize;
+        if count(n).max(count(m)) <= SMALL { None } else { self.split(n, m) }
     }
 
     /// The triangles of a node.

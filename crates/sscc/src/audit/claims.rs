@@ -84,7 +84,7 @@ impl<'a> Claims<'a> {
             (child_pairs(&hierarchy.nodes()[parent]).collect(), stored)
         } else {
             let (n, m) = self.entries[parent - nodes];
-            let Some(split) = hierarchy.split(n, m) else { return Vec::new() };
+            let Some(split) = hierarchy.split_large(n, m) else { return Vec::new() };
             let stored = tree.below((parent - nodes) as u32).map(|(_, entry)| entry.which()).collect();
             (split.pairs().collect(), stored)
         };
@@ -149,7 +149,7 @@ impl<'a> Claims<'a> {
             if let Some(claim) = Some(self.stored(place as usize)).filter(is_broken) {
                 return Some(claim);
             }
-            let split = hierarchy.split(pair.0, pair.1)?;
+            let split = hierarchy.split_large(pair.0, pair.1)?;
             let holds = |&(n, m): &Pair| has(n, i) && has(m, j) || has(n, j) && has(m, i);
             pair = split.pairs().find(holds)?;
             siblings = tree.below(place).map(|(place, entry)| (place, split.pair(entry.which()))).collect();

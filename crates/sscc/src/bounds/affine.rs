@@ -10,26 +10,131 @@
 //! ```
 //!
 //! (it grows with delta, so a lower bound of the distance serves). Only the symmetric part of each mode's
-//! gradient enters g: a local infinitesimal rotation costs nothing.
+//! gradient enters g: a local infinitesimal rotation costs nothing. One map may serve many pairs.
 
 use glam::{DMat3, DVec3};
 
 use super::cone::cone_rate;
 use super::direction::TrianglePair;
-use super::lanes::{LANES, dot, padded};
+use super::lanes::{LANES, dot, padded, squared_distance};
 use super::scaled::{GapError, UP, norm_up, radius};
 
-/// Scratch for one fit: the nine gradient entries and the residuals of six corners, one row each.
-pub(crate) struct AffineScratch {
+/// The affine map of some points' modes, what it leaves over, and how fast it moves points apart; owns its memory.
+pub(crate) struct AffineFit {
     row: usize,
+    /// Nine rows: `G_cj` at `3 c + j`.
     gradient: Vec<f64>,
+    /// For each point three rows.
     residuals: Vec<f64>,
+    weights: Vec<DVec3>,
+    gram: StrainGram,
+    /// The largest `|G(u)'u|`.
+    rate: f64,
+    frobenius: f64,
+    /// The largest distance from the first point.
+    longest: f64,
 }
 
-impl AffineScratch {
+impl AffineFit {
     pub(crate) fn new(row: usize) -> Self {
         debug_assert_eq!(row, padded(row));
-        Self { row, gradient: vec![0.0; 9 * row], residuals: vec![0.0; 18 * row] }
+        Self {
+            row,
+            gradient: vec![0.0; 9 * row],
+            residuals: Vec::new(),
+            weights: Vec::new(),
+            gram: [[0.0; 6]; 6],
+            rate: 0.0,
+            frobenius: 0.0,
+            longest: 0.0,
+        }
+    }
+
+    /// Fits points with these offsets from the first of them, and these modes. False where all coincide.
+    pub(crate) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
+        let row = self.row;
+        let Some((normal, free)) = fit(offsets, &mut self.weights) else { return false };
+        // Gradient: G[c][j] = sum_v weight_v[j] (A_v - A_0)[c], a row over the modes for each of 3 x 3 entries.
+        let first = modes(0);
+        self.gradient.fill(0.0);
+        for (v, weight) in self.weights.iter().enumerate().skip(1) {
+            let modes = modes(v);
+            for c in 0..3 {
+                let a = &modes[c * row..][..row];
+                let a0 = &first[c * row..][..row];
+                let rows = &mut self.gradient[3 * c * row..][..3 * row];
+                let (g0, rest) = rows.split_at_mut(row);
+                let (g1, g2) = rest.split_at_mut(row);
+                for k in 0..row {
+                    let difference = a[k] - a0[k];
+                    g0[k] += weight.x * difference;
+                    g1[k] += weight.y * difference;
+                    g2[k] += weight.z * difference;
+                }
+            }
+        }
+        complete_as_rotation(&mut self.gradient, row, normal, free);
+        // Residuals: E_v = (A_v - A_0) - G (p_v - p_0); that of the first is 0.
+        self.residuals.clear();
+        self.residuals.resize(3 * row * offsets.len(), 0.0);
+        for (v, offset) in offsets.iter().enumerate().skip(1) {
+            let modes = modes(v);
+            for c in 0..3 {
+                let a = &modes[c * row..][..row];
+                let a0 = &first[c * row..][..row];
+                let g = &self.gradient[3 * c * row..][..3 * row];
+                let e = &mut self.residuals[(3 * v + c) * row..][..row];
+                for k in 0..row {
+                    let affine = offset.x * g[k] + offset.y * g[row + k] + offset.z * g[2 * row + k];
+                    e[k] = (a[k] - a0[k]) - affine;
+                }
+            }
+        }
+        self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row);
+        self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
+        self.gram = strain_gram(&self.gradient, row);
+        self.rate = largest_rate(&self.gram, row);
+        true
+    }
+
+    /// `|E_b - E_a|^2`, not rounded.
+    pub(crate) fn residual(&self, a: usize, b: usize) -> f64 {
+        let width = 3 * self.row;
+        squared_distance(&self.residuals[a * width..][..width], &self.residuals[b * width..][..width])
+    }
+
+    /// The bound for two triangles among the points: the differences of their corners, a rest distance that they at
+    /// least have, and the largest [`Self::residual`] between corners of theirs.
+    pub(crate) fn bound(
+        &self,
+        differences: &[DVec3; 9],
+        delta: f64,
+        residual: f64,
+        enough: f64,
+        error: &GapError,
+    ) -> f64 {
+        let row = self.row;
+        // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
+        // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
+        // sub-triangles are themselves rounded, which moves both the offsets here and the directions below.
+        let residual_error =
+            (16.0 * f64::EPSILON * self.longest + 4.0 * error.rest(DVec3::ONE)) * self.frobenius;
+        let e = norm_up(residual, 3 * row) + residual_error;
+        let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
+        let rest_error = error.rest(axes);
+        let slack = (e + 2.0 * error.rate(axes)) * UP;
+        let rounding = 8.0 * f64::EPSILON * self.frobenius;
+        let bound = |rate: f64| radius(delta - rest_error, ((rate * UP + rounding) * delta + slack) * UP);
+        let all = bound(self.rate);
+        if all >= enough {
+            return all;
+        }
+        // The rate that would do.
+        let wanted = ((delta - rest_error) / enough - slack) / delta - rounding;
+        if wanted.is_nan() || wanted <= 0.0 {
+            return all;
+        }
+        all.max(bound(cone_rate(differences, &self.gram, row, wanted * (1.0 - 1e-9))))
     }
 }
 
@@ -40,106 +145,41 @@ pub(crate) fn affine_bound(
     delta: f64,
     enough: f64,
     error: &GapError,
-    scratch: &mut AffineScratch,
+    affine: &mut AffineFit,
 ) -> f64 {
-    let row = scratch.row;
     let corners = [pair.x[0], pair.x[1], pair.x[2], pair.y[0], pair.y[1], pair.y[2]];
     let [x0, x1, x2] = pair.modes_x;
     let [y0, y1, y2] = pair.modes_y;
     let modes = [x0, x1, x2, y0, y1, y2];
-    let origin = corners[0];
-    let offsets = corners.map(|p| p - origin);
-    let Some(Fit { weights: fit, normal, free }) = fit(&offsets) else { return 0.0 };
-
-    // Gradient: G[c][j] = sum_v fit_v[j] (A_v - A_0)[c], a row over the modes for each of 3 x 3 entries.
-    scratch.gradient.fill(0.0);
-    for v in 1..6 {
-        for c in 0..3 {
-            let a = &modes[v][c * row..][..row];
-            let a0 = &modes[0][c * row..][..row];
-            let rows = &mut scratch.gradient[3 * c * row..][..3 * row];
-            let (g0, rest) = rows.split_at_mut(row);
-            let (g1, g2) = rest.split_at_mut(row);
-            for k in 0..row {
-                let difference = a[k] - a0[k];
-                g0[k] += fit[v].x * difference;
-                g1[k] += fit[v].y * difference;
-                g2[k] += fit[v].z * difference;
-            }
-        }
-    }
-    complete_as_rotation(&mut scratch.gradient, row, normal, free);
-    // Residuals: E_v = (A_v - A_0) - G (p_v - p_0); that of the origin is 0.
-    scratch.residuals[..3 * row].fill(0.0);
-    for v in 1..6 {
-        let offset = offsets[v];
-        for c in 0..3 {
-            let a = &modes[v][c * row..][..row];
-            let a0 = &modes[0][c * row..][..row];
-            let g = &scratch.gradient[3 * c * row..][..3 * row];
-            let e = &mut scratch.residuals[(3 * v + c) * row..][..row];
-            for k in 0..row {
-                let affine = offset.x * g[k] + offset.y * g[row + k] + offset.z * g[2 * row + k];
-                e[k] = (a[k] - a0[k]) - affine;
-            }
-        }
+    if !affine.fit(&corners.map(|p| p - corners[0]), |v| modes[v]) {
+        return 0.0;
     }
     let mut largest = 0.0_f64;
     for a in 0..3 {
         for b in 3..6 {
-            let (ea, eb) = (&scratch.residuals[3 * a * row..], &scratch.residuals[3 * b * row..]);
-            largest = largest.max(super::lanes::squared_distance(&ea[..3 * row], &eb[..3 * row]));
+            largest = largest.max(affine.residual(a, b));
         }
     }
-    let frobenius = norm_up(dot(&scratch.gradient, &scratch.gradient), 9 * row);
-    let longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
-    // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
-    // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
-    // sub-triangles are themselves rounded, which moves both the offsets here and the directions below.
-    let residual_error = (16.0 * f64::EPSILON * longest + 4.0 * error.rest(DVec3::ONE)) * frobenius;
-    let e = norm_up(largest, 3 * row) + residual_error;
-    let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
-    let rest_error = error.rest(axes);
-    let slack = (e + 2.0 * error.rate(axes)) * UP;
-    let rounding = 8.0 * f64::EPSILON * frobenius;
-    let gram = strain_gram(&scratch.gradient, row);
-    let bound = |rate: f64| radius(delta - rest_error, ((rate * UP + rounding) * delta + slack) * UP);
-    let all = bound(largest_rate(&gram, row));
-    if all >= enough {
-        return all;
-    }
-    // The rate that would do.
-    let wanted = ((delta - rest_error) / enough - slack) / delta - rounding;
-    if wanted.is_nan() || wanted <= 0.0 {
-        return all;
-    }
-    all.max(bound(cone_rate(differences, &gram, row, wanted * (1.0 - 1e-9))))
+    affine.bound(differences, delta, largest, enough, error)
 }
 
-/// How values at the six corners become a gradient.
-struct Fit {
-    /// `G = sum_v value_v weights_v'`
-    weights: [DVec3; 6],
-    /// Unit normal of the plane in which the corners (nearly) lie.
-    normal: DVec3,
-    /// How much the corners leave the gradient across that plane open: 1 in a plane, 0 where they fill space.
-    free: f64,
-}
-
-/// A regularised least-squares fit. None where all corners coincide.
-fn fit(offsets: &[DVec3; 6]) -> Option<Fit> {
-    let mean = offsets.iter().sum::<DVec3>() / 6.0;
+/// A regularised least-squares fit of a gradient to values at points, `G = sum_v value_v weights_v'`. Gives the unit normal
+/// of the plane in which the points (nearly) lie, and how much they leave the gradient across it open: 1 in a plane, 0
+/// where they fill space. None where all coincide.
+fn fit(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<(DVec3, f64)> {
+    let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
     let mut moment = DMat3::ZERO;
     for d in offsets {
         let d = *d - mean;
         moment += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
     }
     let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
-    // Corners that nearly lie in a plane say nothing about the gradient across it; the regularisation
+    // Points that nearly lie in a plane say nothing about the gradient across it; the regularisation
     // keeps that part small instead of fitting noise.
     let ridge = 1e-4 * trace;
     let inverse = (moment + DMat3::from_diagonal(DVec3::splat(ridge))).inverse();
-    let weights = offsets.map(|d| inverse * (d - mean));
+    weights.clear();
+    weights.extend(offsets.iter().map(|d| inverse * (*d - mean)));
     // The inverse is largest across the plane; squaring it twice leaves nothing else.
     let power = inverse * inverse * (1.0 / (inverse.x_axis.length_squared() + f64::MIN_POSITIVE));
     let power = power * power;
@@ -150,7 +190,7 @@ fn fit(offsets: &[DVec3; 6]) -> Option<Fit> {
     let normal = largest.try_normalize()?;
     let thickness = normal.dot(moment * normal);
     let free = ridge / (thickness + ridge);
-    weights.iter().all(|f| f.is_finite()).then_some(Fit { weights, normal, free })
+    weights.iter().all(|f| f.is_finite()).then_some((normal, free))
 }
 
 /// Gives the open part of the gradient, across the plane of the corners, the value that makes the whole as much

@@ -47,6 +47,14 @@ impl ClusterBounds {
         Self { clusters: hierarchy.nodes().par_iter().map(cluster).collect() }
     }
 
+    /// A direction between two nodes, the best one for points as far apart as their boxes; none where these touch.
+    pub(crate) fn direction(&self, x: u32, y: u32, scratch: &mut ClusterScratch) -> Option<DVec3> {
+        let (x, y) = (&self.clusters[x as usize], &self.clusters[y as usize]);
+        let apart = boxes_apart(x, y);
+        let inverse = inverse_gram(x, y, scratch);
+        if apart == DVec3::ZERO { None } else { direction(inverse * apart) }
+    }
+
     /// The squared diagonal of the rest box: which of two nodes is larger.
     pub(crate) fn size(&self, node: u32) -> f64 {
         self.clusters[node as usize].half.length_squared()
@@ -132,25 +140,17 @@ pub(crate) fn cluster_pair(
     let (x, y) = (&bounds.clusters[x as usize], &bounds.clusters[y as usize]);
     let between = y.centre - x.centre;
     let half = x.half + y.half;
-    // Vector between the closest points of the two boxes.
-    let apart = (between - half).max(DVec3::ZERO) + (between + half).min(DVec3::ZERO);
+    let apart = boxes_apart(x, y);
     if apart == DVec3::ZERO {
         return 0.0;
     }
-    for ((d, a), b) in scratch.difference.iter_mut().zip(&y.modes).zip(&x.modes) {
-        *d = a - b;
-    }
-    // In the metric of the relative modes the best direction for points d apart is `gram^-1 d`.
-    let [xx, xy, xz, yy, yz, zz] = gram(&scratch.difference);
-    let ridge = 1e-3 * (xx + yy + zz) + f64::MIN_POSITIVE;
-    let metric = DMat3::from_cols(
-        DVec3::new(xx + ridge, xy, xz),
-        DVec3::new(xy, yy + ridge, yz),
-        DVec3::new(xz, yz, zz + ridge),
-    );
-    let inverse = metric.inverse();
+    let inverse = inverse_gram(x, y, scratch);
     let mut best = 0.0_f64;
-    for candidate in [inverse * between, inverse * apart, between, apart] {
+    for (i, candidate) in [inverse * between, inverse * apart, between, apart].into_iter().enumerate() {
+        // Far too little by the best directions: the others would not do, either.
+        if i == 2 && best < 0.5 * enough {
+            break;
+        }
         let Some(n) = direction(candidate) else { continue };
         // Half extents are larger than the boxes, so this gap is smaller than theirs.
         if n.dot(between) - n.abs().dot(half) > 0.0 {
@@ -161,6 +161,27 @@ pub(crate) fn cluster_pair(
         }
     }
     best
+}
+
+/// The vector between the closest points of two boxes; 0 where they touch.
+fn boxes_apart(x: &Cluster, y: &Cluster) -> DVec3 {
+    let (between, half) = (y.centre - x.centre, x.half + y.half);
+    (between - half).max(DVec3::ZERO) + (between + half).min(DVec3::ZERO)
+}
+
+/// In the metric of the relative modes at the centres the best direction for points d apart is `gram^-1 d`.
+fn inverse_gram(x: &Cluster, y: &Cluster, scratch: &mut ClusterScratch) -> DMat3 {
+    for ((d, a), b) in scratch.difference.iter_mut().zip(&y.modes).zip(&x.modes) {
+        *d = a - b;
+    }
+    let [xx, xy, xz, yy, yz, zz] = gram(&scratch.difference);
+    let ridge = 1e-3 * (xx + yy + zz) + f64::MIN_POSITIVE;
+    let metric = DMat3::from_cols(
+        DVec3::new(xx + ridge, xy, xz),
+        DVec3::new(xy, yy + ridge, yz),
+        DVec3::new(xz, yz, zz + ridge),
+    );
+    metric.inverse()
 }
 
 /// The bound for one direction: the least of the 64 pairs of corners.

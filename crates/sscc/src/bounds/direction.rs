@@ -49,14 +49,20 @@ pub(crate) fn direction_bound(
     for (i, modes) in pair.modes_x.iter().chain(&pair.modes_y).enumerate() {
         project(modes, n, &mut projections[i * row..][..row]);
     }
-    let rate_error = error.rate(n);
+    let errors = (rest_error, error.rate(n));
     let mut bound = f64::INFINITY;
     for (i, d) in differences.iter().enumerate() {
-        let (a, b) = (i / 3, 3 + i % 3);
-        let rate = squared_distance(&projections[a * row..][..row], &projections[b * row..][..row]);
-        bound = bound.min(radius(n.dot(*d) - rest_error, norm_up(rate, row) + rate_error));
+        let [a, b] = [i / 3, 3 + i % 3].map(|i| &projections[i * row..][..row]);
+        bound = bound.min(point_bound(n.dot(*d), a, b, errors));
     }
     bound
+}
+
+/// The bound for two points along a direction: their gap, their projected modes, and the direction's
+/// [`GapError::rest`] and [`GapError::rate`].
+#[inline]
+pub(crate) fn point_bound(gap: f64, a: &[f64], b: &[f64], (rest_error, rate_error): (f64, f64)) -> f64 {
+    radius(gap - rest_error, norm_up(squared_distance(a, b), a.len()) + rate_error)
 }
 
 /// A lower bound of the rest distance of the two triangles: the smallest gap along n over its length.

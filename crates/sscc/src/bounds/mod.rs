@@ -11,6 +11,7 @@ mod cone;
 mod contact;
 mod direction;
 mod lanes;
+mod leaf_pair;
 mod min_norm;
 mod path;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod tests;
 mod triangle_pair;
 
 pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use leaf_pair::LeafPair;
 pub(crate) use min_norm::nearest_to_origin;
 pub(crate) use path::Path;
 pub(crate) use scaled::ScaledModel;

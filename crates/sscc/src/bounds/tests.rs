@@ -4,13 +4,13 @@
 
 use glam::DVec3;
 
-use super::affine::{AffineScratch, StrainGram, affine_bound};
+use super::affine::{AffineFit, StrainGram, affine_bound};
 use super::cone::cone_rate;
 use super::direction::{TrianglePair, direction_bound, rest_distance};
 use super::min_norm::nearest_to_origin;
 use super::reference::{Pair, Random};
 use super::scaled::direction;
-use super::{ClusterBounds, ClusterScratch, PairRefiner, ScaledModel, Target, cluster_pair};
+use super::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, ScaledModel, Target, cluster_pair};
 use crate::hierarchy::{Hierarchy, Node};
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
@@ -136,6 +136,21 @@ fn triangle_pair(scaled: &ScaledModel) -> TrianglePair<'_> {
     }
 }
 
+/// The model with two more triangles, of which each is like one of its own.
+fn with_others(model: &ReducedModel, random: &mut Random) -> ReducedModel {
+    let mut positions = model.mesh().rest_positions().to_vec();
+    let mut displacements = model.modes().displacements().to_vec();
+    for v in 0..6 {
+        let (size, speed) = (random.power(-0.3, 0.3), random.power(-1.0, 0.3));
+        positions.push(model.mesh().rest_positions()[v] * size);
+        displacements.extend(model.modes().of_vertex(v as u32).iter().map(|u| *u * speed));
+    }
+    let faces = vec![[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
+    let (mesh, modes) =
+        (TriMesh::new(positions, faces).unwrap(), Modes::new(model.rank(), displacements).unwrap());
+    ReducedModel::with_metric(mesh, modes, model.metric().clone()).unwrap()
+}
+
 fn far_target() -> Target {
     Target { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1 }
 }
@@ -147,8 +162,15 @@ fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f
     let differences = pair.differences();
     let row = scaled.row;
     let mut projections = vec![0.0; 6 * row];
-    let mut affine = AffineScratch::new(row);
+    let mut affine = AffineFit::new(row);
     let mut bounds = Vec::new();
+    let among_others = with_others(model, random);
+    let scaled_others = ScaledModel::new(&among_others, model.metric(), &vec![0.0; model.rank()]);
+    let mut leaves = LeafPair::new(&scaled_others);
+    leaves.load(&[2, 0], &[1, 3]);
+    for enough in [f64::INFINITY, random.power(-6.0, 6.0)] {
+        bounds.push(("shared affine", leaves.affine([0, 1, 2], [3, 4, 5], enough)));
+    }
     let closest = nearest_to_origin(&differences).point;
     for i in 0..12 {
         let n = match i {
@@ -161,6 +183,10 @@ fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f
         };
         let Some(n) = direction(n) else { continue };
         bounds.push(("direction", direction_bound(&pair, &differences, n, &scaled.error, &mut projections)));
+        leaves.look_along(n);
+        let shared = leaves.along([0, 1, 2], [3, 4, 5]);
+        let alone = direction_bound(&pair, &differences, n, &scaled_others.error, &mut projections);
+        assert_eq!(shared.to_bits(), alone.to_bits());
         let delta = rest_distance(&differences, n, &scaled.error);
         if delta > 0.0 {
             for enough in [0.0, f64::INFINITY, random.power(-6.0, 6.0)] {
@@ -171,7 +197,7 @@ fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f
     }
     let mut refiner = PairRefiner::new(&scaled);
     let (x, y) = ([0, 1, 2], [3, 4, 5]);
-    bounds.push(("estimate", refiner.estimate(x, y)));
+    bounds.push(("bound once", refiner.bound_once(x, y, &mut far_target())));
     bounds.push(("refine", refiner.refine(x, y, &mut far_target())));
     let order = refiner.refine(y, x, &mut Target { epsilon: 0.01, ..far_target() });
     bounds.push(("refine exchanged", order));

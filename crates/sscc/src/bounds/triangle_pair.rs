@@ -8,10 +8,11 @@ use std::collections::BinaryHeap;
 
 use glam::{DMat3, DVec3};
 
-use super::affine::{AffineScratch, affine_bound};
+use super::affine::{AffineFit, affine_bound};
 use super::contact::first_contact;
 use super::direction::{TrianglePair, direction_bound, rest_distance};
 use super::lanes::{add_scaled, dot, gram, project};
+use super::leaf_pair::is_near;
 use super::min_norm::nearest_to_origin;
 use super::scaled::{ScaledModel, direction};
 
@@ -88,8 +89,10 @@ pub(crate) struct PairRefiner<'a> {
     corner_modes: Vec<f64>,
     projections: Vec<f64>,
     mean: Vec<f64>,
-    affine: AffineScratch,
+    affine: AffineFit,
     parts: BinaryHeap<Part>,
+    /// The direction that bounded the last pair best.
+    best: Option<DVec3>,
 }
 
 impl<'a> PairRefiner<'a> {
@@ -100,19 +103,15 @@ impl<'a> PairRefiner<'a> {
             corner_modes: vec![0.0; 6 * 3 * row],
             projections: vec![0.0; 6 * row],
             mean: vec![0.0; 3 * row],
-            affine: AffineScratch::new(row),
+            affine: AffineFit::new(row),
             parts: BinaryHeap::new(),
+            best: None,
         }
     }
 
-    /// A cheap certified lower bound for two triangles, given by their vertices: the direction between the centroids.
-    pub(crate) fn estimate(&mut self, x: [u32; 3], y: [u32; 3]) -> f64 {
-        let pair = self.pair(x, y);
-        let differences = pair.differences();
-        match direction(differences.iter().sum()) {
-            Some(n) => direction_bound(&pair, &differences, n, &self.model.error, &mut self.projections),
-            None => 0.0,
-        }
+    /// The direction that separates the last pair best.
+    pub(crate) fn best_direction(&self) -> Option<DVec3> {
+        self.best
     }
 
     fn pair(&self, x: [u32; 3], y: [u32; 3]) -> TrianglePair<'a> {
@@ -134,6 +133,12 @@ impl<'a> PairRefiner<'a> {
             return lower;
         }
         self.subdivide(&pair, lower, target)
+    }
+
+    /// The same without subdivision.
+    pub(crate) fn bound_once(&mut self, x: [u32; 3], y: [u32; 3], target: &mut Target) -> f64 {
+        let pair = self.pair(x, y);
+        self.bound(&pair, target)
     }
 
     /// Best-first subdivision. The result is the smallest lower bound of the parts that remain.
@@ -225,6 +230,7 @@ impl<'a> PairRefiner<'a> {
 
     /// The best of the cheap bounds for one pair of (sub-)triangles.
     fn bound(&mut self, pair: &TrianglePair<'_>, target: &mut Target) -> f64 {
+        self.best = None;
         let error = self.model.error;
         let differences = pair.differences();
         // The rest gap, from the Euclidean closest points.
@@ -235,12 +241,18 @@ impl<'a> PairRefiner<'a> {
             return 0.0;
         }
         let mut lower = direction_bound(pair, &differences, n, &error, &mut self.projections);
+        self.best = Some(n);
         if lower >= target.enough() {
             return lower;
         }
-        lower = lower.max(affine_bound(pair, &differences, delta, target.enough(), &error, &mut self.affine));
-        if lower >= target.enough() {
-            return lower;
+        // The affine map is for near triangles; it is tried last on others, which seldom comes to that.
+        let near = is_near(&differences, delta);
+        if near {
+            lower =
+                lower.max(affine_bound(pair, &differences, delta, target.enough(), &error, &mut self.affine));
+            if lower >= target.enough() {
+                return lower;
+            }
         }
         // Re-centre: the closest points in the metric that the modes at the last ones induce.
         let mut weights = closest.weights;
@@ -256,10 +268,17 @@ impl<'a> PairRefiner<'a> {
             let better = direction_bound(pair, &differences, n, &error, &mut self.projections);
             target.found(self.reach(pair, &differences, &weights));
             let gained = better > lower * 1.001;
-            lower = lower.max(better);
+            if better > lower {
+                self.best = Some(n);
+                lower = better;
+            }
             if lower >= target.enough() || !gained {
                 break;
             }
+        }
+        if !near && lower < target.enough() {
+            lower =
+                lower.max(affine_bound(pair, &differences, delta, target.enough(), &error, &mut self.affine));
         }
         lower
     }

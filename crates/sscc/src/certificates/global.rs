@@ -1,10 +1,12 @@
 //! `R_global`, the largest radius of interest (paper, section 5.2).
 
+use super::pair_tree::round_down;
 use crate::hierarchy::bounding_box;
 use crate::{Metric, ReducedModel};
 
 /// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the
-/// box at the centre; infinite when no mode moves anything. Only vertices of faces count.
+/// box at the centre; infinite when no mode moves anything. Only vertices of faces count. Rounded down to single precision,
+/// as the pair tree stores its radii, where that has its range: so that the tree holds them all.
 pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {
     let used = model.mesh().used_vertices();
     let (lower, upper) = bounding_box(used.iter().map(|&v| model.position(v, center)));
@@ -14,7 +16,9 @@ pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64
         let lengths = used.iter().map(|&v| (model.modes().of_vertex(v)[k] / scale).length());
         let largest = lengths.fold(0.0, f64::max);
         if largest > 0.0 && half_diagonal > 0.0 {
-            return half_diagonal / largest;
+            let radius = half_diagonal / largest;
+            let in_range = (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius);
+            return if in_range { f64::from(round_down(radius)) } else { radius };
         }
     }
     f64::INFINITY

@@ -1,7 +1,7 @@
 //! Which pairs of nodes the certified pair tree holds, and their radii.
 //!
 //! The tree is grown from the pairs of all nodes' children, in rounds of ever higher limits: a pair whose lower bound is
-//! below the limit is split, two leaves get the smallest radius of their triangles' pairs. What each pair becomes
+//! below the limit is split, two small nodes get a radius, by the same search as nodes. What each pair becomes
 //! depends on the model alone, so that any number of threads gives the same tree. The budget ends it: then the limit is what
 //! the pairs stored are complete for.
 
@@ -10,216 +10,278 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::child_pairs;
-use super::pair_tree::{Entry, MOST_ENTRIES, PairTree};
+use super::pair_tree::{Entry, MOST_ENTRIES, PairTree, round_down};
 use super::search::Search;
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Progress};
 
-/// The first limit is this share of the global radius; each is twice the one before.
-const FIRST: f64 = 1.0 / 32.0;
+/// The first limit is this share of the global radius.
+const FIRST: f64 = 1.0;
+
+/// The next limit is at most this many times the one before: farther away it is not known how the number of pairs grows.
+const LARGEST_STEP: f64 = 4.0;
+
+/// Two small nodes are bounded up to this many times the limit, so that most need not be looked at again in the next round.
+const AHEAD: f64 = 2.0;
 
 /// Pairs in the making, for each that the budget allows: not all of them turn out to be needed.
 const SLACK: usize = 4;
-
-/// Where a pair in the making is from.
-#[derive(Clone, Copy)]
-enum Parent {
-    /// Two children of one node.
-    Node,
-    /// A pair that was split.
-    Pair(u32),
-}
 
 /// A pair of nodes in the making.
 #[derive(Clone, Copy)]
 struct Grown {
     pair: (u32, u32),
-    parent: Parent,
-    which: u8,
-    /// A lower bound of its radius; where it is below the limit, of leaves the radius itself.
-    lower: f64,
-    /// Whether its children are known, or the radius of two leaves.
-    done: bool,
+    /// Where the pairs that it is split into start, side by side, behind it; or one of the two below.
+    first: u32,
+    /// A lower bound of its radius, at least its parent's.
+    lower: f32,
 }
 
-/// The tree, and the radius of each pair of children of each node where that is below the tree's limit: exact, not rounded.
+/// Not split yet; of two small nodes: not bounded, except that they are free up to the lower bound.
+const OPEN: u32 = 0;
+/// Two small nodes whose radius is known.
+const BOUNDED: u32 = u32::MAX;
+
+impl Grown {
+    fn new(pair: (u32, u32), lower: f32) -> Self {
+        Self { pair, first: OPEN, lower }
+    }
+
+    fn is_split(&self) -> bool {
+        self.first != OPEN && self.first != BOUNDED
+    }
+}
+
+/// Lower bounds of pairs of nodes: of all that may be below a limit.
 pub(super) struct Grove {
-    pub(super) tree: PairTree,
-    /// For each node: `(place among its pairs of children, radius)`.
-    pub(super) radii: Vec<Vec<(usize, f64)>>,
-}
-
-/// Grows the tree of at most `budget` pairs. `search` makes one searcher for each thread.
-pub(super) fn grow<'a>(
-    hierarchy: &Hierarchy,
-    global_radius: f64,
+    grown: Vec<Grown>,
+    /// For each node where its pairs of children start, all of them.
+    roots: Vec<u32>,
+    /// Pairs that are not below this have at least this radius.
+    reached: f64,
     budget: usize,
-    search: impl Fn() -> Search<'a> + Sync,
-    progress: &dyn Progress,
-) -> Result<Grove, Error> {
-    let budget = budget.min(MOST_ENTRIES);
-    let none = Grove { tree: PairTree::default(), radii: vec![Vec::new(); hierarchy.nodes().len()] };
-    if budget == 0 || !global_radius.is_finite() {
-        return Ok(none);
-    }
-    let mut grown: Vec<Grown> = Vec::new();
-    for node in hierarchy.nodes().iter().filter(|node| !node.is_leaf()) {
-        grown.extend(child_pairs(node).enumerate().map(|(which, pair)| Grown {
-            pair,
-            parent: Parent::Node,
-            which: which as u8,
-            lower: 0.0,
-            done: false,
-        }));
-    }
-    let roots = grown.len();
-    let (mut limit, mut reached) = (global_radius * FIRST, 0.0);
-    loop {
-        let room = budget.saturating_mul(SLACK).max(roots).saturating_sub(grown.len());
-        if !round(hierarchy, &mut grown, limit, room, &search, progress)? {
-            break;
-        }
-        reached = limit;
-        let stored = grown.iter().filter(|pair| pair.lower < reached).count();
-        if reached >= global_radius || stored > budget {
-            break;
-        }
-        limit = (2.0 * limit).min(global_radius);
-    }
-    if reached == 0.0 {
-        return Ok(none);
-    }
-    Ok(harvest(hierarchy, grown, reached, budget))
 }
 
-/// Splits and bounds every pair below the limit. False, and nothing changed, where that takes more room.
-fn round<'a>(
-    hierarchy: &Hierarchy,
-    grown: &mut Vec<Grown>,
-    limit: f64,
-    room: usize,
-    search: &(impl Fn() -> Search<'a> + Sync),
-    progress: &dyn Progress,
-) -> Result<bool, Error> {
-    let open: Vec<u32> = (0..grown.len() as u32)
-        .filter(|at| !grown[*at as usize].done && grown[*at as usize].lower < limit)
-        .collect();
-    let used = AtomicUsize::new(0);
-    // Each gives its pair anew, and all pairs below it; parents are places in this list.
-    let below: Vec<Vec<Grown>> = open
-        .par_iter()
-        .map_init(search, |search, at| {
-            let mut list = vec![grown[*at as usize]];
-            let mut next = 0;
-            while next < list.len() && !progress.is_cancelled() {
-                let Grown { pair: (n, m), lower, .. } = list[next];
-                let split = hierarchy.split(n, m);
-                let lower = match split {
-                    Some(_) => search.bound(n, m, limit).max(lower),
-                    None => search.between([(n, m)], limit).max(lower),
-                };
-                list[next].lower = lower;
-                list[next].done = lower < limit;
-                if let (Some(split), true) = (split, lower < limit) {
-                    if used.fetch_add(split.children().len(), Ordering::Relaxed) > room {
-                        break;
+impl Grove {
+    /// Grows the pairs for a tree of at most `budget` entries. `search` makes one searcher for each thread.
+    pub(super) fn grow<'a>(
+        hierarchy: &Hierarchy,
+        global_radius: f64,
+        budget: usize,
+        search: impl Fn() -> Search<'a> + Sync,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        let budget = budget.min(MOST_ENTRIES);
+        let mut grove = Self { grown: Vec::new(), roots: Vec::new(), reached: 0.0, budget };
+        let mut limit = f64::from(round_down(global_radius * FIRST));
+        // Out of the range of single precision there is no tree.
+        if budget == 0 || limit <= 0.0 || global_radius > f64::from(f32::MAX) {
+            return Ok(grove);
+        }
+        for node in hierarchy.nodes() {
+            grove.roots.push(grove.grown.len() as u32);
+            grove.grown.extend(child_pairs(node).map(|pair| Grown::new(pair, 0.0)));
+        }
+        let room = budget.saturating_mul(SLACK).max(2 * grove.grown.len());
+        while grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
+            grove.reached = limit;
+            match grove.next_limit(global_radius) {
+                Some(next) => limit = next,
+                None => break,
+            }
+        }
+        Ok(grove)
+    }
+
+    /// Splits and bounds every pair below the limit. False, and nothing changed, where there would be more than `room`.
+    fn round<'a>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        limit: f64,
+        most: f64,
+        room: usize,
+        search: &(impl Fn() -> Search<'a> + Sync),
+        progress: &dyn Progress,
+    ) -> Result<bool, Error> {
+        let grown = &mut self.grown;
+        let is_open = |pair: &Grown| pair.first == OPEN && f64::from(pair.lower) < limit;
+        let open: Vec<u32> = (0..grown.len() as u32).filter(|at| is_open(&grown[*at as usize])).collect();
+        let used = AtomicUsize::new(grown.len());
+        // Each gives its pair anew, and all pairs below it, numbered in this list.
+        let lists: Vec<Vec<Grown>> = open
+            .par_iter()
+            .map_init(search, |search, at| {
+                let mut list = vec![grown[*at as usize]];
+                let mut next = 0;
+                while next < list.len() && !progress.is_cancelled() && used.load(Ordering::Relaxed) <= room {
+                    let (n, m) = list[next].pair;
+                    match hierarchy.split_large(n, m) {
+                        None => {
+                            let cap = (AHEAD * limit).min(most);
+                            let lower = search.roughly(n, m, cap);
+                            list[next].first = if lower < cap || cap == most { BOUNDED } else { OPEN };
+                            list[next].lower = list[next].lower.max(round_down(lower));
+                        }
+                        Some(split) => {
+                            let lower = list[next].lower.max(round_down(search.bound(n, m, limit)));
+                            list[next].lower = lower;
+                            if f64::from(lower) < limit {
+                                list[next].first = list.len() as u32;
+                                used.fetch_add(split.children().len(), Ordering::Relaxed);
+                                list.extend(split.pairs().map(|pair| Grown::new(pair, lower)));
+                            }
+                        }
                     }
-                    list.extend(split.pairs().enumerate().map(|(which, pair)| Grown {
-                        pair,
-                        parent: Parent::Pair(next as u32),
-                        which: which as u8,
-                        lower,
-                        done: false,
-                    }));
+                    next += 1;
                 }
-                next += 1;
-            }
-            list
-        })
-        .collect();
-    if progress.is_cancelled() {
-        return Err(Error::Cancelled);
-    }
-    if used.into_inner() > room {
-        return Ok(false);
-    }
-    for (at, list) in open.into_iter().zip(below) {
-        // The pair itself stays where it is, the others follow.
-        let offset = grown.len() as u32;
-        let place = |local: u32| if local == 0 { at } else { offset + local - 1 };
-        let mut list = list.into_iter();
-        if let Some(first) = list.next() {
-            grown[at as usize] = Grown { parent: grown[at as usize].parent, ..first };
+                list
+            })
+            .collect();
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled);
         }
-        grown.extend(list.map(|pair| match pair.parent {
-            Parent::Pair(local) => Grown { parent: Parent::Pair(place(local)), ..pair },
-            Parent::Node => pair,
-        }));
+        if used.into_inner() > room {
+            return Ok(false);
+        }
+        for (at, list) in open.into_iter().zip(lists) {
+            // The pair itself stays where it is, the others follow.
+            let offset = grown.len() as u32 - 1;
+            let mut moved = list.into_iter().map(|pair| {
+                let first = if pair.is_split() { pair.first + offset } else { pair.first };
+                Grown { first, ..pair }
+            });
+            if let Some(pair) = moved.next() {
+                grown[at as usize] = pair;
+            }
+            grown.extend(moved);
+        }
+        // A pair that is split has the least radius of its children.
+        for at in (0..grown.len()).rev() {
+            if grown[at].is_split() {
+                let children = &grown[children(hierarchy, &grown[at])];
+                grown[at].lower = children.iter().map(|pair| pair.lower).fold(f32::INFINITY, f32::min);
+            }
+        }
+        Ok(true)
     }
-    Ok(true)
+
+    /// A limit for the next round with which the budget should just be used up; none where that is so already.
+    fn next_limit(&self, global_radius: f64) -> Option<f64> {
+        let below = |limit: f64| self.grown.iter().filter(|p| f64::from(p.lower) < limit).count() as f64;
+        let (stored, before) = (below(self.reached), below(self.reached / 2.0));
+        let room = self.budget as f64 / stored.max(1.0);
+        if self.reached >= global_radius || room < 1.1 {
+            return None;
+        }
+        // As if the number of pairs grew as a power of the limit.
+        let power = (stored.max(1.0) / before.max(1.0)).log2().max(1.0);
+        let step = (1.1 * room).powf(1.0 / power).min(LARGEST_STEP);
+        let next = f64::from(round_down(self.reached * step)).min(global_radius);
+        (next > self.reached).then_some(next)
+    }
+
+    /// Radii below this are known here.
+    pub(super) fn reached(&self) -> f64 {
+        self.reached
+    }
+
+    /// The pairs of small nodes between two children of a node whose radius may be below `cap`, each with a lower bound.
+    /// `which`: the place among the pairs of children.
+    pub(super) fn small(
+        &self,
+        hierarchy: &Hierarchy,
+        node: u32,
+        which: std::ops::Range<usize>,
+        cap: f64,
+    ) -> Vec<((u32, u32), f64)> {
+        let mut found = Vec::new();
+        if self.roots.is_empty() {
+            return found;
+        }
+        let first = self.roots[node as usize] as usize;
+        let mut stack: Vec<usize> = (first + which.start..first + which.end).collect();
+        while let Some(at) = stack.pop() {
+            let pair = &self.grown[at];
+            if f64::from(pair.lower) >= cap {
+            } else if pair.is_split() {
+                stack.extend(children(hierarchy, pair));
+            } else {
+                found.push((pair.pair, f64::from(pair.lower)));
+            }
+        }
+        found
+    }
+
+    /// The tree of all pairs below a limit, which is lowered until they fit the budget.
+    pub(super) fn harvest(mut self, hierarchy: &Hierarchy, node_radii: &[f64]) -> PairTree {
+        if self.reached == 0.0 {
+            return PairTree::default();
+        }
+        // What is known of a node or a pair as a whole holds for all pairs below it.
+        for (n, node) in hierarchy.nodes().iter().enumerate() {
+            let first = self.roots[n] as usize;
+            let radius = round_down(node_radii[n]);
+            for pair in &mut self.grown[first..first + child_pairs(node).count()] {
+                pair.lower = pair.lower.max(radius);
+            }
+        }
+        for at in 0..self.grown.len() {
+            let pair = self.grown[at];
+            if pair.is_split() {
+                for child in &mut self.grown[children(hierarchy, &pair)] {
+                    child.lower = child.lower.max(pair.lower);
+                }
+            }
+        }
+        let mut limit = self.reached;
+        let below = |pair: &Grown, limit: f64| f64::from(pair.lower) < limit;
+        let mut radii: Vec<f32> = self.grown.iter().filter(|p| below(p, limit)).map(|p| p.lower).collect();
+        if radii.len() > self.budget {
+            let (_, cut, _) = radii.select_nth_unstable_by(self.budget, f32::total_cmp);
+            limit = f64::from(*cut);
+        }
+        if limit <= 0.0 {
+            return PairTree::default();
+        }
+        // Lists of siblings, breadth first.
+        let mut lists: Vec<std::ops::Range<usize>> = Vec::new();
+        let mut starts = Vec::with_capacity(hierarchy.nodes().len());
+        let mut total = 0;
+        let mut add = |lists: &mut Vec<_>, list: std::ops::Range<usize>| {
+            let stored = self.grown[list.clone()].iter().filter(|p| below(p, limit)).count();
+            let start = total;
+            if stored > 0 {
+                total += stored;
+                lists.push(list);
+            }
+            (start, stored)
+        };
+        for (n, node) in hierarchy.nodes().iter().enumerate() {
+            let first = self.roots[n] as usize;
+            let (start, stored) = add(&mut lists, first..first + child_pairs(node).count());
+            starts.push(if stored > 0 { start as u32 } else { u32::MAX });
+        }
+        let mut entries: Vec<Entry> = Vec::with_capacity(radii.len().min(self.budget));
+        let mut next = 0;
+        while next < lists.len() {
+            let list = lists[next].clone();
+            let last = list.clone().rev().find(|at| below(&self.grown[*at], limit));
+            for at in list.clone().filter(|at| below(&self.grown[*at], limit)) {
+                let pair = &self.grown[at];
+                let start = if pair.is_split() { add(&mut lists, children(hierarchy, pair)).0 } else { 0 };
+                entries.push(Entry::new(pair.lower, start, at - list.start, Some(at) == last));
+            }
+            next += 1;
+        }
+        PairTree::new(limit, starts, entries)
+    }
 }
 
-/// The tree of all pairs below a limit, which is lowered until they fit the budget.
-fn harvest(hierarchy: &Hierarchy, mut grown: Vec<Grown>, reached: f64, budget: usize) -> Grove {
-    // Parents come before their children: a pair that was split has the least radius of its children.
-    let mut least = vec![f64::INFINITY; grown.len()];
-    for at in (0..grown.len()).rev() {
-        let split = hierarchy.split(grown[at].pair.0, grown[at].pair.1).is_some();
-        if grown[at].done && split {
-            grown[at].lower = grown[at].lower.max(least[at]);
-        }
-        if let Parent::Pair(parent) = grown[at].parent {
-            least[parent as usize] = least[parent as usize].min(grown[at].lower);
-        }
-    }
-    let mut limit = reached;
-    let mut below: Vec<f64> = grown.iter().map(|pair| pair.lower).filter(|r| *r < limit).collect();
-    if below.len() > budget {
-        let (_, cut, _) = below.select_nth_unstable_by(budget, f64::total_cmp);
-        limit = *cut;
-    }
-    let stored = |pair: &Grown| pair.lower < limit;
-    let mut children: Vec<Vec<u32>> = vec![Vec::new(); grown.len()];
-    let mut radii = vec![Vec::new(); hierarchy.nodes().len()];
-    let mut starts = vec![u32::MAX; hierarchy.nodes().len()];
-    // Lists of siblings, breadth first.
-    let mut lists: Vec<Vec<u32>> = Vec::new();
-    let mut at = 0;
-    let mut total = 0;
-    for (n, node) in hierarchy.nodes().iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
-        let count = child_pairs(node).count();
-        let list: Vec<u32> = (at..at + count as u32).filter(|i| stored(&grown[*i as usize])).collect();
-        at += count as u32;
-        radii[n] = list.iter().map(|i| &grown[*i as usize]).map(|p| (p.which as usize, p.lower)).collect();
-        if !list.is_empty() {
-            starts[n] = total;
-            total += list.len() as u32;
-            lists.push(list);
-        }
-    }
-    for (i, pair) in grown.iter().enumerate().filter(|(_, pair)| stored(pair)) {
-        if let Parent::Pair(parent) = pair.parent {
-            children[parent as usize].push(i as u32);
-        }
-    }
-    let mut entries = Vec::with_capacity(below.len().min(budget));
-    let mut next = 0;
-    while next < lists.len() {
-        let list = std::mem::take(&mut lists[next]);
-        next += 1;
-        for (k, i) in list.iter().enumerate() {
-            let pair = &grown[*i as usize];
-            let below = std::mem::take(&mut children[*i as usize]);
-            let start = if below.is_empty() { 0 } else { total };
-            entries.push(Entry::new(pair.lower, start as usize, pair.which as usize, k + 1 == list.len()));
-            if !below.is_empty() {
-                total += below.len() as u32;
-                lists.push(below);
-            }
-        }
-    }
-    if limit <= 0.0 {
-        return Grove { tree: PairTree::default(), radii: vec![Vec::new(); hierarchy.nodes().len()] };
-    }
-    Grove { tree: PairTree::new(limit, starts, entries), radii }
+/// The places of the pairs that a pair is split into.
+fn children(hierarchy: &Hierarchy, pair: &Grown) -> std::ops::Range<usize> {
+    let count = hierarchy.split_large(pair.pair.0, pair.pair.1).map_or(0, |split| split.children().len());
+    pair.first as usize..pair.first as usize + count
 }
+
+#[cfg(test)]
+mod tests;

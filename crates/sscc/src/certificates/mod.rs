@@ -22,7 +22,7 @@ pub(crate) use search::Search;
 /// How certificates are computed.
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
-    /// Relative error allowed for each radius, in (0, 1): a radius is at least `1 - epsilon` times the exact
+    /// Relative error allowed for each radius outside the pair tree, in (0, 1): it is at least `1 - epsilon` times the exact
     /// one, unless it is capped or a limit of the search (subdivisions, candidates waiting) is reached. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.

@@ -24,19 +24,17 @@ pub(super) const MOST_ENTRIES: usize = START as usize;
 /// A pair of nodes that may collide below the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Entry {
-    /// The radius, rounded down.
+    /// The radius, rounded down ([`round_down`]).
     pub(crate) radius: f32,
-    /// Where its children start (0: none, both nodes are leaves), which child of its parent it is, and whether it is the last one.
+    /// Where its children start (0: none, both nodes are small), which child of its parent it is, and whether it is the last one.
     pub(crate) link: u32,
 }
 
 impl Entry {
     /// `which`: the child of the node that is split, or the place among the pairs of children of one node.
-    pub(super) fn new(radius: f64, start: usize, which: usize, last: bool) -> Self {
-        let rounded = radius as f32;
-        let radius = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+    pub(super) fn new(radius: f32, start: usize, which: usize, last: bool) -> Self {
         let link = start as u32 | (which as u32) << WHICH | if last { LAST } else { 0 };
-        Self { radius: radius.clamp(0.0, f32::MAX), link }
+        Self { radius, link }
     }
 
     /// Where its children start; 0 for none.
@@ -52,6 +50,13 @@ impl Entry {
     fn is_last(self) -> bool {
         self.link & LAST != 0
     }
+}
+
+/// A radius in single precision, rounded down.
+pub(super) fn round_down(radius: f64) -> f32 {
+    let rounded = radius as f32;
+    let rounded = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+    rounded.clamp(0.0, f32::MAX)
 }
 
 /// The pairs of nodes that may collide below a limit.
@@ -90,7 +95,7 @@ impl PairTree {
     }
 
     /// For each pair its radius, rounded down, and its link: bits 0 to 27 say where its children start (0: none, both
-    /// nodes are leaves), bits 28 to 30 which child it is, bit 31 that no sibling follows.
+    /// nodes are small), bits 28 to 30 which child it is, bit 31 that no sibling follows.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = (f32, u32)> {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
@@ -139,8 +144,8 @@ impl PairTree {
         let mut at = 0;
         while let Some(&(n, m)) = pairs.get(at) {
             let entry = self.entries[at];
-            match hierarchy.split(n, m) {
-                None if entry.start() != 0 => return Err("a pair of leaves has children"),
+            match hierarchy.split_large(n, m) {
+                None if entry.start() != 0 => return Err("a pair of small nodes has children"),
                 None => {}
                 Some(split) => {
                     let (count, pair) = (split.children().len(), |which| split.pair(which as u32));

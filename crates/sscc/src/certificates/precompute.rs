@@ -1,12 +1,13 @@
 //! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
 //! pairs)` (paper, section 5.2).
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use super::global::global_radius;
-use super::grow::{Grove, grow};
+use super::grow::Grove;
 use super::pair_tree::Entry;
 use super::search::Search;
 use super::{CertificateParts, CertifyOptions, Digest, Scope};
@@ -73,8 +74,9 @@ fn compute_here(
         progress,
     };
     let budget = options.budget.saturating_mul(triangles) / size_of::<Entry>();
-    let grove = grow(&hierarchy, global_radius, budget, || work.search(), progress)?;
+    let grove = Grove::grow(&hierarchy, global_radius, budget, || work.search(), progress)?;
     let (node_radii, root_pair_radii) = work.run(&grove)?;
+    let pair_tree = grove.harvest(&hierarchy, &node_radii);
     Ok(CertificateParts {
         digest: Digest::of(model, &scope),
         scope,
@@ -84,7 +86,7 @@ fn compute_here(
         global_radius,
         node_radii,
         root_pair_radii,
-        pair_tree: grove.tree,
+        pair_tree,
     })
 }
 
@@ -130,9 +132,10 @@ impl Work<'_> {
                 .into_par_iter()
                 .enumerate()
                 .map(|(which, pair)| {
-                    let known = grove.radii[0].iter().find(|(place, _)| *place == which);
-                    let search = || self.search().between([pair], self.global_radius);
-                    tally.step(|| known.map_or_else(search, |(_, radius)| *radius))
+                    let which = which..which + 1;
+                    tally.step(|| {
+                        self.between(&mut self.search(), 0, which, [pair], self.global_radius, grove)
+                    })
                 })
                 .collect();
             radii[0] = self.least_child(root, &radii);
@@ -153,15 +156,29 @@ impl Work<'_> {
 
     fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64], grove: &Grove) -> f64 {
         let cap = self.least_child(node, radii);
-        // What the tree does not hold is at least its limit.
-        let known = grove.radii[n as usize].iter().map(|(_, radius)| *radius).fold(cap, f64::min);
-        if !node.is_leaf() && known <= grove.tree.limit() {
-            return known;
-        }
         if cap <= 0.0 {
             return 0.0;
         }
-        if node.is_leaf() { search.within_leaf(n, cap) } else { search.between(child_pairs(node), cap) }
+        if node.is_leaf() {
+            return search.within_leaf(n, cap);
+        }
+        self.between(search, n, 0..child_pairs(node).count(), child_pairs(node), cap, grove)
+    }
+
+    /// The radius, at most `cap`, of some pairs of children of a node, given with their places.
+    fn between(
+        &self,
+        search: &mut Search<'_>,
+        n: u32,
+        which: Range<usize>,
+        pairs: impl IntoIterator<Item = (u32, u32)>,
+        cap: f64,
+        grove: &Grove,
+    ) -> f64 {
+        // Pairs that the grove does not know are at least what it has reached.
+        let known = cap.min(grove.reached());
+        let radius = search.among(grove.small(self.hierarchy, n, which, known), known);
+        if radius < known || known == cap { radius } else { search.between(pairs, cap) }
     }
 }
 

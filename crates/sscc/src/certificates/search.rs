@@ -4,13 +4,21 @@ use std::cmp;
 use std::collections::BinaryHeap;
 
 use crate::Progress;
-use crate::bounds::{ClusterBounds, ClusterScratch, PairRefiner, ScaledModel, Target, cluster_pair};
+use crate::bounds::{
+    ClusterBounds, ClusterScratch, LeafPair, PairRefiner, ScaledModel, Target, cluster_pair,
+};
 use crate::hierarchy::Hierarchy;
 use crate::pairs::PairFilter;
 
 /// Candidates waiting at the most, beside those of the pair at hand. Beyond it the search goes on depth
 /// first, in constant memory.
 const WAITING: usize = 1 << 20;
+
+/// The relative error allowed of radii of which there are many, each of little weight.
+const ROUGH: f64 = 0.25;
+
+/// Directions that all triangle pairs of two leaves are looked at along, beside the first one.
+const LOOKS: usize = 3;
 
 /// Two sets of triangles whose pairs are still to be looked at, or one triangle pair.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,6 +54,16 @@ impl PartialEq for Entry {
 
 impl Eq for Entry {}
 
+/// Two hulls, at least one pair of which meets where two triangles do, and a lower bound.
+struct HullPair {
+    triangles: (u32, u32),
+    x: [u32; 3],
+    y: [u32; 3],
+    lower: f64,
+    /// Whether the bound is made any better by subdivision only.
+    refined: bool,
+}
+
 /// Searches triangle pairs of one model; owns its scratch memory.
 pub(crate) struct Search<'a> {
     model: &'a ScaledModel,
@@ -55,6 +73,8 @@ pub(crate) struct Search<'a> {
     refiner: PairRefiner<'a>,
     scratch: ClusterScratch,
     waiting: BinaryHeap<Entry>,
+    leaves: LeafPair<'a>,
+    pairs: Vec<HullPair>,
     epsilon: f64,
     target: Target,
     /// The smallest certified radius among the pairs that are settled.
@@ -81,6 +101,8 @@ impl<'a> Search<'a> {
             refiner: PairRefiner::new(model),
             scratch: ClusterScratch::new(model.row),
             waiting: BinaryHeap::new(),
+            leaves: LeafPair::new(model),
+            pairs: Vec::new(),
             epsilon,
             target: Target { cap: 0.0, upper: 0.0, epsilon },
             settled: 0.0,
@@ -103,20 +125,98 @@ impl<'a> Search<'a> {
     pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
         self.start(cap);
         for (n, m) in pairs {
-            self.consider(Candidate::Nodes(n, m), 0.0);
+            self.consider(n, m, 0.0);
         }
         self.run()
+    }
+
+    /// The same for pairs of which a lower bound is known.
+    pub(crate) fn among(&mut self, known: Vec<((u32, u32), f64)>, cap: f64) -> f64 {
+        self.start(cap);
+        let entry = |((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) };
+        self.waiting = known.into_iter().map(entry).collect();
+        self.run()
+    }
+
+    /// A certified radius, at most `cap`, for all triangle pairs between two nodes, with a larger relative error.
+    pub(crate) fn roughly(&mut self, n: u32, m: u32, cap: f64) -> f64 {
+        self.start(cap);
+        self.target.epsilon = self.epsilon.max(ROUGH);
+        self.consider(n, m, 0.0);
+        self.run()
+    }
+
+    /// Bounds all triangle pairs between two leaves, or within one, without subdivision, as far as they matter.
+    fn bound_leaves(&mut self, n: u32, m: u32) {
+        let hierarchy = self.hierarchy;
+        let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
+        self.leaves.load(x, y);
+        let direction = if n == m { None } else { self.clusters.direction(n, m, &mut self.scratch) };
+        if let Some(direction) = direction {
+            self.leaves.look_along(direction);
+        }
+        self.pairs.clear();
+        for (i, &a) in x.iter().enumerate() {
+            for &b in if n == m { &y[i + 1..] } else { y } {
+                for (x, y) in self.filter.hulls(a, b) {
+                    let lower = direction.map_or(0.0, |_| self.leaves.along(x, y));
+                    if lower < self.settled && !self.filter.leaves_out(a, b) {
+                        self.pairs.push(HullPair { triangles: (a, b), x, y, lower, refined: false });
+                    }
+                }
+            }
+        }
+        self.refine_worst();
+    }
+
+    /// Refines the pair with the smallest bound until that of a refined one is the smallest.
+    fn refine_worst(&mut self) {
+        let Self { pairs, leaves, refiner, target, .. } = self;
+        let mut looks = 0;
+        let mut least = self.settled;
+        loop {
+            let enough = target.enough().min(least);
+            let waiting = pairs.iter_mut().filter(|pair| !pair.refined && pair.lower < enough);
+            let Some(worst) = waiting.reduce(|a, b| if b.lower < a.lower { b } else { a }) else { break };
+            worst.refined = true;
+            worst.lower = worst.lower.max(refiner.bound_once(worst.x, worst.y, target));
+            least = least.min(worst.lower);
+            // What it needed may do for the others, too: the direction, or an affine map of all.
+            let enough = target.enough().min(least);
+            let open = |pair: &HullPair| !pair.refined && pair.lower < enough;
+            if looks < LOOKS
+                && pairs.iter().any(open)
+                && let Some(n) = refiner.best_direction()
+            {
+                leaves.look_along(n);
+                pairs.iter_mut().for_each(|pair| pair.lower = pair.lower.max(leaves.along(pair.x, pair.y)));
+            }
+            if looks == 0 {
+                for pair in pairs.iter_mut().filter(|pair| open(pair)) {
+                    pair.lower = pair.lower.max(leaves.affine(pair.x, pair.y, enough));
+                }
+            }
+            looks += 1;
+        }
+    }
+
+    /// Takes the triangle pairs between two leaves, or within one, as candidates.
+    fn open_leaves(&mut self, n: u32, m: u32, inherited: f64) {
+        self.bound_leaves(n, m);
+        let pairs = std::mem::take(&mut self.pairs);
+        // A bound of two triangles holds for all of their hulls.
+        for hulls in pairs.chunk_by(|a, b| a.triangles == b.triangles) {
+            let (x, y) = hulls[0].triangles;
+            let lower = hulls.iter().map(|hull| hull.lower).fold(f64::INFINITY, f64::min);
+            self.keep(Candidate::Triangles(x, y), lower.max(inherited));
+        }
+        self.pairs = pairs;
     }
 
     /// A certified radius, at most `cap`, for all triangle pairs within a leaf.
     pub(crate) fn within_leaf(&mut self, leaf: u32, cap: f64) -> f64 {
         self.start(cap);
-        let triangles = self.hierarchy.triangles(&self.hierarchy.nodes()[leaf as usize]);
-        for (i, &x) in triangles.iter().enumerate() {
-            for &y in &triangles[i + 1..] {
-                self.consider(Candidate::Triangles(x, y), 0.0);
-            }
-        }
+        self.open_leaves(leaf, leaf, 0.0);
         self.run()
     }
 
@@ -150,23 +250,13 @@ impl<'a> Search<'a> {
         self.target.enough().min(self.settled)
     }
 
-    /// Bounds a candidate, part of one with the bound `inherited`, and keeps it if it matters.
-    fn consider(&mut self, candidate: Candidate, inherited: f64) {
-        let enough = self.enough();
-        let lower = match candidate {
-            Candidate::Nodes(n, m) => {
-                cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
-            }
-            Candidate::Triangles(x, y) => {
-                let hulls = self.filter.hulls(x, y);
-                let least = hulls.map(|(x, y)| self.refiner.estimate(x, y)).fold(f64::INFINITY, f64::min);
-                if least < self.settled && self.filter.leaves_out(x, y) {
-                    return;
-                }
-                least // infinite for triangles that never count
-            }
-        };
-        let lower = lower.max(inherited);
+    /// Bounds two nodes, part of two with the bound `inherited`, and keeps them if they matter.
+    fn consider(&mut self, n: u32, m: u32, inherited: f64) {
+        let lower = self.bound(n, m, self.enough()).max(inherited);
+        self.keep(Candidate::Nodes(n, m), lower);
+    }
+
+    fn keep(&mut self, candidate: Candidate, lower: f64) {
         if lower >= self.settled {
             return;
         }
@@ -200,18 +290,13 @@ impl<'a> Search<'a> {
         let hierarchy = self.hierarchy;
         let (node_n, node_m) = (&hierarchy.nodes()[n as usize], &hierarchy.nodes()[m as usize]);
         if node_n.is_leaf() && node_m.is_leaf() {
-            for &x in hierarchy.triangles(node_n) {
-                for &y in hierarchy.triangles(node_m) {
-                    self.consider(Candidate::Triangles(x, y), lower);
-                }
-            }
-            return;
+            return self.open_leaves(n, m, lower);
         }
         let larger = self.clusters.size(n) >= self.clusters.size(m);
         if node_m.is_leaf() || (!node_n.is_leaf() && larger) {
-            node_n.children().for_each(|child| self.consider(Candidate::Nodes(child, m), lower));
+            node_n.children().for_each(|child| self.consider(child, m, lower));
         } else {
-            node_m.children().for_each(|child| self.consider(Candidate::Nodes(n, child), lower));
+            node_m.children().for_each(|child| self.consider(n, child, lower));
         }
     }
 }

@@ -7,11 +7,13 @@ use glam::DVec3;
 use super::never::Never;
 use super::pack::LANES;
 use crate::TriMesh;
-use crate::hierarchy::{Hierarchy, bounding_box};
+use crate::hierarchy::{Hierarchy, SMALL, bounding_box};
 use crate::pairs::PairFilter;
 
 /// Nodes of at most this many triangles that are in no other such node are clusters.
-pub(super) const CLUSTER: usize = LANES * LANES;
+pub(super) const CLUSTER: usize = SMALL;
+
+const _: () = assert!(SMALL == LANES * LANES);
 
 /// What never changes with q about the clusters of a hierarchy.
 ///

@@ -84,7 +84,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             return;
         }
         self.statistics.opened += 1;
-        if let Some(split) = asked.hierarchy.split(n, m) {
+        if let Some(split) = asked.hierarchy.split_large(n, m) {
             for (place, entry) in tree.below(place) {
                 if f64::from(entry.radius) <= ends.norm {
                     let (a, b) = split.pair(entry.which());

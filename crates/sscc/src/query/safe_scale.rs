@@ -54,9 +54,15 @@ impl Query<'_> {
                 }
             };
             let [node_n, node_m] = [n, m].map(|n| self.asked.hierarchy.nodes()[n as usize]);
-            if let Some(split) = self.asked.hierarchy.split(n, m).filter(|_| n != m) {
-                let stored = tree.filter(|_| place != NONE).map(|tree| tree.below(place));
-                let certified = self.certified_pairs(tree, stored.into_iter().flatten());
+            let hierarchy = &self.asked.hierarchy;
+            if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
+                let ends = place == UNKNOWN || (place != NONE && hierarchy.split_large(n, m).is_none());
+                let certified = if ends {
+                    [(UNKNOWN, 0.0); MOST_SIBLINGS]
+                } else {
+                    let stored = tree.filter(|_| place != NONE).map(|tree| tree.below(place));
+                    self.certified_pairs(tree, stored.into_iter().flatten())
+                };
                 for (pair, (place, bound)) in split.pairs().zip(certified) {
                     consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
                 }
@@ -144,6 +150,9 @@ const LEAST: f64 = 1.0 / 64.0;
 
 /// The place of what is not in the pair tree: a node against itself, and pairs certified up to its limit.
 const NONE: u32 = u32::MAX;
+
+/// The place of what lies below the ends of the pair tree: it says nothing of it.
+const UNKNOWN: u32 = u32::MAX - 1;
 
 /// The pairs of the four children that a node has at most.
 const MOST_SIBLINGS: usize = 6;

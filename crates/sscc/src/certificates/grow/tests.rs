@@ -1,0 +1,136 @@
+//! The tree against what truly collides.
+
+use glam::DVec3;
+
+use super::super::child_pairs;
+use crate::hierarchy::Hierarchy;
+use crate::{
+    Certificates, CertifyOptions, Method, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
+};
+
+/// A strip of 2 x `quads` triangles bent to an open ring, with smooth modes: its ends meet, and its middle.
+fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
+    let angle = |i: usize| 5.6 * i as f64 / quads as f64;
+    let positions: Vec<DVec3> = (0..=quads)
+        .flat_map(|i| [0.0, 0.4].map(|y| DVec3::new(angle(i).cos(), y + 0.1 * angle(i), angle(i).sin())))
+        .collect();
+    let faces =
+        (0..quads as u32).map(|i| 2 * i).flat_map(|i| [[i, i + 1, i + 2], [i + 1, i + 3, i + 2]]).collect();
+    let mode = |p: &DVec3, k: usize| {
+        let (a, b) = (seed + k as f64, seed * 0.7 + 2.0 * k as f64);
+        DVec3::new(
+            p.x * a.sin() + p.z * p.x * b.cos(),
+            p.x * p.z * a.cos(),
+            p.z * b.sin() + p.x * p.x * a.cos(),
+        )
+    };
+    let displacements = positions.iter().flat_map(|p| (0..rank).map(move |k| mode(p, k))).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
+}
+
+fn certify(model: &ReducedModel, budget: usize) -> Certificates {
+    Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
+}
+
+/// All pairs of triangles that the tree does not certify at this norm: within a leaf, or between two with an entry that has
+/// been passed, as have all above it.
+fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
+    let mut open = Vec::new();
+    let mut add = |n: u32, m: u32| {
+        let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
+        open.extend(x.iter().flat_map(|a| y.iter().map(|b| (*a.min(b), *a.max(b)))));
+    };
+    for (n, node) in hierarchy.nodes().iter().enumerate() {
+        if node.is_leaf() {
+            add(n as u32, n as u32);
+            continue;
+        }
+        let pairs: Vec<(u32, u32)> = child_pairs(node).collect();
+        let mut stack: Vec<_> =
+            tree.of_node(n as u32).map(|(at, e)| (at, e, pairs[e.which() as usize])).collect();
+        while let Some((at, entry, (n, m))) = stack.pop() {
+            if f64::from(entry.radius) > norm {
+                continue;
+            }
+            match hierarchy.split_large(n, m) {
+                None => add(n, m),
+                Some(split) => stack.extend(tree.below(at).map(|(at, e)| (at, e, split.pair(e.which())))),
+            }
+        }
+    }
+    open.sort_unstable();
+    open
+}
+
+/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth.
+#[test]
+fn below_the_limit_whatever_collides_is_open() {
+    let (mut collided, mut lowered) = (0, 0);
+    for (case, budget) in [(0, 8), (1, 40), (2, 120), (3, 512), (4, 4096), (5, 40), (6, 512), (7, 64)] {
+        let model = ring(40 + 7 * case, 2 + case % 3, 0.3 + case as f64);
+        let certificates = certify(&model, budget);
+        let tree = &certificates.parts().pair_tree;
+        lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
+        let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+        for i in 0..60 {
+            let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
+            let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
+            // Just below the limit, and well below.
+            let share = if i % 2 == 0 { 0.999_999 } else { 0.3 + 0.1 * (i % 7) as f64 };
+            let z: Vec<f64> = z.iter().map(|z| z / length * tree.limit() * share).collect();
+            let q = model.metric().unscaled(&z);
+            let norm = certificates.norm(&q);
+            assert!(norm <= tree.limit());
+            if norm == tree.limit() {
+                continue;
+            }
+            let open = open_pairs(certificates.hierarchy(), tree, norm);
+            for pair in brute.discrete(&q).unwrap() {
+                collided += 1;
+                assert!(open.binary_search(pair).is_ok(), "case {case}: {pair:?} at {norm}");
+            }
+        }
+    }
+    assert!(collided > 150, "{collided}");
+    assert!(lowered >= 2, "{lowered}");
+}
+
+/// Would fail where a parent is bounded better than its children and that is not pushed down.
+#[test]
+fn radii_never_fall_towards_the_leaves() {
+    let mut checked = 0;
+    for (case, budget) in [(0, 64), (1, 512), (2, 4096)] {
+        let model = ring(60, 3, 1.7 + case as f64);
+        let certificates = certify(&model, budget);
+        let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
+        assert!(tree.len() * 8 <= budget * 120);
+        for n in 0..hierarchy.nodes().len() as u32 {
+            let of_node = f64::from(super::round_down(certificates.node_radius(n)));
+            let mut stack: Vec<_> = tree.of_node(n).map(|(at, entry)| (at, entry, of_node)).collect();
+            while let Some((at, entry, above)) = stack.pop() {
+                let radius = f64::from(entry.radius);
+                assert!(above <= radius && radius < tree.limit());
+                checked += 1;
+                if entry.start() != 0 {
+                    stack.extend(tree.below(at).map(|(at, entry)| (at, entry, radius)));
+                }
+            }
+        }
+    }
+    assert!(checked > 300, "{checked}");
+}
+
+#[test]
+fn threads_grow_the_same_tree() {
+    let model = ring(150, 4, 0.9);
+    for budget in [64, 512] {
+        let on = |threads| {
+            let options = CertifyOptions { budget, threads: Some(threads), ..Default::default() };
+            Certificates::compute(&model, &options, &()).unwrap().parts().clone()
+        };
+        let one = on(1);
+        assert!(!one.pair_tree.is_empty());
+        assert!(one == on(3));
+    }
+}
