@@ -16,7 +16,7 @@ use crate::hierarchy::Hierarchy;
 use crate::{Error, Progress};
 
 /// The first limit is this share of the global radius.
-const FIRST: f64 = 1.0;
+const FIRST: f64 = 1.0 / 16.0;
 
 /// The next limit is at most this many times the one before: farther away it is not known how the number of pairs grows.
 const LARGEST_STEP: f64 = 4.0;
