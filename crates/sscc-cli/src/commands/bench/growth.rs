@@ -70,7 +70,9 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         out.json(&Growth { scenario: "growth", mismatches, sizes: &reports, exponents, machine })?;
     } else {
         reports.iter().try_for_each(|report| session.print(std::slice::from_ref(report), out))?;
-        exponents.lines().into_iter().try_for_each(|line| out.line(line))?;
+        if exponents.certify_seconds.is_some() {
+            exponents.lines().into_iter().try_for_each(|line| out.line(line))?;
+        }
     }
     Ok(mismatches)
 }
