@@ -42,7 +42,7 @@ fn measure(case: &models::Case, certificates: &Certificates, share: f64) -> Resu
     let query = |method| Query::with_method(model, certificates, method);
     let mut traditional = query(Method::Traditional)?;
     let (mut bd_tree, mut certified) = (query(Method::BdTree)?, query(Method::Certified)?);
-    let mut random = models::Random(7);
+    let mut random = models::random::Random(7);
     let (mut seconds, mut colliding, mut pairs, mut tests) = ([0.0; 5], 0, 0, 0);
     for _ in 0..TRAJECTORIES {
         let waves: Vec<[f64; 3]> =

@@ -30,7 +30,7 @@ fn measure(model: &models::Case, certificates: &Certificates) -> Result<()> {
     let scope = &certificates.parts().scope;
     let mut query = Query::new(&model.model, certificates)?;
     let mut traditional = Query::with_method(&model.model, certificates, Method::Traditional)?;
-    let mut random = models::Random(1);
+    let mut random = models::random::Random(1);
     let (mut gains, mut times, mut others, mut tight) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for direction in 0..DIRECTIONS {
         let decay = (direction % 2) as i32;

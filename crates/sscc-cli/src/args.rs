@@ -373,6 +373,9 @@ pub struct Bench {
     /// Of amplitudes and growth: this model alone
     #[arg(long, value_name = "MODEL")]
     pub only: Option<String>,
+    /// Take a spring of 4,000 triangles for every model: whether all works, in seconds
+    #[arg(long)]
+    pub quick: bool,
     /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 const KEYS: &str = "scenario, model, source, triangles, rank, objects, steps, colliding_steps, root_failed_steps, \
     compared_steps, compared_root_failed_steps, continuous_steps, scene_steps, scene_colliding_steps, scene_body_steps, \
-    scene_colliding_body_steps, mismatches, certify_seconds, certify_threads, certify_peak_bytes, parry_query_seconds, \
+    scene_colliding_body_steps, mismatches, share, certify_seconds, certify_threads, certify_peak_bytes, parry_query_seconds, \
     simulation_seconds, self_collision_share, discrete_ms, continuous_ms, machine";
 const COLUMNS: &str = "traditional, bdtree, paper, full, parry";
 const CERTIFIED: &str = "paper, full";
@@ -63,88 +63,73 @@ fn check(report: &Value, more: &str) {
     assert!(report["machine"].as_str().is_some_and(|machine| machine.contains(" cores")));
 }
 
+/// One model for all of them, and so one cache.
 #[test]
-fn amplitudes_and_the_cache() {
+fn measurements() {
     let folder = tempfile::tempdir().unwrap();
     let cache = folder.path().join("cache");
-    let args = ["amplitudes", "--only", "spring", "--samples", "2"];
-    let run = || bench(folder.path(), &[&args[..], &["--json"]].concat());
-    let first = run();
-    assert_eq!((first.code, first.stderr.as_str()), (Some(0), ""));
-    let reports = first.json();
-    reports.iter().for_each(|report| check(report, "share"));
+
+    let amplitudes = ["amplitudes", "--only", "spring", "--quick", "--samples", "1"];
+    let run = bench(folder.path(), &[&amplitudes[..], &["--json"]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let reports = run.json();
+    reports.iter().for_each(|report| check(report, "note"));
     let of = |key: &str| -> Vec<Value> { reports.iter().map(|report| report[key].clone()).collect() };
     assert_eq!(of("share"), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0].map(|share| json!(share)));
     assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
-    assert_eq!(of("triangles"), vec![json!(16_000); 7]);
-    assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(2)));
+    assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
 
-    // The same model and certificates again, and what one changed byte brings.
+    // Growth has the same model; it is not made again.
     let made = files(&cache);
-    let contents = |paths: &[std::path::PathBuf]| -> Vec<Vec<u8>> {
-        paths.iter().map(|path| fs::read(path).unwrap()).collect()
-    };
-    let before = contents(&made);
-    let again = run();
-    assert_eq!((again.code, again.stderr.as_str()), (Some(0), ""));
-    assert_eq!((files(&cache), contents(&made)), (made.clone(), before.clone()), "nothing is made twice");
-    assert_eq!(again.json()[0]["certify_seconds"], reports[0]["certify_seconds"]);
-    for (path, bytes) in made.iter().zip(&before) {
-        let mut damaged = bytes.clone();
-        let middle = damaged.len() / 2;
-        damaged[middle] ^= 1 << 7;
-        fs::write(path, damaged).unwrap();
-    }
-    let again = run();
-    let notes: Vec<&str> = again.stderr.lines().collect();
-    assert!(again.code == Some(0) && notes.len() == 3, "{again:?}");
-    assert!(notes.iter().all(|note| note.starts_with("note: made anew: ")), "{notes:?}");
-    assert_eq!(files(&cache), made);
-    for (path, bytes) in made.iter().zip(&before).filter(|(path, _)| !path.ends_with("json")) {
-        let is_time = path.extension().is_some_and(|ending| ending == "json");
-        assert!(is_time || fs::read(path).unwrap() == *bytes, "{}", path.display());
-    }
-
-    let text = bench(folder.path(), &args);
-    assert_eq!(text.code, Some(0));
-    for part in
-        [" cores", "amplitudes/spring: one body of 16,000 triangles", "parry/full", "traditional/full"]
-    {
-        assert!(text.stdout.contains(part), "{}", text.stdout);
-    }
-    assert!(text.stdout.trim_end().ends_with("all exact methods list the same pairs"), "{}", text.stdout);
-}
-
-#[test]
-fn scenes() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = |steps: &str| bench(folder.path(), &["spring", "--steps", steps, "--json"]).json().remove(0);
-    let few = run("3");
-    check(&few, "");
-    assert_eq!((&few["scenario"], &few["steps"], &few["objects"]), (&json!("spring"), &json!(3), &json!(1)));
-    let (steps, colliding) = (few["scene_steps"].as_u64().unwrap(), &few["scene_colliding_steps"]);
-    assert!(steps > 100 && colliding.as_u64().unwrap() > 0, "scenes really collide: {few}");
-    // Beyond 64, the others answer 20 of them.
-    let many = run("65");
-    check(&many, "discrete_ms_all_steps");
-    assert_eq!((&many["compared_steps"], &many["scene_colliding_steps"]), (&json!(20), colliding));
-    assert_eq!(keys(&many["discrete_ms_all_steps"]), sorted(CERTIFIED));
-}
-
-#[test]
-fn growth() {
-    let folder = tempfile::tempdir().unwrap();
-    let args = ["growth", "--only", "spring-4k", "--samples", "2"];
-    let run = bench(folder.path(), &[&args[..], &["--json"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(made.len(), 5, "a model, two sets of certificates with their times: {made:?}");
+    let model = made.iter().find(|path| path.to_string_lossy().ends_with(".model.safetensors")).unwrap();
+    let written = || fs::metadata(model).unwrap().modified().unwrap();
+    let before = written();
+    let run = bench(folder.path(), &["growth", "--only", "spring-4k", "--samples", "2", "--json"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    assert_eq!((files(&cache), written()), (made.clone(), before));
     let [report] = &run.json()[..] else { panic!("{run:?}") };
     assert_eq!(keys(report), sorted("scenario, mismatches, sizes, exponents, machine"));
     let size = &report["sizes"][0];
+    assert_eq!(size["certify_seconds"], reports[0]["certify_seconds"]);
     assert_eq!((&size["triangles"], &size["scenario"]), (&json!(4000), &json!("growth/spring-4k")));
     assert!(size.get("continuous_ms").is_none() && size["discrete_ms"]["full"].as_f64() > Some(0.0));
     assert_eq!(keys(&report["exponents"]), sorted("certify_seconds, certify_peak_bytes, discrete_ms"));
     assert_eq!(keys(&report["exponents"]["discrete_ms"]), sorted(COLUMNS));
-    assert!(bench(folder.path(), &args).stdout.contains("seconds to certify"));
+
+    // One changed byte in each file.
+    let contents: Vec<Vec<u8>> = made.iter().map(|path| fs::read(path).unwrap()).collect();
+    for (path, bytes) in made.iter().zip(&contents) {
+        let mut damaged = bytes.clone();
+        damaged[bytes.len() / 2] ^= 1 << 7;
+        fs::write(path, damaged).unwrap();
+    }
+    let run = bench(folder.path(), &amplitudes);
+    let notes: Vec<&str> = run.stderr.lines().collect();
+    assert!(run.code == Some(0) && notes.len() == 3, "{run:?}");
+    assert!(notes.iter().all(|note| note.starts_with("note: made anew: ")), "{notes:?}");
+    assert_eq!(files(&cache), made);
+    for (path, bytes) in made.iter().zip(&contents) {
+        let is_time = path.extension().is_some_and(|ending| ending == "json");
+        assert!(is_time || fs::read(path).unwrap() == *bytes, "{}", path.display());
+    }
+    for part in
+        ["measured on: ", "amplitudes/spring: one body of 4,000 triangles", "parry/full", "traditional/full"]
+    {
+        assert!(run.stdout.contains(part), "{}", run.stdout);
+    }
+    assert!(run.stdout.contains("\nall exact methods list the same pairs\n"), "{}", run.stdout);
+
+    // Beyond 64 queries, the others answer 20 of the steps.
+    let run = bench(folder.path(), &["spring", "--quick", "--steps", "65", "--json"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let scene = &run.json()[0];
+    check(scene, "note, discrete_ms_all_steps");
+    assert_eq!((&scene["scenario"], &scene["steps"]), (&json!("spring"), &json!(65)));
+    assert_eq!((&scene["compared_steps"], &scene["continuous_steps"]), (&json!(20), &json!(20)));
+    assert!(scene["scene_steps"].as_u64().unwrap() > 100);
+    assert!(scene["scene_colliding_steps"].as_u64().unwrap() > 0, "scenes really collide: {scene}");
+    assert_eq!(keys(&scene["discrete_ms_all_steps"]), sorted(CERTIFIED));
 }
 
 #[test]
@@ -171,6 +156,7 @@ fn refusals() {
         (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
         (&["growth", "--steps", "2"], "--steps is for scenes"),
+        (&["growth", "--quick"], "--quick: growth needs its sizes"),
         (&[], "SCENARIO"),
     ] {
         let run = bench(folder.path(), args);

@@ -2,14 +2,12 @@
 #![allow(dead_code)]
 
 #[path = "../../src/commands/bench/random.rs"]
-mod random;
+pub mod random;
 
 use anyhow::{Context, Result};
 use sscc::{CertifyOptions, ReducedModel, TriMesh};
 use sscc_io::{load_model, read_mesh};
 use sscc_modes::{polynomial_modes, shapes};
-
-pub use random::Random;
 
 /// A model and how to certify it.
 pub struct Case {

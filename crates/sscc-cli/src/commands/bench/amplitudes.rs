@@ -34,7 +34,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
             let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
             mismatches += measured.mismatches;
             let name = format!("amplitudes/{}", recipe.name);
-            reports.push(Report::new(name, Some(share), &case, &measured, 1, None));
+            reports.push(Report::new(name, share, &case, &measured, 1, None));
         }
         session.print(&reports, out)?;
     }

@@ -13,7 +13,7 @@ use sscc_io::{
 use super::Session;
 use super::cache::{Key, program};
 use super::machine::PeakMemory;
-use super::recipe::Recipe;
+use super::recipe::{QUICK, Recipe};
 use crate::args::Threads;
 use crate::load;
 
@@ -45,14 +45,21 @@ pub struct Cost {
     pub threads: usize,
     /// The most memory of the whole process meanwhile; none where the system does not tell.
     pub peak_bytes: Option<u64>,
+    /// Pairs of nodes in their tree: a file without them would measure another method.
+    pairs: usize,
 }
 
 impl Case {
     /// From the cache, or made now.
     pub fn get(recipe: &Recipe, session: &Session<'_>) -> Result<Self> {
-        let surface = recipe.shape.surface(session.models.as_deref())?;
+        let recipe = if session.args.quick { &QUICK } else { recipe };
+        let mut surface = recipe.shape.surface(session.models.as_deref())?;
+        if session.args.quick {
+            surface.note = Some("--quick: a spring of 4,000 triangles stands in for any model".into());
+        }
         let (source, note) = (surface.source.clone(), surface.note.clone());
-        let key = Key::new("model").text(&format!("{recipe:?}")).mesh(&surface.mesh);
+        let key =
+            Key::new("model").text(&format!("{:?} {:?}", recipe.shape, recipe.kind)).mesh(&surface.mesh);
         let (model, info) = session.cache.get(
             &format!("{}-{key}.model.safetensors", recipe.name),
             |path| Ok(read_model(path)?),
@@ -91,17 +98,23 @@ impl Certified {
         let start = Instant::now();
         let certificates = load::certify(model, Path::new(source), &options)?;
         let seconds = start.elapsed().as_secs_f64();
-        Ok(Self {
-            certificates,
-            cost: Cost { seconds, threads, peak_bytes: peak.and_then(PeakMemory::bytes) },
-        })
+        let (peak_bytes, pairs) = (peak.and_then(PeakMemory::bytes), certificates.parts().pair_tree.len());
+        Ok(Self { certificates, cost: Cost { seconds, threads, peak_bytes, pairs } })
     }
 
     fn read(path: &Path, model: &ReducedModel) -> Result<Self> {
         let certificates = read_certificates(path)?;
         certificates.check_model(model)?;
-        let cost: Cost = serde_json::from_slice(&read_whole(&path.with_extension("json"))?)?;
-        ensure!(cost.seconds.is_finite(), "no time");
+        let beside = path.with_extension("json");
+        let cost = serde_json::from_slice(&read_whole(&beside)?);
+        let cost: Cost = cost.with_context(|| beside.display().to_string())?;
+        let pairs = certificates.parts().pair_tree.len();
+        ensure!(
+            pairs == cost.pairs,
+            "{}: its pair tree has {pairs} pairs, not {}",
+            path.display(),
+            cost.pairs
+        );
         Ok(Self { certificates, cost })
     }
 

@@ -61,7 +61,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         let case = Case::get(&recipe, session)?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
         let measured = measure(&case, &steps(&unit, SHARE), Asked::Discrete, &Bar::new("measuring"))?;
-        reports.push(Report::new(format!("growth/{name}"), Some(SHARE), &case, &measured, 1, None));
+        reports.push(Report::new(format!("growth/{name}"), SHARE, &case, &measured, 1, None));
     }
     let mismatches = reports.iter().map(|report| report.mismatches).sum();
     let exponents = Exponents::of(&reports);
@@ -70,7 +70,9 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         out.json(&Growth { scenario: "growth", mismatches, sizes: &reports, exponents, machine })?;
     } else {
         reports.iter().try_for_each(|report| session.print(std::slice::from_ref(report), out))?;
-        exponents.lines().into_iter().try_for_each(|line| out.line(line))?;
+        if exponents.certify_seconds.is_some() {
+            exponents.lines().into_iter().try_for_each(|line| out.line(line))?;
+        }
     }
     Ok(mismatches)
 }

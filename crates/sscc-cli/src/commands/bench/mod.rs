@@ -55,15 +55,15 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
         );
     }
     let session = Session { args, models, cache: Cache::open(args.cache.as_deref())? };
-    if !args.json.json {
-        out.line(format_args!("{}\n", machine::description()))?;
-    }
     let mismatches = match scenario {
         Scenario::Amplitudes => amplitudes::run(&session, &mut out),
         Scenario::Growth => growth::run(&session, &mut out),
         Scenario::Scenes(scenes) => scene::run(&session, scenes, &mut out),
     }
     .with_context(|| format!("bench {}", args.scenario.as_deref().unwrap_or_default()))?;
+    if !args.json.json {
+        out.line(format_args!("measured on: {}", machine::description()))?;
+    }
     out.finish()?;
     ensure!(mismatches == 0, "exact methods differ in {mismatches} of the steps: this is a defect");
     Ok(Outcome::Done)
@@ -78,6 +78,8 @@ fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
         "--samples is for amplitudes and growth; scenes have --steps"
     );
     ensure!(!is_scene || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
+    let grows = matches!(scenario, Scenario::Growth);
+    ensure!(!grows || !args.quick, "--quick: growth needs its sizes; choose one by --only");
     Ok(())
 }
 

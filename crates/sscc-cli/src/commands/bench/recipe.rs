@@ -53,6 +53,12 @@ const fn recipe(name: &'static str, shape: Shape, kind: Kind) -> Recipe {
 
 const EMBEDDED_SPRING: Shape = Shape::Spring { rings: SPRING_RINGS[0], around: SPRING_RINGS[1] };
 pub const SPRING: Recipe = recipe("spring", EMBEDDED_SPRING, Kind::Linear(20));
+/// In place of any other, where a quick look is wanted: a quarter of the triangles, the first spring of `growth`.
+pub const QUICK: Recipe = recipe(
+    "spring-4k",
+    Shape::Spring { rings: SPRING_RINGS[0] / 2, around: SPRING_RINGS[1] / 2 },
+    Kind::Linear(20),
+);
 pub const BUNNY: Recipe = recipe("bunny", Shape::Bunny, Kind::Linear(30));
 pub const DRAGON: Recipe = recipe("dragon", Shape::Dragon, Kind::Linear(30));
 pub const BUNNY_NONLINEAR: Recipe = recipe("bunny", Shape::Bunny, Kind::Nonlinear(30));

@@ -18,8 +18,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// The largest displacement in percent of half the diagonal of the box.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub share: Option<f64>,
+    pub share: f64,
     pub triangles: usize,
     pub rank: usize,
     pub objects: usize,
@@ -84,7 +83,7 @@ impl Report {
     /// `whole` is the scene; if not given, the steps are all there is.
     pub fn new(
         scenario: String,
-        share: Option<f64>,
+        share: f64,
         case: &Case,
         measured: &Measured,
         objects: usize,

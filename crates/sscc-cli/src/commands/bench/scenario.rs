@@ -18,9 +18,6 @@ pub struct Scene {
     pub name: &'static str,
     pub recipe: Recipe,
     pub objects: usize,
-    /// The largest displacement of a vertex in percent of half the diagonal of the box, chosen such that some
-    /// steps collide.
-    pub share: f64,
     about: &'static str,
 }
 
@@ -29,35 +26,30 @@ const SCENES: &[Scene] = &[
         name: "spring",
         recipe: recipe::SPRING,
         objects: 1,
-        share: 10.0,
         about: "a spring swings freely in its linear modes",
     },
     Scene {
         name: "bunny16",
         recipe: recipe::BUNNY_NONLINEAR,
         objects: 16,
-        share: 15.0,
         about: "16 bunnies, nonlinear modes, one set of certificates",
     },
     Scene {
         name: "bunny128",
         recipe: recipe::BUNNY_NONLINEAR,
         objects: 128,
-        share: 15.0,
         about: "128 bunnies, nonlinear modes, one set of certificates",
     },
     Scene {
         name: "dragon-nonlinear",
         recipe: recipe::DRAGON_NONLINEAR,
         objects: 1,
-        share: 10.0,
         about: "a dragon, nonlinear modes",
     },
     Scene {
         name: "dragon-polynomial",
         recipe: recipe::DRAGON_POLYNOMIAL,
         objects: 1,
-        share: 10.0,
         about: "a dragon, quadratic polynomial modes",
     },
 ];

@@ -8,7 +8,7 @@ use super::case::Case;
 use super::measure::{Asked, Step, measure, spread};
 use super::report::{Report, Whole};
 use super::scenario::Scene;
-use super::vibration::{SCENE_STEPS, states};
+use super::vibration::{SCENE_STEPS, Vibration};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
 use crate::progress::Bar;
@@ -25,14 +25,14 @@ pub fn run(session: &Session<'_>, scenes: &[Scene], out: &mut Output) -> Result<
     let mut mismatches = 0;
     for scene in scenes {
         let case = Case::get(&scene.recipe, session)?;
-        let bodies = states(&case, scene.objects, scene.share);
+        let Vibration { bodies, share } = Vibration::new(&case, scene.objects)?;
         let whole = whole(&case, &bodies)?;
         let at = |i: usize| -> Vec<Vec<f64>> { bodies.iter().map(|body| body[i].clone()).collect() };
         let steps = blocks(SCENE_STEPS, wanted).into_iter();
         let steps: Vec<Step> = steps.map(|i| Step { q_t0: at(i), q_t1: at(i + 1) }).collect();
         let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
         mismatches += measured.mismatches;
-        let report = Report::new(scene.name.into(), None, &case, &measured, scene.objects, Some(whole));
+        let report = Report::new(scene.name.into(), share, &case, &measured, scene.objects, Some(whole));
         session.print(&[report], out)?;
     }
     Ok(mismatches)

@@ -42,7 +42,7 @@ impl<'a> Table<'a> {
             counted(first.certify_threads as u64, "thread"),
             memory.unwrap_or_default()
         ));
-        if first.objects > 1 || first.share.is_none() {
+        if first.scene_steps > first.steps {
             lines.push(format!(
                 "whole scene: {} of {} steps collide, {} of {} with each body counted",
                 first.scene_colliding_steps,
@@ -52,7 +52,7 @@ impl<'a> Table<'a> {
             ));
         }
         lines.extend(first.note.iter().map(|note| format!("note: {note}")));
-        let label = |report: &Report| report.share.map_or("all".into(), |share| format!("{share}%"));
+        let label = |report: &Report| format!("{}%", (report.share * 10.0).round() / 10.0);
         let discrete = self.reports.iter().flat_map(|report| {
             let all = Row {
                 label: label(report),

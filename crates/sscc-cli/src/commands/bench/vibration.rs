@@ -1,8 +1,14 @@
 //! Free vibrations, until there are forces: each mode swings with its natural frequency.
 
+use std::f64::consts::TAU;
+
+use anyhow::Result;
+use sscc::{Method, Query};
+
 use super::case::Case;
 use super::random::Random;
 use super::sample::{directions, half_diagonal, largest_displacement, scaled};
+use crate::interrupt::Interrupt;
 
 /// Periods of the first mode in a scene, and steps in each.
 const PERIODS: usize = 5;
@@ -13,30 +19,59 @@ pub const SCENE_STEPS: usize = PERIODS * STEPS_PER_PERIOD;
 
 const SEED: u64 = 11;
 
-/// States of the first body whose largest displacement sets the amplitude.
+/// States of the first body that are looked at, and how many of them shall collide.
 const LOOKED_AT: usize = 60;
+const COLLIDING: usize = LOOKED_AT / 8;
 
-/// For each body `SCENE_STEPS + 1` states q: `z_k(t) = a_k cos(omega_k t + phase)`, the amplitudes those of the first of
-/// the random [`directions`], phases of each body its own. Of the first body some vertex is displaced by `share` percent
-/// of half the diagonal of the box, none by more, in the states that are looked at.
-pub fn states(case: &Case, objects: usize, share: f64) -> Vec<Vec<Vec<f64>>> {
+/// Between these shares (percent) the amplitude is searched, by so many bisections of its logarithm.
+const SHARES: [f64; 2] = [0.1, 100.0];
+const BISECTIONS: usize = 10;
+
+/// What swings, and how far: the largest displacement of a vertex of the first body in percent of half the diagonal of the
+/// box, in the states that are looked at.
+pub struct Vibration {
+    /// For each body `SCENE_STEPS + 1` states q.
+    pub bodies: Vec<Vec<Vec<f64>>>,
+    pub share: f64,
+}
+
+impl Vibration {
+    /// Of bodies with `z_k(t) = a_k cos(omega_k t + phase)`, the amplitudes in proportion to the first of the random
+    /// [`directions`], phases of each body its own; so large that one in eight states of the first body collides.
+    pub fn new(case: &Case, objects: usize) -> Result<Self> {
+        let mut random = Random(SEED);
+        let mut bodies: Vec<Vec<Vec<f64>>> = (0..objects).map(|_| body(case, &mut random)).collect();
+        let largest = |q: &Vec<f64>| largest_displacement(&case.model, q);
+        let farthest = looked_at(&bodies[0]).map(largest).fold(0.0, f64::max);
+        let per_percent = half_diagonal(&case.model) / farthest / 100.0;
+        let query = Query::with_method(&case.model, &case.full.certificates, Method::Traditional)?;
+        let [mut lower, mut upper] = SHARES;
+        for _ in 0..BISECTIONS {
+            let share = (lower * upper).sqrt();
+            let states: Vec<Vec<f64>> =
+                looked_at(&bodies[0]).map(|q| scaled(q, share * per_percent)).collect();
+            let answers = query.batch(&states, None, &Interrupt)?;
+            let colliding = answers.iter().filter(|answer| !answer.pairs.is_empty()).count();
+            if colliding < COLLIDING { lower = share } else { upper = share }
+        }
+        bodies.iter_mut().flatten().for_each(|q| *q = scaled(q, upper * per_percent));
+        Ok(Self { bodies, share: upper })
+    }
+}
+
+fn looked_at(body: &[Vec<f64>]) -> impl Iterator<Item = &Vec<f64>> {
+    body.iter().step_by(SCENE_STEPS / LOOKED_AT).take(LOOKED_AT)
+}
+
+/// The states of one body, of any amplitude.
+fn body(case: &Case, random: &mut Random) -> Vec<Vec<f64>> {
     let amplitudes = directions(&case.model, 1).remove(0);
-    let first = case.frequencies.first().copied().unwrap_or(1.0);
-    let step = std::f64::consts::TAU / (first * STEPS_PER_PERIOD as f64);
-    let mut random = Random(SEED);
-    let mut body = || -> Vec<Vec<f64>> {
-        let phases: Vec<f64> = amplitudes.iter().map(|_| std::f64::consts::TAU * random.uniform()).collect();
-        let state = |i: usize| -> Vec<f64> {
-            let time = i as f64 * step;
-            let swing = |k: usize| amplitudes[k] * libm::cos(case.frequencies[k] * time + phases[k]);
-            (0..amplitudes.len()).map(swing).collect()
-        };
-        (0..=SCENE_STEPS).map(state).collect()
+    let phases: Vec<f64> = amplitudes.iter().map(|_| TAU * random.uniform()).collect();
+    let step = TAU / (case.frequencies[0] * STEPS_PER_PERIOD as f64);
+    let state = |i: usize| -> Vec<f64> {
+        let time = i as f64 * step;
+        let swing = |k: usize| amplitudes[k] * libm::cos(case.frequencies[k] * time + phases[k]);
+        (0..amplitudes.len()).map(swing).collect()
     };
-    let mut bodies: Vec<Vec<Vec<f64>>> = (0..objects).map(|_| body()).collect();
-    let looked_at = bodies[0].iter().step_by(SCENE_STEPS / LOOKED_AT);
-    let largest = looked_at.map(|q| largest_displacement(&case.model, q)).fold(0.0, f64::max);
-    let factor = share / 100.0 * half_diagonal(&case.model) / largest;
-    bodies.iter_mut().flatten().for_each(|q| *q = scaled(q, factor));
-    bodies
+    (0..=SCENE_STEPS).map(state).collect()
 }
