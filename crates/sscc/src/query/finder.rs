@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::asked::{Asked, Ends};
 use super::boxes::Boxes;
 use super::found::Found;
+use super::normal_cones::NormalCones;
 use super::tables::Tables;
 use super::{Method, Statistics};
 use crate::pairs::Relation;
@@ -14,6 +15,8 @@ use crate::{Error, Pair};
 #[derive(Clone)]
 pub(super) struct Finder<F, const E: usize> {
     pub(super) boxes: Boxes<E>,
+    /// Where the method uses them, at one configuration.
+    cones: Option<NormalCones>,
     /// Pairs of nodes still to be looked at: see [`Finder::traverse`].
     pub(super) stack: Vec<Pair>,
     /// The same for [`Finder::walk_pairs`].
@@ -29,7 +32,8 @@ pub(super) struct Finder<F, const E: usize> {
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     pub(super) fn new(tables: &Arc<Tables>, method: Method) -> Self {
         Self {
-            boxes: Boxes::new(tables, method != Method::Traditional),
+            boxes: Boxes::new(tables, matches!(method, Method::Certified | Method::BdTree)),
+            cones: NormalCones::new(tables.clusters.node_count(), method).filter(|_| E == 1),
             stack: Vec::new(),
             walk: Vec::new(),
             found: Vec::new(),
@@ -64,6 +68,9 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             self.brute_force(asked, ends)?;
         } else {
             self.boxes.update(&asked.hierarchy, ends);
+            if let Some(cones) = &mut self.cones {
+                cones.update(&asked.hierarchy, &self.boxes);
+            }
             self.test_exceptions(asked, ends);
             if !self.statistics.root_certified {
                 match asked.complete_pair_tree(ends.norm) {
@@ -74,6 +81,11 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
         self.found.sort_unstable_by_key(Found::pair);
         Ok(())
+    }
+
+    /// Whether the normals of a node prove that it is free, if the method uses them.
+    pub(super) fn culled_by_normals(&mut self, n: u32) -> bool {
+        self.cones.as_mut().is_some_and(|cones| cones.culls(n, &self.boxes))
     }
 
     /// Whether the limit is reached while there is still something to look at: then the answer is not complete.

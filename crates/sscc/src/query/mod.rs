@@ -9,11 +9,13 @@ mod boxes;
 mod brute_force;
 mod clusters;
 mod continuous;
+mod contour;
 mod exceptions;
 mod finder;
 mod found;
 mod frame;
 mod never;
+mod normal_cones;
 mod pack;
 mod pair_walk;
 mod positions;
@@ -36,7 +38,7 @@ use tables::Tables;
 pub use batch::Answer;
 pub use continuous::Impact;
 
-/// How a query finds the colliding pairs. All methods give the same pairs.
+/// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Certificates of nodes and pairs of nodes, then lazily updated boxes (paper, Algorithm 1): BD-tree boxes
@@ -46,6 +48,13 @@ pub enum Method {
     BdTree,
     /// All boxes refitted, no certificates: the paper's "traditional" method.
     Traditional,
+    /// The traditional method that does not look into a node whose normals and boundary prove that it is free (normal
+    /// cones with the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends prove nothing about the way
+    /// between them: continuous queries are traditional.
+    NormalCones,
+    /// Normal cones as the paper's section 7 compares with them, without the contour test: **may miss collisions**. For
+    /// measurements only.
+    NormalConesApprox,
     /// Every pair of triangles. The oracle: quadratic.
     BruteForce,
 }

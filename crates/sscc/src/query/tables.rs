@@ -4,6 +4,7 @@ use super::Method;
 use super::asked::Asked;
 use super::bd_tree::BdTree;
 use super::clusters::Clusters;
+use super::contour::Contours;
 use super::vertices::Vertices;
 
 #[derive(Default)]
@@ -11,22 +12,28 @@ pub(super) struct Tables {
     pub(super) vertices: Vertices,
     pub(super) clusters: Clusters,
     pub(super) bd_tree: BdTree,
+    /// For exact normal cones only.
+    pub(super) contours: Contours,
 }
 
 impl Tables {
     pub(super) fn new(asked: &Asked<'_>) -> Self {
         let is_lazy = match asked.method {
             Method::BruteForce => return Self::default(),
-            Method::Traditional => false,
+            Method::Traditional | Method::NormalCones | Method::NormalConesApprox => false,
             Method::Certified | Method::BdTree => true,
         };
         let (model, hierarchy) = (asked.model, &asked.hierarchy);
         let mut clusters = Clusters::new(model.mesh(), hierarchy, &asked.filter);
         let vertices = Vertices::new(model, clusters.all_vertices());
         clusters.renumber(|v| vertices.place(v));
-        // Nodes down to clusters.
-        let has_box = |n| is_lazy && clusters.of_node(n).is_none_or(|cluster| clusters.node(cluster) == n);
-        let bd_tree = BdTree::new(model, hierarchy, has_box);
-        Self { vertices, clusters, bd_tree }
+        let is_met = |n| clusters.of_node(n).is_none_or(|cluster| clusters.node(cluster) == n);
+        let bd_tree = BdTree::new(model, hierarchy, |n| is_lazy && is_met(n));
+        let contours = if asked.method == Method::NormalCones {
+            Contours::new(model.mesh(), hierarchy, &asked.filter, &vertices, is_met)
+        } else {
+            Contours::default()
+        };
+        Self { vertices, clusters, bd_tree, contours }
     }
 }

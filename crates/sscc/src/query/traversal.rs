@@ -43,7 +43,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Lines 1 to 14: a node against itself.
     fn intra(&mut self, asked: &Asked<'_>, n: u32, ends: &Ends<'_, E>) {
         let certificates = asked.used_certificates();
-        if certificates.is_some_and(|c| ends.norm < c.node_radii[n as usize]) {
+        if certificates.is_some_and(|c| ends.norm < c.node_radii[n as usize]) || self.culled_by_normals(n) {
             return;
         }
         self.statistics.opened += 1;
