@@ -130,8 +130,14 @@ fn an_empty_tree_that_claims_too_much_is_found() {
         let starts = vec![u32::MAX; parts.hierarchy.nodes().len()];
         let pair_tree = PairTree::from_parts(2.0 * parts.global_radius, starts, []);
         let forged = Certificates::from_parts(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
-        lies += 1;
         let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        // Where radii may be far from the truth a lie may be none.
+        let honest = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(honest.violations, Vec::<String>::new(), "model {seed}");
+        if honest.root_tightness.is_none_or(|tightness| tightness < 0.5) {
+            continue;
+        }
+        lies += 1;
         found += usize::from(!audit(&model, &forged, &asked, &()).unwrap().violations.is_empty());
     }
     assert!(lies > 5 && found * 20 >= 19 * lies, "{found} of {lies}");
