@@ -301,6 +301,8 @@ pub enum Method {
     BdTree,
     /// All boxes refitted
     Traditional,
+    /// The same with normal cones and the contour test
+    NormalCones,
     /// Every pair of triangles
     BruteForce,
 }

@@ -14,7 +14,7 @@ const KEYS: &str = "scenario, model, source, triangles, rank, objects, steps, co
     compared_steps, compared_root_failed_steps, continuous_steps, scene_steps, scene_colliding_steps, scene_body_steps, \
     scene_colliding_body_steps, mismatches, share, certify_seconds, certify_threads, certify_peak_bytes, parry_query_seconds, \
     simulation_seconds, self_collision_share, discrete_ms, continuous_ms, machine";
-const COLUMNS: &str = "traditional, bdtree, paper, full, parry";
+const COLUMNS: &str = "traditional, bdtree, normal_cones, normal_cones_approx, paper, full, parry";
 const CERTIFIED: &str = "paper, full";
 
 /// Without real models, whatever the environment says; the cache is in the folder.

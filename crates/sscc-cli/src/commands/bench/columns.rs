@@ -22,14 +22,22 @@ pub enum Role {
     Certified,
     /// What it is compared to: on some of the steps, where these are many.
     Comparator,
+    /// The same, but its pairs may be too few.
+    Approximate,
 }
 
-use Role::{Certified, Comparator};
+use Role::{Approximate, Certified, Comparator};
 
 /// All of them, in the order in which they take turns.
 pub const COLUMNS: &[Column] = &[
     Column { key: "traditional", role: Comparator, make: |case| plain(case, Method::Traditional) },
     Column { key: "bdtree", role: Comparator, make: |case| plain(case, Method::BdTree) },
+    Column { key: "normal_cones", role: Comparator, make: |case| plain(case, Method::NormalCones) },
+    Column {
+        key: "normal_cones_approx",
+        role: Approximate,
+        make: |case| plain(case, Method::NormalConesApprox),
+    },
     Column { key: "paper", role: Certified, make: |case| certified(case, &case.paper.certificates) },
     Column { key: "full", role: Certified, make: |case| certified(case, &case.full.certificates) },
     Column { key: "parry", role: Comparator, make: |case| peer(case, BvhBuildStrategy::Binned) },

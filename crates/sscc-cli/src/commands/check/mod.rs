@@ -87,6 +87,7 @@ fn method(typed: args::Method) -> Method {
         args::Method::Certified => Method::Certified,
         args::Method::BdTree => Method::BdTree,
         args::Method::Traditional => Method::Traditional,
+        args::Method::NormalCones => Method::NormalCones,
         args::Method::BruteForce => Method::BruteForce,
     }
 }
