@@ -200,7 +200,7 @@ fn schemes() {
     }
     for (file, flag) in [
         ("full.sscc.safetensors", "--scheme=paper"),
-        ("full.sscc.safetensors", "--budget=16"),
+        ("full.sscc.safetensors", "--budget=1"),
         ("paper.sscc.safetensors", "--scheme=full"),
     ] {
         assert!(check(file, &[flag]).refusal().contains("against --scheme or --budget"), "{file} {flag}");
