@@ -13,7 +13,7 @@ use sscc::{
 /// Two parallel strips, one above the other at height 1, which a mode lowers: they touch at q = 1. A second one moves
 /// the upper one along.
 fn strips() -> ReducedModel {
-    let count = 24;
+    let count = 200;
     let position = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
     let positions = [0.0, 1.0].map(|z| (0..count).map(|i| position(i, z)).collect::<Vec<_>>()).concat();
     let faces = |first: usize| (0..count - 2).map(move |i| [first + i, first + i + 1, first + i + 2]);
@@ -136,7 +136,7 @@ fn the_budget_bounds_the_pairs() {
         assert!(budget > 0 || tree.limit() == 0.0);
         last = (tree.len(), tree.limit());
     }
-    assert!(last.0 > triangles && last.1 > 0.0);
+    assert!(last.0 > 20 && last.1 > 0.0);
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn damaged_trees_are_refused() {
     }
     assert!(entries[child].0 > 0.0);
     assert_eq!(with(&|e| e[child].0 = 0.0), "pair tree: a pair's radius exceeds that of a child");
-    assert_eq!(with(&|e| e[leaves].1 |= 1), "pair tree: a pair of leaves has children");
+    assert_eq!(with(&|e| e[leaves].1 |= 1), "pair tree: a pair of small nodes has children");
     assert_eq!(with(&|e| e[inner].1 += 1), "pair tree: lists of siblings are out of order");
     assert_eq!(with(&|e| e[inner].1 &= !START), "pair tree: lists of siblings are out of order");
     assert_eq!(with(&|e| e[child].1 |= 7 << 28), "pair tree: a child is listed twice or does not exist");

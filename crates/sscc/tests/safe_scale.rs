@@ -101,7 +101,8 @@ fn scales_of_simple_shapes() {
     let model = ReducedModel::new(mesh, Modes::from_matrix(6, 1, lowered).unwrap()).unwrap();
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
-    let near = |x: f64, goal: f64| x <= goal && x > goal * (1.0 - 1e-9);
+    // The global radius is rounded down to single precision.
+    let near = |x: f64, goal: f64| x <= goal && x > goal * (1.0 - 2e-7);
     assert!(near(certificates.global_radius(), 3.0_f64.sqrt() / 2.0));
     // R_global, half the box diagonal, is nearer than the contact.
     assert!(near(query.safe_scale(&[1.0]).unwrap(), certificates.global_radius()));

@@ -27,6 +27,9 @@ const AHEAD: f64 = 2.0;
 /// Pairs in the making, for each that the budget allows: not all of them turn out to be needed.
 const SLACK: usize = 4;
 
+/// Between two looks at whether the caller has cancelled; searches look for themselves.
+const STEPS: usize = 64;
+
 /// A pair of nodes in the making.
 #[derive(Clone, Copy)]
 struct Grown {
@@ -113,7 +116,10 @@ impl Grove {
             .map_init(search, |search, at| {
                 let mut list = vec![grown[*at as usize]];
                 let mut next = 0;
-                while next < list.len() && !progress.is_cancelled() && used.load(Ordering::Relaxed) <= room {
+                while next < list.len() && used.load(Ordering::Relaxed) <= room {
+                    if next.is_multiple_of(STEPS) && progress.is_cancelled() {
+                        break;
+                    }
                     let (n, m) = list[next].pair;
                     match hierarchy.split_large(n, m) {
                         None => {
