@@ -242,13 +242,14 @@ fn the_scheme_agrees_with_the_pair_tree() {
 /// Every number of the pair tree replaced by others, and every array cut: an error, or a tree that queries can walk.
 #[test]
 fn damaged_pair_trees_are_refused_or_harmless() {
-    let model = strip(60);
-    let good = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let model = strip(900);
+    let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
+    let good = Certificates::compute(&model, &options, &()).unwrap();
     let tree = &good.parts().pair_tree;
     let (radii, links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
     let starts = tree.starts().to_vec();
-    let of_leaves = links.iter().filter(|link| **link << 4 == 0).count();
-    assert!(of_leaves > 20 && links.len() - of_leaves > 20, "{of_leaves} of {}", links.len());
+    let ends = links.iter().filter(|link| **link << 4 == 0).count();
+    assert!(ends > 20 && links.len() - ends > 20, "{ends} of {}", links.len());
     let bytes = certificates_to_bytes(&good).unwrap();
     let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
     let mut refused = 0;
@@ -281,7 +282,7 @@ fn damaged_pair_trees_are_refused_or_harmless() {
     for bad in [f64::NAN, -1.0, f64::INFINITY, 0.0, limit / 1e6] {
         assert!(!read(bad, &starts, &radii, &links).is_empty(), "limit {bad}");
     }
-    for at in (0..starts.len()).step_by(3) {
+    for at in (0..starts.len()).step_by(starts.len().div_ceil(30)) {
         for other in [0, 1, starts[at].wrapping_add(1), u32::MAX, u32::MAX - 1, 1 << 28] {
             let mut changed = starts.clone();
             changed[at] = other;
@@ -290,7 +291,7 @@ fn damaged_pair_trees_are_refused_or_harmless() {
         }
         assert!(!read(limit, &starts[..at], &radii, &links).is_empty());
     }
-    let stride = links.len().div_ceil(40);
+    let stride = links.len().div_ceil(20);
     for at in (0..links.len()).step_by(stride) {
         for bit in 0..32 {
             let mut changed = links.clone();
@@ -308,5 +309,5 @@ fn damaged_pair_trees_are_refused_or_harmless() {
     assert!(
         !read(limit, &starts, &[&radii[..], &[0.0]].concat(), &[&links[..], &[1 << 31]].concat()).is_empty()
     );
-    assert!(refused > 40 * 20, "{refused} with {} links", links.len());
+    assert!(refused > 20 * 20, "{refused} with {} links", links.len());
 }
