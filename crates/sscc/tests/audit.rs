@@ -48,7 +48,7 @@ fn lies_of_every_scope_are_found() {
 /// Exceptions that are dropped, added to what is ignored, or out of range.
 #[test]
 fn forged_exceptions_are_refused_or_found() {
-    let options = CertifyOptions { epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+    let options = CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
     let mut found = 0;
     for seed in 0..80 {
         let model = random_model(seed);

@@ -28,7 +28,7 @@ fn strips() -> ReducedModel {
 }
 
 fn certificates(model: &ReducedModel) -> Certificates {
-    let options = CertifyOptions { threads: Some(1), ..CertifyOptions::default() };
+    let options = CertifyOptions { budget: 16, threads: Some(1), ..CertifyOptions::default() };
     Certificates::compute(model, &options, &()).unwrap()
 }
 
@@ -105,7 +105,8 @@ fn a_radius_reached_is_no_certificate() {
 fn a_parent_bounded_better_than_its_children_pushes_its_radius_down() {
     for seed in 0..40 {
         let model = common::random_model(seed);
-        let options = CertifyOptions { epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+        let options =
+            CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
         let Ok(certificates) = Certificates::compute(&model, &options, &Patience(0.into())) else { continue };
         // Refused otherwise.
         assert!(Certificates::from_parts(certificates.parts().clone()).is_ok(), "model {seed}");

@@ -346,6 +346,8 @@ pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
         ),
         ignore_rest: random.below(3) == 0,
         max_exceptions: [None, Some(0), Some(1000)][random.below(3)],
+        // More than by default: these models are small.
+        budget: 16,
         threads: Some(1),
         ..CertifyOptions::default()
     }

@@ -43,6 +43,7 @@ fn every_scope_is_kept() {
         ),
         center: Some(vec![0.5, -0.25, 1.0]),
         rule: PairRule::new(Neighbours::IncludeOneVertex, true),
+        budget: 16,
         ..CertifyOptions::default()
     };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
@@ -59,8 +60,10 @@ fn every_scope_is_kept() {
 }
 
 fn certificates() -> Certificates {
-    static ONCE: LazyLock<Certificates> =
-        LazyLock::new(|| Certificates::compute(&model(), &CertifyOptions::default(), &()).unwrap());
+    static ONCE: LazyLock<Certificates> = LazyLock::new(|| {
+        let options = CertifyOptions { budget: 16, ..CertifyOptions::default() };
+        Certificates::compute(&model(), &options, &()).unwrap()
+    });
     ONCE.clone()
 }
 
