@@ -366,7 +366,7 @@ pub struct Bench {
     /// stand in]
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
-    /// Of scenes: steps to measure, in 10 blocks spread evenly over it [default: 100]
+    /// Of scenes and kinetic: steps to measure, in 10 blocks spread evenly [default: 100, kinetic 20,000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,
     /// Of amplitudes and growth: samples at each amplitude [default: 64, growth 20]

@@ -133,12 +133,44 @@ fn measurements() {
 }
 
 #[test]
+fn kinetic() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "90", "--json"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let reports = run.json();
+    assert_eq!(reports.len(), 4);
+    for report in &reports {
+        let known = "scenario, source, note, frequency, share, triangles, rank, step, steps, colliding_steps, \
+            compared_steps, mismatches, kinetic_us_colliding, microseconds, machine";
+        assert_eq!(keys(report), sorted(known));
+        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(90), &json!(0)));
+        assert!(report["colliding_steps"].as_u64().unwrap() < 90 && report["step"].as_f64().unwrap() > 0.0);
+        let times = &report["microseconds"];
+        assert_eq!(keys(times), sorted("kinetic, full, traditional, bdtree, normal_cones, parry"));
+        assert!(times.as_object().unwrap().values().all(|time| time.as_f64().unwrap() > 0.0), "{report}");
+    }
+    let frequency = |i: usize| reports[i]["frequency"].as_f64().unwrap();
+    assert!(frequency(0) < 2.0);
+    assert_eq!([1, 2, 3].map(frequency), [2.0, 20.0, 200.0]);
+    assert!(reports.iter().any(|report| report["colliding_steps"] != json!(0)));
+    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "5"]);
+    for part in [
+        "kinetic: 4,000 triangles, 20 modes",
+        "first mode 20.000 Hz: 5 steps of ",
+        "parry  ",
+        "note: --quick",
+    ] {
+        assert!(run.stdout.contains(part), "{}", run.stdout);
+    }
+}
+
+#[test]
 fn refusals() {
     let folder = tempfile::tempdir().unwrap();
     let list = bench(folder.path(), &["--list"]);
     assert_eq!(list.code, Some(0));
     for name in
-        ["spring", "bunny16", "bunny128", "dragon-nonlinear", "dragon-polynomial", "amplitudes", "growth"]
+        ["spring", "bunny128", "dragon-nonlinear", "dragon-polynomial", "amplitudes", "growth", "kinetic"]
     {
         assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{name}");
     }
@@ -154,8 +186,9 @@ fn refusals() {
         (&["amplitudes", "--only", "bunny", "--models", "."], "bunny_14964_closed.obj: not found"),
         (&["spring", "--steps", "0"], "--steps"),
         (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
+        (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
-        (&["growth", "--steps", "2"], "--steps is for scenes"),
+        (&["growth", "--steps", "2"], "--steps is for what moves"),
         (&["growth", "--quick"], "--quick: growth needs its sizes"),
         (&[], "SCENARIO"),
     ] {

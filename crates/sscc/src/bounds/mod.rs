@@ -22,8 +22,9 @@ mod tests;
 mod triangle_pair;
 
 pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use direction::{TrianglePair, direction_bound};
 pub(crate) use leaf_pair::LeafPair;
 pub(crate) use min_norm::nearest_to_origin;
 pub(crate) use path::Path;
-pub(crate) use scaled::ScaledModel;
+pub(crate) use scaled::{DOWN, GapError, ScaledModel, direction, norm_up};
 pub(crate) use triangle_pair::{PairRefiner, Target};

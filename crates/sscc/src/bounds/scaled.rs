@@ -33,6 +33,12 @@ impl GapError {
         Self { rest: rest_reach * (2.0 * gamma) + DVec3::splat(underflow), rate: rate_reach * (2.0 * gamma) }
     }
 
+    /// The error between two z, both of at most that norm, in the place of one between rest and z: the gap is rounded
+    /// at both. Again twice that, for what evaluating the bounds about z rounds.
+    pub(crate) fn within(&self, norm: f64) -> Self {
+        Self { rest: (self.rest + self.rate * norm) * (4.0 * UP), rate: self.rate }
+    }
+
     /// The part of the error that does not depend on z, for a direction n, rounded up.
     pub(crate) fn rest(&self, n: DVec3) -> f64 {
         n.abs().dot(self.rest) * UP + f64::MIN_POSITIVE

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::Method;
+use super::kinetic::Ball;
 use crate::hierarchy::Hierarchy;
 use crate::pairs::PairFilter;
 use crate::{CertificateParts, Certificates, Pair, PairTree, Progress, ReducedModel, Scope};
@@ -61,4 +62,7 @@ pub(super) struct Ends<'t, const E: usize> {
     pub(super) norm: f64,
     /// The larger one of the reaches.
     pub(super) reach: f64,
+    /// With two ends that are the same: instead of the way between them, all z in a ball around it count. Then `norm` and
+    /// `reach` are the largest ones there.
+    pub(super) ball: Option<&'t Ball>,
 }

@@ -59,18 +59,18 @@ impl BdTree {
     }
 
     /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none where the
-    /// node has none. `margin` covers rounding: at least `(4 r + 64)` units of the last place of the shape's reach.
-    pub(super) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: f64) -> Option<Aabb> {
+    /// node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last place of the shape's reach.
+    pub(super) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
         let place = self.places[node as usize] as usize;
         (place < self.rest.len()).then(|| self.at_place(place, q, margin))
     }
 
     /// The same for the whole shape.
-    pub(super) fn root<const E: usize>(&self, q: [&[f64]; E], margin: f64) -> Aabb {
+    pub(super) fn root<const E: usize>(&self, q: [&[f64]; E], margin: DVec3) -> Aabb {
         self.at_place(0, q, margin)
     }
 
-    fn at_place<const E: usize>(&self, place: usize, q: [&[f64]; E], margin: f64) -> Aabb {
+    fn at_place<const E: usize>(&self, place: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
         let mut boxes = [self.rest[place]; E];
         let rates = &self.rates[place * self.rank..][..self.rank];
         let q = q.map(|q| &q[..rates.len()]);
@@ -124,7 +124,7 @@ mod tests {
                 let reach = model.check_coordinates(&q).unwrap();
                 for (n, node) in hierarchy.nodes().iter().enumerate() {
                     let Some((lower, upper)) =
-                        tree.at(n as u32, [&q], super::super::boxes::margin(reach, rank))
+                        tree.at(n as u32, [&q], DVec3::splat(super::super::boxes::margin(reach, rank)))
                     else {
                         assert!(n != 0 && node.is_leaf());
                         continue;

@@ -58,6 +58,7 @@ impl<const E: usize> Boxes<E> {
 
     /// Starts a new query: forgets all boxes, or (traditional) refits all of them.
     pub(super) fn update(&mut self, hierarchy: &Hierarchy, ends: &Ends<'_, E>) {
+        debug_assert!(ends.ball.is_none() || E == 2 && self.is_lazy, "only lazy boxes know balls");
         let tables = Arc::clone(&self.tables);
         self.margin = margin(ends.reach, ends.q[0].len());
         self.query = self.query.wrapping_add(1);
@@ -67,7 +68,7 @@ impl<const E: usize> Boxes<E> {
                 .for_each(|queries| queries.fill(0));
             self.query = 1;
         }
-        self.positions.update(self.query, tables.bd_tree.root(ends.q, self.margin));
+        self.positions.update(self.query, tables.bd_tree.root(ends.q, DVec3::splat(self.margin)));
         if self.is_lazy {
             return;
         }
@@ -138,7 +139,8 @@ impl<const E: usize> Boxes<E> {
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
         if self.node_query[n as usize] != self.query {
             let frame = self.positions.frame();
-            let aabb = self.tables.bd_tree.at(n, ends.q, self.margin);
+            let margin = ends.ball.map_or(DVec3::ZERO, |ball| ball.of_node(n)) + self.margin;
+            let aabb = self.tables.bd_tree.at(n, ends.q, margin);
             // What has no box of its own overlaps everything.
             let aabb = aabb.map_or(Box32::ALL, |(lower, upper)| Box32 {
                 lower: frame.map(lower),

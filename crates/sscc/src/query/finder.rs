@@ -73,14 +73,19 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             }
             self.test_exceptions(asked, ends);
             if !self.statistics.root_certified {
-                match asked.complete_pair_tree(ends.norm) {
-                    Some(tree) => self.walk_pairs(asked, tree, ends)?,
-                    None => self.traverse(asked, (0, 0), ends)?,
-                }
+                self.search_by_boxes(asked, ends)?;
             }
         }
         self.found.sort_unstable_by_key(Found::pair);
         Ok(())
+    }
+
+    /// Adds all that is found, exceptions apart, by the boxes of this query.
+    pub(super) fn search_by_boxes(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+        match asked.complete_pair_tree(ends.norm) {
+            Some(tree) => self.walk_pairs(asked, tree, ends),
+            None => self.traverse(asked, (0, 0), ends),
+        }
     }
 
     /// Whether the normals of a node prove that it is free, if the method uses them.

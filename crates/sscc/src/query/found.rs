@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Impact;
+use super::aabb::{around, disjoint};
 use crate::pairs::{PairFilter, Relation};
 use crate::{MovingTriangle, Pair, impact_triangle_triangle};
 
@@ -31,6 +32,18 @@ impl Found<1> for Pair {
         [y]: &[[DVec3; 3]; 1],
     ) -> Option<Self> {
         filter.collide_as(relation, pair, x, y).then_some(pair)
+    }
+
+    fn pair(&self) -> Pair {
+        *self
+    }
+}
+
+/// What can collide anywhere in a ball: triangles whose boxes, around the corners at both ends, overlap.
+impl Found<2> for Pair {
+    #[inline]
+    fn of(_: &PairFilter, _: Relation, pair: Pair, x: &[[DVec3; 3]; 2], y: &[[DVec3; 3]; 2]) -> Option<Self> {
+        (!disjoint(&around(x), &around(y))).then_some(pair)
     }
 
     fn pair(&self) -> Pair {

@@ -14,6 +14,7 @@ mod exceptions;
 mod finder;
 mod found;
 mod frame;
+mod kinetic;
 mod never;
 mod normal_cones;
 mod pack;
@@ -37,6 +38,7 @@ use tables::Tables;
 
 pub use batch::Answer;
 pub use continuous::Impact;
+pub use kinetic::KineticQuery;
 
 /// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,7 +199,7 @@ impl<'a> Query<'a> {
     #[inline]
     fn begin<'t, const E: usize>(&mut self, q: [&'t [f64]; E], limit: usize) -> Result<Ends<'t, E>, Error> {
         self.discrete.begin(limit);
-        let mut ends = Ends { q, norm: 0.0, reach: 0.0 };
+        let mut ends = Ends { q, norm: 0.0, reach: 0.0, ball: None };
         for q in q {
             ends.reach = ends.reach.max(self.asked.model.check_coordinates(q)?);
             let scope = &self.asked.scope;

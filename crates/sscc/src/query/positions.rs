@@ -54,7 +54,13 @@ impl<const E: usize> Positions<E> {
     pub(super) fn move_one(&mut self, vertices: &Vertices, place: u32, ends: &Ends<'_, E>) {
         let i = place as usize;
         if self.queries[i] != self.query {
-            self.exact[i] = vertices.position(place, ends.q);
+            self.exact[i] = match ends.ball {
+                None => vertices.position(place, ends.q),
+                Some(ball) => {
+                    let ([x], reach) = (vertices.position(place, [ends.q[0]]), ball.of_vertex(place));
+                    std::array::from_fn(|end| if end == 0 { x - reach } else { x + reach })
+                }
+            };
             self.mapped[i] = self.exact[i].map(|x| self.frame.map(x));
             self.queries[i] = self.query;
         }

@@ -9,6 +9,7 @@ mod case;
 mod clock;
 mod columns;
 mod growth;
+mod kinetic;
 mod machine;
 mod measure;
 mod peer;
@@ -58,6 +59,7 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     let mismatches = match scenario {
         Scenario::Amplitudes => amplitudes::run(&session, &mut out),
         Scenario::Growth => growth::run(&session, &mut out),
+        Scenario::Kinetic => kinetic::run(&session, &mut out),
         Scenario::Scenes(scenes) => scene::run(&session, scenes, &mut out),
     }
     .with_context(|| format!("bench {}", args.scenario.as_deref().unwrap_or_default()))?;
@@ -71,13 +73,13 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
 
 /// Refuses what would have no meaning.
 fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
-    let is_scene = matches!(scenario, Scenario::Scenes(_));
-    ensure!(is_scene || args.steps.is_none(), "--steps is for scenes; amplitudes and growth have --samples");
+    let moves = matches!(scenario, Scenario::Scenes(_) | Scenario::Kinetic);
+    ensure!(moves || args.steps.is_none(), "--steps is for what moves; amplitudes and growth have --samples");
     ensure!(
-        !is_scene || args.samples.is_none(),
-        "--samples is for amplitudes and growth; scenes have --steps"
+        !moves || args.samples.is_none(),
+        "--samples is for amplitudes and growth; what moves has --steps"
     );
-    ensure!(!is_scene || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
+    ensure!(!moves || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
     let grows = matches!(scenario, Scenario::Growth);
     ensure!(!grows || !args.quick, "--quick: growth needs its sizes; choose one by --only");
     Ok(())

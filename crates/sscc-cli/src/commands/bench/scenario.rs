@@ -9,6 +9,7 @@ use super::recipe::{self, Recipe};
 pub enum Scenario {
     Amplitudes,
     Growth,
+    Kinetic,
     Scenes(&'static [Scene]),
 }
 
@@ -55,9 +56,10 @@ const SCENES: &[Scene] = &[
 ];
 
 /// Scenarios that are no single scene.
-const OTHERS: [(&str, Scenario, &str); 5] = [
+const OTHERS: [(&str, Scenario, &str); 6] = [
     ("amplitudes", Scenario::Amplitudes, "bunny, dragon and spring at random q, displaced by 0.5 to 40%"),
     ("growth", Scenario::Growth, "springs of 4,000 to a million triangles"),
+    ("kinetic", Scenario::Kinetic, "a spring that swings, 44,100 steps in a second: kinetic queries"),
     (
         "table1",
         Scenario::Scenes(SCENES),

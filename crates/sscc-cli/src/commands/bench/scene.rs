@@ -8,7 +8,7 @@ use super::case::Case;
 use super::measure::{Asked, Step, measure, spread};
 use super::report::{Report, Whole};
 use super::scenario::Scene;
-use super::vibration::{SCENE_STEPS, Vibration};
+use super::vibration::{SCENE_STEPS, Swing, Vibration};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
 use crate::progress::Bar;
@@ -26,6 +26,7 @@ pub fn run(session: &Session<'_>, scenes: &[Scene], out: &mut Output) -> Result<
     for scene in scenes {
         let case = Case::get(&scene.recipe, session)?;
         let Vibration { bodies, share } = Vibration::new(&case, scene.objects)?;
+        let bodies: Vec<Vec<Vec<f64>>> = bodies.iter().map(Swing::scene).collect();
         let whole = whole(&case, &bodies)?;
         let at = |i: usize| -> Vec<Vec<f64>> { bodies.iter().map(|body| body[i].clone()).collect() };
         let steps = blocks(SCENE_STEPS, wanted).into_iter();
