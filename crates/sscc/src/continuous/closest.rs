@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::separation::{Direction, Separation};
 use crate::bounds::nearest_to_origin;
+use crate::intersect_triangle_triangle;
 
 /// The closest points of the two triangles at a time.
 pub(super) struct Closest {
@@ -28,7 +29,9 @@ impl Closest {
         // Two points that are close tell the direction between them badly; and in flat cases they may not be the
         // closest ones. Either way the gap is then too narrow.
         let between = pair.along(point).filter(|n| n.gap(t) > WIDE * distance);
-        Self { distance, direction: between.or_else(|| widest(pair, t, &x, &y)) }
+        // No direction separates what meets: looking for one takes long.
+        let look = || if intersect_triangle_triangle(&x, &y) { None } else { widest(pair, t, &x, &y) };
+        Self { distance, direction: between.or_else(look) }
     }
 }
 
