@@ -352,6 +352,8 @@ mod tests {
         oracle: Query<'a>,
         certificates: &'a Certificates,
         colliding: bool,
+        /// Whether there is to be no ball.
+        plain: bool,
         /// Of the ball.
         norm: f64,
     }
@@ -361,7 +363,7 @@ mod tests {
             let scope = &self.certificates.parts().scope;
             let q: Vec<f64> =
                 scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
-            self.kinetic.pace.pause = u64::from(random.signed() > 0.98) * 3;
+            self.kinetic.pace.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
             self.kinetic.pace.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
             self.kinetic.pace.plain = self.kinetic.pace.plain.max(1_000_000);
             let stood = self.kinetic.front.has_begun();
@@ -412,6 +414,7 @@ mod tests {
                 oracle: Query::with_method(&model, &certificates, Method::Traditional).unwrap(),
                 certificates: &certificates,
                 colliding: false,
+                plain: false,
                 norm: 0.0,
             };
             for _ in 0..3 {
@@ -481,6 +484,16 @@ mod tests {
                             z.iter().zip(&towards).map(|(z, x)| z + x / length * margin * share).collect();
                         pairing.ask(&there, random, &mut seen);
                     }
+                }
+                // Plain queries lead, in steps too small for a jump, to where pairs collide that were known to stay apart.
+                for share in [0.95, 1.1, 1.25] {
+                    pairing.plain = share > 1.0;
+                    pairing.ask(&at(share * t), random, &mut seen);
+                    pairing.ask(&at((share + 1e-5) * t), random, &mut seen);
+                }
+                pairing.plain = false;
+                for i in 1..5 {
+                    pairing.ask(&at((1.25 + f64::from(i) * 1e-4) * t), random, &mut seen);
                 }
                 // A jump to where pairs collide that were apart on the way before.
                 for i in 0..10 {
