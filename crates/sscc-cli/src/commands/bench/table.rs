@@ -89,11 +89,13 @@ fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
     let rows: Vec<Row<'_>> = rows.filter(|row| !row.means.is_empty()).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let keys: Vec<&str> = first.means.0.iter().map(|(key, _)| *key).collect();
-    let heads: String = keys.iter().map(|key| format!("{key:>13}")).collect();
+    let width = |key: &str| key.len().max(11) + 2;
+    let heads: String = keys.iter().map(|key| format!("{key:>0$}", width(key))).collect();
     let over: String = OVER.iter().map(|key| format!("{:>18}", format!("{key}/{OURS}"))).collect();
     let mut lines = vec![format!("  {title:<16}{:>12}{heads}{over}", "collide")];
     for row in &rows {
-        let cells: String = keys.iter().map(|key| format!("{:>13}", shown(row.means.get(key)))).collect();
+        let cell = |key: &&str| format!("{:>1$}", shown(row.means.get(key)), width(key));
+        let cells: String = keys.iter().map(cell).collect();
         let ratio = |key: &str| Some(row.means.get(key)? / row.means.get(OURS)?);
         let ratios: String = OVER.iter().map(|key| format!("{:>18}", times(ratio(key)))).collect();
         lines.push(format!("  {:<16}{:>12}{cells}{ratios}", row.label, row.steps));
