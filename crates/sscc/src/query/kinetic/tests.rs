@@ -1,0 +1,267 @@
+//! Kinetic queries whose balls are of all sizes against traditional ones, and models to try their parts on.
+
+use glam::DVec3;
+
+use super::*;
+use crate::{CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, TriMesh};
+
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    /// In [-1, 1).
+    pub(super) fn signed(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+        (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+    }
+
+    pub(super) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+}
+
+/// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
+/// metric that is not diagonal.
+pub(super) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
+    let half = 2 + case as u32 % 4;
+    let gap = 0.05 + 0.5 * random.signed().abs();
+    let p: Vec<DVec3> = (0..2 * (half + 2))
+        .map(|i| {
+            let (i, side) = (i % (half + 2), f64::from(i / (half + 2)));
+            DVec3::new(f64::from(i) * 0.3, f64::from(i % 2) * 0.5, side * gap) + random.vector() * 0.05
+        })
+        .collect();
+    let strip = |first: u32| (0..half).map(move |i| [first + i, first + i + 1, first + i + 2]);
+    // In one piece every third time.
+    let second = if case.is_multiple_of(3) { half } else { half + 2 };
+    let faces: Vec<[u32; 3]> = strip(0).chain(strip(second)).collect();
+    let rank = 1 + case % 4;
+    let ways: Vec<[DVec3; 3]> =
+        (0..rank).map(|_| [random.vector(), random.vector(), random.vector()]).collect();
+    let noise = 0.1 * random.signed().max(0.0);
+    let modes = p.iter().flat_map(|x| {
+        ways.iter().map(|[w, u, v]| *w * x.dot(*u) + *v + random.vector() * noise).collect::<Vec<_>>()
+    });
+    let modes = Modes::new(rank, modes.collect()).unwrap();
+    let mesh = TriMesh::new(p, faces).unwrap();
+    let mut factor = vec![0.0; rank * rank];
+    for i in 0..rank {
+        (i..rank).for_each(|j| {
+            factor[i * rank + j] = if i == j { 1.0 + random.signed() * 0.5 } else { random.signed() }
+        });
+    }
+    let metric = Metric::from_factor(MetricKind::Given, rank, factor).unwrap();
+    (ReducedModel::with_metric(mesh, modes, metric).unwrap(), half)
+}
+
+/// Two wavy sheets one above the other, in one piece with a third one between them every second time; modes bring them
+/// together, tilt, bend and shear them.
+fn sheets(random: &mut Random, case: usize) -> ReducedModel {
+    let side = 6 + case as u32 % 5;
+    let gap = 0.3 + 0.3 * random.signed().abs();
+    let mut p = Vec::new();
+    let mut faces = Vec::new();
+    for sheet in 0..2 + case as u32 % 2 {
+        let first = p.len() as u32;
+        for i in 0..side * side {
+            let x = DVec3::new(f64::from(i % side), f64::from(i / side), f64::from(sheet) * gap);
+            p.push(x * DVec3::new(0.2, 0.2, 1.0) + random.vector() * 0.03);
+        }
+        for i in (0..side * (side - 1)).filter(|i| i % side != side - 1) {
+            let [a, b, c, d] = [i, i + 1, i + side, i + side + 1].map(|v| first + v);
+            faces.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    let rank = 2 + case % 4;
+    let ways: Vec<[DVec3; 2]> = (0..rank).map(|_| [random.vector(), random.vector() * 2.0]).collect();
+    let modes = p.iter().flat_map(|x| {
+        let (height, x) = (x.z / gap, *x);
+        ways.iter().enumerate().map(move |(k, [way, along])| match k {
+            0 => DVec3::Z * (0.5 - height) * 0.3,
+            _ => (*way * 0.1 + DVec3::Z * (x.dot(*along)).sin()) * 0.3 * (0.2 + height),
+        })
+    });
+    let modes = Modes::new(rank, modes.collect()).unwrap();
+    let mesh = TriMesh::new(p, faces).unwrap();
+    let metric = match case % 3 {
+        0 => Metric::displacement(&mesh, &modes),
+        1 => Metric::identity(rank),
+        _ => {
+            let mut entry = |i: usize, j: usize| match i.cmp(&j) {
+                std::cmp::Ordering::Less => 0.5 * random.signed(),
+                std::cmp::Ordering::Equal => 1.0 + random.signed().abs(),
+                std::cmp::Ordering::Greater => 0.0,
+            };
+            let factor = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
+            Metric::from_factor(MetricKind::Given, rank, factor).unwrap()
+        }
+    };
+    ReducedModel::with_metric(mesh, modes, metric).unwrap()
+}
+
+/// What happened, to see that all of it did.
+#[derive(Debug, Default)]
+struct Seen {
+    steps: usize,
+    balls: usize,
+    known: usize,
+    expired: usize,
+    /// Pairs that began to collide in a step without a search; and those of them that no certificate at the ball's centre
+    /// would have let through.
+    begun: usize,
+    begun_beyond: usize,
+    root_certified_within: usize,
+    aimed: usize,
+}
+
+/// A kinetic query whose balls are of all sizes, beside the traditional one.
+struct Pairing<'a> {
+    kinetic: KineticQuery<'a>,
+    oracle: Query<'a>,
+    certificates: &'a Certificates,
+    colliding: bool,
+    /// Whether there is to be no ball.
+    plain: bool,
+    /// Of the ball.
+    norm: f64,
+}
+
+impl Pairing<'_> {
+    fn ask(&mut self, z: &[f64], random: &mut Random, seen: &mut Seen) {
+        let scope = &self.certificates.parts().scope;
+        let q: Vec<f64> = scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
+        self.kinetic.pace.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
+        self.kinetic.pace.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
+        self.kinetic.pace.plain = self.kinetic.pace.plain.max(1_000_000);
+        let stood = self.kinetic.front.has_begun();
+        let apart = self.kinetic.front.apart.len();
+        let expected = self.oracle.discrete(&q).unwrap();
+        let found = self.kinetic.discrete(&q).unwrap();
+        assert_eq!(found, expected);
+        let begins = !self.colliding && !found.is_empty();
+        self.colliding = !found.is_empty();
+        let front = &self.kinetic.front;
+        seen.steps += 1;
+        seen.root_certified_within += usize::from(stood && self.kinetic.statistics().root_certified);
+        if front.steps == 1 && front.has_begun() {
+            seen.balls += 1;
+            seen.known += front.known.len();
+            self.norm = self.kinetic.norm();
+        } else if stood && front.has_begun() {
+            seen.expired += apart.saturating_sub(front.apart.len());
+            seen.begun += usize::from(begins);
+            let root = self.certificates.root_radius();
+            seen.begun_beyond += usize::from(begins && self.norm < 1.02 * root);
+        }
+    }
+}
+
+/// Out through the first contact and back, in steps of all sizes; towards pairs that stand by a margin; jumps, returns,
+/// errors, and queries that the root certifies in between.
+#[test]
+fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
+    let mut seen = Seen::default();
+    for case in 0..60 {
+        let random = &mut Random(case as u64 + 1000);
+        let model = sheets(random, case);
+        let rank = model.rank();
+        let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][usize::from(case % 4 == 3)];
+        let center: Vec<f64> =
+            (0..rank).map(|_| if case % 5 == 2 { 0.02 * random.signed() } else { 0.0 }).collect();
+        let options = CertifyOptions {
+            epsilon: 0.5,
+            center: Some(center),
+            rule: PairRule::new(neighbours, case % 7 == 1),
+            budget: [0, 8, 256][case % 3],
+            ..CertifyOptions::default()
+        };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let mut pairing = Pairing {
+            kinetic: KineticQuery::new(&model, &certificates).unwrap(),
+            oracle: Query::with_method(&model, &certificates, Method::Traditional).unwrap(),
+            certificates: &certificates,
+            colliding: false,
+            plain: false,
+            norm: 0.0,
+        };
+        for _ in 0..3 {
+            let mut way: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            if random.signed() > 0.0 {
+                way = (0..rank).map(|k| if k == 0 { 1.0 } else { 0.2 * random.signed() }).collect();
+            }
+            let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let at = |t: f64| -> Vec<f64> { way.iter().map(|x| x / length * t).collect() };
+            // Where the first contact is.
+            let scope = &certificates.parts().scope;
+            let collides = |query: &mut Query<'_>, t: f64| {
+                let d = scope.metric.unscaled(&at(t));
+                let q: Vec<f64> = d.iter().zip(&scope.center).map(|(d, c)| c + d).collect();
+                !query.discrete(&q).unwrap().is_empty()
+            };
+            let root = certificates.root_radius().max(1e-3);
+            let (mut free, mut t) = (0.0, root);
+            while t < 100.0 * root && !collides(&mut pairing.oracle, t) {
+                (free, t) = (t, 1.2 * t);
+            }
+            for _ in 0..20 {
+                let middle = 0.5 * (free + t);
+                if collides(&mut pairing.oracle, middle) { t = middle } else { free = middle }
+            }
+            let stride = 10.0_f64.powf(random.signed() * 0.8 - 3.2);
+            let noise = if random.signed() > 0.0 { 0.1 * stride * t } else { 0.0 };
+            let count = ((0.06 / stride) as usize).min(150);
+            for i in (0..count).chain((0..count).rev()) {
+                let share = 1.0 + (i as f64 - 0.5 * count as f64) * stride;
+                let z: Vec<f64> = at(share * t).iter().map(|z| z + noise * random.signed()).collect();
+                pairing.ask(&z, random, &mut seen);
+                if random.signed() > 0.98 {
+                    assert!(pairing.kinetic.discrete(&[f64::NAN]).is_err());
+                    assert_eq!(pairing.kinetic.pairs(), []);
+                }
+                // There and back, under the root's certificate.
+                if random.signed() > 0.97 {
+                    pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
+                }
+                // Towards a pair that stands.
+                let Some(standing) = pairing.kinetic.front.apart.peek().copied() else { continue };
+                if random.signed() < 0.8 {
+                    continue;
+                }
+                seen.aimed += 1;
+                let margin = standing.until - pairing.kinetic.front.way;
+                let [a, b] = [standing.pair.0, standing.pair.1]
+                    .map(|f| model.mesh().faces()[f as usize][(random.signed().abs() * 3.0) as usize % 3]);
+                let q: Vec<f64> =
+                    scope.metric.unscaled(&z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
+                let d = model.position(b, &q) - model.position(a, &q);
+                let rows = [a, b].map(|v| {
+                    let mut rows = vec![DVec3::ZERO; rank];
+                    scope.metric.scaled_modes(model.modes().of_vertex(v), &mut rows);
+                    rows
+                });
+                let towards: Vec<f64> = (0..rank).map(|k| -d.dot(rows[1][k] - rows[0][k])).collect();
+                let length = towards.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-300);
+                for share in [0.5, 0.9, 1.0, 1.1, 1.5] {
+                    let there: Vec<f64> =
+                        z.iter().zip(&towards).map(|(z, x)| z + x / length * margin * share).collect();
+                    pairing.ask(&there, random, &mut seen);
+                }
+            }
+            // Plain queries lead, in steps too small for a jump, to where pairs collide that were known to stay apart.
+            for share in [0.95, 1.1, 1.25] {
+                pairing.plain = share > 1.0;
+                pairing.ask(&at(share * t), random, &mut seen);
+                pairing.ask(&at((share + 1e-5) * t), random, &mut seen);
+            }
+            pairing.plain = false;
+            for i in 1..5 {
+                pairing.ask(&at((1.25 + f64::from(i) * 1e-4) * t), random, &mut seen);
+            }
+            // A jump to where pairs collide that were apart on the way before.
+            for i in 0..10 {
+                pairing.ask(&at((1.3 + f64::from(i) * 1e-4) * t), random, &mut seen);
+            }
+        }
+    }
+    assert!(seen.balls > 300 && seen.known > 1000 && seen.expired > 1000 && seen.aimed > 100, "{seen:?}");
+    assert!(seen.begun > 50 && seen.begun_beyond > 5 && seen.root_certified_within > 50, "{seen:?}");
+}
