@@ -19,13 +19,16 @@ use crate::{Error, Progress};
 const FIRST: f64 = 1.0 / 16.0;
 
 /// The next limit is at most this many times the one before: farther away it is not known how the number of pairs grows.
-const LARGEST_STEP: f64 = 4.0;
+const LARGEST_STEP: f64 = 2.0;
+
+/// And at least this many times, else the budget is left as it is.
+const SMALLEST_STEP: f64 = 1.2;
 
 /// Two small nodes are bounded up to this many times the limit, so that most need not be looked at again in the next round.
 const AHEAD: f64 = 2.0;
 
 /// Pairs in the making, for each that the budget allows: not all of them turn out to be needed.
-const SLACK: usize = 4;
+const SLACK: usize = 32;
 
 /// Between two looks at whether the caller has cancelled; searches look for themselves.
 const STEPS: usize = 64;
@@ -86,12 +89,24 @@ impl Grove {
             grove.grown.extend(child_pairs(node).map(|pair| Grown::new(pair, 0.0)));
         }
         let room = budget.saturating_mul(SLACK).max(2 * grove.grown.len());
-        while grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
-            grove.reached = limit;
-            match grove.next_limit(global_radius) {
-                Some(next) => limit = next,
-                None => break,
+        // Beyond this there are too many.
+        let mut beyond = f64::INFINITY;
+        loop {
+            if grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
+                grove.reached = limit;
+            } else {
+                beyond = limit;
             }
+            let next = match grove.next_limit(global_radius) {
+                Some(next) if next < beyond => next,
+                // Half way, in logarithms.
+                Some(_) if grove.reached > 0.0 => f64::from(round_down((grove.reached * beyond).sqrt())),
+                _ => break,
+            };
+            if next < (grove.reached * SMALLEST_STEP).min(global_radius) {
+                break;
+            }
+            limit = next;
         }
         Ok(grove)
     }
