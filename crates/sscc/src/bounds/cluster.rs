@@ -170,7 +170,7 @@ pub(crate) fn cluster_pair(
         // Half extents are larger than the boxes, so this gap is smaller than theirs.
         if n.dot(between) - n.abs().dot(half) > 0.0 {
             best = best.max(corner_bound(x, y, n, model, scratch));
-            // Far too little by the best direction: the others would not do, either.
+            // Far too little by the direction that is best as a rule: the others seldom do.
             if best >= enough || best < HOPELESS * enough {
                 break;
             }
@@ -229,7 +229,7 @@ fn corner_bound(
         }
     }
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
-    // The terms of a square add up to at most |all rows|^2; the products are wrong by row eps of that, and at most 16
+    // The terms of a square add up to at most (the sum of all |row|)^2; the products are wrong by row eps of that, and at most 16
     // sums follow one another: 2,000 leaves room.
     let lost = (row as f64 + 2_000.0) * f64::EPSILON * size * size;
     let slack = n.abs().dot(x.residual + y.residual) + 2.0 * model.error.rate(n);
@@ -250,14 +250,14 @@ fn corner_bound(
     });
     let mut gaps = [0.0; CORNERS * CORNERS];
     let mut squares = [0.0; CORNERS * CORNERS];
-    for (y, signs) in SIGNS.iter().enumerate() {
+    for (at_y, signs) in SIGNS.iter().enumerate() {
         let cross: [f64; 3] =
             std::array::from_fn(|j| 2.0 * (0..3).map(|i| signs[i] * products[1 + i][4 + j]).sum::<f64>());
-        let (own_gap, own_square) = (gap + steps_y[y], products[0][0] + squares_y[y]);
-        for (x, signs) in SIGNS.iter().enumerate() {
+        let (own_gap, own_square) = (gap + steps_y[at_y], products[0][0] + squares_y[at_y]);
+        for (at_x, signs) in SIGNS.iter().enumerate() {
             let both = signs[0] * cross[0] + signs[1] * cross[1] + signs[2] * cross[2];
-            gaps[CORNERS * y + x] = own_gap + steps_x[x];
-            squares[CORNERS * y + x] = own_square + squares_x[x] + both;
+            gaps[CORNERS * at_y + at_x] = own_gap + steps_x[at_x];
+            squares[CORNERS * at_y + at_x] = own_square + squares_x[at_x] + both;
         }
     }
     // In a loop of its own, lane by lane: roots and quotients of several corners at once.

@@ -23,7 +23,7 @@ pub(crate) use search::Search;
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
     /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one. So is each other radius outside
-    /// the pair tree that may be as small; larger ones are searched with an error of 0.4 and few subdivisions, because queries
+    /// the pair tree that may be as small; larger ones are searched with an error of at least 0.4 and few subdivisions, because queries
     /// so far out open many nodes anyway. Unless a radius is capped or a limit of the search (subdivisions, candidates waiting)
     /// is reached. Paper, section 5.1: 0.1.
     pub epsilon: f64,
@@ -94,7 +94,7 @@ pub struct CertificateParts {
     pub hierarchy: Hierarchy,
     /// What they speak of beside the model: metric, centre, rule, exceptions.
     pub scope: Scope,
-    /// Relative error that was allowed.
+    /// Relative error that was allowed of the root's radius; see [`CertifyOptions::epsilon`].
     pub epsilon: f64,
     /// `R_global`: radii are resolved up to here (paper, section 5.2); infinite when no mode moves anything.
     pub global_radius: f64,

@@ -1,6 +1,6 @@
 //! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
-//! pairs)` (paper, section 5.2). Small nodes are searched as wholes, and what lies in them gets their radius: no query
-//! looks into them.
+//! pairs)` (paper, section 5.2). Small nodes are searched as wholes, and what lies in them gets their radius: no
+//! discrete or continuous query looks into them.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
