@@ -228,6 +228,12 @@ impl Hierarchy {
         }
     }
 
+    /// Whether a node is searched and queried as a whole, so that nothing is known of the pairs within it: it is small, and not
+    /// the root, whose pairs of children have radii of their own.
+    pub(crate) fn is_whole(&self, n: u32) -> bool {
+        n != 0 && self.nodes[n as usize].is_small()
+    }
+
     /// The same as far as the certified pair tree goes: none where both are small.
     #[inline]
     pub(crate) fn split_large(&self, n: u32, m: u32) -> Option<Split> {

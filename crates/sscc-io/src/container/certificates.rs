@@ -18,17 +18,18 @@
 //! | `ignored` | U32 | i x 2 | pairs that never count, sorted |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
 //! | `pair_limit` | F64 | 1 | the pair tree is complete below this: a pair of nodes that it lacks is certified up to here; 0: no tree |
-//! | `pair_starts` | U32 | n or 0 | for each node where the pairs of its children start; 2^32 - 1: none is below the limit |
+//! | `pair_starts` | U32 | n or 0 | for each node where the pairs of its children start; 2^32 - 1: none is below the limit, or the node is small |
 //! | `pair_radii` | F32 | t | the radius of each pair of nodes, rounded down, below the limit |
-//! | `pair_links` | U32 | t | bits 0 to 27: where its children start (0: none, both nodes are leaves); 28 to 30: which child of its parent it is; 31: no sibling follows |
+//! | `pair_links` | U32 | t | bits 0 to 27: where its children start (0: none, both nodes are small); 28 to 30: which child of its parent it is; 31: no sibling follows |
 //!
 //! A pair of nodes is split into the pairs of the children of the one of more triangles (the first of equals; never a leaf) with the
 //! other one. Lists of siblings stand breadth first, those of the nodes' children before all others.
 //!
 //! Text: `metric` (the kind), `scheme` ("full" where there is a pair tree, else "paper"), `neighbours` ("exclude": triangles that share a vertex are no pair; "include-one-vertex": those that share just one
 //! count where they meet beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for
-//! adjacency). Nothing is inferred from the scheme's name. Versions 1 and 2 have no pair tree, and a text `pairs`
-//! ("root-children") instead.
+//! adjacency). Nothing is inferred from the scheme's name. A small node has at most 64 triangles, and is not the root: the tree
+//! says nothing of the pairs within it. Version 3 has a tree that does, which is not read; versions 1 and 2 have none, and a
+//! text `pairs` ("root-children") instead.
 
 use std::path::Path;
 
@@ -147,6 +148,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let pair_tree = read_pair_tree(&file)?;
     match file.text("scheme")? {
         found if found == scheme(&pair_tree) => {}
+        "full" if file.version() == 3 => {}
         "full" | "paper" => {
             return Err(FormatError::new(Place::Key("scheme".into()), "it does not agree with 'pair_limit'"));
         }
@@ -219,7 +221,7 @@ fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
 
 /// The pair tree; whether it is one over the hierarchy is told by [`Certificates::from_parts`].
 fn read_pair_tree(file: &Sealed<'_>) -> Result<PairTree, FormatError> {
-    if file.version() < 3 {
+    if file.version() < 4 {
         return Ok(PairTree::default());
     }
     let limit = file.f64("pair_limit")?.shaped(&[1])?.values[0];

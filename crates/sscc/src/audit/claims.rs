@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::random::Random;
-use crate::certificates::child_pairs;
+use crate::certificates::{child_pairs, roots_of};
 use crate::{CertificateParts, Pair};
 
 /// No pair of triangles between two nodes, or within one where both are the same, collides below the radius.
@@ -81,7 +81,7 @@ impl<'a> Claims<'a> {
         let nodes = self.parts.hierarchy.nodes().len();
         let (all, stored): (Vec<Pair>, Vec<u32>) = if parent < nodes {
             let stored = tree.of_node(parent as u32).map(|(_, entry)| entry.which()).collect();
-            (child_pairs(&hierarchy.nodes()[parent]).collect(), stored)
+            (roots_of(hierarchy, parent as u32).collect(), stored)
         } else {
             let (n, m) = self.entries[parent - nodes];
             let Some(split) = hierarchy.split_large(n, m) else { return Vec::new() };
@@ -133,7 +133,7 @@ impl<'a> Claims<'a> {
         if let Some(claim) = of_root.filter(is_broken) {
             return Some(claim);
         }
-        if tree.limit() <= 0.0 {
+        if tree.limit() <= 0.0 || hierarchy.is_whole(n) {
             return None;
         }
         // And from there down the pairs of nodes that hold one each.

@@ -75,7 +75,7 @@ pub(super) fn measure(
             } else {
                 let n = responsible(certificates, n);
                 let node = &nodes[n as usize];
-                if node.is_leaf() || n != 0 && node.is_small() {
+                if node.is_leaf() || parts.hierarchy.is_whole(n) {
                     search.within(n, cap);
                 } else {
                     search.between(child_pairs(node), cap);
@@ -119,7 +119,7 @@ fn responsible(certificates: &Certificates, mut n: u32) -> u32 {
     loop {
         let radius = parts.node_radii[n as usize];
         // Computed as a whole.
-        if n != 0 && parts.hierarchy.nodes()[n as usize].is_small() {
+        if parts.hierarchy.is_whole(n) {
             return n;
         }
         let mut children = parts.hierarchy.nodes()[n as usize].children();

@@ -1,6 +1,6 @@
 //! Which pairs of nodes the certified pair tree holds, and their radii.
 //!
-//! The tree is grown from the pairs of all nodes' children, in rounds of ever higher limits: a pair whose lower bound is
+//! The tree is grown from the pairs of the children of all nodes that are not small, in rounds of ever higher limits: a pair whose lower bound is
 //! below the limit is split, two small nodes get a radius, searched without subdivision. What each pair becomes
 //! depends on the model alone, so that any number of threads gives the same tree. The budget ends it: then the limit is what
 //! the pairs stored are complete for.
@@ -9,8 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::child_pairs;
-use super::pair_tree::{Entry, MOST_ENTRIES, PairTree, round_down};
+use super::pair_tree::{Entry, MOST_ENTRIES, PairTree, roots_of, round_down};
 use super::search::Search;
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Progress};
@@ -64,7 +63,7 @@ impl Grown {
 /// Lower bounds of pairs of nodes: of all that may be below a limit.
 pub(super) struct Grove {
     grown: Vec<Grown>,
-    /// For each node where its pairs of children start, all of them.
+    /// For each node where its pairs of children start, all of them; none within small nodes.
     roots: Vec<u32>,
     /// Pairs that are not below this have at least this radius.
     reached: f64,
@@ -87,9 +86,9 @@ impl Grove {
         if budget == 0 || limit <= 0.0 || global_radius > f64::from(f32::MAX) {
             return Ok(grove);
         }
-        for node in hierarchy.nodes() {
+        for n in 0..hierarchy.nodes().len() as u32 {
             grove.roots.push(grove.grown.len() as u32);
-            grove.grown.extend(child_pairs(node).map(|pair| Grown::new(pair, 0.0)));
+            grove.grown.extend(roots_of(hierarchy, n).map(|pair| Grown::new(pair, 0.0)));
         }
         // Places are 32 bits.
         let room = budget.saturating_mul(SLACK).max(2 * grove.grown.len()).min(1 << 31);
@@ -247,10 +246,10 @@ impl Grove {
             return PairTree::default();
         }
         // What is known of a node or a pair as a whole holds for all pairs below it.
-        for (n, node) in hierarchy.nodes().iter().enumerate() {
+        for n in 0..hierarchy.nodes().len() {
             let first = self.roots[n] as usize;
             let radius = round_down(node_radii[n]);
-            for pair in &mut self.grown[first..first + child_pairs(node).count()] {
+            for pair in &mut self.grown[first..first + roots_of(hierarchy, n as u32).count()] {
                 pair.lower = pair.lower.max(radius);
             }
         }
@@ -285,9 +284,9 @@ impl Grove {
             }
             (start, stored)
         };
-        for (n, node) in hierarchy.nodes().iter().enumerate() {
+        for n in 0..hierarchy.nodes().len() {
             let first = self.roots[n] as usize;
-            let (start, stored) = add(&mut lists, first..first + child_pairs(node).count());
+            let (start, stored) = add(&mut lists, first..first + roots_of(hierarchy, n as u32).count());
             starts.push(if stored > 0 { start as u32 } else { u32::MAX });
         }
         let mut entries: Vec<Entry> = Vec::with_capacity(radii.len().min(self.budget));

@@ -13,8 +13,8 @@ use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
 pub use digest::Digest;
-pub(crate) use pair_tree::Entry as PairEntry;
 pub use pair_tree::PairTree;
+pub(crate) use pair_tree::{Entry as PairEntry, roots_of};
 pub(crate) use precompute::{child_pairs, within_small};
 pub use scope::Scope;
 pub(crate) use search::Search;

@@ -3,7 +3,7 @@
 //! With radii of nodes alone a query walks along every common border of siblings that are not certified together: their
 //! boxes always overlap. The tree stores the radius of every pair of nodes below a limit. It is built by the splitting
 //! rule alone ([`Hierarchy::split`]), never by boxes: boxes that are apart at rest may meet later. So below the limit a pair
-//! that is missing is certified; from the limit on, absence means nothing.
+//! that is missing is certified; from the limit on, absence means nothing. Of pairs within small nodes it says nothing.
 
 use crate::Pair;
 use crate::hierarchy::Hierarchy;
@@ -59,6 +59,12 @@ pub(super) fn round_down(radius: f64) -> f32 {
     rounded.clamp(0.0, f32::MAX)
 }
 
+/// The pairs of a node's children, from which the tree is grown: none within small nodes, which queries look at as a whole.
+pub(crate) fn roots_of(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
+    let node = (!hierarchy.is_whole(n)).then(|| &hierarchy.nodes()[n as usize]);
+    node.into_iter().flat_map(super::child_pairs)
+}
+
 /// The pairs of nodes that may collide below a limit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PairTree {
@@ -69,7 +75,7 @@ pub struct PairTree {
 }
 
 impl PairTree {
-    /// Below this a pair that is not stored is certified. 0 where no pairs are stored.
+    /// Below this a pair that is not stored is certified, within small nodes apart. 0 where no pairs are stored.
     pub fn limit(&self) -> f64 {
         self.limit
     }
@@ -89,7 +95,7 @@ impl PairTree {
         self.entries.is_empty()
     }
 
-    /// For each node where its pairs of children start; `u32::MAX` where none is stored.
+    /// For each node where its pairs of children start; `u32::MAX` where none is stored, as within small nodes.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
@@ -134,11 +140,11 @@ impl PairTree {
         }
         // Breadth first, each list of siblings right after the one before: what is visited is visited once.
         let mut pairs: Vec<Pair> = Vec::new();
-        for (node, start) in nodes.iter().zip(&self.starts) {
+        for (n, start) in self.starts.iter().enumerate() {
             if *start == NOTHING {
                 continue;
             }
-            let all: Vec<_> = super::child_pairs(node).collect();
+            let all: Vec<_> = roots_of(hierarchy, n as u32).collect();
             self.append(*start, 0.0, all.len(), |which| all[which], &mut pairs)?;
         }
         let mut at = 0;
@@ -205,7 +211,7 @@ impl PairTree {
         })
     }
 
-    /// The stored pairs of a node's children.
+    /// The stored pairs of a node's children; none within small nodes.
     #[inline]
     pub(crate) fn of_node(&self, node: u32) -> impl Iterator<Item = (u32, Entry)> {
         self.siblings(self.starts[node as usize])

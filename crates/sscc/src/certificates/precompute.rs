@@ -197,7 +197,7 @@ impl Work<'_> {
     }
 
     fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64], grove: &Grove) -> f64 {
-        if node.is_leaf() || node.is_small() && n != 0 {
+        if node.is_leaf() || self.hierarchy.is_whole(n) {
             return search.within(n, self.global_radius);
         }
         let cap = self.least_child(node, radii);
@@ -224,10 +224,10 @@ impl Work<'_> {
     }
 }
 
-/// For each node whether it lies in a small one. The root's children never do: they have radii as pairs.
+/// For each node whether it lies in one that is searched as a whole.
 pub(crate) fn within_small(hierarchy: &Hierarchy) -> Vec<bool> {
     let mut within = vec![false; hierarchy.nodes().len()];
-    for node in hierarchy.nodes().iter().skip(1).filter(|node| node.is_small()) {
+    for node in (0..within.len()).filter(|n| hierarchy.is_whole(*n as u32)).map(|n| &hierarchy.nodes()[n]) {
         node.children().for_each(|child| within[child as usize] = true);
     }
     within

@@ -89,8 +89,12 @@ impl Query<'_> {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);
                 }
-                let stored = tree.map(|tree| tree.of_node(n));
-                let certified = self.certified_pairs(tree, stored.into_iter().flatten());
+                let certified = if self.asked.hierarchy.is_whole(n) {
+                    [(UNKNOWN, 0.0); MOST_SIBLINGS]
+                } else {
+                    let stored = tree.map(|tree| tree.of_node(n));
+                    self.certified_pairs(tree, stored.into_iter().flatten())
+                };
                 for (which, (pair, (place, bound))) in child_pairs(&node_n).zip(certified).enumerate() {
                     let radii =
                         self.asked.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
@@ -151,7 +155,7 @@ const LEAST: f64 = 1.0 / 64.0;
 /// The place of what is not in the pair tree: a node against itself, and pairs certified up to its limit.
 const NONE: u32 = u32::MAX;
 
-/// The place of what lies below the ends of the pair tree: it says nothing of it.
+/// The place of what the pair tree says nothing of: within a small node, and below the tree's ends.
 const UNKNOWN: u32 = u32::MAX - 1;
 
 /// The pairs of the four children that a node has at most.

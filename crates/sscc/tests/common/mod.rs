@@ -331,6 +331,33 @@ fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
     Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
 }
 
+/// A strip of several clusters along a curve that comes near itself, or crosses itself; some of its corners on vertices of
+/// their own. Modes are functions of position.
+pub fn winding_strip(random: &mut Random, seed: u64) -> ReducedModel {
+    let steps = 60 + random.below(60);
+    let (turns, flat, noise) = (random.power(0.0, 0.7), random.power(-1.5, 0.0), random.power(-3.0, -1.0));
+    let mut p: Vec<DVec3> = (0..=steps)
+        .flat_map(|i| {
+            let s = turns * std::f64::consts::TAU * i as f64 / steps as f64;
+            let x = DVec3::new((2.0 * s).sin(), (3.0 * s + 0.5).sin(), flat * (s + 1.0).sin());
+            [x, x + DVec3::Z * 0.1]
+        })
+        .map(|x| x + random.vector() * noise * 0.1)
+        .collect();
+    let mut faces: Vec<[u32; 3]> = (0..2 * steps as u32).map(|i| [i, i + 1, i + 2]).collect();
+    if seed.is_multiple_of(3) {
+        for corner in faces.iter_mut().flatten().filter(|_| random.below(6) == 0) {
+            p.push(p[*corner as usize]);
+            *corner = p.len() as u32 - 1;
+        }
+    }
+    let rank = 1 + random.below(4);
+    let ways: Vec<[DVec3; 2]> = (0..rank).map(|_| [random.vector(), random.vector()]).collect();
+    let bend = |x: DVec3| ways.iter().map(move |[way, along]| *way * (2.0 * x.dot(*along)).sin());
+    let modes = Modes::new(rank, p.iter().flat_map(|x| bend(*x)).collect()).unwrap();
+    ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
+}
+
 /// Options of every kind, by the number of the model.
 pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     let random = &mut Random::new(seed + 3_000_000);

@@ -159,6 +159,20 @@ fn version_2_is_read() {
     assert_eq!(certificates_from_bytes(&again).unwrap(), read);
 }
 
+/// Their pair trees said something of pairs within small nodes.
+#[test]
+fn version_3_is_read_without_its_pair_tree() {
+    let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&strip(900), &options, &()).unwrap();
+    assert!(!certificates.parts().pair_tree.is_empty());
+    let bytes = certificates_to_bytes(&certificates).unwrap();
+    let mut writer = SealedWriter::new(super::super::Kind { version: 3, ..CERTIFICATES });
+    copy(&Sealed::parse(&bytes, CERTIFICATES).unwrap(), &mut writer, &[]);
+    let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
+    assert_eq!(read.parts().pair_tree, sscc::PairTree::default());
+    assert_eq!(read.parts().node_radii, certificates.parts().node_radii);
+}
+
 #[test]
 fn infinite_radii_are_kept() {
     let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
@@ -186,8 +200,8 @@ fn other_kinds_and_newer_versions_are_refused() {
     let model_file = SealedWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = SealedWriter::new(super::super::Kind { version: 4, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 4"));
+    let newer = SealedWriter::new(super::super::Kind { version: 5, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 5"));
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn certify(model: &ReducedModel, budget: usize) -> Certificates {
     Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
 }
 
-/// All pairs of triangles that the tree does not certify at this norm: within a leaf, or between two with an entry that has
+/// All pairs of triangles that the tree does not certify at this norm: within a small node, or between two with an entry that has
 /// been passed, as have all above it.
 fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     let mut open = Vec::new();
@@ -42,7 +42,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
         open.extend(x.iter().flat_map(|a| y.iter().map(|b| (*a.min(b), *a.max(b)))));
     };
     for (n, node) in hierarchy.nodes().iter().enumerate() {
-        if node.is_leaf() {
+        if node.is_leaf() || hierarchy.is_whole(n as u32) {
             add(n as u32, n as u32);
             continue;
         }
