@@ -66,7 +66,7 @@ impl Default for CertifyOptions {
 
 impl CertifyOptions {
     /// Bytes for each triangle, if nothing is said.
-    pub const DEFAULT_BUDGET: usize = 8;
+    pub const DEFAULT_BUDGET: usize = 16;
 
     /// How many exceptions a mesh may have if nothing is said: half the number of its triangles. Testing more costs
     /// as much as radii can save.
