@@ -169,7 +169,7 @@ pub struct Options {
     /// Which certificates are stored [default: full; paper where check computes them for itself]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
-    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default: 8]
+    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default: 16]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
     #[command(flatten)]
