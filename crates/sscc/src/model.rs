@@ -102,6 +102,11 @@ impl ReducedModel {
         (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last
     }
 
+    /// An upper bound (up to rounding) of every `|U_k q_k|` of one mode.
+    pub(crate) fn moved_by(&self, k: usize, q_k: f64) -> f64 {
+        self.mode_reach[k] * q_k.abs()
+    }
+
     /// Refuses a q that is no configuration of this model; else gives the reach of the shape at q, an upper
     /// bound of every `|p| + sum_k |U_k q_k|` (up to rounding), from which error terms are made.
     ///

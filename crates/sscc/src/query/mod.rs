@@ -15,6 +15,7 @@ mod finder;
 mod found;
 mod frame;
 mod kinetic;
+mod near;
 mod never;
 mod normal_cones;
 mod pack;
@@ -34,6 +35,7 @@ use crate::pairs::PairFilter;
 use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
 use asked::{Asked, Ends};
 use finder::Finder;
+use near::Near;
 use tables::Tables;
 
 pub use batch::Answer;
@@ -92,6 +94,7 @@ pub struct Query<'a> {
     /// Made by the first continuous query.
     continuous: Option<Box<Finder<Impact, 2>>>,
     norm: f64,
+    near: Near,
     /// Scratch for `q - center`; empty where the centre is 0.
     offset: Vec<f64>,
 }
@@ -149,7 +152,8 @@ impl<'a> Query<'a> {
         let filter = Arc::new(PairFilter::new(model, &scope.rule));
         let asked = Asked { model, certificates, scope, hierarchy, filter, method, progress: &() };
         let discrete = Finder::new(&Arc::new(Tables::new(&asked)), method);
-        Self { asked, discrete, continuous: None, norm: 0.0, offset }
+        let near = Near::new(&asked);
+        Self { asked, discrete, continuous: None, norm: 0.0, near, offset }
     }
 
     /// The same query, which looks now and then whether it was cancelled. Nothing is reported.
@@ -201,13 +205,17 @@ impl<'a> Query<'a> {
         self.discrete.begin(limit);
         let mut ends = Ends { q, norm: 0.0, reach: 0.0, ball: None };
         for q in q {
-            ends.reach = ends.reach.max(self.asked.model.check_coordinates(q)?);
             let scope = &self.asked.scope;
-            ends.norm = ends.norm.max(if self.offset.is_empty() {
+            let norm = if q.len() != scope.center.len() {
+                f64::INFINITY
+            } else if self.offset.is_empty() {
                 scope.metric.norm(q)
             } else {
                 scope.metric.norm_from(q, &scope.center, &mut self.offset)
-            });
+            };
+            let near = norm < self.near.radius;
+            let reach = if near { self.near.reach } else { self.asked.model.check_coordinates(q)? };
+            (ends.norm, ends.reach) = (ends.norm.max(norm), ends.reach.max(reach));
         }
         self.norm = ends.norm;
         Ok(ends)
