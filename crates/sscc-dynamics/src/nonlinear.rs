@@ -88,7 +88,7 @@ impl NonlinearOscillator {
             let change = matrix.partial_piv_lu().solve(Mat::from_fn(r, 1, |i, _| residual[i]));
             b.iter_mut().enumerate().for_each(|(k, b)| *b -= change[(k, 0)]);
         }
-        Err(DynamicsError::Diverged { energy: self.energy(q, v) })
+        Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
 
     /// Kinetic and elastic energy.
@@ -181,7 +181,7 @@ mod tests {
         let mut a = vec![0.0; 2];
         let before = q.clone();
         let answer = oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2]);
-        assert!(matches!(answer, Err(DynamicsError::Diverged { .. })));
+        assert!(matches!(answer, Err(DynamicsError::Unsolved { .. })));
         assert_eq!(q, before);
     }
 }

@@ -66,6 +66,11 @@ impl RigidMotion {
         self.spin(self.orientation)
     }
 
+    /// The inverse of the inertia tensor, in axes of the rest pose.
+    pub(crate) fn inverse_inertia(&self) -> DMat3 {
+        self.inverse
+    }
+
     fn spin(&self, orientation: DQuat) -> DVec3 {
         orientation * (self.inverse * (orientation.inverse() * self.angular_momentum))
     }

@@ -1,8 +1,9 @@
 //! Mass, centre and inertia of a solid.
 
 use glam::{DMat3, DVec3};
+use sscc::Modes;
 
-use crate::Solid;
+use crate::{ModesError, Solid};
 
 /// Mass, its centre and inertia of a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,31 @@ impl Solid {
         let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
         let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - second;
         MassProperties { mass, center: origin + center, inertia }
+    }
+}
+
+impl Solid {
+    /// The integral of each mode of the solid's vertices over the mass: times an acceleration, the force of gravity on it. 0 for
+    /// modes of a free body, which move its centre of mass nowhere.
+    ///
+    /// # Errors
+    /// When the modes are of another number of vertices.
+    pub fn mode_moments(&self, modes: &Modes) -> Result<Vec<DVec3>, ModesError> {
+        let vertices = self.vertices().len();
+        if modes.vertices() != vertices {
+            return Err(ModesError::ElementIndex { index: 0, vertices });
+        }
+        let mut moments = vec![DVec3::ZERO; modes.rank()];
+        for index in 0..self.element_count() {
+            let element = self.element(index);
+            for (a, row) in element.vertices.iter().zip(element.masses()) {
+                let mass: f64 = row.iter().sum();
+                for (moment, u) in moments.iter_mut().zip(modes.of_vertex(*a)) {
+                    *moment += *u * mass;
+                }
+            }
+        }
+        Ok(moments)
     }
 }
 
