@@ -59,6 +59,8 @@ pub struct Sound {
     pub modes: usize,
     /// Of them; none: that of the body.
     pub damping: Option<Damping>,
+    /// So many times as high as the body's own frequencies: as if it were of a stiffer material.
+    pub pitch: f64,
 }
 
 /// The scenes that come with the program, near those of the paper's Table 1.
@@ -203,10 +205,11 @@ fn response(scene: &Section<'_>) -> Result<Response> {
 }
 
 fn sound(scene: &Section<'_>) -> Result<Option<Sound>> {
-    let Some(sound) = scene.section("sound", &["modes", "damping"])? else { return Ok(None) };
+    let Some(sound) = scene.section("sound", &["modes", "damping", "pitch"])? else { return Ok(None) };
     Ok(Some(Sound {
         modes: sound.count("modes", model::MOST_RANK)?.unwrap_or(200),
         damping: model::damping(&sound)?,
+        pitch: sound.positive("pitch")?.unwrap_or(1.0),
     }))
 }
 

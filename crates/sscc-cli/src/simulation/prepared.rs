@@ -84,7 +84,8 @@ impl PreparedModel {
             );
             let (model, elasticity) = case::modes(&begun, Kind::Linear(sound.modes), cache)?;
             let damping = sound.damping.unwrap_or(spec.damping);
-            let eigenvalues = diagonal(&elasticity);
+            let square = sound.pitch * sound.pitch;
+            let eigenvalues: Vec<f64> = diagonal(&elasticity).iter().map(|x| x * square).collect();
             Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
         });
         let shape = Shape::new(case.model.clone(), case.full.certificates.clone(), elasticity, mass)?;

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Error, Result, anyhow};
+use cpu_time::ThreadTime;
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, Start, State, World};
 
 use super::history::{BodyFacts, History, Layout, PARTS, StepFacts};
@@ -25,6 +26,8 @@ pub const ENERGY_STEPS: usize = 8;
 /// What became of a simulation.
 pub struct Ran {
     pub history: History,
+    /// Processor time of this thread for all steps; none where some were made by another process.
+    pub processor_seconds: Option<f64>,
     /// Why it ended early, if it did.
     pub failure: Option<Error>,
 }
@@ -45,8 +48,10 @@ pub fn run(scene: &Scene, prepared: &Prepared, folder: &Path, steps: usize, mete
         restore(&mut world, &mut sounds, at, &checkpoint.memory).context("the checkpoint")?;
     }
     let mut simulation = Simulation { world, sounds, layout, numbers: Vec::new() };
+    let is_whole = log.len() == 0;
+    let processor = ThreadTime::now();
     let mut last = Instant::now();
-    let mut failure = None;
+    let (mut failure, mut can_go_on) = (None, true);
     meter.start(log.len());
     while log.len() + simulation.waiting() < steps {
         if let Err(error) = interrupt::check() {
@@ -55,6 +60,7 @@ pub fn run(scene: &Scene, prepared: &Prepared, folder: &Path, steps: usize, mete
         }
         if let Err(error) = simulation.step() {
             failure = Some(named(error, &simulation.world));
+            can_go_on = false;
             break;
         }
         if simulation.numbers.len() >= KEPT {
@@ -67,12 +73,13 @@ pub fn run(scene: &Scene, prepared: &Prepared, folder: &Path, steps: usize, mete
         }
         meter.report(log.len() + simulation.waiting(), steps, scene.step);
     }
+    let processor_seconds = is_whole.then(|| processor.elapsed().as_secs_f64());
     log.append(&std::mem::take(&mut simulation.numbers))?;
-    // A state that cannot go on is no place to go on from.
-    if failure.is_none() || interrupt::happened() {
+    // What diverged is no place to go on from.
+    if can_go_on {
         log.write_checkpoint(&simulation.memory())?;
     }
-    Ok(Ran { history: log.history()?.first(steps), failure })
+    Ok(Ran { history: log.history()?.first(steps), processor_seconds, failure })
 }
 
 /// The bodies of a scene at its beginning.
@@ -166,14 +173,11 @@ impl Simulation<'_> {
         clock.enter(Some(SOUND));
         let sound = self.hear();
         clock.enter(None);
-        if let Err(error) = advanced {
-            self.numbers.truncate(start);
-            return Err(error);
-        }
         let facts = StepFacts { seconds: clock.seconds, energy, sound };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);
-        Ok(())
+        // The state from which it could not go on is kept, too.
+        advanced.map(drop)
     }
 
     fn hear(&mut self) -> f64 {

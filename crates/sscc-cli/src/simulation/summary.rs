@@ -21,8 +21,9 @@ pub struct Summary {
     pub step: f64,
     pub simulated_seconds: f64,
     pub simulation_seconds: f64,
-    /// Seconds simulated in each second that passed.
+    /// Seconds simulated in each second that passed; and in each second of the processor, where one thread did it all.
     pub real_time_factor: f64,
+    pub real_time_factor_processor: Option<f64>,
     pub colliding_steps: usize,
     pub body_steps: usize,
     pub colliding_body_steps: usize,
@@ -47,7 +48,12 @@ pub struct ModelFacts {
 }
 
 impl Summary {
-    pub fn new(scene: &Scene, prepared: &Prepared, history: &History) -> Self {
+    pub fn new(
+        scene: &Scene,
+        prepared: &Prepared,
+        history: &History,
+        processor_seconds: Option<f64>,
+    ) -> Self {
         let steps = history.len();
         let colliding: Vec<usize> = (0..steps).map(|state| history.colliding(state)).collect();
         let facts = || (0..steps).map(|state| history.facts(state));
@@ -73,6 +79,10 @@ impl Summary {
             simulated_seconds: steps as f64 * scene.step,
             simulation_seconds: seconds,
             real_time_factor: steps as f64 * scene.step / seconds,
+            // Several bodies are tested on other threads, too.
+            real_time_factor_processor: processor_seconds
+                .filter(|_| scene.bodies.len() == 1)
+                .map(|seconds| steps as f64 * scene.step / seconds),
             colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
             body_steps: steps * scene.bodies.len(),
             colliding_body_steps: colliding.iter().sum(),
@@ -98,13 +108,15 @@ impl Summary {
         }
         let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
         lines.push(format!(
-            "{}: {}, {}, {} s, simulated in {:.2} s ({:.2} times real time)",
+            "{}: {}, {}, {} s, simulated in {:.2} s ({:.2} times real time{})",
             self.scene,
             if self.objects == 1 { "one body".into() } else { format!("{} bodies", self.objects) },
             counted(self.steps as u64, "step"),
             self.simulated_seconds,
             self.simulation_seconds,
-            self.real_time_factor
+            self.real_time_factor,
+            self.real_time_factor_processor
+                .map_or(String::new(), |factor| format!(", {factor:.2} on one core"))
         ));
         lines.push(format!(
             "self-contact in {} of {} steps ({:.1}%), in {:.1}% with each body counted",

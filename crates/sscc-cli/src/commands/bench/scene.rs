@@ -85,7 +85,7 @@ fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Resul
     let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
     let folder = session.cache.folder().join(format!("{}-{hash}.scene", scene.name));
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let Ran { history, failure } = run(scene, prepared, &folder, scene.steps, &Meter::new())?;
+    let Ran { history, failure, .. } = run(scene, prepared, &folder, scene.steps, &Meter::new())?;
     match failure {
         Some(error) => Err(error),
         None => {

@@ -39,12 +39,12 @@ fn simulate(
     let in_scene = || scene.name.clone();
     let prepared = Prepared::get(scene, models, cache).with_context(in_scene)?;
     let steps = args.steps.map_or(scene.steps, |steps| steps as usize);
-    let Ran { history, failure } =
+    let Ran { history, processor_seconds, failure } =
         run(scene, &prepared, folder, steps, &Meter::new()).with_context(in_scene)?;
     if history.len() == 0 {
         return Err(failure.unwrap_or_else(|| anyhow::anyhow!("no step was made")).context(in_scene()));
     }
-    let summary = Summary::new(scene, &prepared, &history);
+    let summary = Summary::new(scene, &prepared, &history, processor_seconds);
     // Who presses Ctrl-C wants to wait no longer.
     let traditional =
         if interrupt::happened() { Vec::new() } else { traditional::costs(scene, &prepared, &history)? };
