@@ -27,6 +27,10 @@ pub(crate) struct Contact {
     pub offset: f64,
     /// How far the points may slide apart.
     pub slack: f64,
+    /// By how much the spring is longer than the skin: see [`adapted`](crate::contacts::adapted).
+    pub preload: f64,
+    /// The gap at present.
+    pub gap: f64,
     /// Of the two points: place at rest, from the centre of mass.
     pub rest: [DVec3; 2],
     /// Of the two points: displacements by the modes. Within one body the first is the difference, the second empty.
@@ -37,12 +41,19 @@ pub(crate) struct Contact {
 }
 
 /// How easily the modes move a point: `sum_k U_k U_k'`, in axes of the body.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Mobility {
     /// At once.
     pub quick: DMat3,
     /// With each mode's share `w^2 / (w^2 + lambda)`, where w is the angular frequency of contacts.
     pub slow: DMat3,
+}
+
+/// None. (The default of a matrix is the identity.)
+impl Default for Mobility {
+    fn default() -> Self {
+        Self { quick: DMat3::ZERO, slow: DMat3::ZERO }
+    }
 }
 
 impl Mobility {
@@ -58,8 +69,9 @@ impl Mobility {
 }
 
 impl Contact {
-    /// How far the two points are apart along the normal, less the depth at the beginning, and how far across.
-    pub fn gap(&self, bodies: [&Body<'_>; 2]) -> (f64, f64) {
+    /// Brings the gap up to date: how far the two points are apart along the normal, less the depth at the beginning. Gives how far
+    /// they are apart across.
+    pub fn measure(&mut self, bodies: [&Body<'_>; 2]) -> f64 {
         let (apart, normal) = if self.is_within() {
             (self.rest[0] - self.rest[1] + moved(&self.modes[0], &bodies[0].q), self.normal)
         } else {
@@ -67,7 +79,8 @@ impl Contact {
             (x - y, bodies[1].rigid.orientation * self.normal)
         };
         let along = apart.dot(normal);
-        (along - self.offset, (apart - normal * along).length())
+        self.gap = along - self.offset;
+        (apart - normal * along).length()
     }
 
     /// Where the two points are in the world; of two bodies.
@@ -111,7 +124,7 @@ impl Contact {
             |x: &[DVec3; 3]| [0, 1, 2].map(|n| x[n].distance(x[(n + 1) % 3])).into_iter().fold(0.0, f64::max);
         self.slack = longest(&corners[0]).max(longest(&corners[1]));
         self.normal = crossing.normal;
-        self.offset = crossing.depth;
+        (self.gap, self.offset, self.preload) = (-crossing.depth, crossing.depth, 0.0);
         let points: [DVec3; 2] = std::array::from_fn(|n| mean(&corners[n], crossing.weights[n]));
         self.offset += self.normal.dot(points[0] - points[1]);
         if indices[0] != indices[1] {

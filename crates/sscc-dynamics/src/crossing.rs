@@ -27,26 +27,32 @@ impl Crossing {
     /// Of two triangles that have a point in common.
     ///
     /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in the
-    /// material, and the way out, taken back, are depth and normal (Hirota et al. 2000). Where no corner is inside, two edges
-    /// cross: the normals of both triangles tell the way.
+    /// material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out through the triangle
+    /// that was crossed: near an edge it may lead through the face behind, along which nothing comes apart. Where no corner is inside, or the way is
+    /// another one, the normals of both triangles tell it.
     pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Self {
         let x = middle(&a.corners, &b.corners);
         let weights = [a, b].map(|facet| inside(weights(x, &facet.corners)));
+        let normals = [a, b].map(|facet| normal(&facet.corners).normalize_or_zero());
         let (mut way, mut depth) = (DVec3::ZERO, 0.0_f64);
-        for (sign, from, to) in [(1.0, a, b), (-1.0, b, a)] {
+        for (sign, from, to, outwards) in [(1.0, a, b, normals[1]), (-1.0, b, a, normals[0])] {
             if let Some(material) = Material::of(to) {
                 for (d, out) in from.corners.iter().filter_map(|corner| material.depth(*corner)) {
-                    way += out * (sign * d);
-                    depth = depth.max(d);
+                    if out.dot(outwards) > THROUGH {
+                        way += out * (sign * d);
+                        depth = depth.max(d);
+                    }
                 }
             }
         }
-        let normals = [a, b].map(|facet| normal(&facet.corners).normalize_or_zero());
         let apart = normals[1] - normals[0];
         let normal = way.try_normalize().or_else(|| apart.try_normalize()).unwrap_or(normals[1]);
         Self { weights, normal: normal.try_normalize().unwrap_or(DVec3::X), depth }
     }
 }
+
+/// The cosine of the angle between a triangle's normal and a way out that leads through it.
+const THROUGH: f64 = 0.7;
 
 /// The way from the axes of a deformed triangle into its rest pose.
 struct Material<'a> {
@@ -117,4 +123,26 @@ fn inside(weights: [f64; 3]) -> [f64; 3] {
     let positive = weights.map(|w| w.max(0.0));
     let sum: f64 = positive.iter().sum();
     positive.map(|w| w / sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_is_on_both_triangles() {
+        let a = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+        let b = [DVec3::new(1.0, 1.0, -1.0), DVec3::new(1.0, 1.0, 2.0), DVec3::new(3.0, 3.0, 0.5)];
+        // They have in common the way from (1, 1, 0) to (2, 2, 0).
+        let x = middle(&a, &b);
+        assert!((x - DVec3::new(1.5, 1.5, 0.0)).length() < 1e-12, "{x}");
+        for corners in [a, b] {
+            let w = weights(x, &corners);
+            let y = corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
+            assert!((x - y).length() < 1e-12 && (w.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            assert!(w.iter().all(|w| *w >= -1e-12));
+        }
+        assert_eq!(inside([1.5, -0.5, 0.0]), [1.0, 0.0, 0.0]);
+        assert_eq!(weights(x, &[DVec3::X; 3]), [1.0 / 3.0; 3]);
+    }
 }

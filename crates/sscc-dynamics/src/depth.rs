@@ -247,3 +247,66 @@ impl Normals {
 fn edge(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sscc_modes::shapes;
+
+    #[test]
+    fn a_box_has_its_distances() {
+        let corner =
+            |n: u32| DVec3::new(f64::from(n & 1), f64::from(n >> 1 & 1) * 2.0, f64::from(n >> 2) * 3.0) + 5.0;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        let field = DepthField::new(&TriMesh::new((0..8).map(corner).collect(), faces).unwrap());
+        let mut seen = [0; 2];
+        for n in 0..4000 {
+            let cell =
+                DVec3::new(f64::from(n % 11), f64::from(n / 11 % 17), f64::from(n / 187)) * 0.15 - 0.02;
+            let inside = cell.min(DVec3::new(1.0, 2.0, 3.0) - cell);
+            let expected = if inside.min_element() > 0.0 {
+                -inside.min_element()
+            } else {
+                inside.min(DVec3::ZERO).length()
+            };
+            match field.at(cell + 5.0) {
+                Some((distance, gradient)) => {
+                    assert!(
+                        (distance - expected).abs() < field.spacing,
+                        "{cell}: {distance}, not {expected}"
+                    );
+                    if expected.abs() < 0.02 {
+                        assert!((distance - expected).abs() < 0.1 * field.spacing || expected > 0.0);
+                        assert!((gradient.length() - 1.0).abs() < 0.5, "{cell}: {gradient}");
+                    }
+                    seen[usize::from(distance < 0.0)] += 1;
+                }
+                None => assert!(expected > field.spacing, "{cell} is {expected} away"),
+            }
+        }
+        assert!(seen[0] > 30 && seen[1] > 500, "{seen:?}");
+    }
+
+    #[test]
+    fn the_spring_is_deepest_along_its_middle_and_directions_point_outwards() {
+        let spring = shapes::spring();
+        let field = DepthField::new(&spring);
+        assert!(field.distances.len() <= 1 << 21);
+        let deepest = field.distances.iter().fold(0.0_f32, |m, x| m.min(*x));
+        // The tube's radius is 0.03.
+        assert!((-0.03..-0.027).contains(&deepest), "{deepest}");
+        let p = spring.rest_positions();
+        for face in spring.faces().iter().step_by(7) {
+            let [a, b, c] = face.map(|v| p[v as usize]);
+            let (normal, middle) = ((b - a).cross(c - a).normalize(), (a + b + c) / 3.0);
+            for depth in [0.002, 0.01] {
+                let (distance, gradient) = field.at(middle - normal * depth).unwrap();
+                assert!((distance + depth).abs() < 0.002, "{distance} at {depth}");
+                assert!(gradient.normalize().dot(normal) > 0.9);
+            }
+        }
+        assert!(field.at(DVec3::splat(1e9)).is_none() && field.at(DVec3::NAN).is_none());
+        assert!(field.at(DVec3::ZERO).is_none(), "the axis is outside");
+    }
+}

@@ -4,6 +4,9 @@ use glam::DVec3;
 
 use crate::DynamicsError;
 use crate::body::Body;
+use crate::contact::{Mobility, moved};
+use crate::contacts::adapted;
+use crate::solve::{GROUND, Source, Touch};
 
 /// A plane that nothing passes; inside is where `normal . x < height`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +44,12 @@ pub(crate) struct NearGround {
     q: Vec<f64>,
     /// How much of the margin the last step used up.
     used: f64,
-    pub(crate) vertices: Vec<u32>,
+    /// Ascending.
+    vertices: Vec<u32>,
+    /// How easily each is moved.
+    mobilities: Vec<Mobility>,
+    /// By how much the springs of the ground are longer than the skin: see [`adapted`].
+    pub(crate) preload: f64,
 }
 
 impl NearGround {
@@ -81,10 +89,51 @@ impl NearGround {
             body.posed.vertices_below(ground.normal, ground.height + skin + near, &mut self.vertices);
         }
         self.margin = Some(near.max(clear));
+        self.mobilities.clear();
+        let modes = shape.model().modes();
+        self.mobilities.extend(self.vertices.iter().map(|v| Mobility::of(modes.of_vertex(*v), &body.shares)));
         (self.position, self.normal, self.used) = (body.rigid.position, local, 0.0);
         self.q.clear();
         self.q.extend_from_slice(&body.q);
         Ok(())
+    }
+
+    /// Adds the vertices that touch.
+    pub(crate) fn touch(
+        &mut self,
+        number: u32,
+        body: &Body<'_>,
+        ground: &Ground,
+        skin: f64,
+        creep: f64,
+        touches: &mut Vec<Touch>,
+    ) {
+        let (first, mut least) = (touches.len(), skin);
+        let rotation = body.rotation();
+        let local = rotation.transpose() * ground.normal;
+        let shape = body.shape();
+        let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
+        let height = ground.normal.dot(body.rigid.position) - ground.height;
+        for (&v, mobility) in self.vertices.iter().zip(&self.mobilities) {
+            let point = rest[v as usize] - shape.mass().center + moved(modes.of_vertex(v), &body.q);
+            let gap = height + local.dot(point);
+            if gap < skin {
+                least = least.min(gap);
+                touches.push(Touch {
+                    bodies: [number, GROUND],
+                    source: Source::Vertex(v),
+                    normal: ground.normal,
+                    arms: [rotation * point, DVec3::ZERO],
+                    depth: skin - gap,
+                    mobility: [*mobility, Mobility::default()],
+                    friction: ground.friction,
+                    pressure: 0.0,
+                    drag: DVec3::ZERO,
+                });
+            }
+        }
+        self.preload = adapted(self.preload, least, skin, creep);
+        touches[first..].iter_mut().for_each(|touch| touch.depth += self.preload);
     }
 
     /// Forgets all: the body was put elsewhere.

@@ -10,6 +10,7 @@
 mod body;
 mod constrain;
 mod contact;
+mod contacts;
 mod crossing;
 mod depth;
 mod detect;

@@ -69,6 +69,9 @@ pub(crate) struct Spring {
     pub damping: f64,
     /// Step (s).
     pub step: f64,
+    /// The share of the spring's force that is that of the step's end. 0 keeps the energy but is unstable for long steps, 1 is always
+    /// stable and damps.
+    pub implicit: f64,
     /// Rounds at most.
     pub rounds: usize,
 }
@@ -149,7 +152,7 @@ impl Solver {
             push = if push > 0.0 { push.min(most) } else { 0.0 };
         }
         let mut impulse = normal * push;
-        let mut after = v + row.response * impulse;
+        let after = v + row.response * impulse;
         let mut work = impulse.dot(v + after) / 2.0;
         let pressure = touch.pressure + push;
         // Friction: what would stop sliding along its direction, within the cone.
@@ -166,12 +169,10 @@ impl Solver {
             if friction_work <= 0.0 || work + friction_work <= *ledger {
                 impulse += change;
                 work += friction_work;
-                after = slid;
             } else {
                 drag = touch.drag;
             }
         }
-        let _ = after;
         *ledger -= work;
         (self.touches[n].pressure, self.touches[n].drag) = (pressure, drag);
         self.act(&touch, impulse, bodies, contacts);
@@ -240,9 +241,9 @@ impl Touch {
 impl Row {
     fn new(touch: &Touch, quick: DMat3, slow: DMat3, spring: &Spring) -> Self {
         let normal = touch.normal;
-        // Per mass: stiffness w^2, damping 2 zeta w; both implicit.
-        let Spring { rate, damping, step, .. } = *spring;
-        let divisor = 2.0 * damping + rate * step;
+        // Per mass: stiffness w^2, damping 2 zeta w.
+        let Spring { rate, damping, step, implicit, .. } = *spring;
+        let divisor = 2.0 * damping + implicit * rate * step;
         Self {
             response: quick,
             along: normal.dot(quick * normal),

@@ -131,3 +131,68 @@ fn vertex_normals(mesh: &TriMesh) -> Vec<DVec3> {
     }
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sscc_modes::shapes;
+
+    /// A spring with three modes: the last one too high to be heard.
+    fn bank(damping: Damping) -> SoundBank {
+        let mesh = shapes::spring_of(60, 6);
+        let p = mesh.rest_positions().to_vec();
+        let modes =
+            Modes::new(3, p.iter().flat_map(|p| [*p, DVec3::Z * p.x, DVec3::X * p.z]).collect()).unwrap();
+        let eigenvalues = [440.0, 1000.0, 30_000.0].map(|f| (std::f64::consts::TAU * f).powi(2));
+        SoundBank::new(&mesh, &modes, &eigenvalues, damping, 44_100.0).unwrap()
+    }
+
+    fn blow(impulse: DVec3) -> Impulse {
+        Impulse { body: 0, vertices: [3, 4, 5], weights: [0.5, 0.25, 0.25], impulse }
+    }
+
+    #[test]
+    fn a_blow_rings_at_the_frequencies_and_dies_away() {
+        let mut damped = bank(Damping { mass: 10.0, stiffness: 0.0 });
+        assert_eq!(damped.modes(), 2);
+        assert_eq!(damped.sample(), 0.0);
+        damped.strike(&blow(DVec3::new(0.1, -0.2, 0.4)));
+        let samples: Vec<f64> = (0..44_100).map(|_| damped.sample()).collect();
+        let power = |hertz: f64, part: &[f64]| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for (n, x) in part.iter().enumerate() {
+                let phase = std::f64::consts::TAU * hertz * n as f64 / 44_100.0;
+                re += x * libm::cos(phase);
+                im += x * libm::sin(phase);
+            }
+            (re * re + im * im).sqrt()
+        };
+        let (early, late) = (&samples[..4410], &samples[39_690..]);
+        for (mode, hertz) in [440.0, 1000.0].into_iter().enumerate() {
+            // Amplitudes fall by e^(-5 t).
+            let decay = power(hertz, late) / power(hertz, early);
+            assert!((decay / libm::exp(-4.5) - 1.0).abs() < 0.05, "{decay}");
+            // Struck alone: its power is where its frequency is.
+            let mut bank = bank(Damping::default());
+            bank.v[mode] = 1.0;
+            let alone: Vec<f64> = (0..4410).map(|_| bank.sample()).collect();
+            let (at, beside) = (power(hertz, &alone), power(hertz + 55.0, &alone));
+            assert!(at > 5.0 * beside, "{at} and {beside}");
+        }
+    }
+
+    #[test]
+    fn a_bank_goes_on_from_its_state() {
+        let mut bank = bank(Damping::default());
+        bank.strike(&blow(DVec3::X));
+        for _ in 0..100 {
+            bank.sample();
+        }
+        let state = bank.state();
+        let expected: Vec<f64> = (0..100).map(|_| bank.sample()).collect();
+        let mut other = bank.clone();
+        other.restore(&state).unwrap();
+        assert_eq!((0..100).map(|_| other.sample()).collect::<Vec<f64>>(), expected);
+        assert!(other.restore(&state[1..]).is_err());
+    }
+}

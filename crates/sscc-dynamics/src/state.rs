@@ -15,30 +15,31 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum.
-const RIGID: usize = 13;
+/// Position, orientation, momentum, angular momentum, preload of the ground.
+const RIGID: usize = 13 + 1;
 
-/// Bodies, triangles, weights, normal, offset and slack of a contact.
-const CONTACT: usize = 2 + 2 + 6 + 3 + 2;
+/// Bodies, triangles, weights, normal, offset, slack and preload of a contact.
+const CONTACT: usize = 2 + 2 + 6 + 3 + 3;
 
 impl World<'_> {
     /// The present state.
     pub fn state(&self) -> State {
         let mut numbers = vec![self.ledger];
-        for body in &self.bodies {
+        for (body, near) in self.bodies.iter().zip(&self.near) {
             let rigid = &body.rigid;
             numbers.extend([&body.q, &body.v, &body.a].into_iter().flatten());
             numbers.extend(rigid.position.to_array());
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
+            numbers.push(near.preload);
         }
-        for contact in &self.contacts {
+        for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
             numbers.extend(contact.anchors.iter().map(|anchor| f64::from(anchor.triangle)));
             numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
             numbers.extend(contact.normal.to_array());
-            numbers.extend([contact.offset, contact.slack]);
+            numbers.extend([contact.offset, contact.slack, contact.preload]);
         }
         State { step: self.step, numbers }
     }
@@ -70,11 +71,12 @@ impl World<'_> {
             rigid.momentum = DVec3::from_array([(); 3].map(|()| next()));
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
             near.forget();
+            near.preload = next();
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
         }
-        self.contacts = contacts;
+        self.contacts.list = contacts;
         self.impulses.clear();
         Ok(())
     }
@@ -98,6 +100,7 @@ impl World<'_> {
             normal: DVec3::new(numbers[10], numbers[11], numbers[12]),
             offset: numbers[13],
             slack: numbers[14],
+            preload: numbers[15],
             ..Contact::default()
         })
     }

@@ -6,10 +6,10 @@ use sscc::Pair;
 
 use crate::body::{Body, Start};
 use crate::constrain::constrain;
-use crate::contact::{Contact, Mobility, moved};
+use crate::contacts::Contacts;
 use crate::detect::Neighbours;
 use crate::ground::NearGround;
-use crate::solve::{GROUND, Solver, Source, Spring, Touch};
+use crate::solve::{GROUND, Solver, Source, Spring};
 use crate::{DynamicsError, Obstacle, Response, Shape, WorldOptions};
 
 /// The parts of a step, in this order.
@@ -83,10 +83,7 @@ pub struct World<'a> {
     pub(crate) bodies: Vec<Body<'a>>,
     pub(crate) near: Vec<NearGround>,
     neighbours: Neighbours,
-    /// Sorted by key.
-    pub(crate) contacts: Vec<Contact>,
-    /// Memory of contacts that ended.
-    spare: Vec<Contact>,
+    pub(crate) contacts: Contacts,
     solver: Solver,
     /// Energy that contacts have taken from the motion so far, less what they gave back.
     pub(crate) ledger: f64,
@@ -105,6 +102,10 @@ struct Reference {
 /// So many times the kinetic energy that can be is a divergence.
 const BLOW_UP: f64 = 4.0;
 
+/// How fast springs adapt to a load that lasts, beside their own rate. Fast enough to hold in a few seconds what rests, so slow
+/// that an impact hardly notices.
+const CREEP: f64 = 1.0 / 300.0;
+
 impl<'a> World<'a> {
     /// An empty world.
     ///
@@ -117,8 +118,7 @@ impl<'a> World<'a> {
             bodies: Vec::new(),
             near: Vec::new(),
             neighbours: Neighbours::default(),
-            contacts: Vec::new(),
-            spare: Vec::new(),
+            contacts: Contacts::default(),
             solver: Solver::default(),
             ledger: 0.0,
             start: Reference::default(),
@@ -239,9 +239,11 @@ impl<'a> World<'a> {
         self.touch_ground()?;
         counts.ground = self.solver.touches.len();
         observer.enter(Phase::Penalty);
-        self.update_contacts();
-        counts.contacts = self.contacts.len();
-        self.touch_contacts();
+        let (skin, creep, friction) = (self.skin(), self.creep(), self.options.contact.friction);
+        let within = self.options.response == Response::Contact;
+        self.contacts.update(&self.bodies, within, &self.neighbours, skin);
+        counts.contacts = self.contacts.list.len();
+        self.contacts.touch(&self.bodies, skin, creep, friction, &mut self.solver.touches);
         self.push();
         observer.enter(Phase::Dynamics);
         self.move_on()?;
@@ -262,95 +264,17 @@ impl<'a> World<'a> {
 
     fn touch_ground(&mut self) -> Result<(), DynamicsError> {
         let Some(ground) = self.options.ground else { return Ok(()) };
-        let skin = self.skin();
+        let (skin, creep) = (self.skin(), self.creep());
         for (n, (body, near)) in self.bodies.iter_mut().zip(&mut self.near).enumerate() {
             near.update(body, &ground, skin)?;
-            let rotation = body.rotation();
-            let local = rotation.transpose() * ground.normal;
-            let shape = body.shape();
-            let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
-            let height = ground.normal.dot(body.rigid.position) - ground.height - skin;
-            for &v in &near.vertices {
-                let point = rest[v as usize] - shape.mass().center + moved(modes.of_vertex(v), &body.q);
-                let depth = -(height + local.dot(point));
-                if depth > 0.0 {
-                    let mobility = Mobility::of(modes.of_vertex(v), &body.shares);
-                    self.solver.touches.push(Touch {
-                        bodies: [n as u32, GROUND],
-                        source: Source::Vertex(v),
-                        normal: ground.normal,
-                        arms: [rotation * point, DVec3::ZERO],
-                        depth,
-                        mobility: [mobility, Mobility::default()],
-                        friction: ground.friction,
-                        pressure: 0.0,
-                        drag: DVec3::ZERO,
-                    });
-                }
-            }
+            near.touch(n as u32, body, &ground, skin, creep, &mut self.solver.touches);
         }
         Ok(())
     }
 
-    /// Ends contacts that are over, and begins those of new collisions.
-    fn update_contacts(&mut self) {
-        let (bodies, skin) = (&self.bodies, self.skin());
-        let mut kept = 0;
-        for n in 0..self.contacts.len() {
-            let contact = &self.contacts[n];
-            let [a, b] = contact.bodies.map(|body| &bodies[body as usize]);
-            let (gap, slid) = contact.gap([a, b]);
-            if gap < skin && slid < contact.slack {
-                self.contacts.swap(kept, n);
-                kept += 1;
-            }
-        }
-        self.spare.extend(self.contacts.drain(kept..));
-        let within = bodies.iter().enumerate().map(|(n, body)| ([n, n], &body.pairs[..]));
-        let found = within.filter(|(_, pairs)| !pairs.is_empty()).chain(self.neighbours.colliding());
-        for (indices, pairs) in found {
-            let [a, b] = indices.map(|n| &bodies[n]);
-            let indices = indices.map(|n| n as u32);
-            for &(i, j) in pairs {
-                if self.contacts[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key).is_ok() {
-                    continue;
-                }
-                let mut contact = self.spare.pop().unwrap_or_default();
-                let corners = if indices[0] == indices[1] {
-                    [i, j].map(|t| a.corners(t))
-                } else {
-                    [a.posed.corners(i), b.posed.corners(j)]
-                };
-                contact.begin(indices, (i, j), [a, b], corners);
-                self.contacts.push(contact);
-            }
-        }
-        self.contacts.sort_by_key(Contact::key);
-    }
-
-    fn touch_contacts(&mut self) {
-        let skin = self.skin();
-        for (n, contact) in self.contacts.iter().enumerate() {
-            let [a, b] = contact.bodies.map(|body| &self.bodies[body as usize]);
-            let mut touch = Touch {
-                bodies: contact.bodies,
-                source: Source::Contact(n as u32),
-                normal: contact.normal,
-                arms: [DVec3::ZERO; 2],
-                depth: skin - contact.gap([a, b]).0,
-                mobility: contact.mobility,
-                friction: self.options.contact.friction,
-                pressure: 0.0,
-                drag: DVec3::ZERO,
-            };
-            if !contact.is_within() {
-                touch.normal = b.rigid.orientation * contact.normal;
-                let [x, y] = contact.places([a, b]);
-                let middle = (x + y) * 0.5;
-                touch.arms = [middle - a.rigid.position, middle - b.rigid.position];
-            }
-            self.solver.touches.push(touch);
-        }
+    /// How much of what lacks to half the skin, or is more, is added to springs in a step.
+    fn creep(&self) -> f64 {
+        (CREEP * self.options.contact.rate() * self.options.step).min(1.0)
     }
 
     fn push(&mut self) {
@@ -359,13 +283,12 @@ impl<'a> World<'a> {
             return;
         }
         let contact = &self.options.contact;
-        let spring = Spring {
-            rate: contact.rate(),
-            damping: contact.damping,
-            step: self.options.step,
-            rounds: contact.rounds,
-        };
-        self.solver.solve(&mut self.bodies, &self.contacts, &spring, &mut self.ledger);
+        // So many springs on one body are as fast as the root of their number.
+        let angle = contact.rate() * self.options.step;
+        let implicit = (angle * angle * self.solver.touches.len() as f64).clamp(f64::EPSILON, 1.0);
+        let (rate, damping, rounds) = (contact.rate(), contact.damping, contact.rounds);
+        let spring = Spring { rate, damping, step: self.options.step, implicit, rounds };
+        self.solver.solve(&mut self.bodies, &self.contacts.list, &spring, &mut self.ledger);
         for touch in &self.solver.touches {
             let impulse = touch.normal * touch.pressure + touch.drag;
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
@@ -378,7 +301,7 @@ impl<'a> World<'a> {
                 let (vertices, weights) = match touch.source {
                     Source::Vertex(v) => ([v; 3], [1.0, 0.0, 0.0]),
                     Source::Contact(contact) => {
-                        let anchor = &self.contacts[contact as usize].anchors[n];
+                        let anchor = &self.contacts.list[contact as usize].anchors[n];
                         (body.shape().model().mesh().faces()[anchor.triangle as usize], anchor.weights)
                     }
                 };

@@ -269,3 +269,109 @@ impl<'a> PosedShape<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CertifyOptions, Modes, TriMesh};
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    /// A crumpled ball of loose triangles, with modes.
+    fn model(triangles: usize, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> = (0..triangles)
+            .flat_map(|_| {
+                let center = vector(state);
+                [(); 3].map(|()| center + vector(state) * 0.1)
+            })
+            .collect();
+        let faces = (0..triangles as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = positions.iter().flat_map(|p| [*p * 0.3, DVec3::new(p.y, -p.z, p.x * p.x)]).collect();
+        ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn pairs_are_those_of_all_triangles() {
+        let state = &mut 7;
+        let models = [model(400, state), model(150, state), model(40, state), model(9, state)];
+        let certificates = models.each_ref().map(|model| {
+            Certificates::compute(model, &CertifyOptions { budget: 0, ..CertifyOptions::default() }, &())
+                .unwrap()
+        });
+        let mut shapes: Vec<PosedShape<'_>> =
+            models.iter().zip(&certificates).map(|(m, c)| PosedShape::new(m, c).unwrap()).collect();
+        let (mut found, mut empty) = (0, 0);
+        for case in 0..60 {
+            // From on top of each other to apart; sometimes far from the origin.
+            let far = if case % 3 == 0 { DVec3::new(1e6, -3.0, 2e3) } else { DVec3::ZERO };
+            for shape in &mut shapes {
+                let rotation = DMat3::from_quat(glam::DQuat::from_scaled_axis(vector(state) * 3.0));
+                let translation = vector(state) * (0.05 * f64::from(case)) + far;
+                let q = [random(state), random(state)];
+                let pose = Pose { rotation, translation };
+                let (lower, upper) = shape.place(&q, &pose).unwrap();
+                for t in 0..shape.asked.model.mesh().faces().len() as u32 {
+                    let corners = shape.corners(t);
+                    assert!(corners.iter().all(|x| x.cmpge(lower).all() && x.cmple(upper).all()));
+                }
+                // Half of it below.
+                let normal = vector(state).normalize();
+                let height = normal.dot(translation) + random(state);
+                let mut below = Vec::new();
+                shape.vertices_below(normal, height, &mut below);
+                let vertices = 0..shape.asked.model.mesh().rest_positions().len() as u32;
+                let is_below = |v: &u32| normal.dot(pose.apply(shape.asked.model.position(*v, &q))) < height;
+                assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());
+            }
+            let around = (far - 2.0, far + 2.0);
+            for a in 0..shapes.len() {
+                for b in 0..a {
+                    let (left, right) = shapes.split_at_mut(a);
+                    let (x, y) = (&mut left[b], &mut right[0]);
+                    let mut pairs = Vec::new();
+                    x.colliding(y, around, &mut pairs);
+                    let mut expected = Vec::new();
+                    for i in 0..x.asked.model.mesh().faces().len() as u32 {
+                        for j in 0..y.asked.model.mesh().faces().len() as u32 {
+                            if intersect_triangle_triangle(&x.corners(i), &y.corners(j)) {
+                                expected.push((i, j));
+                            }
+                        }
+                    }
+                    assert_eq!(pairs, expected);
+                    found += pairs.len();
+                    empty += usize::from(pairs.is_empty());
+                    // Asked from the other side, with other boxes.
+                    let mut turned = vec![(0, 0)];
+                    y.colliding(x, (far - 1e3, far + 1.0), &mut turned);
+                    let mut turned: Vec<Pair> = turned.drain(1..).map(|(j, i)| (i, j)).collect();
+                    turned.sort_unstable();
+                    assert_eq!(turned, expected);
+                }
+            }
+        }
+        assert!(found > 200 && empty > 200, "{found} {empty}");
+    }
+
+    #[test]
+    fn what_has_no_place_is_refused() {
+        let model = model(20, &mut 3);
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let mut shape = PosedShape::new(&model, &certificates).unwrap();
+        for wrong in [f64::NAN, f64::INFINITY, 1e61] {
+            let moved = Pose { translation: DVec3::X * wrong, ..Pose::default() };
+            let turned = Pose { rotation: DMat3::IDENTITY * wrong, ..Pose::default() };
+            assert_eq!(shape.place(&[0.0; 2], &moved), Err(Error::CoordinatesRange));
+            assert_eq!(shape.place(&[0.0; 2], &turned), Err(Error::CoordinatesRange));
+        }
+        assert!(matches!(shape.place(&[0.0], &Pose::default()), Err(Error::CoordinatesLength { .. })));
+    }
+}
