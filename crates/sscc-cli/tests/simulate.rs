@@ -235,8 +235,11 @@ fn a_diverging_motion_is_named_and_kept() {
     assert_eq!(run.code, Some(2), "{run:?}");
     let message = run.stderr.strip_suffix('\n').unwrap();
     assert!(message.starts_with("error: step "), "{message}");
-    for part in ["the motion of body 1 diverges (energy ", " J)", "what was simulated until then is in scene"]
-    {
+    for part in [
+        "the motion of body 0 (counted from 0) diverges (energy ",
+        " J)",
+        "what was simulated until then is in scene",
+    ] {
         assert!(message.contains(part) && !message.contains('\n'), "{message}");
     }
     let out = folder.path().join("scene");
@@ -261,7 +264,7 @@ fn refusals() {
         ("= 8000", "= 2000", "sound: 2000 samples in a second"),
         ("shape = \"spring-4k\"", "file = \"none.obj\"", "none.obj: not found"),
         ("[0, 0, 0.2]", "[0, 0, 0]", "begins in the ground"),
-        ("[sound]\nmodes = 30", PAIR, "begins in body 1"),
+        ("[sound]\nmodes = 30", PAIR, "body 1 (counted from 0) begins in body 0"),
         ("youngs = 3e6", "youngs = 1e15", "longer than half a period of its first mode"),
     ] {
         let to = if to == PAIR { to.replace("0.4, 0", "0.01, 0") } else { to.into() };

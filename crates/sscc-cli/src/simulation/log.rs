@@ -76,6 +76,11 @@ impl Log {
         Ok((log, checkpoint))
     }
 
+    /// Whether a simulation can go on in the folder.
+    pub fn is_begun(folder: &Path) -> bool {
+        folder.join(CHECKPOINT).exists()
+    }
+
     /// Removes what a simulation left in the folder.
     pub fn restart(folder: &Path) -> Result<()> {
         for name in [CHECKPOINT, LOG] {

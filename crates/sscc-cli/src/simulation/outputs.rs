@@ -130,7 +130,7 @@ fn animation(path: &Path, scene: &Scene, prepared: &Prepared, history: &History)
     let track = |(body, spec): (usize, &crate::scene::BodySpec)| {
         let at = || frames.iter().map(|state| history.body(*state, body));
         Track {
-            name: format!("{} {}", models[spec.model].0, body + 1),
+            name: format!("{} {body}", models[spec.model].0),
             model: spec.model,
             center: prepared.models[spec.model].center(),
             positions: at().map(|facts| facts.position).collect(),

@@ -100,7 +100,7 @@ fn world<'a>(scene: &Scene, prepared: &'a Prepared) -> Result<World<'a>> {
             detection: scene.detection,
             ..Start::default()
         };
-        world.add(&model.shape, &start).with_context(|| format!("body {}", number + 1))?;
+        world.add(&model.shape, &start).with_context(|| format!("body {number} (counted from 0)"))?;
     }
     world.check_start()?;
     Ok(world)
@@ -123,7 +123,7 @@ fn restore(
     Ok(())
 }
 
-/// Names step, body and energy; bodies as the scene counts them, from 1.
+/// Names step, body and energy.
 fn named(error: DynamicsError, world: &World<'_>) -> Error {
     let (body, energy, cause) = match error {
         DynamicsError::Diverged { body, energy, .. } => (body, energy, String::new()),
@@ -136,9 +136,9 @@ fn named(error: DynamicsError, world: &World<'_>) -> Error {
             (body, energy, format!(": {other}"))
         }
     };
-    let (step, time, body) = (world.steps(), world.time(), body + 1);
+    let (step, time) = (world.steps(), world.time());
     anyhow!(
-        "step {step} ({time:.4} s): the motion of body {body} diverges (energy {energy:.3e} J){cause}; take more steps in a \
+        "step {step} ({time:.4} s): the motion of body {body} (counted from 0) diverges (energy {energy:.3e} J){cause}; take more steps in a \
          second, or more damping"
     )
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 
 use super::Session;
 use super::follow::follow;
@@ -11,10 +11,10 @@ use super::paper;
 use super::report::{Report, Whole};
 use super::sample::{half_diagonal, largest_displacement};
 use super::scenario::PaperTable;
-use crate::output::Output;
+use crate::output::{Output, one_line};
 use crate::progress::Bar;
 use crate::scene::Scene;
-use crate::simulation::{History, Meter, PARTS, Prepared, Ran, run};
+use crate::simulation::{History, Log, Meter, PARTS, Prepared, Ran, run};
 
 /// Steps that are measured, if nothing is said.
 const STEPS: usize = 100;
@@ -60,7 +60,7 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
     let measured_steps: Vec<Step> = steps.iter().enumerate().map(step).collect();
     let mut models = prepared.models.into_iter();
     let (Some(model), None) = (models.next(), models.next()) else {
-        anyhow::bail!("scenes of one model are measured");
+        bail!("scenes of one model are measured");
     };
     let mut case = model.case.with_paper(&session.cache)?;
     if session.args.quick {
@@ -79,13 +79,22 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
     Ok(Report::new(name.into(), share, &case, &measured, scene.bodies.len(), Some(whole(&history))))
 }
 
-/// The motion of the whole scene.
+/// The motion of the whole scene, simulated on one thread.
 fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Result<History> {
     let digest = prepared.digest(scene)?;
     let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
     let folder = session.cache.folder().join(format!("{}-{hash}.scene", scene.name));
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let Ran { history, failure, .. } = run(scene, prepared, &folder, scene.steps, &Meter::new())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let simulate = || pool.install(|| run(scene, prepared, &folder, scene.steps, &Meter::new()));
+    let Ran { history, failure, .. } = match simulate() {
+        Err(error) if Log::is_begun(&folder) => {
+            eprintln!("note: simulated anew: {}", one_line(&format!("{error:#}")));
+            Log::restart(&folder)?;
+            simulate()?
+        }
+        ran => ran?,
+    };
     match failure {
         Some(error) => Err(error),
         None => {
