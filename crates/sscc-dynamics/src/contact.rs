@@ -102,21 +102,21 @@ impl Contact {
     }
 
     /// Begins anew, in memory that may have served another one; corners are where the triangles are, in axes of the body
-    /// (within one body) or of the world.
+    /// (within one body) or of the world. False where they are none.
     pub fn begin(
         &mut self,
         indices: [u32; 2],
         (i, j): Pair,
         bodies: [&Body<'_>; 2],
         corners: [[DVec3; 3]; 2],
-    ) {
+    ) -> bool {
         let triangles = [i, j];
         let facets: [Facet<'_>; 2] = std::array::from_fn(|n| {
             let shape = bodies[n].shape();
             let rest = corners_at_rest(shape, triangles[n]);
             Facet { shape, corners: corners[n], rest }
         });
-        let crossing = Crossing::of(&facets[0], &facets[1]);
+        let Some(crossing) = Crossing::of(&facets[0], &facets[1]) else { return false };
         self.bodies = indices;
         self.anchors =
             std::array::from_fn(|n| Anchor { triangle: triangles[n], weights: crossing.weights[n] });
@@ -131,6 +131,7 @@ impl Contact {
             self.normal = bodies[1].rigid.orientation.inverse() * self.normal;
         }
         self.attach(bodies);
+        true
     }
 
     /// Makes all that follows from bodies and anchors.

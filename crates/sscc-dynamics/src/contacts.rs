@@ -44,8 +44,12 @@ impl Contacts {
                 } else {
                     [a.posed.corners(i), b.posed.corners(j)]
                 };
-                contact.begin(indices, (i, j), [a, b], corners);
-                self.list.push(contact);
+                let list = if contact.begin(indices, (i, j), [a, b], corners) {
+                    &mut self.list
+                } else {
+                    &mut self.spare
+                };
+                list.push(contact);
             }
         }
         if self.list.len() > kept {

@@ -29,11 +29,15 @@ impl Crossing {
     /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in the
     /// material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out through the triangle
     /// that was crossed: near an edge it may lead through the face behind, along which nothing comes apart. Where no corner is inside, or the way is
-    /// another one, the normals of both triangles tell it.
-    pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Self {
+    /// another one, the normals of both triangles tell it. None where both look the same way: such triangles graze each other, and others
+    /// beside them tell where to go.
+    pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Option<Self> {
         let x = middle(&a.corners, &b.corners);
         let weights = [a, b].map(|facet| inside(weights(x, &facet.corners)));
         let normals = [a, b].map(|facet| normal(&facet.corners).normalize_or_zero());
+        if normals[0].dot(normals[1]) > ALIKE {
+            return None;
+        }
         let (mut way, mut depth) = (DVec3::ZERO, 0.0_f64);
         for (sign, from, to, outwards) in [(1.0, a, b, normals[1]), (-1.0, b, a, normals[0])] {
             if let Some(material) = Material::of(to) {
@@ -46,10 +50,13 @@ impl Crossing {
             }
         }
         let apart = normals[1] - normals[0];
-        let normal = way.try_normalize().or_else(|| apart.try_normalize()).unwrap_or(normals[1]);
-        Self { weights, normal: normal.try_normalize().unwrap_or(DVec3::X), depth }
+        let normal = way.try_normalize().or_else(|| apart.try_normalize())?;
+        Some(Self { weights, normal, depth })
     }
 }
+
+/// The cosine of the angle between normals that look the same way.
+const ALIKE: f64 = 0.5;
 
 /// The cosine of the angle between a triangle's normal and a way out that leads through it.
 const THROUGH: f64 = 0.7;

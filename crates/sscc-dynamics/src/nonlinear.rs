@@ -7,7 +7,10 @@ use sscc_modes::ReducedForces;
 use crate::{Damping, DynamicsError};
 
 /// Newton's iterations at most in one step.
-const ITERATIONS: usize = 30;
+const ITERATIONS: usize = 60;
+
+/// Iterations with one derivative: a stiffness costs several times what forces cost, and changes little within a step.
+const REFACTOR: usize = 6;
 
 /// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
 const SOLVED: f64 = 1e-11;
@@ -63,7 +66,8 @@ impl NonlinearOscillator {
             (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect()
         };
         let velocity = |b: &[f64]| -> Vec<f64> { (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect() };
-        for _ in 0..ITERATIONS {
+        let mut factor = None;
+        for iteration in 0..ITERATIONS {
             let (x, y) = (position(&b), velocity(&b));
             let (inner, damped) = (self.forces.at(&x), self.damped(&y));
             let residual: Vec<f64> = (0..r).map(|k| b[k] + damped[k] + inner[k] - g[k]).collect();
@@ -79,16 +83,24 @@ impl NonlinearOscillator {
                 a.copy_from_slice(&b);
                 return Ok(());
             }
-            let stiffness = self.forces.stiffness(&x);
-            let matrix = Mat::from_fn(r, r, |i, j| {
-                f64::from(u8::from(i == j))
-                    + h / 2.0 * self.damping[i * r + j]
-                    + h * h / 4.0 * stiffness[i * r + j]
-            });
-            let change = matrix.partial_piv_lu().solve(Mat::from_fn(r, 1, |i, _| residual[i]));
+            if iteration % REFACTOR == 0 {
+                factor = Some(self.derivative(&x).partial_piv_lu());
+            }
+            let Some(factor) = &factor else { break };
+            let change = factor.solve(Mat::from_fn(r, 1, |i, _| residual[i]));
             b.iter_mut().enumerate().for_each(|(k, b)| *b -= change[(k, 0)]);
         }
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
+    }
+
+    /// Of the residual by the new acceleration, at the position x.
+    fn derivative(&self, x: &[f64]) -> Mat<f64> {
+        let (r, h, stiffness) = (self.forces.rank, self.step, self.forces.stiffness(x));
+        Mat::from_fn(r, r, |i, j| {
+            f64::from(u8::from(i == j))
+                + h / 2.0 * self.damping[i * r + j]
+                + h * h / 4.0 * stiffness[i * r + j]
+        })
     }
 
     /// Kinetic and elastic energy.
