@@ -212,7 +212,7 @@ mod tests {
                     !svg.contains("NaN") && !svg.contains("inf") && svg.contains("&lt;a &amp; b&gt;"),
                     "{svg}"
                 );
-                assert!(svg.starts_with("<svg") && svg.ends_with("</svg>"));
+                assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
             }
         }
     }
