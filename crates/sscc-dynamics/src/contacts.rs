@@ -17,7 +17,8 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
-    /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies count.
+    /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies
+    /// count.
     pub fn update(&mut self, bodies: &[Body<'_>], within: bool, neighbours: &Neighbours, skin: f64) {
         let mut kept = 0;
         for n in 0..self.list.len() {
@@ -94,8 +95,8 @@ impl Contacts {
 /// By how many skins a spring may be longer than its skin.
 const MOST_PRELOAD: f64 = 100.0;
 
-/// A spring is pressed together by what it holds. So that what rests does so within the skin, it grows by and by where the gap
-/// is less than half the skin.
+/// A spring is pressed together by what it holds. So that what rests does so within the skin, it grows by and by
+/// where the gap is less than half the skin.
 pub(crate) fn adapted(preload: f64, gap: f64, skin: f64, creep: f64) -> f64 {
     (preload + creep * (skin / 2.0 - gap).min(skin)).clamp(0.0, MOST_PRELOAD * skin)
 }

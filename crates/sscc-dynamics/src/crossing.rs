@@ -26,11 +26,11 @@ pub(crate) struct Crossing {
 impl Crossing {
     /// Of two triangles that have a point in common.
     ///
-    /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in the
-    /// material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out through the triangle
-    /// that was crossed: near an edge it may lead through the face behind, along which nothing comes apart. Where no corner is inside, or the way is
-    /// another one, the normals of both triangles tell it. None where both look the same way: such triangles graze each other, and others
-    /// beside them tell where to go.
+    /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in
+    /// the material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out
+    /// through the triangle that was crossed: near an edge it may lead through the face behind, along which nothing
+    /// comes apart. Where no corner is inside, or the way is another one, the normals of both triangles tell it. None
+    /// where both look the same way: such triangles graze each other, and others beside them tell where to go.
     pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Option<Self> {
         let x = middle(&a.corners, &b.corners);
         let weights = [a, b].map(|facet| inside(weights(x, &facet.corners)));
@@ -92,8 +92,8 @@ fn normal(x: &[DVec3; 3]) -> DVec3 {
     (x[1] - x[0]).cross(x[2] - x[0])
 }
 
-/// The mean of the points where edges of one pass through the other. It is on both up to rounding; where rounding hides all
-/// points, the triangles only touch.
+/// The mean of the points where edges of one pass through the other. It is on both up to rounding; where rounding
+/// hides all points, the triangles only touch.
 fn middle(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for (edges, face) in [(a, b), (b, a)] {

@@ -6,7 +6,8 @@ use crate::body::Body;
 use crate::contact::{Anchor, Contact};
 use crate::{DynamicsError, World};
 
-/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same bits.
+/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same
+/// bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Steps so far.
