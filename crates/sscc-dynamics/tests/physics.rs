@@ -1,4 +1,5 @@
 //! Motion against closed forms and conservation laws.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
