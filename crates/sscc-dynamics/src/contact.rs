@@ -30,6 +30,8 @@ pub(crate) struct Contact {
     pub slack: f64,
     /// By how much the spring is longer than the skin: see [`adapted`](crate::contacts::adapted).
     pub preload: f64,
+    /// For how many steps its triangles have collided since it was measured.
+    pub age: u32,
     /// The gap at present.
     pub gap: f64,
     /// Of the two points: place at rest, from the centre of mass.
@@ -125,7 +127,7 @@ impl Contact {
             |x: &[DVec3; 3]| [0, 1, 2].map(|n| x[n].distance(x[(n + 1) % 3])).into_iter().fold(0.0, f64::max);
         self.slack = longest(&corners[0]).max(longest(&corners[1]));
         self.normal = crossing.normal;
-        (self.gap, self.offset, self.preload) = (-crossing.depth, crossing.depth, 0.0);
+        (self.gap, self.offset, self.age) = (-crossing.depth, crossing.depth, 0);
         let points: [DVec3; 2] = std::array::from_fn(|n| mean(&corners[n], crossing.weights[n]));
         self.offset += self.normal.dot(points[0] - points[1]);
         if indices[0] != indices[1] {

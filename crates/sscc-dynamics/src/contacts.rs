@@ -19,7 +19,15 @@ pub(crate) struct Contacts {
 impl Contacts {
     /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies
     /// count.
-    pub fn update(&mut self, bodies: &[Body<'_>], within: bool, neighbours: &Neighbours, skin: f64) {
+    /// What collides for `patience` steps is measured anew.
+    pub fn update(
+        &mut self,
+        bodies: &[Body<'_>],
+        within: bool,
+        neighbours: &Neighbours,
+        skin: f64,
+        patience: u32,
+    ) {
         let mut kept = 0;
         for n in 0..self.list.len() {
             let contact = &mut self.list[n];
@@ -36,21 +44,26 @@ impl Contacts {
             let [a, b] = indices.map(|n| &bodies[n]);
             let indices = indices.map(|n| n as u32);
             for &(i, j) in pairs {
-                if self.list[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key).is_ok() {
-                    continue;
+                let known = self.list[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key);
+                if let Ok(at) = known {
+                    self.list[at].age += 1;
+                    if self.list[at].age < patience {
+                        continue;
+                    }
                 }
-                let mut contact = self.spare.pop().unwrap_or_default();
                 let corners = if indices[0] == indices[1] {
                     [i, j].map(|t| a.corners(t))
                 } else {
                     [a.posed.corners(i), b.posed.corners(j)]
                 };
-                let list = if contact.begin(indices, (i, j), [a, b], corners) {
-                    &mut self.list
-                } else {
-                    &mut self.spare
-                };
-                list.push(contact);
+                if let Ok(at) = known {
+                    self.list[at].begin(indices, (i, j), [a, b], corners);
+                    continue;
+                }
+                let mut contact = self.spare.pop().unwrap_or_default();
+                contact.preload = 0.0;
+                let is_one = contact.begin(indices, (i, j), [a, b], corners);
+                if is_one { &mut self.list } else { &mut self.spare }.push(contact);
             }
         }
         if self.list.len() > kept {

@@ -243,7 +243,8 @@ impl<'a> World<'a> {
         observer.enter(Phase::Penalty);
         let (skin, creep, friction) = (self.skin(), self.creep(), self.options.contact.friction);
         let within = self.options.response == Response::Contact;
-        self.contacts.update(&self.bodies, within, &self.neighbours, skin);
+        let patience = 1.0 / (self.options.contact.frequency * self.options.step);
+        self.contacts.update(&self.bodies, within, &self.neighbours, skin, patience.max(2.0) as u32);
         counts.contacts = self.contacts.list.len();
         self.contacts.touch(&self.bodies, skin, creep, friction, &mut self.solver.touches);
         self.push();
