@@ -32,7 +32,7 @@ impl Contacts {
         for n in 0..self.list.len() {
             let contact = &mut self.list[n];
             let slid = contact.measure(contact.bodies.map(|body| &bodies[body as usize]));
-            if contact.gap < skin && slid < contact.slack {
+            if contact.gap < LOST * skin && slid < contact.slack {
                 self.list.swap(kept, n);
                 kept += 1;
             }
@@ -104,6 +104,9 @@ impl Contacts {
         }
     }
 }
+
+/// A contact ends beyond so many skins: what its spring throws a little farther than the skin falls back on it.
+const LOST: f64 = 3.0;
 
 /// By how many skins a spring may be longer than its skin.
 const MOST_PRELOAD: f64 = 100.0;
