@@ -61,8 +61,9 @@ impl Default for Start {
     }
 }
 
-/// A body. A vertex is at `R (p + U q - c) + x` in the world: c is the centre of mass of the rest pose, R and x are the rigid
-/// motion. What the motion of the frame does to q (centrifugal forces) and deformation to the inertia is left out.
+/// A body. A vertex is at `R (p + U q - c) + x` in the world: c is the centre of mass of the rest pose, R and x are
+/// the rigid motion. What the motion of the frame does to q (centrifugal forces) and deformation to the inertia is
+/// left out.
 pub struct Body<'a> {
     shape: &'a Shape,
     is_free: bool,
@@ -267,7 +268,8 @@ impl<'a> Body<'a> {
         Ok(self.posed.place(&self.q, &pose)?)
     }
 
-    /// One step of free motion. Weight acts half before and half after the way, which is exact for the way of the centre.
+    /// One step of free motion. Weight acts half before and half after the way, which is exact for the way of the
+    /// centre.
     pub(crate) fn advance(&mut self, gravity: DVec3, step: f64) -> Result<(), DynamicsError> {
         let was_pushed = std::mem::take(&mut self.is_pushed);
         match &self.oscillator {

@@ -1,12 +1,13 @@
-//! The cheap response to self-collisions (paper, section 7): q stays in the ellipsoid that the root's certificate proves free.
+//! The cheap response to self-collisions (paper, section 7): q stays in the ellipsoid that the root's certificate
+//! proves free.
 
 use sscc::Certificates;
 
 use crate::DynamicsError;
 use crate::body::Body;
 
-/// Takes q back to the ellipsoid, and from v what leads out of it. Both lose energy: the ellipsoid is centred at the rest pose, or
-/// wherever the certificates have their centre.
+/// Takes q back to the ellipsoid, and from v what leads out of it. Both lose energy: the ellipsoid is centred at the
+/// rest pose, or wherever the certificates have their centre.
 ///
 /// # Errors
 /// When q is no configuration.

@@ -14,8 +14,9 @@ pub(crate) struct Anchor {
     pub weights: [f64; 3],
 }
 
-/// Two triangles in contact. Its points stay those where it began, so that in axes of the body a gap within one body is a linear function
-/// of q: a step costs O(r). It outlasts the collision by a skin, so that what rests does not go on colliding.
+/// Two triangles in contact. Its points stay those where it began, so that in axes of the body a gap within one body
+/// is a linear function of q: a step costs O(r). It outlasts the collision by a skin, so that what rests does not go
+/// on colliding.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contact {
     /// The two bodies; the same one twice for a contact within it.
@@ -29,14 +30,16 @@ pub(crate) struct Contact {
     pub slack: f64,
     /// By how much the spring is longer than the skin: see [`adapted`](crate::contacts::adapted).
     pub preload: f64,
+    /// For how many steps its triangles have collided since it was measured.
+    pub age: u32,
     /// The gap at present.
     pub gap: f64,
     /// Of the two points: place at rest, from the centre of mass.
     pub rest: [DVec3; 2],
     /// Of the two points: displacements by the modes. Within one body the first is the difference, the second empty.
     pub modes: [Vec<DVec3>; 2],
-    /// What an impulse of 1 along each axis does to the velocity of each point by the modes; and slowly, when only modes slower
-    /// than the contact follow.
+    /// What an impulse of 1 along each axis does to the velocity of each point by the modes; and slowly, when only
+    /// modes slower than the contact follow.
     pub mobility: [Mobility; 2],
 }
 
@@ -69,8 +72,8 @@ impl Mobility {
 }
 
 impl Contact {
-    /// Brings the gap up to date: how far the two points are apart along the normal, less the depth at the beginning. Gives how far
-    /// they are apart across.
+    /// Brings the gap up to date: how far the two points are apart along the normal, less the depth at the beginning.
+    /// Gives how far they are apart across.
     pub fn measure(&mut self, bodies: [&Body<'_>; 2]) -> f64 {
         let (apart, normal) = if self.is_within() {
             (self.rest[0] - self.rest[1] + moved(&self.modes[0], &bodies[0].q), self.normal)
@@ -101,8 +104,8 @@ impl Contact {
         (self.bodies, (self.anchors[0].triangle, self.anchors[1].triangle))
     }
 
-    /// Begins anew, in memory that may have served another one; corners are where the triangles are, in axes of the body
-    /// (within one body) or of the world. False where they are none.
+    /// Begins anew, in memory that may have served another one; corners are where the triangles are, in axes of the
+    /// body (within one body) or of the world. False where they are none.
     pub fn begin(
         &mut self,
         indices: [u32; 2],
@@ -124,7 +127,7 @@ impl Contact {
             |x: &[DVec3; 3]| [0, 1, 2].map(|n| x[n].distance(x[(n + 1) % 3])).into_iter().fold(0.0, f64::max);
         self.slack = longest(&corners[0]).max(longest(&corners[1]));
         self.normal = crossing.normal;
-        (self.gap, self.offset, self.preload) = (-crossing.depth, crossing.depth, 0.0);
+        (self.gap, self.offset, self.age) = (-crossing.depth, crossing.depth, 0);
         let points: [DVec3; 2] = std::array::from_fn(|n| mean(&corners[n], crossing.weights[n]));
         self.offset += self.normal.dot(points[0] - points[1]);
         if indices[0] != indices[1] {

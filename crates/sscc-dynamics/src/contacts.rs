@@ -17,13 +17,22 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
-    /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies count.
-    pub fn update(&mut self, bodies: &[Body<'_>], within: bool, neighbours: &Neighbours, skin: f64) {
+    /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies
+    /// count.
+    /// What collides for `patience` steps is measured anew.
+    pub fn update(
+        &mut self,
+        bodies: &[Body<'_>],
+        within: bool,
+        neighbours: &Neighbours,
+        skin: f64,
+        patience: u32,
+    ) {
         let mut kept = 0;
         for n in 0..self.list.len() {
             let contact = &mut self.list[n];
             let slid = contact.measure(contact.bodies.map(|body| &bodies[body as usize]));
-            if contact.gap < skin && slid < contact.slack {
+            if contact.gap < LOST * skin && slid < contact.slack {
                 self.list.swap(kept, n);
                 kept += 1;
             }
@@ -35,21 +44,26 @@ impl Contacts {
             let [a, b] = indices.map(|n| &bodies[n]);
             let indices = indices.map(|n| n as u32);
             for &(i, j) in pairs {
-                if self.list[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key).is_ok() {
-                    continue;
+                let known = self.list[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key);
+                if let Ok(at) = known {
+                    self.list[at].age += 1;
+                    if self.list[at].age < patience {
+                        continue;
+                    }
                 }
-                let mut contact = self.spare.pop().unwrap_or_default();
                 let corners = if indices[0] == indices[1] {
                     [i, j].map(|t| a.corners(t))
                 } else {
                     [a.posed.corners(i), b.posed.corners(j)]
                 };
-                let list = if contact.begin(indices, (i, j), [a, b], corners) {
-                    &mut self.list
-                } else {
-                    &mut self.spare
-                };
-                list.push(contact);
+                if let Ok(at) = known {
+                    self.list[at].begin(indices, (i, j), [a, b], corners);
+                    continue;
+                }
+                let mut contact = self.spare.pop().unwrap_or_default();
+                contact.preload = 0.0;
+                let is_one = contact.begin(indices, (i, j), [a, b], corners);
+                if is_one { &mut self.list } else { &mut self.spare }.push(contact);
             }
         }
         if self.list.len() > kept {
@@ -91,11 +105,14 @@ impl Contacts {
     }
 }
 
+/// A contact ends beyond so many skins: what its spring throws a little farther than the skin falls back on it.
+const LOST: f64 = 3.0;
+
 /// By how many skins a spring may be longer than its skin.
 const MOST_PRELOAD: f64 = 100.0;
 
-/// A spring is pressed together by what it holds. So that what rests does so within the skin, it grows by and by where the gap
-/// is less than half the skin.
+/// A spring is pressed together by what it holds. So that what rests does so within the skin, it grows by and by
+/// where the gap is less than half the skin.
 pub(crate) fn adapted(preload: f64, gap: f64, skin: f64, creep: f64) -> f64 {
     (preload + creep * (skin / 2.0 - gap).min(skin)).clamp(0.0, MOST_PRELOAD * skin)
 }

@@ -26,11 +26,11 @@ pub(crate) struct Crossing {
 impl Crossing {
     /// Of two triangles that have a point in common.
     ///
-    /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in the
-    /// material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out through the triangle
-    /// that was crossed: near an edge it may lead through the face behind, along which nothing comes apart. Where no corner is inside, or the way is
-    /// another one, the normals of both triangles tell it. None where both look the same way: such triangles graze each other, and others
-    /// beside them tell where to go.
+    /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in
+    /// the material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out
+    /// through the triangle that was crossed: near an edge it may lead through the face behind, along which nothing
+    /// comes apart. Where no corner is inside, or the way is another one, the normals of both triangles tell it. None
+    /// where both look the same way: such triangles graze each other, and others beside them tell where to go.
     pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Option<Self> {
         let x = middle(&a.corners, &b.corners);
         let weights = [a, b].map(|facet| inside(weights(x, &facet.corners)));
@@ -49,11 +49,20 @@ impl Crossing {
                 }
             }
         }
-        let apart = normals[1] - normals[0];
+        // The less one reaches behind the other's plane, the more likely it came through there.
+        let behind = |from: &Facet<'_>, to: &Facet<'_>, outwards: DVec3| {
+            let deepest = from.corners.iter().map(|x| outwards.dot(to.corners[0] - *x)).fold(0.0, f64::max);
+            outwards / deepest.max(f64::MIN_POSITIVE)
+        };
+        let apart =
+            behind(a, b, normals[1]).clamp_length_max(MOST) - behind(b, a, normals[0]).clamp_length_max(MOST);
         let normal = way.try_normalize().or_else(|| apart.try_normalize())?;
         Some(Self { weights, normal, depth })
     }
 }
+
+/// Lengths beyond this have squares beyond the range of numbers.
+const MOST: f64 = 1e100;
 
 /// The cosine of the angle between normals that look the same way.
 const ALIKE: f64 = 0.5;
@@ -92,8 +101,8 @@ fn normal(x: &[DVec3; 3]) -> DVec3 {
     (x[1] - x[0]).cross(x[2] - x[0])
 }
 
-/// The mean of the points where edges of one pass through the other. It is on both up to rounding; where rounding hides all
-/// points, the triangles only touch.
+/// The mean of the points where edges of one pass through the other. It is on both up to rounding; where rounding
+/// hides all points, the triangles only touch.
 fn middle(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for (edges, face) in [(a, b), (b, a)] {

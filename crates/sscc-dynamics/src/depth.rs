@@ -1,8 +1,8 @@
 //! Material depth: how deep a point of the rest pose lies under the surface (Hirota et al. 2000).
 //!
-//! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper inside the
-//! nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest (angle-weighted
-//! pseudonormals, Baerentzen and Aanaes 2005).
+//! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper
+//! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
+//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -55,8 +55,8 @@ impl DepthField {
         field
     }
 
-    /// The distance of a point from the surface (model unit), negative inside, and the direction in which it grows; none
-    /// further outside than about two cells.
+    /// The distance of a point from the surface (model unit), negative inside, and the direction in which it grows;
+    /// none further outside than about two cells.
     pub fn at(&self, x: DVec3) -> Option<(f64, DVec3)> {
         let cell = (x - self.origin) / self.spacing;
         let base = cell.floor();

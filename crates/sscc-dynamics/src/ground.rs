@@ -33,8 +33,9 @@ const LEAST: f64 = 1e-3;
 
 /// The vertices of one body that can reach the ground soon, found once for many steps.
 ///
-/// No vertex has come nearer to the plane since then than `|n . dx| + |da| (radius + sum_k u_k |q_k|) + sum_k u_k |dq_k|` for the plane's normal a in axes of
-/// the body, moved by dx. While that is less than what the search reached beyond the skin, no other vertex touches.
+/// No vertex has come nearer to the plane since then than `|n . dx| + |da| (radius + sum_k u_k |q_k|) + sum_k u_k
+/// |dq_k|` for the plane's normal a in axes of the body, moved by dx. While that is less than what the search reached
+/// beyond the skin, no other vertex touches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NearGround {
     /// How near the others may have come; none: nothing is known.

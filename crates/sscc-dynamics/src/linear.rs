@@ -40,8 +40,8 @@ struct Step {
     vf: f64,
 }
 
-/// Independent modes, `q'' + c q' + lambda q = f`, advanced by steps of one length. A step is exact for forces that are constant
-/// during it, whatever the frequency: nothing is unstable, and nothing loses energy but by damping.
+/// Independent modes, `q'' + c q' + lambda q = f`, advanced by steps of one length. A step is exact for forces that
+/// are constant during it, whatever the frequency: nothing is unstable, and nothing loses energy but by damping.
 #[derive(Clone, Debug)]
 pub struct LinearOscillator {
     steps: Vec<Step>,
@@ -84,8 +84,8 @@ impl LinearOscillator {
 }
 
 impl Step {
-    /// With `a = c / 2` and `d = lambda - a^2`: `q = e^(-a t) (q0 (C + a S) + v0 S)` for `C = cos(t root d)` and
-    /// `S = sin(t root d) / root d`, hyperbolic where d is negative. A constant force adds the integral of `e^(-a t) S`.
+    /// With `a = c / 2` and `d = lambda - a^2`: `q = e^(-a t) (q0 (C + a S) + v0 S)` for `C = cos(t root d)` and `S =
+    /// sin(t root d) / root d`, hyperbolic where d is negative. A constant force adds the integral of `e^(-a t) S`.
     fn new(lambda: f64, damping: f64, h: f64) -> Self {
         let a = damping / 2.0;
         let (c, s) = decaying(lambda, a, h);

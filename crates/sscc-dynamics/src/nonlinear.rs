@@ -15,9 +15,9 @@ const REFACTOR: usize = 6;
 /// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
 const SOLVED: f64 = 1e-11;
 
-/// A body with reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`, advanced by the implicit Newmark method of average
-/// acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is that of the
-/// stiffness at rest.
+/// A body with reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`, advanced by the implicit Newmark method
+/// of average acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is
+/// that of the stiffness at rest.
 #[derive(Clone, Debug)]
 pub struct NonlinearOscillator {
     forces: ReducedForces,

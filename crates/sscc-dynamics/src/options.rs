@@ -4,20 +4,21 @@ use glam::DVec3;
 
 use crate::{DynamicsError, Ground};
 
-/// How contacts answer. Each is a spring with a damper that only pushes, as stiff as the masses that meet there ask for: what counts is
-/// how fast it is. Contacts take energy, by damping and friction, and never give more than all have taken before.
+/// How contacts answer. Each is a spring with a damper that only pushes, as stiff as the masses that meet there ask
+/// for: what counts is how fast it is. Contacts take energy, by damping and friction, and never give more than all
+/// have taken before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
-    /// Frequency (Hz) of a mass on the spring: a contact lasts about half a period, and what comes with a speed v is pressed in by
-    /// about `v / (2 pi frequency)`.
+    /// Frequency (Hz) of a mass on the spring: a contact lasts about half a period, and what comes with a speed v is
+    /// pressed in by about `v / (2 pi frequency)`.
     pub frequency: f64,
     /// Damping ratio. 0: as much comes back as came; see [`ContactOptions::restitution`].
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// How far what was in contact is kept apart (model unit); none: a thousandth of the smallest body's radius. What rests is held by a
-    /// spring within this distance, hence free of collisions while `frequency` is not too low: it must hold the weight,
-    /// `(2 pi frequency)^2 skin` well above that of gravity.
+    /// How far what was in contact is kept apart (model unit); none: a thousandth of the smallest body's radius. What
+    /// rests is held by a spring within this distance, hence free of collisions while `frequency` is not too low: it
+    /// must hold the weight, `(2 pi frequency)^2 skin` well above that of gravity.
     pub skin: Option<f64>,
     /// Rounds of the iteration that finds impulses, at most.
     pub rounds: usize,
@@ -35,8 +36,8 @@ impl ContactOptions {
         std::f64::consts::TAU * self.frequency
     }
 
-    /// The share of its speed with which a mass leaves a contact, when steps are short: `exp(-zeta t)`, where t is the time, times the
-    /// angular frequency, after which spring and damper together no longer push.
+    /// The share of its speed with which a mass leaves a contact, when steps are short: `exp(-zeta t)`, where t is
+    /// the time, times the angular frequency, after which spring and damper together no longer push.
     pub fn restitution(&self) -> f64 {
         let zeta = self.damping;
         // x'' + 2 zeta x' + x = 0 from x = 0, x' = 1: the force 2 zeta x' + x ends.
@@ -60,7 +61,8 @@ pub enum Response {
     /// Colliding triangles push each other out.
     #[default]
     Contact,
-    /// q is kept inside the ellipsoid that the root's certificate proves free (paper, section 7): nothing has to be detected.
+    /// q is kept inside the ellipsoid that the root's certificate proves free (paper, section 7): nothing has to be
+    /// detected.
     Constrain,
     /// Nothing: bodies pass through themselves.
     Ignore,

@@ -81,8 +81,8 @@ impl RigidMotion {
         self.angular_momentum += (at - self.position).cross(impulse);
     }
 
-    /// Moves freely for a time h (s). The orientation turns with the angular velocity of the middle of the step, which keeps the
-    /// energy to second order, without drift.
+    /// Moves freely for a time h (s). The orientation turns with the angular velocity of the middle of the step,
+    /// which keeps the energy to second order, without drift.
     pub fn advance(&mut self, h: f64) {
         self.position += self.momentum * (h / self.properties.mass);
         let mut spin = self.angular_velocity();

@@ -1,9 +1,10 @@
 //! Contact impulses.
 //!
-//! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one contact
-//! after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v + v') / 2`, where v and v' are the relative velocities
-//! before and after it. A ledger holds what contacts have taken so far, and none of them may give more than that: whatever stiffness and
-//! step are, contacts never add energy to that of the start, up to rounding.
+//! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one
+//! contact after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v +
+//! v') / 2`, where v and v' are the relative velocities before and after it. A ledger holds what contacts have taken
+//! so far, and none of them may give more than that: whatever stiffness and step are, contacts never add energy to
+//! that of the start, up to rounding.
 
 use glam::{DMat3, DVec3};
 
@@ -69,8 +70,8 @@ pub(crate) struct Spring {
     pub damping: f64,
     /// Step (s).
     pub step: f64,
-    /// The share of the spring's force that is that of the step's end. 0 keeps the energy but is unstable for long steps, 1 is always
-    /// stable and damps.
+    /// The share of the spring's force that is that of the step's end. 0 keeps the energy but is unstable for long
+    /// steps, 1 is always stable and damps.
     pub implicit: f64,
     /// Rounds at most.
     pub rounds: usize,

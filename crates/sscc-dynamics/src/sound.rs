@@ -7,8 +7,9 @@ use crate::{Damping, DynamicsError, Impulse, LinearOscillator};
 
 /// The vibrations of one body that are heard, advanced sample by sample, each one exactly.
 ///
-/// A sample is the velocity of the surface along its normal: of each mode the root mean square over the surface, times the rate of the mode.
-/// That is a measure of what it radiates, without distance, direction or phase. In model units per second; scale it to what a file can hold.
+/// A sample is the velocity of the surface along its normal: of each mode the root mean square over the surface,
+/// times the rate of the mode. That is a measure of what it radiates, without distance, direction or phase. In model
+/// units per second; scale it to what a file can hold.
 #[derive(Clone, Debug)]
 pub struct SoundBank {
     resonators: LinearOscillator,
@@ -22,8 +23,8 @@ pub struct SoundBank {
 }
 
 impl SoundBank {
-    /// Mass-orthonormal modes of a surface, with their eigenvalues (1/s^2), heard at `rate` samples a second. Modes above half that rate
-    /// cannot be heard, and are left out.
+    /// Mass-orthonormal modes of a surface, with their eigenvalues (1/s^2), heard at `rate` samples a second. Modes
+    /// above half that rate cannot be heard, and are left out.
     ///
     /// # Errors
     /// When modes, mesh and eigenvalues do not fit, or the rate or the damping cannot be.

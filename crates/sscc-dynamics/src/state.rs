@@ -6,7 +6,8 @@ use crate::body::Body;
 use crate::contact::{Anchor, Contact};
 use crate::{DynamicsError, World};
 
-/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same bits.
+/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same
+/// bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Steps so far.
@@ -18,8 +19,8 @@ pub struct State {
 /// Position, orientation, momentum, angular momentum, preload of the ground.
 const RIGID: usize = 13 + 1;
 
-/// Bodies, triangles, weights, normal, offset, slack and preload of a contact.
-const CONTACT: usize = 2 + 2 + 6 + 3 + 3;
+/// Bodies, triangles, weights, normal, offset, slack, preload and age of a contact.
+const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
 
 impl World<'_> {
     /// The present state.
@@ -39,7 +40,7 @@ impl World<'_> {
             numbers.extend(contact.anchors.iter().map(|anchor| f64::from(anchor.triangle)));
             numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
             numbers.extend(contact.normal.to_array());
-            numbers.extend([contact.offset, contact.slack, contact.preload]);
+            numbers.extend([contact.offset, contact.slack, contact.preload, f64::from(contact.age)]);
         }
         State { step: self.step, numbers }
     }
@@ -101,6 +102,7 @@ impl World<'_> {
             offset: numbers[13],
             slack: numbers[14],
             preload: numbers[15],
+            age: index(numbers[16], u32::MAX as usize)?,
             ..Contact::default()
         })
     }

@@ -77,7 +77,8 @@ pub struct Impulse {
     pub impulse: DVec3,
 }
 
-/// Bodies, and what holds for all of them. The same steps give the same bits on every run and for any number of threads.
+/// Bodies, and what holds for all of them. The same steps give the same bits on every run and for any number of
+/// threads.
 pub struct World<'a> {
     options: WorldOptions,
     pub(crate) bodies: Vec<Body<'a>>,
@@ -102,8 +103,8 @@ struct Reference {
 /// So many times the kinetic energy that can be is a divergence.
 const BLOW_UP: f64 = 4.0;
 
-/// How fast springs adapt to a load that lasts, beside their own rate. Fast enough to hold in a few seconds what rests, so slow
-/// that an impact hardly notices.
+/// How fast springs adapt to a load that lasts, beside their own rate. Fast enough to hold in a few seconds what
+/// rests, so slow that an impact hardly notices.
 const CREEP: f64 = 1.0 / 300.0;
 
 impl<'a> World<'a> {
@@ -218,7 +219,8 @@ impl<'a> World<'a> {
     /// One step: detection, contacts, motion. `observer` is told what begins.
     ///
     /// # Errors
-    /// When the motion diverges, or leaves the range of numbers. Nothing more can be done with the world then but to read it.
+    /// When the motion diverges, or leaves the range of numbers. Nothing more can be done with the world then but to
+    /// read it.
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
         let mut counts = Counts::default();
         observer.enter(Phase::SelfCollision);
@@ -241,7 +243,8 @@ impl<'a> World<'a> {
         observer.enter(Phase::Penalty);
         let (skin, creep, friction) = (self.skin(), self.creep(), self.options.contact.friction);
         let within = self.options.response == Response::Contact;
-        self.contacts.update(&self.bodies, within, &self.neighbours, skin);
+        let patience = 1.0 / (self.options.contact.frequency * self.options.step);
+        self.contacts.update(&self.bodies, within, &self.neighbours, skin, patience.max(2.0) as u32);
         counts.contacts = self.contacts.list.len();
         self.contacts.touch(&self.bodies, skin, creep, friction, &mut self.solver.touches);
         self.push();

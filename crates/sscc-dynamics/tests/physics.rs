@@ -1,4 +1,5 @@
 //! Motion against closed forms and conservation laws.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
@@ -139,7 +140,7 @@ fn a_body_that_hits_itself_keeps_momenta_and_ends_free() {
         let mut world = clapping(&shape, space(1e-3), damping);
         let (energy, before) = (world.energy(), momenta(&world));
         let (mut colliding, mut last) = (0, usize::MAX);
-        for _ in 0..16_000 {
+        for _ in 0..20_000 {
             let counts = world.advance(&mut ()).unwrap();
             colliding += counts.self_colliding;
             last = counts.self_pairs;
@@ -199,26 +200,23 @@ fn a_block_slides_as_far_as_friction_lets_it() {
 }
 
 #[test]
-fn a_heap_comes_to_rest_without_interpenetration_and_gains_no_energy() {
+fn a_stack_comes_to_rest_without_interpenetration_and_gains_no_energy() {
     let solid = block([2, 1, 2], 0.2, rubber());
     let (linear, large) = (elastic(&solid, 6, false, &[]), elastic(&solid, 6, true, &[]));
-    let forked = elastic(&fork(4, 0.1, rubber()), 6, false, &[]);
     let mut world = World::new(WorldOptions::default()).unwrap();
-    for (n, shape) in [&linear, &large, &forked, &linear].into_iter().enumerate() {
-        let height = 0.3 + 0.45 * n as f64;
+    for (n, shape) in [&linear, &large, &linear].into_iter().enumerate() {
         let start = Start {
-            position: Some(DVec3::new(0.03 * n as f64, height, -0.02 * n as f64)),
-            orientation: DQuat::from_scaled_axis(DVec3::new(0.1, 0.3, 0.05) * n as f64),
+            position: Some(DVec3::new(0.02 * n as f64, 0.11 + 0.22 * n as f64, -0.01 * n as f64)),
+            orientation: DQuat::from_rotation_y(0.3 * n as f64),
             damping: Damping { mass: 1.0, stiffness: 1e-3 },
             ..Start::default()
         };
         world.add(shape, &start).unwrap();
     }
     world.check_start().unwrap();
-    let mut highest = world.energy() + world.dissipated();
-    let first = highest;
-    let mut met = 0;
-    for _ in 0..10_000 {
+    let first = world.energy();
+    let (mut highest, mut met) = (first, 0);
+    for _ in 0..6000 {
         met += world.advance(&mut ()).unwrap().inter_pairs;
         highest = highest.max(world.energy() + world.dissipated());
     }
@@ -234,6 +232,8 @@ fn a_heap_comes_to_rest_without_interpenetration_and_gains_no_energy() {
             assert!(body.pose().apply(x).y > 0.0);
         }
     }
+    let places: Vec<DVec3> = world.bodies().iter().map(|body| body.rigid().position).collect();
+    assert!(places[2].y > 0.48, "they are still on top of each other: {places:?}");
 }
 
 #[test]

@@ -47,8 +47,8 @@ impl Solid {
 }
 
 impl Solid {
-    /// The integral of each mode of the solid's vertices over the mass: times an acceleration, the force of gravity on it. 0 for
-    /// modes of a free body, which move its centre of mass nowhere.
+    /// The integral of each mode of the solid's vertices over the mass: times an acceleration, the force of gravity
+    /// on it. 0 for modes of a free body, which move its centre of mass nowhere.
     ///
     /// # Errors
     /// When the modes are of another number of vertices.

@@ -1,5 +1,5 @@
 //! Shapes made of few cubes.
-#![allow(dead_code, missing_docs)]
+#![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ pub fn octahedron(radius: f64) -> TriMesh {
     let positions = [DVec3::X, DVec3::Y, DVec3::Z].map(|x| [x * radius, -x * radius]).concat();
     let faces = (0..8).map(|n: u32| {
         let [x, y, z] = [n & 1, 2 + (n >> 1 & 1), 4 + (n >> 2 & 1)];
-        if n.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+        if n.count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] }
     });
     TriMesh::new(positions, faces.collect()).unwrap()
 }

@@ -72,8 +72,8 @@ impl State {
 }
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers speak of the f64 positions
-/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position): for them they are exact. Owns its memory, so that repeated
-/// questions allocate nothing; clones share what does not change.
+/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position): for them they are exact. Owns its memory, so
+/// that repeated questions allocate nothing; clones share what does not change.
 #[derive(Clone)]
 pub struct PosedShape<'a> {
     asked: Asked<'a>,
@@ -118,9 +118,9 @@ impl<'a> PosedShape<'a> {
         Ok(pose.enclose(whole, margin))
     }
 
-    /// Adds all pairs (triangle of this shape, triangle of the other one) that have a point in common, sorted; touching counts.
-    /// `around` says about where all shapes are that are compared. Any box is right; boxes are made once after each
-    /// [`PosedShape::place`] while it stays the same.
+    /// Adds all pairs (triangle of this shape, triangle of the other one) that have a point in common, sorted;
+    /// touching counts. `around` says about where all shapes are that are compared. Any box is right; boxes are made
+    /// once after each [`PosedShape::place`] while it stays the same.
     pub fn colliding(&mut self, other: &mut Self, around: (DVec3, DVec3), found: &mut Vec<Pair>) {
         let first = found.len();
         self.enter(around);
