@@ -145,7 +145,7 @@ pub struct Model {
 /// How certificates are computed. All optional, so that contradictions to given certificates can be told.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Relative error allowed for each radius, between 0 and 1 [default: 0.1]
+    /// Relative error allowed for the root's radius and others not much larger, between 0 and 1 [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
     /// The metric: energy (of models that know their stiffness), displacement, mass, identity, or a file with M: its diagonal, one weight for each mode (.npy or
@@ -171,7 +171,7 @@ pub struct Options {
     /// Which certificates are stored [default: full; paper where check computes them for itself]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
-    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default: 4]
+    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default: 8]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
     #[command(flatten)]

@@ -59,6 +59,11 @@ impl Node {
     pub fn children(&self) -> std::ops::Range<u32> {
         self.first_child..self.first_child + self.child_count
     }
+
+    /// Whether queries look at the node as a whole: it has at most 64 triangles.
+    pub fn is_small(&self) -> bool {
+        self.triangle_count as usize <= SMALL
+    }
 }
 
 /// Nodes of at most this many triangles are looked at as a whole in queries.

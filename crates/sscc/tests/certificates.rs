@@ -38,7 +38,7 @@ struct Budget(AtomicUsize);
 impl sscc::Progress for Budget {
     fn report(&self, _done: usize, _total: usize) {}
     fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, Ordering::Relaxed) > 150
+        self.0.fetch_add(1, Ordering::Relaxed) > 400
     }
 }
 

@@ -6,7 +6,7 @@ use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Minimum};
 use super::random::Random;
 use crate::bounds::ClusterBounds;
-use crate::certificates::{Search, child_pairs};
+use crate::certificates::{Search, child_pairs, within_small};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -51,7 +51,9 @@ pub(super) fn measure(
     let mut measured = vec![claims.node(0)];
     measured.extend(claims.root_pairs());
     let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));
-    measured.extend(spread(nodes.len(), NODES).skip(1).map(|n| claims.node(n as u32)));
+    let within_small = within_small(&parts.hierarchy);
+    let own: Vec<u32> = (1..nodes.len() as u32).filter(|n| !within_small[*n as usize]).collect();
+    measured.extend(spread(own.len(), NODES).map(|at| claims.node(own[at])));
     measured.extend(spread(claims.stored_len(), STORED).map(|place| claims.stored(place)));
     let missing: Vec<Claim> =
         spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
@@ -73,8 +75,8 @@ pub(super) fn measure(
             } else {
                 let n = responsible(certificates, n);
                 let node = &nodes[n as usize];
-                if node.is_leaf() {
-                    search.within_leaf(n, cap);
+                if node.is_leaf() || n != 0 && node.is_small() {
+                    search.within(n, cap);
                 } else {
                     search.between(child_pairs(node), cap);
                 }
@@ -116,6 +118,10 @@ fn responsible(certificates: &Certificates, mut n: u32) -> u32 {
     let parts = certificates.parts();
     loop {
         let radius = parts.node_radii[n as usize];
+        // Computed as a whole.
+        if n != 0 && parts.hierarchy.nodes()[n as usize].is_small() {
+            return n;
+        }
         let mut children = parts.hierarchy.nodes()[n as usize].children();
         match children.find(|&child| parts.node_radii[child as usize] <= radius) {
             Some(child) => n = child,

@@ -115,6 +115,25 @@ impl Cluster {
     }
 }
 
+/// Below this share of what would be enough no other direction is tried. With half of it certificates of the dragon take 1.1 times as long.
+const HOPELESS: f64 = 0.8;
+
+/// Corners of a box.
+const CORNERS: usize = 8;
+
+/// On which side of the centre each of them lies.
+const SIGNS: [[f64; 3]; CORNERS] = {
+    let mut signs = [[1.0; 3]; CORNERS];
+    let mut at = 0;
+    while at < 3 * CORNERS {
+        if (at / 3) >> (at % 3) & 1 == 1 {
+            signs[at / 3][at % 3] = -1.0;
+        }
+        at += 1;
+    }
+    signs
+};
+
 /// Scratch of one pair.
 pub(crate) struct ClusterScratch {
     difference: Vec<f64>,
@@ -146,16 +165,13 @@ pub(crate) fn cluster_pair(
     }
     let inverse = inverse_gram(x, y, scratch);
     let mut best = 0.0_f64;
-    for (i, candidate) in [inverse * between, inverse * apart, between, apart].into_iter().enumerate() {
-        // Far too little by the best directions: the others would not do, either.
-        if i == 2 && best < 0.5 * enough {
-            break;
-        }
+    for candidate in [inverse * between, inverse * apart, between, apart] {
         let Some(n) = direction(candidate) else { continue };
         // Half extents are larger than the boxes, so this gap is smaller than theirs.
         if n.dot(between) - n.abs().dot(half) > 0.0 {
             best = best.max(corner_bound(x, y, n, model, scratch));
-            if best >= enough {
+            // Far too little by the direction that is best as a rule: the others seldom do.
+            if best >= enough || best < HOPELESS * enough {
                 break;
             }
         }
@@ -213,28 +229,35 @@ fn corner_bound(
         }
     }
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
-    // Each of the 63 flips below adds at most 4 (63 + 7) eps |row| |all rows|, the products themselves row eps.
-    let lost = (row as f64 + 20_000.0) * f64::EPSILON * size * size;
+    // The terms of a square add up to at most (the sum of all |row|)^2; the products are wrong by row eps of that, and at most 16
+    // sums follow one another: 2,000 leaves room.
+    let lost = (row as f64 + 2_000.0) * f64::EPSILON * size * size;
     let slack = n.abs().dot(x.residual + y.residual) + 2.0 * model.error.rate(n);
     let rest_error = 2.0 * model.error.rest(n);
-    let mut signs = [1.0; 6];
     let gap = n.dot(y.centre - x.centre);
-    // Inner products of B'n with the seven rows, kept up to date while signs flip in Gray code order.
-    let mut inner: [f64; 7] = std::array::from_fn(|i| products[i].iter().sum());
-    let mut square: f64 = inner.iter().sum();
-    let mut gaps = [0.0; 64];
-    let mut squares = [0.0; 64];
-    for corner in 0..64 {
-        gaps[corner] = gap + signs.iter().zip(steps).map(|(sign, step)| sign * step).sum::<f64>();
-        squares[corner] = square;
-        let flip = (corner + 1).trailing_zeros() as usize;
-        if flip < 6 {
-            let change = -2.0 * signs[flip];
-            signs[flip] = -signs[flip];
-            square += change * (2.0 * inner[flip + 1] + change * products[flip + 1][flip + 1]);
-            for i in 0..7 {
-                inner[i] += change * products[flip + 1][i];
+    // For corners Y of y and X of x, `|c + Y + X|^2 = |c|^2 + (|c + Y|^2 - |c|^2) + (|c + X|^2 - |c|^2) + 2 Y.X`.
+    let [(steps_y, squares_y), (steps_x, squares_x)] = [0, 3].map(|first| {
+        let (mut sums, mut squares) = ([0.0; CORNERS], [0.0; CORNERS]);
+        for (corner, signs) in SIGNS.iter().enumerate() {
+            for i in 0..3 {
+                sums[corner] += signs[i] * steps[first + i];
+                let row = &products[1 + first + i];
+                let others: f64 = (0..i).map(|j| signs[j] * row[1 + first + j]).sum();
+                squares[corner] += 2.0 * signs[i] * (row[0] + others) + row[1 + first + i];
             }
+        }
+        (sums, squares)
+    });
+    let mut gaps = [0.0; CORNERS * CORNERS];
+    let mut squares = [0.0; CORNERS * CORNERS];
+    for (at_y, signs) in SIGNS.iter().enumerate() {
+        let cross: [f64; 3] =
+            std::array::from_fn(|j| 2.0 * (0..3).map(|i| signs[i] * products[1 + i][4 + j]).sum::<f64>());
+        let (own_gap, own_square) = (gap + steps_y[at_y], products[0][0] + squares_y[at_y]);
+        for (at_x, signs) in SIGNS.iter().enumerate() {
+            let both = signs[0] * cross[0] + signs[1] * cross[1] + signs[2] * cross[2];
+            gaps[CORNERS * at_y + at_x] = own_gap + steps_x[at_x];
+            squares[CORNERS * at_y + at_x] = own_square + squares_x[at_x] + both;
         }
     }
     // In a loop of its own, lane by lane: roots and quotients of several corners at once.

@@ -152,7 +152,7 @@ fn with_others(model: &ReducedModel, random: &mut Random) -> ReducedModel {
 }
 
 fn far_target() -> Target {
-    Target { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1 }
+    Target { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1, subdivisions: 500 }
 }
 
 /// All bounds of one pair of triangles, by name.

@@ -16,10 +16,6 @@ use super::leaf_pair::is_near;
 use super::min_norm::nearest_to_origin;
 use super::scaled::{ScaledModel, direction};
 
-/// Subdivisions of one triangle pair at the most. When they are used up the best lower bound so far
-/// stands: still certified, only less tight. Hit in practice only by modes of rank 1 and 2.
-const SUBDIVISIONS: usize = 500;
-
 /// Triangles are halved at most this often in each direction, so corner weights stay exact.
 const DEPTH: u8 = 20;
 
@@ -32,6 +28,9 @@ pub(crate) struct Target {
     pub(crate) upper: f64,
     /// Relative error allowed.
     pub(crate) epsilon: f64,
+    /// Subdivisions of one triangle pair at the most. When they are used up the best lower bound so far
+    /// stands: still certified, only less tight.
+    pub(crate) subdivisions: usize,
 }
 
 impl Target {
@@ -124,8 +123,8 @@ impl<'a> PairRefiner<'a> {
         }
     }
 
-    /// A certified lower bound for two triangles, given by their vertices, refined until it is at least `target.enough()` or certain
-    /// to be as good as asked; upper bounds met on the way lower `target.upper`.
+    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` asks; upper bounds met on
+    /// the way lower `target.upper`.
     pub(crate) fn refine(&mut self, x: [u32; 3], y: [u32; 3], target: &mut Target) -> f64 {
         let pair = self.pair(x, y);
         let lower = self.bound(&pair, target);
@@ -150,7 +149,7 @@ impl<'a> PairRefiner<'a> {
         let mut serial = 0;
         // Parts that can be halved no further.
         let mut settled = f64::INFINITY;
-        for step in 1..=SUBDIVISIONS {
+        for step in 1..=target.subdivisions {
             let Some(part) = parts.pop() else { break };
             if part.lower >= target.enough().min(settled) || part.lower <= 0.0 {
                 parts.push(part);

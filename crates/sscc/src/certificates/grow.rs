@@ -1,7 +1,7 @@
 //! Which pairs of nodes the certified pair tree holds, and their radii.
 //!
 //! The tree is grown from the pairs of all nodes' children, in rounds of ever higher limits: a pair whose lower bound is
-//! below the limit is split, two small nodes get a radius, by the same search as nodes. What each pair becomes
+//! below the limit is split, two small nodes get a radius, searched without subdivision. What each pair becomes
 //! depends on the model alone, so that any number of threads gives the same tree. The budget ends it: then the limit is what
 //! the pairs stored are complete for.
 
@@ -18,14 +18,20 @@ use crate::{Error, Progress};
 /// The first limit is this share of the global radius.
 const FIRST: f64 = 1.0 / 16.0;
 
+/// Where not even the first limit fits, this share of the global radius is the last one tried.
+const LAST: f64 = FIRST / 32.0;
+
 /// The next limit is at most this many times the one before: farther away it is not known how the number of pairs grows.
-const LARGEST_STEP: f64 = 4.0;
+const LARGEST_STEP: f64 = 2.0;
+
+/// And at least this many times, else the budget is left as it is.
+const SMALLEST_STEP: f64 = 1.2;
 
 /// Two small nodes are bounded up to this many times the limit, so that most need not be looked at again in the next round.
 const AHEAD: f64 = 2.0;
 
-/// Pairs in the making, for each that the budget allows: not all of them turn out to be needed.
-const SLACK: usize = 4;
+/// Pairs in the making, for each that the budget allows: most turn out not to be needed.
+const SLACK: usize = 32;
 
 /// Between two looks at whether the caller has cancelled; searches look for themselves.
 const STEPS: usize = 64;
@@ -85,13 +91,30 @@ impl Grove {
             grove.roots.push(grove.grown.len() as u32);
             grove.grown.extend(child_pairs(node).map(|pair| Grown::new(pair, 0.0)));
         }
-        let room = budget.saturating_mul(SLACK).max(2 * grove.grown.len());
-        while grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
-            grove.reached = limit;
-            match grove.next_limit(global_radius) {
-                Some(next) => limit = next,
-                None => break,
+        // Places are 32 bits.
+        let room = budget.saturating_mul(SLACK).max(2 * grove.grown.len()).min(1 << 31);
+        // Beyond this there are too many.
+        let mut beyond = f64::INFINITY;
+        loop {
+            if grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
+                grove.reached = limit;
+            } else {
+                beyond = limit;
             }
+            let (next, least) = match grove.next_limit(global_radius) {
+                _ if grove.reached == 0.0 => (limit / LARGEST_STEP, global_radius * LAST),
+                None => break,
+                Some(next) => {
+                    // Half way, in logarithms, to what had too many.
+                    let half_way = f64::from(round_down((grove.reached * beyond).sqrt()));
+                    let next = if next < beyond { next } else { half_way };
+                    (next, (grove.reached * SMALLEST_STEP).min(global_radius))
+                }
+            };
+            if next < least {
+                break;
+            }
+            limit = next;
         }
         Ok(grove)
     }

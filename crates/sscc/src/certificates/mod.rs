@@ -15,15 +15,17 @@ use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 pub use digest::Digest;
 pub(crate) use pair_tree::Entry as PairEntry;
 pub use pair_tree::PairTree;
-pub(crate) use precompute::child_pairs;
+pub(crate) use precompute::{child_pairs, within_small};
 pub use scope::Scope;
 pub(crate) use search::Search;
 
 /// How certificates are computed.
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
-    /// Relative error allowed for each radius outside the pair tree, in (0, 1): it is at least `1 - epsilon` times the exact
-    /// one, unless it is capped or a limit of the search (subdivisions, candidates waiting) is reached. Paper, section 5.1: 0.1.
+    /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one. So is each other radius outside
+    /// the pair tree that may be as small; larger ones are searched with an error of at least 0.4 and few subdivisions, because queries
+    /// so far out open many nodes anyway. Unless a radius is capped or a limit of the search (subdivisions, candidates waiting)
+    /// is reached. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,
@@ -64,7 +66,7 @@ impl Default for CertifyOptions {
 
 impl CertifyOptions {
     /// Bytes for each triangle, if nothing is said.
-    pub const DEFAULT_BUDGET: usize = 4;
+    pub const DEFAULT_BUDGET: usize = 8;
 
     /// How many exceptions a mesh may have if nothing is said: half the number of its triangles. Testing more costs
     /// as much as radii can save.
@@ -92,11 +94,12 @@ pub struct CertificateParts {
     pub hierarchy: Hierarchy,
     /// What they speak of beside the model: metric, centre, rule, exceptions.
     pub scope: Scope,
-    /// Relative error that was allowed.
+    /// Relative error that was allowed of the root's radius; see [`CertifyOptions::epsilon`].
     pub epsilon: f64,
     /// `R_global`: radii are resolved up to here (paper, section 5.2); infinite when no mode moves anything.
     pub global_radius: f64,
-    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child.
+    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child. What lies in a small node
+    /// ([`Node::is_small`](crate::hierarchy::Node::is_small)) has its radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,

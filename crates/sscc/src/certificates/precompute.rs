@@ -1,5 +1,6 @@
 //! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
-//! pairs)` (paper, section 5.2).
+//! pairs)` (paper, section 5.2). Small nodes are searched as wholes, and what lies in them gets their radius: no
+//! discrete or continuous query looks into them.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use super::global::global_radius;
 use super::grow::Grove;
 use super::pair_tree::Entry;
-use super::search::Search;
+use super::search::{Precision, Search};
 use super::{CertificateParts, CertifyOptions, Digest, Scope};
 use crate::bounds::{ClusterBounds, ScaledModel};
 use crate::hierarchy::{Hierarchy, Node};
@@ -101,48 +102,89 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Nodes of one level are independent of each other: level by level from the leaves, each result
-    /// depends only on the model, whatever the number of threads.
+    /// All radii: first roughly, then precisely those that may be below what was learnt of the root's.
     fn run(&self, grove: &Grove) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let nodes = self.hierarchy.nodes();
-        let mut radii = vec![self.global_radius; nodes.len()];
-        let tally = Tally::new(self.progress, nodes.len() + child_pairs(&nodes[0]).count());
-        for level in self.hierarchy.levels().into_iter().rev() {
-            if level.start == 0 {
-                break;
+        let mut radii = vec![0.0; nodes.len()];
+        let mut root_pairs = vec![0.0; child_pairs(&nodes[0]).count()];
+        let tally = Tally::new(self.progress, 2 * (nodes.len() + root_pairs.len()));
+        let upper = self.pass(Precision::Rough, f64::INFINITY, &mut radii, &mut root_pairs, grove, &tally);
+        self.pass(Precision::Full, upper, &mut radii, &mut root_pairs, grove, &tally);
+        tally.finish()?;
+        Ok((radii, root_pairs))
+    }
+
+    /// Computes the radii of all nodes that are below a limit, which also gives an upper bound of the root's.
+    ///
+    /// Nodes of one level are independent of each other: level by level from the leaves, each result
+    /// depends only on the model, whatever the number of threads.
+    fn pass(
+        &self,
+        precision: Precision,
+        below: f64,
+        radii: &mut [f64],
+        root_pairs: &mut [f64],
+        grove: &Grove,
+        tally: &Tally<'_>,
+    ) -> f64 {
+        let nodes = self.hierarchy.nodes();
+        let within_small = within_small(self.hierarchy);
+        let search = || {
+            let mut search = self.search();
+            search.set_precision(precision);
+            search
+        };
+        let mut upper = f64::INFINITY;
+        let mut take = |known: &mut [f64], computed: Vec<(f64, f64)>| {
+            for (radius, (better, met)) in known.iter_mut().zip(computed) {
+                *radius = radius.max(better);
+                upper = upper.min(met);
             }
-            let computed: Vec<f64> = level
-                .clone()
-                .into_par_iter()
-                .map_init(
-                    || self.search(),
-                    |search, n| tally.step(|| self.node(search, n as u32, &nodes[n], &radii, grove)),
-                )
-                .collect();
-            radii[level].copy_from_slice(&computed);
+        };
+        for level in self.hierarchy.levels().into_iter().rev().filter(|level| level.start != 0) {
+            let one = |search: &mut Search<'_>, n: usize| {
+                tally.step(|| {
+                    if radii[n] < below && !within_small[n] {
+                        (self.node(search, n as u32, &nodes[n], radii, grove), search.upper())
+                    } else {
+                        (radii[n], f64::INFINITY)
+                    }
+                })
+            };
+            let computed = level.clone().into_par_iter().map_init(search, one).collect();
+            take(&mut radii[level], computed);
         }
         let root = &nodes[0];
-        let mut pair_radii = Vec::new();
         if root.is_leaf() {
-            radii[0] = self.node(&mut self.search(), 0, root, &radii, grove);
+            let mut search = search();
+            let radius = tally.step(|| (self.node(&mut search, 0, root, radii, grove), search.upper()));
+            take(&mut radii[..1], vec![radius]);
         } else {
             // Between the children of the root each pair has a radius of its own.
-            pair_radii = child_pairs(root)
-                .collect::<Vec<_>>()
-                .into_par_iter()
-                .enumerate()
-                .map(|(which, pair)| {
-                    let which = which..which + 1;
-                    tally.step(|| {
-                        self.between(&mut self.search(), 0, which, [pair], self.global_radius, grove)
-                    })
+            let pairs: Vec<(u32, u32)> = child_pairs(root).collect();
+            let one = |search: &mut Search<'_>, at: usize| {
+                tally.step(|| {
+                    if root_pairs[at] < below {
+                        let pair = [pairs[at]];
+                        let radius = self.between(search, 0, at..at + 1, pair, self.global_radius, grove);
+                        (radius, search.upper())
+                    } else {
+                        (root_pairs[at], f64::INFINITY)
+                    }
                 })
-                .collect();
-            radii[0] = self.least_child(root, &radii);
-            radii[0] = pair_radii.iter().copied().fold(radii[0], f64::min);
+            };
+            let computed = (0..pairs.len()).into_par_iter().map_init(search, one).collect();
+            take(root_pairs, computed);
+            radii[0] = self.least_child(root, radii);
+            radii[0] = root_pairs.iter().copied().fold(radii[0], f64::min);
         }
-        tally.finish()?;
-        Ok((radii, pair_radii))
+        // Parents come before their children.
+        for (n, node) in nodes.iter().enumerate() {
+            for child in node.children().filter(|child| within_small[*child as usize]) {
+                radii[child as usize] = radii[n];
+            }
+        }
+        upper
     }
 
     fn search(&self) -> Search<'_> {
@@ -155,12 +197,12 @@ impl Work<'_> {
     }
 
     fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64], grove: &Grove) -> f64 {
+        if node.is_leaf() || node.is_small() && n != 0 {
+            return search.within(n, self.global_radius);
+        }
         let cap = self.least_child(node, radii);
         if cap <= 0.0 {
             return 0.0;
-        }
-        if node.is_leaf() {
-            return search.within_leaf(n, cap);
         }
         self.between(search, n, 0..child_pairs(node).count(), child_pairs(node), cap, grove)
     }
@@ -182,6 +224,15 @@ impl Work<'_> {
     }
 }
 
+/// For each node whether it lies in a small one. The root's children never do: they have radii as pairs.
+pub(crate) fn within_small(hierarchy: &Hierarchy) -> Vec<bool> {
+    let mut within = vec![false; hierarchy.nodes().len()];
+    for node in hierarchy.nodes().iter().skip(1).filter(|node| node.is_small()) {
+        node.children().for_each(|child| within[child as usize] = true);
+    }
+    within
+}
+
 /// All pairs of children, in the order (0,1), (0,2), ..., (2,3).
 pub(crate) fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
     let children = node.children();
@@ -200,9 +251,9 @@ impl<'a> Tally<'a> {
         Self { progress, done: AtomicUsize::new(0), total }
     }
 
-    fn step(&self, work: impl FnOnce() -> f64) -> f64 {
+    fn step(&self, work: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
         if self.progress.is_cancelled() {
-            return 0.0;
+            return (0.0, 0.0);
         }
         let result = work();
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;

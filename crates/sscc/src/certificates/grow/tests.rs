@@ -73,7 +73,7 @@ fn below_the_limit_whatever_collides_is_open() {
         let tree = &certificates.parts().pair_tree;
         lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
-        for i in 0..60 {
+        for i in 0..120 {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             // Just below the limit, and well below.
