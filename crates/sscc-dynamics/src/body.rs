@@ -76,7 +76,7 @@ pub struct Body<'a> {
     load: Vec<f64>,
     /// Of each mode, how much of it follows a contact slowly: see [`Mobility`](crate::contact::Mobility).
     pub(crate) shares: Vec<f64>,
-    oscillator: Oscillator,
+    oscillator: Oscillator<'a>,
     detection: Detection,
     detector: Detector<'a>,
     pub(crate) posed: PosedShape<'a>,
@@ -87,9 +87,9 @@ pub struct Body<'a> {
 }
 
 #[derive(Clone)]
-enum Oscillator {
+enum Oscillator<'a> {
     Linear(LinearOscillator),
-    Nonlinear(Box<NonlinearOscillator>),
+    Nonlinear(NonlinearOscillator<'a>),
 }
 
 enum Detector<'a> {
@@ -133,11 +133,9 @@ impl<'a> Body<'a> {
             Elasticity::Linear(eigenvalues) => {
                 Oscillator::Linear(LinearOscillator::new(eigenvalues, start.damping, step)?)
             }
-            Elasticity::Nonlinear(forces) => Oscillator::Nonlinear(Box::new(NonlinearOscillator::new(
-                forces.clone(),
-                start.damping,
-                step,
-            )?)),
+            Elasticity::Nonlinear(forces) => {
+                Oscillator::Nonlinear(NonlinearOscillator::new(forces, start.damping, step)?)
+            }
         };
         let a = match &oscillator {
             Oscillator::Linear(_) => Vec::new(),

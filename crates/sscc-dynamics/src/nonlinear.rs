@@ -19,19 +19,19 @@ const SOLVED: f64 = 1e-11;
 /// of average acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is
 /// that of the stiffness at rest.
 #[derive(Clone, Debug)]
-pub struct NonlinearOscillator {
-    forces: ReducedForces,
+pub struct NonlinearOscillator<'a> {
+    forces: &'a ReducedForces,
     /// r x r, row after row.
     damping: Vec<f64>,
     step: f64,
 }
 
-impl NonlinearOscillator {
+impl<'a> NonlinearOscillator<'a> {
     /// Steps of `step` seconds.
     ///
     /// # Errors
     /// When the step is not positive, or the damping is negative or not finite.
-    pub fn new(forces: ReducedForces, damping: Damping, step: f64) -> Result<Self, DynamicsError> {
+    pub fn new(forces: &'a ReducedForces, damping: Damping, step: f64) -> Result<Self, DynamicsError> {
         if !(step.is_finite() && step > 0.0) {
             return Err(DynamicsError::Step { step });
         }
@@ -134,7 +134,8 @@ mod tests {
         // 200 steps a period: the method is slow by (omega h)^2 / 12.
         let period = std::f64::consts::TAU / lambda.sqrt();
         let step = period / 200.0;
-        let oscillator = NonlinearOscillator::new(forces(lambda, 90.0, 0.0), NONE, step).unwrap();
+        let forces = forces(lambda, 90.0, 0.0);
+        let oscillator = NonlinearOscillator::new(&forces, NONE, step).unwrap();
         let (mut q, mut v) = (vec![1e-3, 0.0], vec![0.0, 0.0]);
         let mut a = oscillator.acceleration(&q, &v, &[0.0; 2]);
         let (mut crossings, mut last) = (Vec::new(), q[0]);
@@ -153,7 +154,7 @@ mod tests {
     fn energy_stays_bounded_without_damping_and_falls_with_it() {
         let forces = forces(40.0, 90.0, 3e4);
         for (damping, grows) in [(NONE, false), (Damping { mass: 0.1, stiffness: 1e-3 }, true)] {
-            let oscillator = NonlinearOscillator::new(forces.clone(), damping, 2e-3).unwrap();
+            let oscillator = NonlinearOscillator::new(&forces, damping, 2e-3).unwrap();
             let (mut q, mut v) = (vec![0.2, -0.1], vec![0.0, 1.0]);
             let mut a = oscillator.acceleration(&q, &v, &[0.0; 2]);
             let first = oscillator.energy(&q, &v);
@@ -174,7 +175,7 @@ mod tests {
         let goal = [0.05, -0.02];
         let force = forces.at(&goal);
         let damping = Damping { mass: 10.0, stiffness: 0.0 };
-        let oscillator = NonlinearOscillator::new(forces, damping, 1e-2).unwrap();
+        let oscillator = NonlinearOscillator::new(&forces, damping, 1e-2).unwrap();
         let (mut q, mut v, mut a) = (vec![0.0; 2], vec![0.0; 2], force.clone());
         for _ in 0..2000 {
             oscillator.advance(&mut q, &mut v, &mut a, &force).unwrap();
@@ -184,7 +185,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused() {
-        let new = |damping, step| NonlinearOscillator::new(forces(1.0, 1.0, 1.0), damping, step);
+        let forces = forces(1.0, 1.0, 1.0);
+        let new = |damping, step| NonlinearOscillator::new(&forces, damping, step);
         assert!(matches!(new(NONE, 0.0), Err(DynamicsError::Step { .. })));
         let wrong = Damping { mass: f64::NAN, stiffness: 0.0 };
         assert!(matches!(new(wrong, 1.0), Err(DynamicsError::Damping { .. })));
