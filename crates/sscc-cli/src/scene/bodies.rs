@@ -85,8 +85,8 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
             position: first.position + spacing * DVec3::new(i as f64, j as f64, k as f64),
-            // About the vertical, so that no two stand alike.
-            orientation: DQuat::from_axis_angle(DVec3::Z, turn * number as f64) * first.orientation,
+            // About its own upright axis: turned about the vertical, all would fall alike.
+            orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),
             ..first.clone()
         });
     }
