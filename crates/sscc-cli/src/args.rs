@@ -41,6 +41,8 @@ pub enum Command {
     Audit(Audit),
     /// Tell what is in a model, certificate or mesh file
     Info(Info),
+    /// Let the bodies of a scene move, fall and collide, and write their motion
+    Simulate(Simulate),
     /// Measure queries by every method, and beside another library
     Bench(Bench),
 }
@@ -340,6 +342,45 @@ pub struct Info {
     /// .stl)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc simulate`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc simulate scenes/spring.toml --out spring
+  sscc simulate bunny16 --models models/ --out bunnies
+  sscc simulate bunny16 --models models/ --out bunnies --steps 500
+  sscc simulate my.toml --json
+
+The folder gets trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, of scenes with sound, sound.wav and\nsound_float.wav. \
+A simulation that was stopped or killed goes on by the same command, to the same bits.
+Scenes that come with the program: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.
+Exit codes: 0 done, 2 error or the motion diverged (what was simulated until then is written), 130 interrupted.")]
+pub struct Simulate {
+    /// The scene: a .toml file, or the name of one that comes with the program
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// The folder to write to, made where it is missing [default: the scene's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// How many steps to make from the beginning [default: those of the scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub steps: Option<u32>,
+    /// Begin again, whatever the folder holds
+    #[arg(long)]
+    pub restart: bool,
+    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded shapes
+    /// stand in]
+    #[arg(long, value_name = "DIR")]
+    pub models: Option<PathBuf>,
+    /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
+    #[command(flatten)]
+    pub threads: Threads,
     #[command(flatten)]
     pub json: Json,
 }

@@ -6,12 +6,17 @@
 #![allow(clippy::print_stderr)]
 
 mod args;
+mod case;
 mod commands;
 mod interrupt;
 mod load;
+mod machine;
+mod nearest;
 mod output;
 mod picture;
 mod progress;
+mod scene;
+mod simulation;
 mod usage;
 
 use std::process::ExitCode;

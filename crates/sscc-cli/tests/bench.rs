@@ -15,7 +15,8 @@ const KEYS: &str = "scenario, model, source, triangles, rank, objects, steps, co
     scene_colliding_body_steps, mismatches, share, certify_seconds, certify_threads, certify_peak_bytes, parry_query_seconds, \
     simulation_seconds, self_collision_share, discrete_ms, continuous_ms, machine";
 const COLUMNS: &str = "traditional, bdtree, normal_cones, normal_cones_approx, paper, full, parry";
-const CERTIFIED: &str = "paper, full";
+const CERTIFIED: &str = "paper, full, kinetic";
+const PARTS: &str = "self, inter_object, ground, penalty, dynamics, sound";
 
 /// Without real models, whatever the environment says; the cache is in the folder.
 fn bench(folder: &Path, args: &[&str]) -> Run {
@@ -54,9 +55,12 @@ fn check(report: &Value, more: &str) {
     assert_eq!(whole("scene_body_steps"), whole("scene_steps") * whole("objects"));
     let positive = |value: &Value| value.as_f64().is_some_and(|x| x > 0.0);
     assert!(positive(&report["certify_seconds"]) && positive(&report["parry_query_seconds"]), "{report}");
+    // What is simulated moves in steps, which kinetic queries follow.
+    let moves = report["simulation_seconds"].is_number();
     for key in ["discrete_ms", "continuous_ms", "discrete_ms_root_failed"] {
         let Some(times) = report.get(key) else { continue };
-        assert_eq!(keys(times), sorted(COLUMNS), "{key}");
+        let follows = if moves && key != "continuous_ms" { ", kinetic" } else { "" };
+        assert_eq!(keys(times), sorted(&format!("{COLUMNS}{follows}")), "{key}");
         assert!(times.as_object().unwrap().values().all(positive), "{report}");
     }
     assert_eq!(report.get("discrete_ms_root_failed").is_some(), whole("compared_root_failed_steps") > 0);
@@ -124,12 +128,27 @@ fn measurements() {
     let run = bench(folder.path(), &["spring", "--quick", "--steps", "65", "--json"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let scene = &run.json()[0];
-    check(scene, "note, discrete_ms_all_steps");
+    check(scene, "note, discrete_ms_all_steps, simulation_speedup, simulation_ms");
     assert_eq!((&scene["scenario"], &scene["steps"]), (&json!("spring"), &json!(65)));
     assert_eq!((&scene["compared_steps"], &scene["continuous_steps"]), (&json!(20), &json!(20)));
     assert!(scene["scene_steps"].as_u64().unwrap() > 100);
     assert!(scene["scene_colliding_steps"].as_u64().unwrap() > 0, "scenes really collide: {scene}");
     assert_eq!(keys(&scene["discrete_ms_all_steps"]), sorted(CERTIFIED));
+    assert_eq!(keys(&scene["simulation_ms"]), sorted(PARTS));
+    let part = |key: &str| scene["simulation_ms"][key].as_f64().unwrap();
+    let all = scene["simulation_seconds"].as_f64().unwrap();
+    let sum: f64 = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"].map(part).iter().sum();
+    assert!((sum * scene["scene_steps"].as_f64().unwrap() / 1e3 / all - 1.0).abs() < 1e-9);
+    assert!((scene["self_collision_share"].as_f64().unwrap() - part("self") / sum).abs() < 1e-9);
+    assert!(scene["simulation_speedup"].as_f64().unwrap() > 1.0);
+
+    // The simulation is taken from the cache, and the paper's rows stand beside ours.
+    let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let seconds = format!("simulated in {all:.2} s, ");
+    for part in [&seconds[..], "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
 }
 
 #[test]
@@ -169,9 +188,16 @@ fn refusals() {
     let folder = tempfile::tempdir().unwrap();
     let list = bench(folder.path(), &["--list"]);
     assert_eq!(list.code, Some(0));
-    for name in
-        ["spring", "bunny128", "dragon-nonlinear", "dragon-polynomial", "amplitudes", "growth", "kinetic"]
-    {
+    for name in [
+        "spring",
+        "bunny128",
+        "dragon-nonlinear",
+        "dragon-polynomial",
+        "table2",
+        "amplitudes",
+        "growth",
+        "kinetic",
+    ] {
         assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{name}");
     }
     assert_eq!(files(folder.path()), [] as [&Path; 0], "a list leaves nothing behind");

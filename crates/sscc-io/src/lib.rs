@@ -41,6 +41,8 @@
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
+//! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
+//! | bodies that move: mesh, modes and q(t) as glTF | [`gltf::write_animation`] |
 //! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
 //!
 //! Formats for drawing split vertices along seams ([`splits_vertices`]): certify such models with `weld`.
@@ -67,6 +69,7 @@ mod numbers;
 mod pose;
 pub mod solid;
 mod text;
+mod wav;
 
 pub use container::{Elasticity, ModelInfo, read_certificates, read_model, write_certificates, write_model};
 pub use cubic::{Cubic, parse_cubic, read_cubic};
@@ -76,7 +79,8 @@ pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_ver
 pub use mesh::read_mesh;
 pub use modes::{Frames, read_frames, read_modes, read_modes_for};
 pub use npy::write_npy;
-pub use npz::read_npz_model;
+pub use npz::{NamedArray, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
 pub use solid::{Material, Solid, read_solid};
+pub use wav::{WavFormat, write_wav};

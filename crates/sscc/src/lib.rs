@@ -275,4 +275,4 @@ pub use model::ReducedModel;
 pub use modes::{Modes, deformed_position};
 pub use pairs::{Neighbours, Pair, PairRule};
 pub use progress::Progress;
-pub use query::{Answer, Impact, KineticQuery, Method, Query, Statistics};
+pub use query::{Answer, Impact, KineticQuery, Method, Pose, PosedShape, Query, Statistics};

@@ -6,7 +6,8 @@ mod certify;
 mod check;
 mod demo;
 mod info;
-mod modes;
+pub mod modes;
+mod simulate;
 
 use crate::Outcome;
 use crate::args::{Cli, Command};
@@ -20,6 +21,7 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Check(args) => check::run(&args),
         Command::Audit(args) => audit::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Simulate(args) => simulate::run_command(&args),
         Command::Bench(args) => bench::run(&args),
     }
 }

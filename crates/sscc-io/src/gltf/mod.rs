@@ -1,4 +1,4 @@
-//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`.
+//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`; and bodies that move, written as `.glb` ([`write_animation`]).
 //!
 //! A mesh with its morph targets is a reduced model as it is: rest positions are the base mesh, and mode k is
 //! what target k adds to them. What else a file has (nodes and their transforms, skins, materials,
@@ -10,6 +10,7 @@
 //! without a buffer has as many items as it claims to have.
 
 mod accessors;
+mod animation;
 mod buffers;
 mod component;
 mod glb;
@@ -24,6 +25,7 @@ use self::buffers::Buffers;
 use self::json::Root;
 use crate::{FormatError, IoError, read_whole};
 
+pub use animation::{Track, key_frames, write_animation};
 pub use morph::{MorphModel, PrimitiveRange};
 pub use select::MeshInfo;
 

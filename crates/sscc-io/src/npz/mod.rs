@@ -14,10 +14,13 @@
 //! refused. Arrays are float64 or float32, faces integers. An archive may be stored or deflated
 //! (`numpy.savez`, `numpy.savez_compressed`); its recognised arrays may take up to 100 times the file's size
 //! and 64 MiB, and never more than 4 GiB.
+//!
+//! Arrays of any names are written by [`write_npz`].
 
 mod archive;
 mod names;
 mod parts;
+mod write;
 
 use std::path::Path;
 
@@ -26,6 +29,8 @@ use sscc::{Modes, TriMesh};
 use self::names::Part;
 use self::parts::Parts;
 use crate::{FormatError, IoError, read_whole};
+
+pub use write::{NamedArray, write_npz};
 
 /// Reads a complete model: mesh, modes, and the numbers that the file has for each mode (r, such as
 /// variances), if any. Their meaning depends on the name; they are handed on as they are.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Method;
 use super::kinetic::Ball;
+use super::posed::Placement;
 use crate::hierarchy::Hierarchy;
 use crate::pairs::PairFilter;
 use crate::{CertificateParts, Certificates, Pair, PairTree, Progress, ReducedModel, Scope};
@@ -65,4 +66,6 @@ pub(super) struct Ends<'t, const E: usize> {
     /// With two ends that are the same: instead of the way between them, all z in a ball around it count. Then `norm` and
     /// `reach` are the largest ones there.
     pub(super) ball: Option<&'t Ball>,
+    /// Where the shape is in the world; its own axes if there is none. The reach is that in the world then.
+    pub(super) pose: Option<&'t Placement>,
 }

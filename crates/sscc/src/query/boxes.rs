@@ -68,7 +68,8 @@ impl<const E: usize> Boxes<E> {
                 .for_each(|queries| queries.fill(0));
             self.query = 1;
         }
-        self.positions.update(self.query, tables.bd_tree.root(ends.q, DVec3::splat(self.margin)));
+        let whole = tables.bd_tree.root(ends.q, DVec3::splat(self.margin));
+        self.positions.update(self.query, ends.pose.map_or(whole, |pose| pose.around));
         if self.is_lazy {
             return;
         }
@@ -141,6 +142,10 @@ impl<const E: usize> Boxes<E> {
             let frame = self.positions.frame();
             let margin = ends.ball.map_or(DVec3::ZERO, |ball| ball.of_node(n)) + self.margin;
             let aabb = self.tables.bd_tree.at(n, ends.q, margin);
+            let aabb = match ends.pose {
+                None => aabb,
+                Some(placement) => aabb.map(|aabb| placement.pose.enclose(aabb, self.margin)),
+            };
             // What has no box of its own overlaps everything.
             let aabb = aabb.map_or(Box32::ALL, |(lower, upper)| Box32 {
                 lower: frame.map(lower),

@@ -20,6 +20,7 @@ mod never;
 mod normal_cones;
 mod pack;
 mod pair_walk;
+mod posed;
 mod positions;
 mod safe_scale;
 mod tables;
@@ -41,6 +42,7 @@ use tables::Tables;
 pub use batch::Answer;
 pub use continuous::Impact;
 pub use kinetic::KineticQuery;
+pub use posed::{Pose, PosedShape};
 
 /// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,7 +205,7 @@ impl<'a> Query<'a> {
     #[inline]
     fn begin<'t, const E: usize>(&mut self, q: [&'t [f64]; E], limit: usize) -> Result<Ends<'t, E>, Error> {
         self.discrete.begin(limit);
-        let mut ends = Ends { q, norm: 0.0, reach: 0.0, ball: None };
+        let mut ends = Ends { q, norm: 0.0, reach: 0.0, ball: None, pose: None };
         for q in q {
             let scope = &self.asked.scope;
             let norm = if q.len() != scope.center.len() {

@@ -44,7 +44,7 @@ impl<const E: usize> Positions<E> {
         self.queries.fill(self.query);
         // Four vertices side by side were no faster: this waits for memory.
         for (v, (x, mapped)) in self.exact.iter_mut().zip(&mut self.mapped).enumerate() {
-            *x = vertices.position(v as u32, ends.q);
+            *x = placed(vertices.position(v as u32, ends.q), ends);
             *mapped = x.map(|x| self.frame.map(x));
         }
     }
@@ -55,7 +55,7 @@ impl<const E: usize> Positions<E> {
         let i = place as usize;
         if self.queries[i] != self.query {
             self.exact[i] = match ends.ball {
-                None => vertices.position(place, ends.q),
+                None => placed(vertices.position(place, ends.q), ends),
                 Some(ball) => {
                     let ([x], reach) = (vertices.position(place, [ends.q[0]]), ball.of_vertex(place));
                     std::array::from_fn(|end| if end == 0 { x - reach } else { x + reach })
@@ -83,5 +83,14 @@ impl<const E: usize> Positions<E> {
     #[inline]
     pub(super) fn frame(&self) -> &Frame {
         &self.frame
+    }
+}
+
+/// Positions in the world, where the shape has a pose there.
+#[inline]
+fn placed<const E: usize>(x: [DVec3; E], ends: &Ends<'_, E>) -> [DVec3; E] {
+    match ends.pose {
+        None => x,
+        Some(placement) => x.map(|x| placement.pose.apply(x)),
     }
 }

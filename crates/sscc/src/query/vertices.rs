@@ -10,6 +10,8 @@ pub(super) struct Vertices {
     rank: usize,
     /// For each vertex of the mesh its place here; `u32::MAX` where no triangle has it.
     places: Vec<u32>,
+    /// For each place its vertex.
+    order: Vec<u32>,
     rest: Vec<DVec3>,
     /// `[place * rank + mode]`
     modes: Vec<DVec3>,
@@ -20,17 +22,19 @@ impl Vertices {
     pub(super) fn new(model: &ReducedModel, order: &[u32]) -> Self {
         let (all, rank) = (model.mesh().rest_positions(), model.rank());
         let mut places = vec![u32::MAX; all.len()];
+        let mut numbers = Vec::with_capacity(all.len());
         let mut rest = Vec::with_capacity(all.len());
         let mut modes = Vec::with_capacity(all.len() * rank);
         for &v in order {
             let place = &mut places[v as usize];
             if *place == u32::MAX {
                 *place = rest.len() as u32;
+                numbers.push(v);
                 rest.push(all[v as usize]);
                 modes.extend_from_slice(model.modes().of_vertex(v));
             }
         }
-        Self { rank, places, rest, modes }
+        Self { rank, places, order: numbers, rest, modes }
     }
 
     /// How many there are.
@@ -42,6 +46,11 @@ impl Vertices {
     #[inline]
     pub(super) fn place(&self, vertex: u32) -> u32 {
         self.places[vertex as usize]
+    }
+
+    /// The vertex of the mesh at a place.
+    pub(super) fn vertex(&self, place: u32) -> u32 {
+        self.order[place as usize]
     }
 
     /// The position of the vertex at a place: to the bit that of [`deformed_position`](crate::deformed_position), at each q.

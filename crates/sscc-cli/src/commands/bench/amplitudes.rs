@@ -3,11 +3,10 @@
 use anyhow::Result;
 
 use super::Session;
-use super::case::Case;
 use super::measure::{Asked, Step, measure};
-use super::recipe::{BUNNY, DRAGON, SPRING};
 use super::report::Report;
 use super::sample::{directions, scaled, to_unit};
+use crate::case::{Kind, Recipe, Shape};
 use crate::output::Output;
 use crate::progress::Bar;
 
@@ -22,18 +21,18 @@ const ONWARD: f64 = 1.01;
 
 /// Gives the number of mismatches.
 pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
-    let recipes = [BUNNY, DRAGON, SPRING];
-    session.check_only(&recipes.map(|recipe| recipe.name))?;
+    let recipes = [("bunny", Shape::Bunny, 30), ("dragon", Shape::Dragon, 30), ("spring", Shape::SPRING, 20)];
+    session.check_only(&recipes.each_ref().map(|(name, ..)| *name))?;
     let mut mismatches = 0;
-    for recipe in recipes.iter().filter(|recipe| session.wants(recipe.name)) {
-        let case = Case::get(recipe, session)?;
+    for (name, shape, rank) in recipes.into_iter().filter(|(name, ..)| session.wants(name)) {
+        let case = session.case(&Recipe::new(name, shape, Kind::Linear(rank)))?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
         let mut reports = Vec::new();
         for share in SHARES {
             let steps = steps(&unit, share);
             let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
             mismatches += measured.mismatches;
-            let name = format!("amplitudes/{}", recipe.name);
+            let name = format!("amplitudes/{name}");
             reports.push(Report::new(name, share, &case, &measured, 1, None));
         }
         session.print(&reports, out)?;
@@ -44,5 +43,5 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
 /// Steps at a share (percent) of the q that displace by all of it.
 pub fn steps(unit: &[Vec<f64>], share: f64) -> Vec<Step> {
     let at = |q: &[f64], factor: f64| vec![scaled(q, share / 100.0 * factor)];
-    unit.iter().map(|q| Step { q_t0: at(q, 1.0), q_t1: at(q, ONWARD) }).collect()
+    unit.iter().map(|q| Step { before: None, q_t0: at(q, 1.0), q_t1: at(q, ONWARD) }).collect()
 }

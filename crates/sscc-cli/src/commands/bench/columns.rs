@@ -1,11 +1,11 @@
 //! The methods that are compared: a line for each.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use parry3d_f64::partitioning::BvhBuildStrategy;
-use sscc::{Certificates, Error, Impact, Method, Pair, Query};
+use sscc::{Error, Impact, Method, Pair, Query};
 
-use super::case::Case;
 use super::peer::Peer;
+use crate::case::Case;
 
 /// One column of the tables. Where several have the same key, the one with the smallest mean counts.
 pub struct Column {
@@ -38,8 +38,8 @@ pub const COLUMNS: &[Column] = &[
         role: Approximate,
         make: |case| plain(case, Method::NormalConesApprox),
     },
-    Column { key: "paper", role: Certified, make: |case| certified(case, &case.paper.certificates) },
-    Column { key: "full", role: Certified, make: |case| certified(case, &case.full.certificates) },
+    Column { key: "paper", role: Certified, make: paper },
+    Column { key: "full", role: Certified, make: full },
     Column { key: "parry", role: Comparator, make: |case| peer(case, BvhBuildStrategy::Binned) },
     Column { key: "parry", role: Comparator, make: |case| peer(case, BvhBuildStrategy::Ploc) },
 ];
@@ -54,8 +54,13 @@ fn plain(case: &Case, method: Method) -> Result<Box<dyn Engine + '_>> {
     Ok(Box::new(Query::with_method(&case.model, &case.full.certificates, method)?))
 }
 
-fn certified<'a>(case: &'a Case, certificates: &'a Certificates) -> Result<Box<dyn Engine + 'a>> {
-    Ok(Box::new(Query::new(&case.model, certificates)?))
+fn paper(case: &Case) -> Result<Box<dyn Engine + '_>> {
+    let paper = case.paper.as_ref().context("certificates as in the paper were not computed")?;
+    Ok(Box::new(Query::new(&case.model, &paper.certificates)?))
+}
+
+fn full(case: &Case) -> Result<Box<dyn Engine + '_>> {
+    Ok(Box::new(Query::new(&case.model, &case.full.certificates)?))
 }
 
 fn peer(case: &Case, how: BvhBuildStrategy) -> Result<Box<dyn Engine + '_>> {

@@ -5,12 +5,11 @@ use serde::Serialize;
 
 use super::Session;
 use super::amplitudes::steps;
-use super::case::Case;
-use super::machine;
 use super::measure::{Asked, measure};
-use super::recipe::{Kind, Recipe, SPRING_RINGS, Shape};
 use super::report::{Means, Report};
 use super::sample::{directions, to_unit};
+use crate::case::{Kind, Recipe, SPRING_RINGS, Shape};
+use crate::machine;
 use crate::output::Output;
 use crate::progress::Bar;
 
@@ -57,8 +56,8 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     let mut reports = Vec::new();
     for (name, halves, rank) in SPRINGS.into_iter().filter(|(name, ..)| session.wants(name)) {
         let [rings, around] = SPRING_RINGS.map(|usual| usual * halves / 2);
-        let recipe = Recipe { name, shape: Shape::Spring { rings, around }, kind: Kind::Linear(rank) };
-        let case = Case::get(&recipe, session)?;
+        let recipe = Recipe::new(name, Shape::Spring { rings, around }, Kind::Linear(rank));
+        let case = session.case(&recipe)?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
         let measured = measure(&case, &steps(&unit, SHARE), Asked::Discrete, &Bar::new("measuring"))?;
         reports.push(Report::new(format!("growth/{name}"), SHARE, &case, &measured, 1, None));

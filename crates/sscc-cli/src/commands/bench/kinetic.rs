@@ -8,15 +8,14 @@ use serde::Serialize;
 use sscc::{KineticQuery, Progress, Query};
 
 use super::Session;
-use super::case::Case;
 use super::clock::median;
 use super::columns::{COLUMNS, Engine, Role};
-use super::machine;
 use super::measure::spread;
-use super::recipe::SPRING;
 use super::report::Means;
 use super::vibration::Vibration;
+use crate::case::{Case, Kind, Recipe, Shape};
 use crate::interrupt;
+use crate::machine;
 use crate::output::{Output, grouped};
 use crate::progress::Bar;
 
@@ -64,10 +63,10 @@ struct Report {
 
 /// Gives the number of mismatches.
 pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
-    let case = Case::get(&SPRING, session)?;
+    let case = session.case(&Recipe::new("spring", Shape::SPRING, Kind::Linear(20)))?;
     let vibration = Vibration::new(&case, 1)?;
     let steps = session.args.steps.map_or(STEPS, |steps| steps as usize);
-    let own = case.frequencies[0] / std::f64::consts::TAU;
+    let own = vibration.bodies[0].first_frequency() / std::f64::consts::TAU;
     let mut mismatches = 0;
     if !session.args.json.json {
         let (triangles, rank) = (grouped(case.model.mesh().faces().len() as u64), case.model.rank());

@@ -3,10 +3,10 @@
 use anyhow::Result;
 use sscc::{Impact, Pair, Progress};
 
-use super::case::Case;
 use super::clock::{median, milliseconds};
 use super::columns::{COLUMNS, Column, Engine, Role};
 use super::verdict::is_wrong;
+use crate::case::Case;
 use crate::interrupt;
 use crate::progress::Bar;
 
@@ -21,6 +21,8 @@ const COMPARED: usize = 20;
 
 /// One step of all bodies: from each `q_t0[i]` to `q_t1[i]`. Discrete queries are asked at its start.
 pub struct Step {
+    /// Where the bodies were a step before, at the first step of a block of consecutive ones.
+    pub before: Option<Vec<Vec<f64>>>,
     pub q_t0: Vec<Vec<f64>>,
     pub q_t1: Vec<Vec<f64>>,
 }
@@ -43,6 +45,8 @@ pub struct Times {
     pub compared: Vec<usize>,
     /// By step and column; none where it was not asked.
     times: Vec<Vec<Option<f64>>>,
+    /// By step, of kinetic queries; empty where they were not asked.
+    pub kinetic: Vec<f64>,
 }
 
 /// Which queries are asked.
@@ -66,8 +70,12 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
     let mut measured = Measured {
         colliding: Vec::with_capacity(steps.len()),
         root_failed: Vec::with_capacity(steps.len()),
-        discrete: Times { compared, times: Vec::with_capacity(steps.len()) },
-        continuous: Times { compared: continuous, times: Vec::with_capacity(steps.len()) },
+        discrete: Times { compared, times: Vec::with_capacity(steps.len()), kinetic: Vec::new() },
+        continuous: Times {
+            compared: continuous,
+            times: Vec::with_capacity(steps.len()),
+            kinetic: Vec::new(),
+        },
         mismatches: 0,
     };
     for (index, step) in steps.iter().enumerate() {
@@ -181,6 +189,10 @@ impl Times {
                 None => means.push((column.key, mean)),
             }
         }
+        if !self.kinetic.is_empty() {
+            let sum: f64 = steps.iter().map(|step| self.kinetic[*step]).sum();
+            means.push(("kinetic", sum / steps.len() as f64));
+        }
         means
     }
 }
@@ -211,13 +223,15 @@ mod tests {
         };
         let mut partial = row(0.0);
         partial[0] = None;
-        let times = Times { compared: vec![0, 1], times: vec![row(0.0), row(2.0), partial] };
+        let kinetic = vec![1.0, 3.0, 9.0];
+        let times = Times { compared: vec![0, 1], times: vec![row(0.0), row(2.0), partial], kinetic };
         let means = times.means(&[0, 1]);
         let of =
             |means: &[(&str, f64)], key: &str| means.iter().find(|mean| mean.0 == key).map(|mean| mean.1);
         let at = COLUMNS.iter().position(|column| column.key == "parry").unwrap();
         assert_eq!((of(&means, "parry"), of(&means, COLUMNS[0].key)), (Some(at as f64 + 2.0), Some(2.0)));
         assert_eq!(of(&times.means(&[0, 2]), COLUMNS[0].key), None);
+        assert_eq!(of(&means, "kinetic"), Some(2.0));
         assert!(times.means(&[]).is_empty());
     }
 }

@@ -4,17 +4,15 @@
 //! vertices and refitting; all must list the same pairs.
 
 mod amplitudes;
-mod cache;
-mod case;
 mod clock;
 mod columns;
+mod follow;
 mod growth;
 mod kinetic;
-mod machine;
 mod measure;
+mod paper;
 mod peer;
 mod random;
-mod recipe;
 mod report;
 mod sample;
 mod scenario;
@@ -29,8 +27,9 @@ use anyhow::{Context, ensure};
 
 use crate::Outcome;
 use crate::args::Bench;
+use crate::case::{Cache, Case, Kind, Recipe, Shape, models_folder};
+use crate::machine;
 use crate::output::Output;
-use cache::Cache;
 use report::Report;
 use scenario::Scenario;
 use table::Table;
@@ -40,27 +39,19 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     let scenario = match &args.scenario {
         Some(name) if !args.list => Scenario::named(name)?,
         _ => {
-            scenario::lines().into_iter().try_for_each(|line| out.line(line))?;
+            scenario::lines()?.into_iter().try_for_each(|line| out.line(line))?;
             out.finish()?;
             return Ok(Outcome::Done);
         }
     };
     check_options(args, scenario)?;
-    let named = std::env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty());
-    let models = args.models.clone().or(named.map(PathBuf::from));
-    if let Some(folder) = &models {
-        ensure!(
-            folder.is_dir(),
-            "{}: no folder of models; leave out --models or SSCC_MODELS",
-            folder.display()
-        );
-    }
+    let models = models_folder(args.models.as_deref())?;
     let session = Session { args, models, cache: Cache::open(args.cache.as_deref())? };
     let mismatches = match scenario {
         Scenario::Amplitudes => amplitudes::run(&session, &mut out),
         Scenario::Growth => growth::run(&session, &mut out),
         Scenario::Kinetic => kinetic::run(&session, &mut out),
-        Scenario::Scenes(scenes) => scene::run(&session, scenes, &mut out),
+        Scenario::Scenes(scenes, table) => scene::run_all(&session, scenes, table, &mut out),
     }
     .with_context(|| format!("bench {}", args.scenario.as_deref().unwrap_or_default()))?;
     if !args.json.json {
@@ -73,7 +64,7 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
 
 /// Refuses what would have no meaning.
 fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
-    let moves = matches!(scenario, Scenario::Scenes(_) | Scenario::Kinetic);
+    let moves = matches!(scenario, Scenario::Scenes(..) | Scenario::Kinetic);
     ensure!(moves || args.steps.is_none(), "--steps is for what moves; amplitudes and growth have --samples");
     ensure!(
         !moves || args.samples.is_none(),
@@ -93,6 +84,17 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
+    /// A model with its certificates; where a quick look is wanted, the small spring in place of any.
+    fn case(&self, recipe: &Recipe) -> anyhow::Result<Case> {
+        if !self.args.quick {
+            let begun = recipe.begin(self.models.as_deref())?;
+            return Case::get(&begun, &self.cache)?.with_paper(&self.cache);
+        }
+        let mut case = Case::get(&small_spring().begin(None)?, &self.cache)?.with_paper(&self.cache)?;
+        case.note = Some("--quick: a spring of 4,000 triangles stands in for any model".into());
+        Ok(case)
+    }
+
     /// Whether a model is wanted.
     fn wants(&self, name: &str) -> bool {
         self.args.only.as_deref().is_none_or(|only| only == name)
@@ -120,4 +122,9 @@ impl Session<'_> {
         }
         Table::of(reports).lines().into_iter().try_for_each(|line| out.line(line))
     }
+}
+
+/// The first spring of `growth`.
+fn small_spring() -> Recipe {
+    Recipe::new("spring-4k", Shape::SMALL_SPRING, Kind::Linear(20))
 }

@@ -2,9 +2,10 @@
 
 use serde::{Serialize, Serializer};
 
-use super::case::Case;
-use super::machine;
 use super::measure::Measured;
+use crate::case::Case;
+use crate::machine;
+use crate::simulation::PARTS;
 
 /// One line of JSON. Times are means over steps; where comparators were not asked all steps, those that they were asked
 /// count for every method, so that ratios are of the same steps.
@@ -12,7 +13,7 @@ use super::measure::Measured;
 pub struct Report {
     /// With the model, where the scenario has several.
     pub scenario: String,
-    pub model: &'static str,
+    pub model: String,
     /// The mesh.
     pub source: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,9 +39,15 @@ pub struct Report {
     pub certify_peak_bytes: Option<u64>,
     /// One discrete query of one body.
     pub parry_query_seconds: Option<f64>,
-    /// None of free vibrations.
+    /// Of the whole scene; none where nothing is simulated. It looks for self-collisions as its file says.
     pub simulation_seconds: Option<f64>,
     pub self_collision_share: Option<f64>,
+    /// What it would take with the traditional method, over what it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation_speedup: Option<f64>,
+    /// Mean milliseconds of the parts of a step, over the whole scene.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub simulation_ms: Means,
     pub discrete_ms: Means,
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub continuous_ms: Means,
@@ -58,6 +65,8 @@ pub struct Whole {
     pub colliding_steps: usize,
     pub body_steps: usize,
     pub colliding_body_steps: usize,
+    /// What the parts of its simulation took.
+    pub seconds: Option<[f64; PARTS.len()]>,
 }
 
 /// A value for each column.
@@ -96,7 +105,15 @@ impl Report {
             colliding_steps,
             body_steps: steps * objects,
             colliding_body_steps: colliding_steps,
+            seconds: None,
         });
+        let seconds = whole.seconds.unwrap_or_default();
+        let simulation_seconds = whole.seconds.map(|parts| parts.iter().sum::<f64>());
+        let of_step = |seconds: f64| seconds * 1e3 / whole.steps as f64;
+        let simulation_ms = match whole.seconds {
+            Some(parts) => PARTS.iter().zip(parts).map(|(part, seconds)| (*part, of_step(seconds))).collect(),
+            None => Vec::new(),
+        };
         let Measured { discrete, continuous, .. } = measured;
         let (compared, all): (&[usize], Vec<usize>) = (&discrete.compared, (0..steps).collect());
         let root_failed: Vec<usize> =
@@ -105,7 +122,7 @@ impl Report {
         let discrete_ms = Means(discrete.means(compared));
         Self {
             scenario,
-            model: case.name,
+            model: case.name.clone(),
             source: case.source.clone(),
             note: case.note.clone(),
             share,
@@ -127,8 +144,13 @@ impl Report {
             certify_threads: case.full.cost.threads,
             certify_peak_bytes: case.full.cost.peak_bytes,
             parry_query_seconds: discrete_ms.get("parry").map(|ms| ms / 1e3 / objects as f64),
-            simulation_seconds: None,
-            self_collision_share: None,
+            simulation_seconds,
+            self_collision_share: simulation_seconds.map(|all| seconds[0] / all),
+            simulation_speedup: simulation_seconds.and_then(|all| {
+                let traditional = discrete_ms.get("traditional")?;
+                Some((of_step(all - seconds[0]) + traditional) / of_step(all))
+            }),
+            simulation_ms: Means(simulation_ms),
             discrete_ms,
             continuous_ms: Means(continuous.means(&continuous.compared)),
             discrete_ms_root_failed: Means(discrete.means(&root_failed)),

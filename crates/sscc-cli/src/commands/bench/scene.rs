@@ -1,17 +1,20 @@
-//! Scenes: bodies that swing, whole for what collides, some steps of it for the times.
+//! Scenes: simulated whole, or taken from the cache; some of their steps are measured.
 
-use anyhow::Result;
-use sscc::{Progress, Query};
+use std::fs;
+
+use anyhow::{Context, Result, bail, ensure};
 
 use super::Session;
-use super::case::Case;
+use super::follow::follow;
 use super::measure::{Asked, Step, measure, spread};
+use super::paper;
 use super::report::{Report, Whole};
-use super::scenario::Scene;
-use super::vibration::{SCENE_STEPS, Swing, Vibration};
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use super::sample::{half_diagonal, largest_displacement};
+use super::scenario::PaperTable;
+use crate::output::{Output, one_line};
 use crate::progress::Bar;
+use crate::scene::Scene;
+use crate::simulation::{History, Log, Meter, PARTS, Prepared, Ran, run};
 
 /// Steps that are measured, if nothing is said.
 const STEPS: usize = 100;
@@ -19,24 +22,86 @@ const STEPS: usize = 100;
 /// Steps are measured in so many blocks, spread evenly over the scene.
 const BLOCKS: usize = 10;
 
+/// States that are looked at for how far bodies are displaced.
+const LOOKED_AT: usize = 100;
+
 /// Gives the number of mismatches.
-pub fn run(session: &Session<'_>, scenes: &[Scene], out: &mut Output) -> Result<usize> {
-    let wanted = session.args.steps.map_or(STEPS, |steps| steps as usize);
-    let mut mismatches = 0;
-    for scene in scenes {
-        let case = Case::get(&scene.recipe, session)?;
-        let Vibration { bodies, share } = Vibration::new(&case, scene.objects)?;
-        let bodies: Vec<Vec<Vec<f64>>> = bodies.iter().map(Swing::scene).collect();
-        let whole = whole(&case, &bodies)?;
-        let at = |i: usize| -> Vec<Vec<f64>> { bodies.iter().map(|body| body[i].clone()).collect() };
-        let steps = blocks(SCENE_STEPS, wanted).into_iter();
-        let steps: Vec<Step> = steps.map(|i| Step { q_t0: at(i), q_t1: at(i + 1) }).collect();
-        let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
-        mismatches += measured.mismatches;
-        let report = Report::new(scene.name.into(), share, &case, &measured, scene.objects, Some(whole));
-        session.print(&[report], out)?;
+pub fn run_all(
+    session: &Session<'_>,
+    scenes: &[(&'static str, &'static str)],
+    table: PaperTable,
+    out: &mut Output,
+) -> Result<usize> {
+    let mut reports = Vec::new();
+    for (name, text) in scenes {
+        let report = one(session, name, text).with_context(|| (*name).to_owned())?;
+        session.print(std::slice::from_ref(&report), out)?;
+        reports.push(report);
     }
-    Ok(mismatches)
+    if !session.args.json.json {
+        paper::lines(table, &reports).into_iter().try_for_each(|line| out.line(line))?;
+    }
+    Ok(reports.iter().map(|report| report.mismatches).sum())
+}
+
+fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
+    let mut scene = Scene::parse(format!("{name}.toml").as_ref(), text)?;
+    if session.args.quick {
+        scene.quicken();
+    }
+    let prepared = Prepared::get(&scene, session.models.as_deref(), &session.cache)?;
+    let history = simulated(session, &scene, &prepared)?;
+    let steps = blocks(history.len() - 1, session.args.steps.map_or(STEPS, |steps| steps as usize));
+    let at = |state: usize| -> Vec<Vec<f64>> { history.bodies(state).map(|body| body.q.to_vec()).collect() };
+    let step = |(n, state): (usize, &usize)| {
+        let is_first = n == 0 || steps[n - 1] + 1 != *state;
+        Step { before: is_first.then(|| at(state.saturating_sub(1))), q_t0: at(*state), q_t1: at(state + 1) }
+    };
+    let measured_steps: Vec<Step> = steps.iter().enumerate().map(step).collect();
+    let mut models = prepared.models.into_iter();
+    let (Some(model), None) = (models.next(), models.next()) else {
+        bail!("scenes of one model are measured");
+    };
+    let mut case = model.case.with_paper(&session.cache)?;
+    if session.args.quick {
+        case.note =
+            Some("--quick: a spring of 4,000 triangles stands in for any model, for half a second".into());
+    }
+    let mut measured = measure(&case, &measured_steps, Asked::Both, &Bar::new("measuring"))?;
+    measured.mismatches += follow(&case, &measured_steps, &mut measured.discrete)?;
+    let farthest = spread(&(0..history.len()).collect::<Vec<_>>(), LOOKED_AT)
+        .into_iter()
+        .flat_map(|state| {
+            history.bodies(state).map(|body| largest_displacement(&case.model, body.q)).collect::<Vec<_>>()
+        })
+        .fold(0.0, f64::max);
+    let share = 100.0 * farthest / half_diagonal(&case.model);
+    Ok(Report::new(name.into(), share, &case, &measured, scene.bodies.len(), Some(whole(&history))))
+}
+
+/// The motion of the whole scene, simulated on one thread.
+fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Result<History> {
+    let digest = prepared.digest(scene)?;
+    let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+    let folder = session.cache.folder().join(format!("{}-{hash}.scene", scene.name));
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let simulate = || pool.install(|| run(scene, prepared, &folder, scene.steps, &Meter::new()));
+    let Ran { history, failure, .. } = match simulate() {
+        Err(error) if Log::is_begun(&folder) => {
+            eprintln!("note: simulated anew: {}", one_line(&format!("{error:#}")));
+            Log::restart(&folder)?;
+            simulate()?
+        }
+        ran => ran?,
+    };
+    match failure {
+        Some(error) => Err(error),
+        None => {
+            ensure!(history.len() > 1, "a scene of one step has nothing to measure");
+            Ok(history)
+        }
+    }
 }
 
 /// Numbers of `wanted` of the steps, in blocks.
@@ -48,24 +113,21 @@ fn blocks(steps: usize, wanted: usize) -> Vec<usize> {
     starts.into_iter().enumerate().flat_map(|(block, start)| start..start + length(block)).collect()
 }
 
-/// What collides in the whole scene.
-fn whole(case: &Case, bodies: &[Vec<Vec<f64>>]) -> Result<Whole> {
-    let query = Query::new(&case.model, &case.full.certificates)?;
-    let bar = Bar::new("simulating");
-    let mut colliding = vec![0; SCENE_STEPS];
-    for (index, body) in bodies.iter().enumerate() {
-        let answers = query.batch(&body[..SCENE_STEPS], None, &Interrupt)?;
-        for (bodies, answer) in colliding.iter_mut().zip(answers) {
-            *bodies += usize::from(!answer.pairs.is_empty());
-        }
-        bar.report(index + 1, bodies.len());
+/// What collides in the whole scene, and what its simulation took.
+fn whole(history: &History) -> Whole {
+    let steps = history.len();
+    let colliding: Vec<usize> = (0..steps).map(|state| history.colliding(state)).collect();
+    let mut seconds = [0.0; PARTS.len()];
+    for state in 0..steps {
+        seconds.iter_mut().zip(history.facts(state).seconds).for_each(|(sum, part)| *sum += part);
     }
-    Ok(Whole {
-        steps: SCENE_STEPS,
+    Whole {
+        steps,
         colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
-        body_steps: SCENE_STEPS * bodies.len(),
+        body_steps: steps * history.layout().bodies(),
         colliding_body_steps: colliding.iter().sum(),
-    })
+        seconds: Some(seconds),
+    }
 }
 
 #[cfg(test)]

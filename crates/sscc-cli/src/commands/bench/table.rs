@@ -51,6 +51,13 @@ impl<'a> Table<'a> {
                 grouped(first.scene_body_steps as u64)
             ));
         }
+        if let (Some(seconds), Some(share)) = (first.simulation_seconds, first.self_collision_share) {
+            lines.push(format!(
+                "simulated in {seconds:.2} s, {:.1}% of it to find self-collisions; {} as fast as with the traditional method",
+                100.0 * share,
+                times(first.simulation_speedup)
+            ));
+        }
         lines.extend(first.note.iter().map(|note| format!("note: {note}")));
         let label = |report: &Report| format!("{}%", (report.share * 10.0).round() / 10.0);
         let discrete = self.reports.iter().flat_map(|report| {

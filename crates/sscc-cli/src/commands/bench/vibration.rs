@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use sscc::{Method, Query};
 
-use super::case::Case;
 use super::random::Random;
 use super::sample::{directions, half_diagonal, largest_displacement, scaled};
+use crate::case::Case;
 use crate::interrupt::Interrupt;
 
 /// Periods of the first mode in a scene, and steps in each.
@@ -38,7 +38,14 @@ impl Swing {
     fn new(case: &Case, random: &mut Random) -> Self {
         let amplitudes = directions(&case.model, 1).remove(0);
         let phases = amplitudes.iter().map(|_| TAU * random.uniform()).collect();
-        Self { amplitudes, frequencies: case.frequencies.clone(), phases }
+        let (rank, stiffness) = (case.model.rank(), case.elasticity.stiffness());
+        let frequencies = (0..rank).map(|k| stiffness[k * (rank + 1)].max(0.0).sqrt()).collect();
+        Self { amplitudes, frequencies, phases }
+    }
+
+    /// Angular frequency of the first mode (1/s).
+    pub fn first_frequency(&self) -> f64 {
+        self.frequencies[0]
     }
 
     /// q after so many periods of the first mode.

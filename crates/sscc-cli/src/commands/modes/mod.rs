@@ -17,6 +17,7 @@ use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
 pub use elastic::elasticity;
 use pca::Components;
+pub use source::{Source, is_solid};
 
 #[derive(Serialize)]
 struct Report {

@@ -28,6 +28,17 @@ pub fn is_solid(path: &Path) -> bool {
 }
 
 impl Source {
+    /// A lattice around a surface, with so many cubes along its longest side.
+    pub fn around(
+        mesh: TriMesh,
+        cells: Option<usize>,
+        material: Material,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let embedded = Embedded::new(&mesh, cells, material, progress)?;
+        Ok(Self::Around { mesh, embedded })
+    }
+
     pub fn read(
         path: &Path,
         resolution: Option<u32>,
@@ -35,9 +46,8 @@ impl Source {
         progress: &dyn Progress,
     ) -> Result<Self> {
         if !is_solid(path) {
-            let mesh = read_mesh(path)?;
-            let embedded = Embedded::new(&mesh, resolution.map(|cells| cells as usize), material, progress)?;
-            return Ok(Self::Around { mesh, embedded });
+            let cells = resolution.map(|cells| cells as usize);
+            return Self::around(read_mesh(path)?, cells, material, progress);
         }
         if resolution.is_some() {
             bail!("--resolution is for surfaces: this file brings its own elements");

@@ -166,7 +166,7 @@ impl<'a> KineticQuery<'a> {
         let most = MOST_FOUND * asked.model.mesh().faces().len();
         let worth = WORTH.saturating_mul(self.pace.plain) / (MARGIN + FOUND);
         self.near.begin(most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024));
-        let around = Ends { q: [q, q], norm, reach, ball: Some(&self.ball) };
+        let around = Ends { q: [q, q], norm, reach, ball: Some(&self.ball), pose: None };
         self.near.boxes.update(&asked.hierarchy, &around);
         self.near.search_by_boxes(asked, &around)?;
         if self.near.is_full() {

@@ -28,6 +28,11 @@ impl Cache {
         Ok(Self { folder })
     }
 
+    /// Where the files are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Reads a file, or makes and writes it where it is missing or damaged.
     pub fn get<T>(
         &self,

@@ -1,0 +1,219 @@
+//! Models by what they are made from: a shape, a material and a kind of modes.
+
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use glam::DQuat;
+use sscc::{ReducedModel, TriMesh};
+use sscc_io::{ModelInfo, read_mesh};
+use sscc_modes::shapes::{hare, serpent, spring_of};
+use sscc_modes::{
+    DEFAULT_ELL, Material, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
+    polynomial_solid_modes,
+};
+
+use super::cache::Key;
+use crate::commands::modes::{Source, elasticity, is_solid};
+use crate::progress::Bar;
+
+/// A free elastic body with modes.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    pub name: String,
+    pub shape: Shape,
+    pub kind: Kind,
+    /// Of surfaces, and of solids whose file names none.
+    pub material: Material,
+    /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
+    pub cells: Option<usize>,
+    /// The longest side of the box around a surface; none: as it is.
+    pub size: Option<f64>,
+}
+
+/// A shape to begin with.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// The embedded spring, finer or coarser.
+    Spring { rings: usize, around: usize },
+    /// The bunny; without files the embedded hare.
+    Bunny,
+    /// The dragon; without files the embedded serpent.
+    Dragon,
+    /// A surface or a solid.
+    File(PathBuf),
+}
+
+/// Modes of a free elastic body.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Linear(usize),
+    Nonlinear(usize),
+    Polynomial,
+}
+
+impl Kind {
+    /// Number of modes r.
+    pub fn rank(self) -> usize {
+        match self {
+            Self::Linear(rank) | Self::Nonlinear(rank) => rank,
+            Self::Polynomial => 24,
+        }
+    }
+}
+
+/// Rings of the embedded spring, and vertices of each.
+pub const SPRING_RINGS: [usize; 2] = [500, 16];
+
+/// Cubes along the spring, as in the library's `elastic_spring`.
+const SPRING_CELLS: usize = 30;
+
+impl Shape {
+    /// The embedded spring of 16,000 triangles.
+    pub const SPRING: Self = Self::Spring { rings: SPRING_RINGS[0], around: SPRING_RINGS[1] };
+    /// A quarter of the triangles.
+    pub const SMALL_SPRING: Self = Self::Spring { rings: SPRING_RINGS[0] / 2, around: SPRING_RINGS[1] / 2 };
+
+    /// Reads or makes it.
+    fn begin(&self, models: Option<&Path>) -> Result<(Matter, String, Option<String>)> {
+        let (file, name, embedded): (_, _, fn() -> TriMesh) = match self {
+            Self::Spring { rings, around } => {
+                return Ok((Matter::Surface(spring_of(*rings, *around)), "embedded spring".into(), None));
+            }
+            Self::File(path) => {
+                let matter = if is_solid(path) {
+                    let whole = Source::read(path, None, Material::default(), &Bar::new("modes"));
+                    Matter::Solid(Box::new(whole.with_context(|| path.display().to_string())?))
+                } else {
+                    Matter::Surface(read_mesh(path)?)
+                };
+                return Ok((matter, path.file_name().unwrap_or_default().to_string_lossy().into(), None));
+            }
+            Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
+            Self::Dragon => ("dragon_77202_closed.ply", "serpent", serpent),
+        };
+        Ok(match models {
+            Some(folder) => (Matter::Surface(read_mesh(&folder.join(file))?), file.into(), None),
+            None => (
+                Matter::Surface(embedded()),
+                format!("embedded {name}"),
+                Some(format!("the embedded {name} stands in for {file}: no --models given")),
+            ),
+        })
+    }
+}
+
+impl Recipe {
+    /// Of the default material, in its own size and its usual lattice.
+    pub fn new(name: impl Into<String>, shape: Shape, kind: Kind) -> Self {
+        Self { name: name.into(), shape, kind, material: Material::default(), cells: None, size: None }
+    }
+
+    /// Reads or makes the shape.
+    pub fn begin(&self, models: Option<&Path>) -> Result<Begun<'_>> {
+        let (mut matter, source, note) = self.shape.begin(models)?;
+        match (&mut matter, self.size) {
+            (Matter::Surface(mesh), Some(size)) => *mesh = resized(mesh, size)?,
+            (Matter::Solid(_), Some(_)) => {
+                bail!("{source}: size is for surfaces; a solid's file has its own")
+            }
+            (_, None) => {}
+        }
+        ensure!(
+            self.cells.is_none() || matches!(matter, Matter::Surface(_)),
+            "{source}: resolution is for surfaces; a solid's file brings its own elements"
+        );
+        // The files have y up, embedded shapes z.
+        let is_turned = models.is_some() && matches!(self.shape, Shape::Bunny | Shape::Dragon);
+        let upright =
+            if is_turned { DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
+        Ok(Begun { recipe: self, matter, source, note, upright, around: OnceCell::new() })
+    }
+}
+
+/// The shape of a recipe, before anything that takes long.
+pub struct Begun<'a> {
+    recipe: &'a Recipe,
+    matter: Matter,
+    /// Where the shape is from.
+    pub source: String,
+    /// What an embedded shape stands in for.
+    pub note: Option<String>,
+    /// From its own axes to those of a shape that stands upright, z up.
+    pub upright: DQuat,
+    /// The lattice around a surface.
+    around: OnceCell<Source>,
+}
+
+enum Matter {
+    Surface(TriMesh),
+    Solid(Box<Source>),
+}
+
+impl Begun<'_> {
+    pub fn recipe(&self) -> &Recipe {
+        self.recipe
+    }
+
+    /// The hash of all that something of this solid is made from.
+    pub fn key(&self, what: &str) -> Key {
+        let Recipe { material, cells, .. } = self.recipe;
+        let key = Key::new(what).text(&format!("{material:?} {cells:?}"));
+        match &self.matter {
+            Matter::Surface(mesh) => key.mesh(mesh),
+            Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
+        }
+    }
+
+    /// The solid with its surface.
+    pub fn solid(&self) -> Result<&Source> {
+        let mesh = match &self.matter {
+            Matter::Solid(source) => return Ok(source),
+            Matter::Surface(mesh) => mesh,
+        };
+        if let Some(source) = self.around.get() {
+            return Ok(source);
+        }
+        let Recipe { shape, cells, material, .. } = self.recipe;
+        let usual = matches!(shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
+        let around = Source::around(mesh.clone(), cells.or(usual), *material, &Bar::new("solid"));
+        let around = around.with_context(|| self.source.clone())?;
+        Ok(self.around.get_or_init(|| around))
+    }
+
+    /// Makes modes; takes up to some minutes.
+    pub fn modes(&self, kind: Kind) -> Result<(ReducedModel, ModelInfo)> {
+        let source = self.solid()?;
+        let bar = Bar::new("modes");
+        let (solid, modes) = match kind {
+            Kind::Linear(rank) => (linear_modes(source.solid(), &[], rank, &bar)?, None),
+            Kind::Nonlinear(rank) => (nonlinear_modes(source.solid(), &[], rank, &bar)?, None),
+            Kind::Polynomial => {
+                let (solid, modes) = polynomial_solid_modes(source.solid(), source.mesh(), &bar)?;
+                (solid, Some(modes))
+            }
+        };
+        let modes = match modes {
+            Some(modes) => modes,
+            None => source.on_surface(&solid.modes)?,
+        };
+        // As `sscc modes` does.
+        let weights = match kind {
+            Kind::Linear(_) => solid.eigenvalues.clone(),
+            _ => filter_eigenvalues(&solid.eigenvalues, DEFAULT_ELL)?,
+        };
+        let model = ReducedModel::with_metric(source.mesh().clone(), modes, energy_metric(&weights)?)?;
+        let info = ModelInfo::new("", format!("{}, {kind:?}", self.source))
+            .with_elasticity(elasticity(solid.eigenvalues, solid.forces));
+        Ok((model, info))
+    }
+}
+
+/// The same shape, the longest side of its box so long.
+fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh> {
+    let rest = mesh.rest_positions();
+    let (lower, upper) = rest.iter().fold((rest[0], rest[0]), |(a, b), p| (a.min(*p), b.max(*p)));
+    let scale = size / (upper - lower).max_element();
+    ensure!(scale.is_finite() && scale > 0.0, "a shape of no size cannot be made {size:e} long");
+    Ok(TriMesh::new(rest.iter().map(|p| p * scale).collect(), mesh.faces().to_vec())?)
+}

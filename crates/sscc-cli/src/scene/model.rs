@@ -1,0 +1,121 @@
+//! The models of a scene: `[models.NAME]`.
+
+use std::path::Path;
+
+use anyhow::Result;
+use sscc_dynamics::{Damping, MATERIALS};
+use sscc_modes::Material;
+
+use super::section::Section;
+use crate::case::{Kind, Recipe, Shape};
+
+/// The most modes of a body.
+pub const MOST_RANK: usize = 500;
+
+/// The most cubes along the longest side of a lattice.
+const MOST_CELLS: usize = 2000;
+
+/// A model that bodies are made of.
+#[derive(Clone, Debug)]
+pub struct ModelSpec {
+    pub recipe: Recipe,
+    /// Whether q moves by the forces at rest alone.
+    pub is_linear: bool,
+    pub damping: Damping,
+}
+
+/// Modes of the small spring.
+pub const QUICK_RANK: usize = 20;
+
+impl ModelSpec {
+    /// The small spring in its place.
+    pub fn quicken(&mut self) {
+        let Recipe { shape, kind, cells, .. } = &mut self.recipe;
+        (*shape, *kind, *cells) = (Shape::SMALL_SPRING, Kind::Linear(QUICK_RANK), None);
+        self.is_linear = true;
+    }
+}
+
+const KEYS: [&str; 9] =
+    ["shape", "file", "size", "resolution", "kind", "rank", "material", "damping", "dynamics"];
+
+/// Names of embedded shapes, and of those that they stand in for.
+const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
+
+pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
+    scene.named("models", &KEYS)?.into_iter().map(|(name, model)| one(name, &model, folder)).collect()
+}
+
+fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
+    if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') {
+        return Err(model.refused("models", "letters, digits, _ and - make the name of a model"));
+    }
+    let shape = match (model.word("shape", &SHAPES.map(|name| (name, name)))?, model.text("file")?) {
+        (Some(_), Some(_)) => {
+            return Err(model.refused("file", "it has a shape already: leave one of them out"));
+        }
+        (None, None) => return Err(model.refused("shape", "it is missing (or a file)")),
+        (None, Some(file)) => Shape::File(folder.join(file)),
+        (Some("spring"), _) => Shape::SPRING,
+        (Some("spring-4k"), _) => Shape::SMALL_SPRING,
+        (Some("bunny"), _) => Shape::Bunny,
+        (Some(_), _) => Shape::Dragon,
+    };
+    let rank = model.count("rank", MOST_RANK)?;
+    let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
+    let (kind, is_linear) = match model.wanted("kind", word)? {
+        "linear" => (Kind::Linear(rank.unwrap_or(20)), true),
+        "nonlinear" => (Kind::Nonlinear(rank.unwrap_or(30)), false),
+        _ if rank.is_some_and(|rank| rank != 24) => {
+            return Err(model.refused("rank", "polynomial modes are always all 24"));
+        }
+        _ => (Kind::Polynomial, true),
+    };
+    let dynamics = model.word("dynamics", &[("linear", true), ("nonlinear", false)])?;
+    if let (Kind::Linear(_), Some(false)) = (kind, dynamics) {
+        return Err(model.refused("dynamics", "linear modes move linearly"));
+    }
+    let (material, usual) = material(model)?;
+    let recipe = Recipe {
+        name: name.into(),
+        shape,
+        kind,
+        material,
+        cells: model.count("resolution", MOST_CELLS)?,
+        size: model.positive("size")?,
+    };
+    let damping = damping(model)?.unwrap_or(usual);
+    Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
+}
+
+/// `damping = { mass, stiffness }`
+pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
+    let Some(damping) = section.section("damping", &["mass", "stiffness"])? else { return Ok(None) };
+    Ok(Some(Damping {
+        mass: damping.not_negative("mass")?.unwrap_or(0.0),
+        stiffness: damping.not_negative("stiffness")?.unwrap_or(0.0),
+    }))
+}
+
+/// A material by its name, with its usual damping, or by its numbers.
+fn material(model: &Section<'_>) -> Result<(Material, Damping)> {
+    if model.is_text("material") {
+        let known = MATERIALS.map(|material| (material.name, material));
+        let found = model.wanted("material", model.word("material", &known)?)?;
+        return Ok((found.elastic, found.damping));
+    }
+    let usual = Material::default();
+    let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {
+        return Ok((usual, Damping::default()));
+    };
+    let poisson_ratio = material.number("poisson")?.unwrap_or(usual.poisson_ratio);
+    if !(-1.0..0.5).contains(&poisson_ratio) || poisson_ratio == -1.0 {
+        return Err(material.refused("poisson", "a number between -1 and 0.5 was expected"));
+    }
+    let elastic = Material {
+        youngs_modulus: material.positive("youngs")?.unwrap_or(usual.youngs_modulus),
+        poisson_ratio,
+        density: material.positive("density")?.unwrap_or(usual.density),
+    };
+    Ok((elastic, Damping::default()))
+}

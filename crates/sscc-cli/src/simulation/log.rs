@@ -1,0 +1,242 @@
+//! The file to which a simulation is written while it runs, and the checkpoint from which it goes on after being killed.
+//!
+//! States are appended, all of one size. A checkpoint tells how many there were when it was written and what the simulation
+//! needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
+//! written now and then, and costs as little at the end of a long simulation as at its beginning.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use sscc_io::{read_whole, write_whole};
+
+use super::history::{History, Layout};
+
+const LOG: &str = "states.log";
+const CHECKPOINT: &str = "checkpoint.bin";
+
+/// Both files begin with a hash of what is simulated.
+const DIGEST: usize = 32;
+
+/// A checkpoint ends with a hash of all before.
+const SEAL: usize = 32;
+
+/// The states of a simulation, on disk.
+pub struct Log {
+    folder: PathBuf,
+    digest: [u8; DIGEST],
+    layout: Layout,
+    file: File,
+    /// Whole states in the file.
+    len: usize,
+}
+
+/// Where a simulation goes on.
+pub struct Checkpoint {
+    /// States that were there.
+    pub states: usize,
+    /// What the simulation needs beside them.
+    pub memory: Vec<f64>,
+}
+
+impl Log {
+    /// Opens the log of a folder, and gives the checkpoint that is there. `digest` is the hash of what is simulated.
+    ///
+    /// # Errors
+    /// When the folder cannot be written to, or holds another simulation.
+    pub fn open(folder: &Path, digest: [u8; DIGEST], layout: Layout) -> Result<(Self, Option<Checkpoint>)> {
+        let path = folder.join(LOG);
+        let in_log = || path.display().to_string();
+        let mut options = OpenOptions::new();
+        let mut file =
+            options.read(true).write(true).create(true).truncate(false).open(&path).with_context(in_log)?;
+        // Two at once would write into each other's states.
+        if file.try_lock().is_err() {
+            bail!("{}: another simulation is writing to it", path.display());
+        }
+        let mut first = Vec::new();
+        (&mut file).take(DIGEST as u64).read_to_end(&mut first).with_context(in_log)?;
+        ensure!(
+            first.len() < DIGEST || first == digest,
+            "{}: it is of another scene, other models or another version of this program: choose another folder, or \
+             begin again by --restart",
+            path.display()
+        );
+        let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0 };
+        let checkpoint = log.checkpoint()?;
+        match &checkpoint {
+            None => {
+                log.cut(0)?;
+                log.file.rewind().with_context(in_log)?;
+                log.file.write_all(&digest).with_context(in_log)?;
+            }
+            Some(checkpoint) => log.cut(checkpoint.states)?,
+        }
+        Ok((log, checkpoint))
+    }
+
+    /// Whether a simulation can go on in the folder.
+    pub fn is_begun(folder: &Path) -> bool {
+        folder.join(CHECKPOINT).exists()
+    }
+
+    /// Removes what a simulation left in the folder.
+    pub fn restart(folder: &Path) -> Result<()> {
+        for name in [CHECKPOINT, LOG] {
+            let path = folder.join(name);
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(error).with_context(|| path.display().to_string());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The checkpoint of the folder, if it is whole, of this simulation, and the log has its states.
+    fn checkpoint(&self) -> Result<Option<Checkpoint>> {
+        let path = self.folder.join(CHECKPOINT);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let bytes = read_whole(&path)?;
+        let damaged = || format!("{}: it is damaged; begin again by --restart", path.display());
+        let (rest, seal) = bytes.split_at_checked(bytes.len().saturating_sub(SEAL)).with_context(damaged)?;
+        ensure!(blake3::hash(rest).as_bytes() == seal, damaged());
+        let (digest, rest) = rest.split_at_checked(DIGEST).with_context(damaged)?;
+        ensure!(digest == self.digest, "{}: it is of another simulation", path.display());
+        let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { bail!(damaged()) };
+        let states = usize::try_from(u64::from_le_bytes(*states)).with_context(damaged)?;
+        let there = self.file.metadata().with_context(damaged)?.len();
+        ensure!(
+            self.bytes(states).is_some_and(|needed| needed <= there),
+            "{}: the log beside it has fewer states; begin again by --restart",
+            path.display()
+        );
+        Ok(Some(Checkpoint { states, memory: memory.iter().map(|x| f64::from_le_bytes(*x)).collect() }))
+    }
+
+    /// Bytes of the log with so many states.
+    fn bytes(&self, states: usize) -> Option<u64> {
+        let width = u64::try_from(8 * self.layout.width()).ok()?;
+        u64::try_from(states).ok()?.checked_mul(width)?.checked_add(DIGEST as u64)
+    }
+
+    /// Keeps so many states, and goes to the end.
+    fn cut(&mut self, states: usize) -> Result<()> {
+        let in_log = || self.folder.join(LOG).display().to_string();
+        let end = self.bytes(states).with_context(in_log)?;
+        self.file.set_len(end).with_context(in_log)?;
+        self.file.seek(SeekFrom::Start(end)).with_context(in_log)?;
+        self.len = states;
+        Ok(())
+    }
+
+    /// Number of states.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Appends whole states.
+    pub fn append(&mut self, numbers: &[f64]) -> Result<()> {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+        self.file.write_all(&bytes).with_context(|| self.folder.join(LOG).display().to_string())?;
+        self.len += numbers.len() / self.layout.width();
+        Ok(())
+    }
+
+    /// From here on it goes on after being killed.
+    pub fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
+        // The states first: a checkpoint must not speak of what is not there.
+        self.file.sync_data().with_context(|| self.folder.join(LOG).display().to_string())?;
+        let mut bytes = self.digest.to_vec();
+        bytes.extend((self.len as u64).to_le_bytes());
+        bytes.extend(memory.iter().flat_map(|x| x.to_le_bytes()));
+        let seal = blake3::hash(&bytes);
+        bytes.extend(seal.as_bytes());
+        Ok(write_whole(&self.folder.join(CHECKPOINT), &bytes)?)
+    }
+
+    /// All states.
+    pub fn history(&mut self) -> Result<History> {
+        let in_log = || self.folder.join(LOG).display().to_string();
+        let mut bytes = vec![0; self.len * self.layout.width() * 8];
+        self.file.seek(SeekFrom::Start(DIGEST as u64)).with_context(in_log)?;
+        self.file.read_exact(&mut bytes).with_context(in_log)?; // and is at the end again
+        let numbers = bytes.as_chunks().0.iter().map(|x| f64::from_le_bytes(*x)).collect();
+        Ok(History::new(self.layout.clone(), numbers))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn open(folder: &Path, digest: u8) -> Result<(Log, Option<Checkpoint>)> {
+        Log::open(folder, [digest; DIGEST], Layout::new([1]))
+    }
+
+    /// A state of the layout, 17 numbers.
+    fn state(x: f64) -> Vec<f64> {
+        (0..17).map(|i| x + f64::from(i)).collect()
+    }
+
+    #[test]
+    fn a_killed_simulation_goes_on_from_its_checkpoint() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let (mut log, none) = open(path, 1).unwrap();
+        assert!(none.is_none());
+        log.append(&[state(0.0), state(100.0)].concat()).unwrap();
+        log.write_checkpoint(&[0.5, -1.0]).unwrap();
+        log.append(&state(200.0)).unwrap();
+        log.file.write_all(b"half a st").unwrap();
+        assert!(open(path, 1).err().unwrap().to_string().contains("another simulation is writing"));
+        drop(log);
+
+        let (mut log, checkpoint) = open(path, 1).unwrap();
+        let Checkpoint { states, memory } = checkpoint.unwrap();
+        assert_eq!((states, log.len(), memory), (2, 2, vec![0.5, -1.0]));
+        log.append(&state(300.0)).unwrap();
+        let history = log.history().unwrap();
+        assert_eq!((history.len(), history.body(2, 0).q), (3, &[316.0][..]));
+        // History leaves the log at its end.
+        log.append(&state(400.0)).unwrap();
+        assert_eq!(log.history().unwrap().body(3, 0).q, [416.0]);
+        log.write_checkpoint(&[]).unwrap();
+        drop(log);
+        assert_eq!(open(path, 1).unwrap().1.unwrap().states, 4);
+    }
+
+    #[test]
+    fn what_is_not_of_this_simulation_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let (mut log, _) = open(path, 1).unwrap();
+        log.append(&state(0.0)).unwrap();
+        log.write_checkpoint(&[1.0]).unwrap();
+        drop(log);
+        let message = |digest| open(path, digest).err().unwrap().to_string();
+        assert!(message(2).contains("another folder, or begin again by --restart"));
+        let good = fs::read(path.join(CHECKPOINT)).unwrap();
+        for at in [0, 33, 41, good.len() - 1] {
+            let mut bad = good.clone();
+            bad[at] ^= 1;
+            fs::write(path.join(CHECKPOINT), bad).unwrap();
+            assert!(message(1).contains("it is damaged"));
+        }
+        for len in [1, 31, 64, 70, good.len() - 1] {
+            fs::write(path.join(CHECKPOINT), &good[..len]).unwrap();
+            assert!(message(1).contains("it is damaged"), "{len}");
+        }
+        fs::write(path.join(CHECKPOINT), &good).unwrap();
+        fs::write(path.join(LOG), [1; DIGEST]).unwrap();
+        assert!(message(1).contains("the log beside it has fewer states"));
+        Log::restart(path).unwrap();
+        assert!(open(path, 2).unwrap().1.is_none());
+        Log::restart(path).unwrap();
+        Log::restart(path).unwrap();
+    }
+}

@@ -1,0 +1,134 @@
+//! What a simulation came to: the keys of `sscc simulate --json`, and lines for people.
+
+use serde::Serialize;
+
+use super::history::History;
+use super::prepared::Prepared;
+use crate::machine;
+use crate::output::{counted, grouped};
+use crate::scene::Scene;
+
+/// The result as JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    pub scene: String,
+    pub models: Vec<ModelFacts>,
+    pub objects: usize,
+    /// Steps that were simulated, and those that the scene has.
+    pub steps: usize,
+    pub scene_steps: usize,
+    /// Seconds of a step, of all steps, and those that it took.
+    pub step: f64,
+    pub simulated_seconds: f64,
+    pub simulation_seconds: f64,
+    /// Seconds simulated in each second that passed; and in each second of the processor, where one thread did it all.
+    pub real_time_factor: f64,
+    pub real_time_factor_processor: Option<f64>,
+    pub colliding_steps: usize,
+    pub body_steps: usize,
+    pub colliding_body_steps: usize,
+    /// Of the time, detection of self-collisions.
+    pub self_collision_share: f64,
+    pub energy_first: f64,
+    pub energy_largest: f64,
+    pub energy_last: f64,
+    pub machine: String,
+}
+
+/// One model of the scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelFacts {
+    pub name: String,
+    pub source: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    pub triangles: usize,
+    pub rank: usize,
+    pub root_radius: f64,
+}
+
+impl Summary {
+    pub fn new(
+        scene: &Scene,
+        prepared: &Prepared,
+        history: &History,
+        processor_seconds: Option<f64>,
+    ) -> Self {
+        let steps = history.len();
+        let colliding: Vec<usize> = (0..steps).map(|state| history.colliding(state)).collect();
+        let facts = || (0..steps).map(|state| history.facts(state));
+        let seconds: f64 = facts().map(|f| f.all()).sum();
+        let own: f64 = facts().map(|f| f.own()).sum();
+        let energies =
+            || (0..steps).map(|state| history.facts(state).energy).filter(|energy| energy.is_finite());
+        let models = prepared.models.iter().map(|model| ModelFacts {
+            name: model.case.name.clone(),
+            source: model.case.source.clone(),
+            note: model.case.note.clone(),
+            triangles: model.case.model.mesh().faces().len(),
+            rank: model.case.model.rank(),
+            root_radius: model.case.full.certificates.root_radius(),
+        });
+        Self {
+            scene: scene.name.clone(),
+            models: models.collect(),
+            objects: scene.bodies.len(),
+            steps,
+            scene_steps: scene.steps,
+            step: scene.step,
+            simulated_seconds: steps as f64 * scene.step,
+            simulation_seconds: seconds,
+            real_time_factor: steps as f64 * scene.step / seconds,
+            // Several bodies are tested on other threads, too.
+            real_time_factor_processor: processor_seconds
+                .filter(|_| scene.bodies.len() == 1)
+                .map(|seconds| steps as f64 * scene.step / seconds),
+            colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
+            body_steps: steps * scene.bodies.len(),
+            colliding_body_steps: colliding.iter().sum(),
+            self_collision_share: own / seconds,
+            energy_first: energies().next().unwrap_or_default(),
+            energy_largest: energies().fold(f64::NEG_INFINITY, f64::max),
+            energy_last: energies().next_back().unwrap_or_default(),
+            machine: machine::description(),
+        }
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for model in &self.models {
+            lines.push(format!(
+                "{}: {} triangles, {} modes ({})",
+                model.name,
+                grouped(model.triangles as u64),
+                model.rank,
+                model.source
+            ));
+            lines.extend(model.note.iter().map(|note| format!("note: {note}")));
+        }
+        let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
+        lines.push(format!(
+            "{}: {}, {}, {} s, simulated in {:.2} s ({:.2} times real time{})",
+            self.scene,
+            if self.objects == 1 { "one body".into() } else { format!("{} bodies", self.objects) },
+            counted(self.steps as u64, "step"),
+            self.simulated_seconds,
+            self.simulation_seconds,
+            self.real_time_factor,
+            self.real_time_factor_processor
+                .map_or(String::new(), |factor| format!(", {factor:.2} on one core"))
+        ));
+        lines.push(format!(
+            "self-contact in {} of {} steps ({:.1}%), in {:.1}% with each body counted",
+            grouped(self.colliding_steps as u64),
+            grouped(self.steps as u64),
+            share(self.colliding_steps, self.steps),
+            share(self.colliding_body_steps, self.body_steps)
+        ));
+        lines.push(format!(
+            "detecting self-collisions took {:.1}% of the time",
+            100.0 * self.self_collision_share
+        ));
+        lines
+    }
+}

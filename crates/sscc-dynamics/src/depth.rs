@@ -1,0 +1,312 @@
+//! Material depth: how deep a point of the rest pose lies under the surface (Hirota et al. 2000).
+//!
+//! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper
+//! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
+//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005).
+
+use std::collections::{BTreeMap, VecDeque};
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use crate::nearest::{Feature, nearest_point_triangle};
+
+/// Grid points at most: 8 MB. Memory does not grow with the mesh.
+const MOST_POINTS: f64 = (1 << 21) as f64;
+
+/// Cells along the longest side at most.
+const LONGEST: f64 = 192.0;
+
+/// Distances are measured to all triangles within so many cells.
+const BAND: f64 = 2.0;
+
+/// Triangles of more cells than this are cut.
+const LARGE: f64 = 8.0;
+
+/// The signed distance from a closed surface, in and around it.
+#[derive(Clone, Debug)]
+pub struct DepthField {
+    origin: DVec3,
+    spacing: f64,
+    /// Points along each axis.
+    size: [usize; 3],
+    /// Distances, negative inside, x runs fastest; infinite far outside.
+    distances: Vec<f32>,
+}
+
+impl DepthField {
+    /// Measures the rest pose. A surface that is not closed has no inside: depths near its rims mean nothing then.
+    pub fn new(mesh: &TriMesh) -> Self {
+        let p = mesh.rest_positions();
+        let corners = || mesh.faces().as_flattened().iter().map(|v| p[*v as usize]);
+        let low = corners().fold(DVec3::INFINITY, DVec3::min);
+        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let sides = high - low;
+        // Two cells more on each side; flat shapes have a few cells across, too.
+        let points = |spacing: f64| (sides / spacing).ceil() + 2.0 * BAND + 1.0;
+        let mut spacing = (sides.max_element() / LONGEST).max(f64::MIN_POSITIVE);
+        while points(spacing).element_product() > MOST_POINTS {
+            spacing *= 1.05;
+        }
+        let size = points(spacing).to_array().map(|n| n as usize);
+        let origin = low - spacing * BAND;
+        let mut field = Self { origin, spacing, size, distances: Vec::new() };
+        field.measure(mesh);
+        field
+    }
+
+    /// The distance of a point from the surface (model unit), negative inside, and the direction in which it grows;
+    /// none further outside than about two cells.
+    pub fn at(&self, x: DVec3) -> Option<(f64, DVec3)> {
+        let cell = (x - self.origin) / self.spacing;
+        let base = cell.floor();
+        let last = DVec3::from_array(self.size.map(|n| n as f64 - 2.0));
+        if !(base.cmpge(DVec3::ZERO).all() && base.cmple(last).all()) {
+            return None;
+        }
+        let ([i, j, k], t) = (base.to_array().map(|x| x as usize), cell - base);
+        let at = |a: usize, b: usize, c: usize| f64::from(self.distances[self.place([i + a, j + b, k + c])]);
+        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        // Along x, then y, then z; derivatives beside.
+        let x0 = [at(0, 0, 0), at(0, 1, 0), at(0, 0, 1), at(0, 1, 1)];
+        let x1 = [at(1, 0, 0), at(1, 1, 0), at(1, 0, 1), at(1, 1, 1)];
+        let x: [f64; 4] = std::array::from_fn(|n| mix(x0[n], x1[n], t.x));
+        let dx: [f64; 4] = std::array::from_fn(|n| x1[n] - x0[n]);
+        let y = [mix(x[0], x[1], t.y), mix(x[2], x[3], t.y)];
+        let gradient = DVec3::new(
+            mix(mix(dx[0], dx[1], t.y), mix(dx[2], dx[3], t.y), t.z),
+            mix(x[1] - x[0], x[3] - x[2], t.z),
+            y[1] - y[0],
+        );
+        let distance = mix(y[0], y[1], t.z);
+        distance.is_finite().then_some((distance, gradient / self.spacing))
+    }
+
+    fn place(&self, [i, j, k]: [usize; 3]) -> usize {
+        (k * self.size[1] + j) * self.size[0] + i
+    }
+
+    fn point(&self, [i, j, k]: [usize; 3]) -> DVec3 {
+        self.origin + DVec3::new(i as f64, j as f64, k as f64) * self.spacing
+    }
+
+    fn measure(&mut self, mesh: &TriMesh) {
+        let (p, faces) = (mesh.rest_positions(), mesh.faces());
+        let corners = |t: u32| faces[t as usize].map(|v| p[v as usize]);
+        let normals = Normals::new(mesh);
+        let count = self.size.iter().product();
+        let mut nearest = vec![(f32::INFINITY, u32::MAX); count];
+        let mut parts = Vec::new();
+        for t in 0..faces.len() as u32 {
+            let whole = corners(t);
+            parts.push(whole);
+            while let Some([a, b, c]) = parts.pop() {
+                let [low, high] = [a.min(b).min(c), a.max(b).max(c)];
+                // The box of a large triangle is mostly empty: halves have smaller ones.
+                if (high - low).max_element() > LARGE * self.spacing {
+                    parts.extend(halves([a, b, c]));
+                    continue;
+                }
+                let from = ((low - self.origin) / self.spacing - BAND).ceil().max(DVec3::ZERO);
+                let to = ((high - self.origin) / self.spacing + BAND).floor();
+                let from = from.to_array().map(|x| x as usize);
+                let to: [usize; 3] = std::array::from_fn(|n| (to[n] as usize).min(self.size[n] - 1));
+                for k in from[2]..=to[2] {
+                    for j in from[1]..=to[1] {
+                        for i in from[0]..=to[0] {
+                            let x = self.point([i, j, k]);
+                            let distance = nearest_point_triangle(x, whole).0.distance(x) as f32;
+                            let best = &mut nearest[self.place([i, j, k])];
+                            // What is further away might not be the nearest triangle of all.
+                            if distance < best.0 && f64::from(distance) <= BAND * self.spacing {
+                                *best = (distance, t);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let signed = |at: DVec3, t: u32| {
+            let (y, feature) = nearest_point_triangle(at, corners(t));
+            let outside = (at - y).dot(normals.of(t, feature)) >= 0.0;
+            (at.distance(y) * if outside { 1.0 } else { -1.0 }) as f32
+        };
+        self.distances = vec![f32::INFINITY; count];
+        let mut queue = VecDeque::new();
+        for k in 0..self.size[2] {
+            for j in 0..self.size[1] {
+                for i in 0..self.size[0] {
+                    let place = self.place([i, j, k]);
+                    let t = nearest[place].1;
+                    if t != u32::MAX {
+                        self.distances[place] = signed(self.point([i, j, k]), t);
+                        if self.distances[place] < 0.0 {
+                            queue.push_back([i, j, k]);
+                        }
+                    }
+                }
+            }
+        }
+        // Inwards: what is nearest to a point is nearly what is nearest to its neighbour.
+        while let Some(at) = queue.pop_front() {
+            let t = nearest[self.place(at)].1;
+            for axis in 0..3 {
+                for step in [usize::MAX, 1] {
+                    let mut next = at;
+                    next[axis] = next[axis].wrapping_add(step);
+                    if next[axis] >= self.size[axis] {
+                        continue;
+                    }
+                    let place = self.place(next);
+                    let x = self.point(next);
+                    if nearest[place].0.is_infinite() && nearest[place].1 == u32::MAX {
+                        nearest[place].1 = t;
+                        queue.push_back(next);
+                    } else if nearest[place].0.is_finite() {
+                        continue;
+                    }
+                    // Reached from several sides: the nearest counts.
+                    let distance = nearest_point_triangle(x, corners(t)).0.distance(x) as f32;
+                    if distance < self.distances[place].abs() {
+                        self.distances[place] = -distance;
+                        nearest[place].1 = t;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A triangle cut through the middle of its longest edge.
+fn halves([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 2] {
+    let lengths = [(b - a).length_squared(), (c - b).length_squared(), (a - c).length_squared()];
+    let [a, b, c] = if lengths[0] >= lengths[1].max(lengths[2]) {
+        [a, b, c]
+    } else if lengths[1] >= lengths[2] {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    };
+    let middle = (a + b) * 0.5;
+    [[a, middle, c], [middle, b, c]]
+}
+
+/// Normals of faces, edges and vertices, for telling inside from outside.
+struct Normals {
+    faces: Vec<DVec3>,
+    classes: Vec<[u32; 3]>,
+    edges: BTreeMap<(u32, u32), DVec3>,
+    vertices: Vec<DVec3>,
+}
+
+impl Normals {
+    fn new(mesh: &TriMesh) -> Self {
+        let p = mesh.rest_positions();
+        // Vertices of equal position are one.
+        let mut order: Vec<u32> = (0..p.len() as u32).collect();
+        let key = |v: u32| p[v as usize].to_array().map(|x| x + 0.0);
+        let compare = |a: &u32, b: &u32| {
+            let (x, y) = (key(*a), key(*b));
+            (0..3).map(|n| x[n].total_cmp(&y[n])).find(|o| o.is_ne()).unwrap_or(a.cmp(b))
+        };
+        order.sort_unstable_by(compare);
+        let mut class: Vec<u32> = (0..p.len() as u32).collect();
+        for pair in order.windows(2) {
+            if key(pair[0]) == key(pair[1]) {
+                class[pair[1] as usize] = class[pair[0] as usize];
+            }
+        }
+        let classes: Vec<[u32; 3]> =
+            mesh.faces().iter().map(|face| face.map(|v| class[v as usize])).collect();
+        let mut faces = Vec::with_capacity(classes.len());
+        let (mut edges, mut vertices) = (BTreeMap::new(), vec![DVec3::ZERO; p.len()]);
+        for face in &classes {
+            let x = face.map(|v| p[v as usize]);
+            let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize_or_zero();
+            for n in 0..3 {
+                let [a, b, c] = [x[n], x[(n + 1) % 3], x[(n + 2) % 3]];
+                let [u, v] = [b - a, c - a];
+                vertices[face[n] as usize] += normal * libm::atan2(u.cross(v).length(), u.dot(v));
+                *edges.entry(edge(face[n], face[(n + 1) % 3])).or_insert(DVec3::ZERO) += normal;
+            }
+            faces.push(normal);
+        }
+        Self { faces, classes, edges, vertices }
+    }
+
+    fn of(&self, triangle: u32, feature: Feature) -> DVec3 {
+        let face = self.classes[triangle as usize];
+        match feature {
+            Feature::Face => self.faces[triangle as usize],
+            Feature::Edge(n) => self.edges[&edge(face[n], face[(n + 1) % 3])],
+            Feature::Vertex(n) => self.vertices[face[n] as usize],
+        }
+    }
+}
+
+fn edge(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sscc_modes::shapes;
+
+    #[test]
+    fn a_box_has_its_distances() {
+        let corner =
+            |n: u32| DVec3::new(f64::from(n & 1), f64::from(n >> 1 & 1) * 2.0, f64::from(n >> 2) * 3.0) + 5.0;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        let field = DepthField::new(&TriMesh::new((0..8).map(corner).collect(), faces).unwrap());
+        let mut seen = [0; 2];
+        for n in 0..4000 {
+            let cell =
+                DVec3::new(f64::from(n % 11), f64::from(n / 11 % 17), f64::from(n / 187)) * 0.15 - 0.02;
+            let inside = cell.min(DVec3::new(1.0, 2.0, 3.0) - cell);
+            let expected = if inside.min_element() > 0.0 {
+                -inside.min_element()
+            } else {
+                inside.min(DVec3::ZERO).length()
+            };
+            match field.at(cell + 5.0) {
+                Some((distance, gradient)) => {
+                    assert!(
+                        (distance - expected).abs() < field.spacing,
+                        "{cell}: {distance}, not {expected}"
+                    );
+                    if expected.abs() < 0.02 {
+                        assert!((distance - expected).abs() < 0.1 * field.spacing || expected > 0.0);
+                        assert!((gradient.length() - 1.0).abs() < 0.5, "{cell}: {gradient}");
+                    }
+                    seen[usize::from(distance < 0.0)] += 1;
+                }
+                None => assert!(expected > field.spacing, "{cell} is {expected} away"),
+            }
+        }
+        assert!(seen[0] > 30 && seen[1] > 500, "{seen:?}");
+    }
+
+    #[test]
+    fn the_spring_is_deepest_along_its_middle_and_directions_point_outwards() {
+        let spring = shapes::spring();
+        let field = DepthField::new(&spring);
+        assert!(field.distances.len() <= 1 << 21);
+        let deepest = field.distances.iter().fold(0.0_f32, |m, x| m.min(*x));
+        // The tube's radius is 0.03.
+        assert!((-0.03..-0.027).contains(&deepest), "{deepest}");
+        let p = spring.rest_positions();
+        for face in spring.faces().iter().step_by(7) {
+            let [a, b, c] = face.map(|v| p[v as usize]);
+            let (normal, middle) = ((b - a).cross(c - a).normalize(), (a + b + c) / 3.0);
+            for depth in [0.002, 0.01] {
+                let (distance, gradient) = field.at(middle - normal * depth).unwrap();
+                assert!((distance + depth).abs() < 0.002, "{distance} at {depth}");
+                assert!(gradient.normalize().dot(normal) > 0.9);
+            }
+        }
+        assert!(field.at(DVec3::splat(1e9)).is_none() && field.at(DVec3::NAN).is_none());
+        assert!(field.at(DVec3::ZERO).is_none(), "the axis is outside");
+    }
+}

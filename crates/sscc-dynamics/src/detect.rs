@@ -1,0 +1,82 @@
+//! Collisions between bodies: boxes over bodies first, then tree against tree, down to triangles.
+
+use glam::DVec3;
+use sscc::Pair;
+
+use crate::DynamicsError;
+use crate::body::Body;
+
+/// Two bodies that collide, and where their pairs are.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    bodies: [usize; 2],
+    first: usize,
+    end: usize,
+}
+
+/// What collides between bodies.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbours {
+    boxes: Vec<(DVec3, DVec3)>,
+    /// Bodies by the lower end of their boxes along x.
+    order: Vec<usize>,
+    candidates: Vec<[usize; 2]>,
+    meetings: Vec<Meeting>,
+    pairs: Vec<Pair>,
+}
+
+impl Neighbours {
+    /// Finds all pairs of triangles of different bodies that have a point in common: exactly those of the positions
+    /// [`Body::pose`] of `p + U q`.
+    pub fn update(&mut self, bodies: &mut [Body<'_>]) -> Result<(), DynamicsError> {
+        self.meetings.clear();
+        self.pairs.clear();
+        if bodies.len() < 2 {
+            return Ok(());
+        }
+        self.boxes.clear();
+        for body in bodies.iter_mut() {
+            self.boxes.push(body.place()?);
+        }
+        self.sweep();
+        let Some(around) = self.boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else {
+            return Ok(());
+        };
+        for &[a, b] in &self.candidates {
+            let first = self.pairs.len();
+            let (left, right) = bodies.split_at_mut(b);
+            left[a].posed.colliding(&mut right[0].posed, around, &mut self.pairs);
+            if self.pairs.len() > first {
+                self.meetings.push(Meeting { bodies: [a, b], first, end: self.pairs.len() });
+            }
+        }
+        Ok(())
+    }
+
+    /// The pairs of bodies whose boxes overlap, sorted.
+    fn sweep(&mut self) {
+        let boxes = &self.boxes;
+        // Bodies are added at the end, and the order of the last step is nearly right.
+        self.order.retain(|n| *n < boxes.len());
+        self.order.extend(self.order.len()..boxes.len());
+        self.order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x).then(a.cmp(b)));
+        self.candidates.clear();
+        for (i, &a) in self.order.iter().enumerate() {
+            for &b in &self.order[i + 1..] {
+                if boxes[b].0.x > boxes[a].1.x {
+                    break;
+                }
+                let apart = boxes[a].0.cmpgt(boxes[b].1) | boxes[b].0.cmpgt(boxes[a].1);
+                if !apart.any() {
+                    self.candidates.push([a.min(b), a.max(b)]);
+                }
+            }
+        }
+        self.candidates.sort_unstable();
+    }
+
+    /// The pairs of each two bodies that collide, sorted.
+    pub fn colliding(&self) -> impl Iterator<Item = ([usize; 2], &[Pair])> {
+        self.meetings.iter().map(|meeting| (meeting.bodies, &self.pairs[meeting.first..meeting.end]))
+    }
+}

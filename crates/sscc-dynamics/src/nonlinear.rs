@@ -1,0 +1,201 @@
+//! Reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
+
+use faer::Mat;
+use faer::prelude::Solve;
+use sscc_modes::ReducedForces;
+
+use crate::{Damping, DynamicsError};
+
+/// Newton's iterations at most in one step.
+const ITERATIONS: usize = 60;
+
+/// Iterations with one derivative: a stiffness costs several times what forces cost, and changes little within a step.
+const REFACTOR: usize = 6;
+
+/// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
+const SOLVED: f64 = 1e-11;
+
+/// A body with reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`, advanced by the implicit Newmark method
+/// of average acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is
+/// that of the stiffness at rest.
+#[derive(Clone, Debug)]
+pub struct NonlinearOscillator<'a> {
+    forces: &'a ReducedForces,
+    /// r x r, row after row.
+    damping: Vec<f64>,
+    step: f64,
+}
+
+impl<'a> NonlinearOscillator<'a> {
+    /// Steps of `step` seconds.
+    ///
+    /// # Errors
+    /// When the step is not positive, or the damping is negative or not finite.
+    pub fn new(forces: &'a ReducedForces, damping: Damping, step: f64) -> Result<Self, DynamicsError> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(DynamicsError::Step { step });
+        }
+        let given = damping.check()?;
+        let r = forces.rank;
+        let mut damping: Vec<f64> = forces.linear.iter().map(|k| given.stiffness * k).collect();
+        (0..r).for_each(|k| damping[k * (r + 1)] += given.mass);
+        Ok(Self { forces, damping, step })
+    }
+
+    /// The acceleration at (q, v) under the forces g: for the first step.
+    pub fn acceleration(&self, q: &[f64], v: &[f64], g: &[f64]) -> Vec<f64> {
+        let (inner, damped) = (self.forces.at(q), self.damped(v));
+        g.iter().zip(inner).zip(damped).map(|((g, f), c)| g - f - c).collect()
+    }
+
+    /// One step under the forces g; `a` is the acceleration before and after it.
+    ///
+    /// # Errors
+    /// When the step cannot be solved: the motion diverges.
+    pub fn advance(
+        &self,
+        q: &mut [f64],
+        v: &mut [f64],
+        a: &mut [f64],
+        g: &[f64],
+    ) -> Result<(), DynamicsError> {
+        let (r, h) = (self.forces.rank, self.step);
+        // With the new acceleration b: q + h v + h^2 (a + b) / 4 and v + h (a + b) / 2.
+        let mut b = a.to_vec();
+        let position = |b: &[f64]| -> Vec<f64> {
+            (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect()
+        };
+        let velocity = |b: &[f64]| -> Vec<f64> { (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect() };
+        let mut factor = None;
+        for iteration in 0..ITERATIONS {
+            let (x, y) = (position(&b), velocity(&b));
+            let (inner, damped) = (self.forces.at(&x), self.damped(&y));
+            let residual: Vec<f64> = (0..r).map(|k| b[k] + damped[k] + inner[k] - g[k]).collect();
+            let parts = |k: usize| b[k].abs() + damped[k].abs() + inner[k].abs() + g[k].abs();
+            let size: f64 = (0..r).map(parts).sum();
+            let left: f64 = residual.iter().map(|x| x.abs()).sum();
+            if !size.is_finite() {
+                break;
+            }
+            if left <= SOLVED * size {
+                q.copy_from_slice(&x);
+                v.copy_from_slice(&y);
+                a.copy_from_slice(&b);
+                return Ok(());
+            }
+            if iteration % REFACTOR == 0 {
+                factor = Some(self.derivative(&x).partial_piv_lu());
+            }
+            let Some(factor) = &factor else { break };
+            let change = factor.solve(Mat::from_fn(r, 1, |i, _| residual[i]));
+            b.iter_mut().enumerate().for_each(|(k, b)| *b -= change[(k, 0)]);
+        }
+        Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
+    }
+
+    /// Of the residual by the new acceleration, at the position x.
+    fn derivative(&self, x: &[f64]) -> Mat<f64> {
+        let (r, h, stiffness) = (self.forces.rank, self.step, self.forces.stiffness(x));
+        Mat::from_fn(r, r, |i, j| {
+            f64::from(u8::from(i == j))
+                + h / 2.0 * self.damping[i * r + j]
+                + h * h / 4.0 * stiffness[i * r + j]
+        })
+    }
+
+    /// Kinetic and elastic energy.
+    pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
+        self.forces.energy(q) + v.iter().map(|v| v * v / 2.0).sum::<f64>()
+    }
+
+    fn damped(&self, v: &[f64]) -> Vec<f64> {
+        let row = |row: &[f64]| row.iter().zip(v).map(|(c, v)| c * v).sum();
+        self.damping.chunks_exact(v.len()).map(row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: Damping = Damping { mass: 0.0, stiffness: 0.0 };
+
+    /// Two modes of the energy `l1 x^2 / 2 + l2 y^2 / 2 + s (x^2 + x y)^2 / 4`.
+    fn forces(l1: f64, l2: f64, s: f64) -> ReducedForces {
+        // d/dx: l1 x + s (x^2 + x y) (2 x + y) / 2 = .. + s (2 x^3 + 3 x^2 y + x y^2) / 2
+        // d/dy: l2 y + s (x^2 + x y) x / 2 = .. + s (x^3 + x^2 y) / 2
+        let cubic = [1.0, 1.5, 0.5, 0.0, 0.5, 0.5, 0.0, 0.0].map(|c| s * c).to_vec();
+        ReducedForces { rank: 2, linear: vec![l1, 0.0, 0.0, l2], quadratic: vec![0.0; 6], cubic }
+    }
+
+    #[test]
+    fn free_vibration_has_the_frequency() {
+        let lambda = 40.0_f64;
+        // 200 steps a period: the method is slow by (omega h)^2 / 12.
+        let period = std::f64::consts::TAU / lambda.sqrt();
+        let step = period / 200.0;
+        let forces = forces(lambda, 90.0, 0.0);
+        let oscillator = NonlinearOscillator::new(&forces, NONE, step).unwrap();
+        let (mut q, mut v) = (vec![1e-3, 0.0], vec![0.0, 0.0]);
+        let mut a = oscillator.acceleration(&q, &v, &[0.0; 2]);
+        let (mut crossings, mut last) = (Vec::new(), q[0]);
+        for step in 0..4000 {
+            oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2]).unwrap();
+            if last > 0.0 && q[0] <= 0.0 {
+                crossings.push(f64::from(step) + last / (last - q[0]));
+            }
+            last = q[0];
+        }
+        let measured = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64 / 200.0;
+        assert!((measured - 1.0).abs() < 1e-3, "{measured} periods");
+    }
+
+    #[test]
+    fn energy_stays_bounded_without_damping_and_falls_with_it() {
+        let forces = forces(40.0, 90.0, 3e4);
+        for (damping, grows) in [(NONE, false), (Damping { mass: 0.1, stiffness: 1e-3 }, true)] {
+            let oscillator = NonlinearOscillator::new(&forces, damping, 2e-3).unwrap();
+            let (mut q, mut v) = (vec![0.2, -0.1], vec![0.0, 1.0]);
+            let mut a = oscillator.acceleration(&q, &v, &[0.0; 2]);
+            let first = oscillator.energy(&q, &v);
+            let (mut least, mut largest) = (first, first);
+            for _ in 0..10_000 {
+                oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2]).unwrap();
+                let energy = oscillator.energy(&q, &v);
+                (least, largest) = (least.min(energy), largest.max(energy));
+            }
+            assert!(largest < 1.01 * first, "{first} to {largest}");
+            assert_eq!(least < 0.9 * first, grows, "{first} to {least}");
+        }
+    }
+
+    #[test]
+    fn a_constant_force_is_held_in_the_end() {
+        let forces = forces(40.0, 90.0, 3e4);
+        let goal = [0.05, -0.02];
+        let force = forces.at(&goal);
+        let damping = Damping { mass: 10.0, stiffness: 0.0 };
+        let oscillator = NonlinearOscillator::new(&forces, damping, 1e-2).unwrap();
+        let (mut q, mut v, mut a) = (vec![0.0; 2], vec![0.0; 2], force.clone());
+        for _ in 0..2000 {
+            oscillator.advance(&mut q, &mut v, &mut a, &force).unwrap();
+        }
+        assert!((q[0] - goal[0]).abs() + (q[1] - goal[1]).abs() < 1e-9, "{q:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let forces = forces(1.0, 1.0, 1.0);
+        let new = |damping, step| NonlinearOscillator::new(&forces, damping, step);
+        assert!(matches!(new(NONE, 0.0), Err(DynamicsError::Step { .. })));
+        let wrong = Damping { mass: f64::NAN, stiffness: 0.0 };
+        assert!(matches!(new(wrong, 1.0), Err(DynamicsError::Damping { .. })));
+        let oscillator = new(NONE, 1.0).unwrap();
+        let (mut q, mut v) = (vec![1e200, 0.0], vec![0.0, 0.0]);
+        let mut a = vec![0.0; 2];
+        let before = q.clone();
+        let answer = oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2]);
+        assert!(matches!(answer, Err(DynamicsError::Unsolved { .. })));
+        assert_eq!(q, before);
+    }
+}

@@ -1,0 +1,289 @@
+//! Contact impulses.
+//!
+//! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one
+//! contact after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v +
+//! v') / 2`, where v and v' are the relative velocities before and after it. A ledger holds what contacts have taken
+//! so far, and none of them may give more than that: whatever stiffness and step are, contacts never add energy to
+//! that of the start, up to rounding.
+
+use glam::{DMat3, DVec3};
+
+use crate::body::Body;
+use crate::contact::{Contact, Mobility, moved};
+
+/// The ground, where a body's number would stand.
+pub(crate) const GROUND: u32 = u32::MAX;
+
+/// What touches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    /// A vertex and the ground.
+    Vertex(u32),
+    /// The contact of that number.
+    Contact(u32),
+}
+
+/// One contact in one step. Vectors are in axes of the world; within one body in those of the body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub bodies: [u32; 2],
+    pub source: Source,
+    pub normal: DVec3,
+    /// From the centres of mass to where impulses act, the same place for both.
+    pub arms: [DVec3; 2],
+    /// How far it is pressed beyond the skin; negative: not at all.
+    pub depth: f64,
+    pub mobility: [Mobility; 2],
+    pub friction: f64,
+    /// The impulse on the first body so far: along the normal, and across.
+    pub pressure: f64,
+    pub drag: DVec3,
+}
+
+/// A touch and what makes it a spring.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    /// Impulse to velocity.
+    response: DMat3,
+    along: f64,
+    softness: f64,
+    /// The velocity at which the spring pushes apart.
+    target: f64,
+}
+
+/// A body's velocities while impulses act.
+#[derive(Clone, Copy, Debug)]
+struct Mover {
+    velocity: DVec3,
+    spin: DVec3,
+    inverse_mass: f64,
+    inverse_inertia: DMat3,
+    rotation: DMat3,
+}
+
+/// The constants of all contacts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spring {
+    /// Angular frequency (1/s).
+    pub rate: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Step (s).
+    pub step: f64,
+    /// The share of the spring's force that is that of the step's end. 0 keeps the energy but is unstable for long
+    /// steps, 1 is always stable and damps.
+    pub implicit: f64,
+    /// Rounds at most.
+    pub rounds: usize,
+}
+
+/// A round that changes velocities by less than this share of what the first one did is the last.
+const SETTLED: f64 = 1e-3;
+
+/// Two points of a body yield at least like this share of a free mass, that of the body.
+const LEAST_MOBILITY: f64 = 1e-2;
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solver {
+    pub touches: Vec<Touch>,
+    rows: Vec<Row>,
+    movers: Vec<Mover>,
+}
+
+impl Solver {
+    /// Finds all impulses and lets them act; `ledger` is what contacts have taken so far.
+    pub fn solve(
+        &mut self,
+        bodies: &mut [Body<'_>],
+        contacts: &[Contact],
+        spring: &Spring,
+        ledger: &mut f64,
+    ) {
+        if self.touches.is_empty() {
+            return;
+        }
+        self.movers.clear();
+        self.movers.extend(bodies.iter().map(Mover::of));
+        self.rows.clear();
+        for touch in &self.touches {
+            let (mut quick, mut slow) = (DMat3::ZERO, DMat3::ZERO);
+            for n in 0..2 {
+                if touch.bodies[n] != GROUND && (n == 0 || !touch.is_within()) {
+                    let mover = &self.movers[touch.bodies[n] as usize];
+                    let [a, b] = mover.responses(touch.arms[n], &touch.mobility[n], touch.is_within());
+                    quick += a;
+                    slow += b;
+                }
+            }
+            let mut row = Row::new(touch, quick, slow, spring);
+            if touch.is_within() {
+                // Where hardly any mode moves the two apart, the impulse that would do so has no bound.
+                row.softness += LEAST_MOBILITY / bodies[touch.bodies[0] as usize].shape().mass().mass;
+            }
+            self.rows.push(row);
+        }
+        let mut first = 0.0;
+        for round in 0..spring.rounds {
+            let mut largest = 0.0_f64;
+            for n in 0..self.touches.len() {
+                // To and fro.
+                let n = if round % 2 == 0 { n } else { self.touches.len() - 1 - n };
+                largest = largest.max(self.visit(n, bodies, contacts, ledger));
+            }
+            if round == 0 {
+                first = largest;
+            }
+            if largest <= SETTLED * first {
+                break;
+            }
+        }
+    }
+
+    /// One contact; gives the change of velocity along its normal.
+    fn visit(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact], ledger: &mut f64) -> f64 {
+        let (row, touch) = (self.rows[n], self.touches[n]);
+        let v = self.velocity(&touch, bodies, contacts);
+        let normal = touch.normal;
+        let approach = v.dot(normal);
+        let mut push = (row.target - approach - row.softness * touch.pressure) / (row.along + row.softness);
+        push = push.max(-touch.pressure);
+        // Work of the push: push (approach + along push / 2).
+        if push * (approach + row.along * push / 2.0) > *ledger {
+            let most = ((approach * approach + 2.0 * row.along * *ledger).sqrt() - approach) / row.along;
+            push = if push > 0.0 { push.min(most) } else { 0.0 };
+        }
+        let mut impulse = normal * push;
+        let after = v + row.response * impulse;
+        let mut work = impulse.dot(v + after) / 2.0;
+        let pressure = touch.pressure + push;
+        // Friction: what would stop sliding along its direction, within the cone.
+        let sliding = after - normal * normal.dot(after);
+        let mut drag = touch.drag;
+        if touch.friction > 0.0 {
+            if let Some(way) = sliding.try_normalize() {
+                drag -= way * (sliding.length() / way.dot(row.response * way));
+            }
+            drag = drag.clamp_length_max(touch.friction * pressure);
+            let change = drag - touch.drag;
+            let slid = after + row.response * change;
+            let friction_work = change.dot(after + slid) / 2.0;
+            if friction_work <= 0.0 || work + friction_work <= *ledger {
+                impulse += change;
+                work += friction_work;
+            } else {
+                drag = touch.drag;
+            }
+        }
+        *ledger -= work;
+        (self.touches[n].pressure, self.touches[n].drag) = (pressure, drag);
+        self.act(&touch, impulse, bodies, contacts);
+        push.abs() * row.along
+    }
+
+    /// The velocity of the first body at the touch, less that of the second.
+    fn velocity(&self, touch: &Touch, bodies: &[Body<'_>], contacts: &[Contact]) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for (n, sign) in [(0, 1.0), (1, -1.0)] {
+            if touch.bodies[n] == GROUND || n == 1 && touch.is_within() {
+                continue;
+            }
+            let body = &bodies[touch.bodies[n] as usize];
+            let deforming = moved(touch.modes(n, body, contacts), &body.v);
+            sum += if touch.is_within() {
+                deforming
+            } else {
+                let mover = &self.movers[touch.bodies[n] as usize];
+                (mover.velocity + mover.spin.cross(touch.arms[n]) + mover.rotation * deforming) * sign
+            };
+        }
+        sum
+    }
+
+    fn act(&mut self, touch: &Touch, impulse: DVec3, bodies: &mut [Body<'_>], contacts: &[Contact]) {
+        for (n, sign) in [(0, 1.0), (1, -1.0)] {
+            if touch.bodies[n] == GROUND || n == 1 && touch.is_within() {
+                continue;
+            }
+            let body = &mut bodies[touch.bodies[n] as usize];
+            let mut local = impulse;
+            if !touch.is_within() {
+                let mover = &mut self.movers[touch.bodies[n] as usize];
+                let impulse = impulse * sign;
+                if body.is_free() {
+                    let turn = touch.arms[n].cross(impulse);
+                    mover.velocity += impulse * mover.inverse_mass;
+                    mover.spin += mover.inverse_inertia * turn;
+                    body.rigid.momentum += impulse;
+                    body.rigid.angular_momentum += turn;
+                }
+                local = mover.rotation.transpose() * impulse;
+            }
+            body.was_pushed();
+            let modes = touch.modes(n, body, contacts);
+            body.v.iter_mut().zip(modes).for_each(|(v, u)| *v += u.dot(local));
+        }
+    }
+}
+
+impl Touch {
+    /// Whether both sides are of one body.
+    pub fn is_within(&self) -> bool {
+        self.bodies[0] == self.bodies[1]
+    }
+
+    fn modes<'s>(&self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
+        match self.source {
+            Source::Vertex(v) => body.shape().model().modes().of_vertex(v),
+            Source::Contact(contact) => &contacts[contact as usize].modes[n],
+        }
+    }
+}
+
+impl Row {
+    fn new(touch: &Touch, quick: DMat3, slow: DMat3, spring: &Spring) -> Self {
+        let normal = touch.normal;
+        // Per mass: stiffness w^2, damping 2 zeta w.
+        let Spring { rate, damping, step, implicit, .. } = *spring;
+        let divisor = 2.0 * damping + implicit * rate * step;
+        Self {
+            response: quick,
+            along: normal.dot(quick * normal),
+            softness: normal.dot(slow * normal) / (step * rate * divisor),
+            target: touch.depth * rate / divisor,
+        }
+    }
+}
+
+impl Mover {
+    fn of(body: &Body<'_>) -> Self {
+        let rotation = body.rotation();
+        if !body.is_free() {
+            let (velocity, spin, inverse_inertia) = (DVec3::ZERO, DVec3::ZERO, DMat3::ZERO);
+            return Self { velocity, spin, inverse_mass: 0.0, inverse_inertia, rotation };
+        }
+        let inverse_mass = 1.0 / body.shape().mass().mass;
+        Self {
+            velocity: body.rigid.momentum * inverse_mass,
+            spin: body.rigid.angular_velocity(),
+            inverse_mass,
+            inverse_inertia: rotation * body.rigid.inverse_inertia() * rotation.transpose(),
+            rotation,
+        }
+    }
+
+    /// Impulse to velocity at a place: at once, and slowly.
+    fn responses(&self, arm: DVec3, mobility: &Mobility, within: bool) -> [DMat3; 2] {
+        if within {
+            return [mobility.quick, mobility.slow];
+        }
+        let cross = DMat3::from_cols(
+            DVec3::new(0.0, arm.z, -arm.y),
+            DVec3::new(-arm.z, 0.0, arm.x),
+            DVec3::new(arm.y, -arm.x, 0.0),
+        );
+        let rigid =
+            DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross;
+        let turned = |x: DMat3| rigid + self.rotation * x * self.rotation.transpose();
+        [turned(mobility.quick), turned(mobility.slow)]
+    }
+}

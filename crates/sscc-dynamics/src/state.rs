@@ -1,0 +1,109 @@
+//! A world's state as plain numbers: to stop, and to go on later as if nothing had happened.
+
+use glam::{DQuat, DVec3};
+
+use crate::body::Body;
+use crate::contact::{Anchor, Contact};
+use crate::{DynamicsError, World};
+
+/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same
+/// bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Steps so far.
+    pub step: u64,
+    /// Motions, contacts and the energy they have taken, in an order of their own.
+    pub numbers: Vec<f64>,
+}
+
+/// Position, orientation, momentum, angular momentum, preload of the ground.
+const RIGID: usize = 13 + 1;
+
+/// Bodies, triangles, weights, normal, offset, slack, preload and age of a contact.
+const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
+
+impl World<'_> {
+    /// The present state.
+    pub fn state(&self) -> State {
+        let mut numbers = vec![self.ledger];
+        for (body, near) in self.bodies.iter().zip(&self.near) {
+            let rigid = &body.rigid;
+            numbers.extend([&body.q, &body.v, &body.a].into_iter().flatten());
+            numbers.extend(rigid.position.to_array());
+            numbers.extend(rigid.orientation.to_array());
+            numbers.extend(rigid.momentum.to_array());
+            numbers.extend(rigid.angular_momentum.to_array());
+            numbers.push(near.preload);
+        }
+        for contact in &self.contacts.list {
+            numbers.extend(contact.bodies.map(f64::from));
+            numbers.extend(contact.anchors.iter().map(|anchor| f64::from(anchor.triangle)));
+            numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
+            numbers.extend(contact.normal.to_array());
+            numbers.extend([contact.offset, contact.slack, contact.preload, f64::from(contact.age)]);
+        }
+        State { step: self.step, numbers }
+    }
+
+    /// Takes up a state of a world of the same options and bodies.
+    ///
+    /// # Errors
+    /// When it is of other bodies, or a number in it cannot be; then nothing has changed.
+    pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
+        let own = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
+        let expected = 1 + self.bodies.iter().map(own).sum::<usize>();
+        let found = state.numbers.len();
+        let (motion, contacts) = state.numbers.split_at(expected.min(found));
+        let (contacts, rest) = contacts.as_chunks::<CONTACT>();
+        if motion.len() < expected || !rest.is_empty() || state.numbers.iter().any(|x| !x.is_finite()) {
+            return Err(DynamicsError::State { found, expected });
+        }
+        let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
+        let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
+        self.step = state.step;
+        let mut numbers = motion.iter().copied();
+        let mut next = || numbers.next().unwrap_or_default();
+        self.ledger = next();
+        for (body, near) in self.bodies.iter_mut().zip(&mut self.near) {
+            body.q.iter_mut().chain(&mut body.v).chain(&mut body.a).for_each(|x| *x = next());
+            let rigid = &mut body.rigid;
+            rigid.position = DVec3::from_array([(); 3].map(|()| next()));
+            rigid.orientation = DQuat::from_array([(); 4].map(|()| next()));
+            rigid.momentum = DVec3::from_array([(); 3].map(|()| next()));
+            rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
+            near.forget();
+            near.preload = next();
+        }
+        for contact in &mut contacts {
+            contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
+        }
+        self.contacts.list = contacts;
+        self.impulses.clear();
+        Ok(())
+    }
+
+    /// A contact from its numbers; none where it names what does not exist.
+    fn contact(&self, numbers: &[f64; CONTACT]) -> Option<Contact> {
+        let index =
+            |x: f64, count: usize| (x >= 0.0 && x < count as f64 && x.fract() == 0.0).then_some(x as u32);
+        let bodies = [index(numbers[0], self.bodies.len())?, index(numbers[1], self.bodies.len())?];
+        let triangle = |n: usize| {
+            let mesh = self.bodies[bodies[n] as usize].shape().model().mesh();
+            index(numbers[2 + n], mesh.faces().len())
+        };
+        let anchor = |n: usize| {
+            let weights = [0, 1, 2].map(|k| numbers[4 + 3 * n + k]);
+            Some(Anchor { triangle: triangle(n)?, weights })
+        };
+        Some(Contact {
+            bodies,
+            anchors: [anchor(0)?, anchor(1)?],
+            normal: DVec3::new(numbers[10], numbers[11], numbers[12]),
+            offset: numbers[13],
+            slack: numbers[14],
+            preload: numbers[15],
+            age: index(numbers[16], u32::MAX as usize)?,
+            ..Contact::default()
+        })
+    }
+}

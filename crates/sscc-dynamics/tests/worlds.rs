@@ -1,0 +1,242 @@
+//! What worlds find and refuse, that they can be stopped, and that threads do not matter.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{block, elastic, fork};
+use glam::{DQuat, DVec3};
+use sscc::{Pair, intersect_triangle_triangle};
+use sscc_dynamics::{
+    ContactOptions, Damping, Detection, DynamicsError, Ground, Obstacle, Phase, Shape, Start, World,
+    WorldOptions,
+};
+use sscc_modes::Material;
+
+fn rubber() -> Material {
+    Material { youngs_modulus: 1e5, ..Material::default() }
+}
+
+fn shapes() -> [Shape; 2] {
+    [elastic(&block([2, 1, 2], 0.2, rubber()), 6, false, &[]), elastic(&fork(4, 0.1, rubber()), 6, true, &[])]
+}
+
+/// Five bodies that fall onto each other.
+fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
+    let mut world = World::new(WorldOptions { step: 2e-3, ..WorldOptions::default() }).unwrap();
+    for n in 0..5 {
+        let start = Start {
+            position: Some(DVec3::new(0.1 * f64::from(n % 2), 0.4 + 0.35 * f64::from(n), 0.05)),
+            orientation: DQuat::from_scaled_axis(DVec3::new(0.4, 0.9, 0.2) * f64::from(n)),
+            damping: Damping { mass: 0.5, stiffness: 1e-3 },
+            detection,
+            ..Start::default()
+        };
+        world.add(&shapes[n as usize % 2], &start).unwrap();
+    }
+    world
+}
+
+#[test]
+fn pairs_between_bodies_are_those_of_all_triangles() {
+    let shapes = shapes();
+    let mut world = heap(&shapes, Detection::Certified);
+    let (mut met, mut apart) = (0, 0);
+    for step in 0..600 {
+        let placed: Vec<Vec<[DVec3; 3]>> = world
+            .bodies()
+            .iter()
+            .map(|body| {
+                let model = body.shape().model();
+                let x: Vec<DVec3> = model.positions(body.q()).unwrap();
+                let x: Vec<DVec3> = x.into_iter().map(|x| body.pose().apply(x)).collect();
+                model.mesh().faces().iter().map(|face| face.map(|v| x[v as usize])).collect()
+            })
+            .collect();
+        let counts = world.advance(&mut ()).unwrap();
+        if step % 7 != 0 {
+            continue;
+        }
+        let mut expected: Vec<([usize; 2], Vec<Pair>)> = Vec::new();
+        for b in 0..placed.len() {
+            for a in 0..b {
+                let all = |i: usize| (0..placed[b].len()).map(move |j| (i, j));
+                let meet =
+                    |(i, j): &(usize, usize)| intersect_triangle_triangle(&placed[a][*i], &placed[b][*j]);
+                let pairs: Vec<Pair> = (0..placed[a].len())
+                    .flat_map(all)
+                    .filter(meet)
+                    .map(|(i, j)| (i as u32, j as u32))
+                    .collect();
+                if !pairs.is_empty() {
+                    expected.push(([a, b], pairs));
+                }
+            }
+        }
+        expected.sort();
+        let found: Vec<_> = world.inter_pairs().map(|(bodies, pairs)| (bodies, pairs.to_vec())).collect();
+        assert_eq!(found, expected, "step {step}");
+        assert_eq!(counts.inter_pairs, expected.iter().map(|(_, pairs)| pairs.len()).sum::<usize>());
+        met += usize::from(!expected.is_empty());
+        apart += usize::from(expected.is_empty());
+    }
+    assert!(met > 10 && apart > 10, "{met} {apart}");
+}
+
+#[test]
+fn a_world_goes_on_from_its_state_and_threads_do_not_matter() {
+    let shapes = shapes();
+    let run = |threads: usize, detection: Detection, stop: Option<usize>| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut world = heap(&shapes, detection);
+            for step in 0..500 {
+                if stop == Some(step) {
+                    let state = world.state();
+                    world = heap(&shapes, detection);
+                    world.restore(&state).unwrap();
+                    assert_eq!(world.state(), state);
+                }
+                world.advance(&mut ()).unwrap();
+            }
+            (world.state(), world.energy().to_bits(), world.impulses().to_vec())
+        })
+    };
+    let expected = run(1, Detection::Certified, None);
+    assert!(expected.2.len() > 10, "they are in contact");
+    assert!(run(2, Detection::Certified, None) == expected);
+    assert!(run(1, Detection::Kinetic, None) == expected);
+    for step in [1, 100, 333, 480] {
+        assert!(run(2, Detection::Certified, Some(step)) == expected, "stopped at {step}");
+    }
+}
+
+#[test]
+fn states_of_other_worlds_are_refused() {
+    let shapes = shapes();
+    let mut world = heap(&shapes, Detection::Off);
+    let in_contact = (0..1000).find(|_| world.advance(&mut ()).unwrap().contacts > 0);
+    assert!(in_contact.is_some());
+    let state = world.state();
+    let other = heap(&shapes, Detection::Off).state();
+    assert!(state.numbers.len() > other.numbers.len(), "there are contacts");
+    for wrong in [f64::NAN, -1.0, 0.5, 1e9] {
+        for at in other.numbers.len()..other.numbers.len() + 4 {
+            let mut damaged = state.clone();
+            damaged.numbers[at] = wrong;
+            assert!(matches!(world.restore(&damaged), Err(DynamicsError::State { .. })), "{wrong} at {at}");
+        }
+    }
+    for length in 0..state.numbers.len() {
+        let mut damaged = state.clone();
+        damaged.numbers.truncate(length);
+        // A state with fewer contacts is one.
+        let whole = length >= other.numbers.len() && (length - other.numbers.len()).is_multiple_of(17);
+        assert_eq!(world.restore(&damaged).is_ok(), whole, "{length}");
+    }
+    world.restore(&state).unwrap();
+    assert_eq!(world.state(), state);
+}
+
+#[test]
+fn bodies_that_begin_in_something_are_refused() {
+    let shapes = shapes();
+    let with = |starts: &[Start]| {
+        let mut world = World::new(WorldOptions::default()).unwrap();
+        for start in starts {
+            world.add(&shapes[0], start).unwrap();
+        }
+        world.check_start()
+    };
+    let at = |x: f64, y: f64| Start { position: Some(DVec3::new(x, y, 0.0)), ..Start::default() };
+    assert_eq!(with(&[at(0.0, 0.2), at(0.5, 0.2)]), Ok(()));
+    let error = with(&[at(0.0, 0.2), at(0.3, 0.25)]).unwrap_err();
+    assert!(matches!(error, DynamicsError::Interpenetration { body: 1, what: Obstacle::Body(0), .. }));
+    assert!(error.to_string().starts_with("body 1 (counted from 0) begins in body 0"), "{error}");
+    let error = with(&[at(0.0, 0.5), at(5.0, 0.05)]).unwrap_err();
+    assert!(matches!(error, DynamicsError::Interpenetration { body: 1, what: Obstacle::Ground, .. }));
+    let mut world = World::new(WorldOptions { ground: None, ..WorldOptions::default() }).unwrap();
+    // Folded.
+    let (p, r) = (shapes[1].model().mesh().rest_positions().len() as u32, shapes[1].model().rank());
+    let folded = (0..r).flat_map(|k| [-1.0, 1.0].map(|s| (k, s))).find_map(|(k, s)| {
+        let mut q = vec![0.0; r];
+        q[k] = s * 0.3 / shapes[1].reach()[k];
+        let mut query = sscc::Query::new(shapes[1].model(), shapes[1].certificates()).unwrap();
+        query.first(&q).unwrap().map(|_| q)
+    });
+    world.add(&shapes[1], &Start { q: folded.unwrap(), ..Start::default() }).unwrap();
+    let error = world.check_start().unwrap_err();
+    assert!(
+        p > 0 && matches!(error, DynamicsError::Interpenetration { body: 0, what: Obstacle::Itself, .. })
+    );
+}
+
+#[test]
+fn options_and_starts_that_cannot_be_are_refused() {
+    let shapes = shapes();
+    let refused = |options: WorldOptions| World::new(options).err().map(|error| error.to_string());
+    let fine = WorldOptions::default();
+    let contact = ContactOptions::default();
+    let ground = Ground::default();
+    assert_eq!(refused(fine), None);
+    for wrong in [
+        WorldOptions { step: 0.0, ..fine },
+        WorldOptions { step: f64::NAN, ..fine },
+        WorldOptions { gravity: DVec3::NAN, ..fine },
+        WorldOptions { contact: ContactOptions { frequency: 0.0, ..contact }, ..fine },
+        WorldOptions { contact: ContactOptions { damping: -0.1, ..contact }, ..fine },
+        WorldOptions { contact: ContactOptions { friction: f64::INFINITY, ..contact }, ..fine },
+        WorldOptions { contact: ContactOptions { skin: Some(0.0), ..contact }, ..fine },
+        WorldOptions { contact: ContactOptions { rounds: 0, ..contact }, ..fine },
+        WorldOptions { ground: Some(Ground { normal: DVec3::ONE, ..ground }), ..fine },
+        WorldOptions { ground: Some(Ground { height: f64::NAN, ..ground }), ..fine },
+        WorldOptions { ground: Some(Ground { friction: -1.0, ..ground }), ..fine },
+    ] {
+        let error = refused(wrong).unwrap();
+        assert!(!error.contains('\n') && error.contains("must"), "{error}");
+    }
+    let mut world = World::new(fine).unwrap();
+    for wrong in [
+        Start { position: Some(DVec3::INFINITY), ..Start::default() },
+        Start { velocity: DVec3::NAN, ..Start::default() },
+        Start { orientation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..Start::default() },
+        Start { q: vec![0.0], ..Start::default() },
+        Start { v: vec![f64::NAN; 6], ..Start::default() },
+        Start { damping: Damping { mass: -1.0, stiffness: 0.0 }, ..Start::default() },
+    ] {
+        assert!(world.add(&shapes[0], &wrong).is_err(), "{wrong:?}");
+    }
+    assert!(world.bodies().is_empty());
+}
+
+#[test]
+fn a_diverging_motion_names_step_body_and_energy() {
+    let shapes = shapes();
+    let mut world = World::new(WorldOptions { ground: None, ..WorldOptions::default() }).unwrap();
+    world.add(&shapes[0], &Start::default()).unwrap();
+    let mut q = vec![0.0; 6];
+    q[0] = 1e30;
+    let far = Start { q, detection: Detection::Off, position: Some(DVec3::X * 9.0), ..Start::default() };
+    world.add(&shapes[1], &far).unwrap();
+    let error = (0..10).find_map(|_| world.advance(&mut ()).err()).unwrap();
+    assert!(matches!(error, DynamicsError::Diverged { body: 1, .. }), "{error}");
+    assert!(error.to_string().contains("body 1"));
+}
+
+#[test]
+fn phases_come_in_order_and_quiet_steps_allocate_nothing() {
+    let shapes = shapes();
+    let mut world = World::new(WorldOptions::default()).unwrap();
+    let high =
+        Start { position: Some(DVec3::Y * 50.0), velocity: DVec3::X, spin: DVec3::Z, ..Start::default() };
+    world.add(&shapes[0], &high).unwrap();
+    let mut phases = Vec::new();
+    world.advance(&mut |phase: Phase| phases.push(phase)).unwrap();
+    use Phase::{Done, Dynamics, Ground, InterObject, Penalty, SelfCollision};
+    assert_eq!(phases, [SelfCollision, InterObject, Ground, Penalty, Dynamics, Done]);
+    let allocations = allocation_counter::measure(|| {
+        for _ in 0..500 {
+            world.advance(&mut ()).unwrap();
+        }
+    });
+    assert_eq!(allocations.count_total, 0);
+}

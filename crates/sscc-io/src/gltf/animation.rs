@@ -1,0 +1,244 @@
+//! Bodies that move, as a binary glTF file: modes as morph targets, q(t) as their weights, rigid motion on nodes.
+//!
+//! That is the reduced motion itself, so a player shows `R (p + U q - c) + x` for a body at x, turned by R about its centre c. Numbers
+//! are rounded to single precision (2^-24 of each), which is all that the format has; between key frames weights and places are
+//! interpolated linearly, turns on the shortest arc. Bodies of one model share its numbers in the file.
+
+use std::path::Path;
+
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+use sscc::ReducedModel;
+
+use crate::{IoError, write_whole};
+
+/// How one body moves: one entry for each key frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// The name of its node.
+    pub name: String,
+    /// Which of the models it is.
+    pub model: usize,
+    /// The point of the model about which it turns.
+    pub center: DVec3,
+    /// Where that point is.
+    pub positions: Vec<DVec3>,
+    /// How it is turned (unit quaternions).
+    pub orientations: Vec<DQuat>,
+    /// q, frame after frame (r numbers each).
+    pub weights: Vec<f64>,
+}
+
+/// Writes an animation (`.glb`). `times` are those of the key frames (s), ascending; models have names.
+///
+/// # Errors
+/// When a track has not one entry for each time, or names no model; when a number is not finite in single precision; when the
+/// file would have more than 4 GiB, or cannot be written.
+pub fn write_animation(
+    path: &Path,
+    models: &[(&str, &ReducedModel)],
+    times: &[f64],
+    tracks: &[Track],
+) -> Result<(), IoError> {
+    let bytes =
+        to_bytes(models, times, tracks).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    write_whole(path, &bytes)
+}
+
+/// Indices of the steps that are key frames at about `rate` frames in a second: the step nearest to each frame's time, the
+/// first and the last of `steps`, each once. `step` is the time between two (s).
+pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
+    let Some(last) = steps.checked_sub(1) else { return Vec::new() };
+    let stride = (1.0 / (rate * step)).max(1.0);
+    // Not a number, or slower than the whole: the ends alone.
+    let count = if stride.is_finite() { (last as f64 / stride) as usize } else { 0 };
+    let mut frames: Vec<usize> =
+        (0..=count).map(|frame| ((frame as f64 * stride).round() as usize).min(last)).collect();
+    frames.push(last);
+    frames.dedup();
+    frames
+}
+
+pub(super) fn to_bytes(
+    models: &[(&str, &ReducedModel)],
+    times: &[f64],
+    tracks: &[Track],
+) -> Result<Vec<u8>, String> {
+    check(models, times, tracks)?;
+    let mut file = File::default();
+    let meshes: Vec<Value> =
+        models.iter().map(|(name, model)| file.mesh(name, model)).collect::<Result<_, _>>()?;
+    let input = file.accessor(SCALAR, times, None)?;
+    let (mut nodes, mut samplers, mut channels) = (Vec::new(), Vec::new(), Vec::new());
+    for track in tracks {
+        let (mover, shape) = (nodes.len(), nodes.len() + 1);
+        let flat = |points: &[DVec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<f64>>();
+        let outputs = [
+            (mover, "translation", file.accessor(VEC3, &flat(&track.positions), None)?),
+            (mover, "rotation", file.accessor(VEC4, &continued(&track.orientations), None)?),
+            (shape, "weights", file.accessor(SCALAR, &track.weights, None)?),
+        ];
+        for (node, path, output) in outputs {
+            channels.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
+            samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+        }
+        nodes.push(json!({
+            "name": track.name,
+            "children": [shape],
+            "translation": singles(&track.positions[0].to_array()),
+            "rotation": singles(&track.orientations[0].to_array()),
+        }));
+        let rank = models[track.model].1.rank();
+        nodes.push(json!({
+            "mesh": track.model,
+            "translation": singles(&(-track.center).to_array()),
+            "weights": singles(&track.weights[..rank]),
+        }));
+    }
+    let roots: Vec<usize> = (0..nodes.len()).step_by(2).collect();
+    let root = json!({
+        "asset": {"version": "2.0", "generator": concat!("sscc ", env!("CARGO_PKG_VERSION"))},
+        "scene": 0,
+        "scenes": [{"nodes": roots}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "animations": [{"name": "simulation", "samplers": samplers, "channels": channels}],
+        "accessors": file.accessors,
+        "bufferViews": file.views,
+        "buffers": [{"byteLength": file.binary.len()}],
+    });
+    joined(root.to_string().into_bytes(), file.binary)
+}
+
+fn check(models: &[(&str, &ReducedModel)], times: &[f64], tracks: &[Track]) -> Result<(), String> {
+    if times.is_empty() || tracks.is_empty() {
+        return Err("an animation needs a key frame and a body".into());
+    }
+    // As they will be stored.
+    if let Some(at) = times.windows(2).position(|pair| (pair[0] as f32) >= pair[1] as f32) {
+        return Err(format!("key frame {} is not after the one before it", at + 1));
+    }
+    for Track { name, model, positions, orientations, weights, .. } in tracks {
+        let Some((_, model)) = models.get(*model) else {
+            return Err(format!("body {name} is of model {model}, but there are {}", models.len()));
+        };
+        let [n, rank] = [times.len(), model.rank()];
+        if [positions.len(), orientations.len()] != [n, n] || weights.len() != n * rank {
+            return Err(format!("body {name} has not one entry for each of the {n} key frames"));
+        }
+    }
+    Ok(())
+}
+
+/// Components of a turn, x y z w, each turn on the side of the one before it (q and -q are the same turn).
+fn continued(orientations: &[DQuat]) -> Vec<f64> {
+    let mut before = DQuat::IDENTITY;
+    let mut values = Vec::with_capacity(4 * orientations.len());
+    for turn in orientations {
+        before = if turn.dot(before) < 0.0 { -*turn } else { *turn };
+        values.extend(before.to_array());
+    }
+    values
+}
+
+fn singles(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|x| *x as f32).collect()
+}
+
+/// Names and widths of items.
+const SCALAR: (&str, usize) = ("SCALAR", 1);
+const VEC3: (&str, usize) = ("VEC3", 3);
+const VEC4: (&str, usize) = ("VEC4", 4);
+
+/// What a view is for: vertices or corners.
+const VERTICES: u32 = 34962;
+const CORNERS: u32 = 34963;
+
+/// The numbers of the file, and what tells of them.
+#[derive(Default)]
+struct File {
+    binary: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl File {
+    fn mesh(&mut self, name: &str, model: &ReducedModel) -> Result<Value, String> {
+        let rest = model.mesh().rest_positions();
+        let flat = |of: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
+            (0..rest.len()).flat_map(|v| of(v).to_array()).collect()
+        };
+        let position = self.accessor(VEC3, &flat(&|v| rest[v]), Some(VERTICES))?;
+        let targets: Vec<Value> = (0..model.rank())
+            .map(|k| {
+                let values = flat(&|v| model.modes().of_vertex(v as u32)[k]);
+                Ok(json!({"POSITION": self.accessor(VEC3, &values, Some(VERTICES))?}))
+            })
+            .collect::<Result<_, String>>()?;
+        let corners = model.mesh().faces().as_flattened();
+        let view = self.view(corners.iter().flat_map(|v| v.to_le_bytes()), Some(CORNERS));
+        let indices = self.accessors.len();
+        self.accessors.push(
+            json!({"bufferView": view, "componentType": 5125, "count": corners.len(), "type": "SCALAR"}),
+        );
+        Ok(json!({
+            "name": name,
+            "primitives": [{"attributes": {"POSITION": position}, "indices": indices, "targets": targets}],
+            "weights": vec![0.0; model.rank()],
+        }))
+    }
+
+    /// Single precision numbers, with their bounds, which the format wants of positions and times.
+    fn accessor(
+        &mut self,
+        (kind, width): (&str, usize),
+        values: &[f64],
+        target: Option<u32>,
+    ) -> Result<usize, String> {
+        let values = singles(values);
+        if let Some(x) = values.iter().find(|x| !x.is_finite()) {
+            return Err(format!("a number of an animation is {x} in single precision"));
+        }
+        let bound = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
+            let item = |c: usize| values.iter().skip(c).step_by(width).copied();
+            (0..width).filter_map(|c| item(c).reduce(pick)).collect()
+        };
+        let (min, max) = (bound(f32::min), bound(f32::max));
+        let view = self.view(values.iter().flat_map(|x| x.to_le_bytes()), target);
+        self.accessors.push(json!({
+            "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind,
+            "min": min, "max": max,
+        }));
+        Ok(self.accessors.len() - 1)
+    }
+
+    fn view(&mut self, bytes: impl Iterator<Item = u8>, target: Option<u32>) -> usize {
+        let start = self.binary.len();
+        self.binary.extend(bytes);
+        let mut view = json!({"buffer": 0, "byteOffset": start, "byteLength": self.binary.len() - start});
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        self.views.push(view);
+        self.views.len() - 1
+    }
+}
+
+/// Header and both chunks; numbers are all of 4 bytes, so only the JSON is padded.
+fn joined(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, String> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + json.len() + 8 + binary.len();
+    let size = |n: usize| u32::try_from(n).map(u32::to_le_bytes);
+    let (Ok(all), Ok(first), Ok(second)) = (size(total), size(json.len()), size(binary.len())) else {
+        return Err(format!("the animation has {total} bytes, a file holds 4 GiB: take fewer key frames"));
+    };
+    let mut bytes = Vec::with_capacity(total);
+    for part in [&b"glTF"[..], &2_u32.to_le_bytes(), &all, &first, b"JSON", &json, &second, b"BIN\0", &binary]
+    {
+        bytes.extend(part);
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests;

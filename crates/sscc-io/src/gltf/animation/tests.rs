@@ -1,0 +1,127 @@
+use gltf::animation::Interpolation;
+use gltf::animation::util::ReadOutputs;
+use sscc::{Modes, TriMesh};
+
+use super::*;
+
+/// A tetrahedron with two modes whose numbers need rounding.
+fn model() -> ReducedModel {
+    let rest = [DVec3::ZERO, DVec3::X, DVec3::Y * 0.1, DVec3::Z].to_vec();
+    let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    let modes = Modes::from_matrix(4, 2, |row, k| 0.1 * row as f64 - 0.3 * k as f64).unwrap();
+    ReducedModel::new(TriMesh::new(rest, faces).unwrap(), modes).unwrap()
+}
+
+fn track(name: &str, shift: f64) -> Track {
+    let turn = |angle: f64| DQuat::from_rotation_z(angle);
+    Track {
+        name: name.into(),
+        model: 0,
+        center: DVec3::new(0.25, 0.1, 0.0),
+        positions: [0.0, 0.1, 0.2].map(|x| DVec3::new(x + shift, 2.0, -x)).to_vec(),
+        orientations: vec![turn(0.1), -turn(0.2), turn(0.3)],
+        weights: vec![0.1 + shift, 0.0, -0.5, 0.7, 1.0, 2.0],
+    }
+}
+
+const TIMES: [f64; 3] = [0.0, 0.04, 0.1];
+
+#[test]
+fn our_reader_reads_the_model_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    let model = model();
+    write_animation(&path, &[("tetrahedron", &model)], &TIMES, &[track("a", 0.0), track("b", 3.0)]).unwrap();
+    let read = super::super::read(&path, None).unwrap();
+    assert_eq!(read.mesh.faces(), model.mesh().faces());
+    assert_eq!((read.mesh_name.as_str(), read.modes.rank()), ("tetrahedron", 2));
+    let rounded = |p: DVec3| p.as_vec3().as_dvec3();
+    for v in 0..4 {
+        assert_eq!(read.mesh.rest_positions()[v], rounded(model.mesh().rest_positions()[v]));
+        let expected: Vec<DVec3> = model.modes().of_vertex(v as u32).iter().copied().map(rounded).collect();
+        assert_eq!(read.modes.of_vertex(v as u32), expected);
+    }
+}
+
+/// What another reader makes of the file at a key frame, vertex by vertex, is the reduced motion.
+#[test]
+fn another_reader_plays_the_motion() {
+    let model = model();
+    let tracks = [track("a", 0.0), track("b", 3.0)];
+    let bytes = to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
+    let file = gltf::Gltf::from_slice(&bytes).unwrap();
+    let blob = file.blob.clone().unwrap();
+    let animation = file.animations().next().unwrap();
+    assert_eq!((animation.channels().count(), file.meshes().count(), file.nodes().count()), (6, 1, 4));
+    for (body, track) in tracks.iter().enumerate() {
+        let mover = file.scenes().next().unwrap().nodes().nth(body).unwrap();
+        let shape = mover.children().next().unwrap();
+        assert_eq!((mover.name(), shape.mesh().unwrap().index()), (Some(track.name.as_str()), 0));
+        let (mut positions, mut turns, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+        let of_body = |node: usize| [mover.index(), shape.index()].contains(&node);
+        for channel in animation.channels().filter(|channel| of_body(channel.target().node().index())) {
+            assert_eq!(channel.sampler().interpolation(), Interpolation::Linear);
+            let reader = channel.reader(|_| Some(&blob));
+            assert_eq!(reader.read_inputs().unwrap().collect::<Vec<_>>(), TIMES.map(|t| t as f32));
+            match reader.read_outputs().unwrap() {
+                ReadOutputs::Translations(read) => positions = read.collect(),
+                ReadOutputs::Rotations(read) => turns = read.into_f32().collect(),
+                ReadOutputs::MorphTargetWeights(read) => weights = read.into_f32().collect::<Vec<f32>>(),
+                ReadOutputs::Scales(_) => panic!(),
+            }
+        }
+        // Each turn on the side of the one before it.
+        for pair in turns.windows(2) {
+            assert!(pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum::<f32>() > 0.0);
+        }
+        let primitive = shape.mesh().unwrap().primitives().next().unwrap();
+        let reader = primitive.reader(|_| Some(&blob));
+        let rest: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
+        let targets: Vec<Vec<[f32; 3]>> =
+            reader.read_morph_targets().map(|(position, ..)| position.unwrap().collect()).collect();
+        assert_eq!(
+            reader.read_indices().unwrap().into_u32().collect::<Vec<_>>(),
+            model.mesh().faces().as_flattened()
+        );
+        let wide = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
+        let inner = wide(shape.transform().decomposed().0);
+        for frame in 0..TIMES.len() {
+            let turn = DQuat::from_array(turns[frame].map(f64::from));
+            let q = &track.weights[2 * frame..][..2];
+            for v in 0..4 {
+                let moved = (0..2).map(|k| wide(targets[k][v]) * f64::from(weights[2 * frame + k]));
+                let local = wide(rest[v]) + moved.sum::<DVec3>() + inner;
+                let shown = turn * local + wide(positions[frame]);
+                let exact = track.orientations[frame] * (model.position(v as u32, q) - track.center)
+                    + track.positions[frame];
+                assert!((shown - exact).length() < 1e-6, "{shown} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_animation_is_refused() {
+    let model = model();
+    let models = [("t", &model)];
+    let message = |times: &[f64], track: Track| to_bytes(&models, times, &[track]).unwrap_err();
+    let good = || track("a", 0.0);
+    assert_eq!(message(&[0.0, 1.0], good()), "body a has not one entry for each of the 2 key frames");
+    assert_eq!(message(&[0.0, 1.0, 1.0 + 1e-12], good()), "key frame 2 is not after the one before it");
+    assert_eq!(message(&TIMES, Track { model: 1, ..good() }), "body a is of model 1, but there are 1");
+    let mut wide = good();
+    wide.weights[3] = 1e300;
+    assert_eq!(message(&TIMES, wide), "a number of an animation is inf in single precision");
+    assert_eq!(to_bytes(&models, &TIMES, &[]).unwrap_err(), "an animation needs a key frame and a body");
+    assert_eq!(message(&[], good()), "an animation needs a key frame and a body");
+}
+
+#[test]
+fn key_frames_are_at_the_rate() {
+    assert_eq!(key_frames(11, 0.01, 50.0), [0, 2, 4, 6, 8, 10]);
+    assert_eq!(key_frames(10, 0.01, 30.0), [0, 3, 7, 9]);
+    assert_eq!(key_frames(4, 0.1, 60.0), [0, 1, 2, 3]);
+    assert_eq!(key_frames(88_200, 1.0 / 44_100.0, 60.0).len(), 121);
+    assert_eq!(key_frames(5, 0.01, 0.0), [0, 4]);
+    assert_eq!((key_frames(0, 0.1, 60.0), key_frames(1, 0.1, 60.0)), (vec![], vec![0]));
+}

@@ -1,0 +1,104 @@
+//! Archives of named arrays.
+
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use crate::npy;
+use crate::{IoError, write_whole};
+
+/// An array with its name, in C order (last axis fastest).
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedArray<'a> {
+    /// What `numpy.load` calls it.
+    pub name: &'a str,
+    /// The length of each axis.
+    pub shape: Vec<usize>,
+    /// As many as the shape has entries.
+    pub values: &'a [f64],
+}
+
+/// Writes arrays of f64 as `.npz`, not compressed, in this order; equal arrays make equal bytes.
+///
+/// # Errors
+/// When values are not as many as a shape has entries, a name is there twice or is none (letters, digits and `_`), or the
+/// file cannot be written.
+pub fn write_npz(path: &Path, arrays: &[NamedArray<'_>]) -> Result<(), IoError> {
+    let bytes = to_bytes(arrays).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    write_whole(path, &bytes)
+}
+
+fn to_bytes(arrays: &[NamedArray<'_>]) -> Result<Vec<u8>, String> {
+    let size = arrays.iter().map(|array| 8 * array.values.len() + 1024).sum();
+    let mut writer = ZipWriter::new(Cursor::new(Vec::with_capacity(size)));
+    for NamedArray { name, shape, values } in arrays {
+        if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+            return Err(format!("array '{}': letters, digits and _ make a name", name.escape_debug()));
+        }
+        let refused = |cause: &dyn std::fmt::Display| format!("array '{name}': {cause}");
+        let array = npy::to_bytes(shape, values)
+            .ok_or_else(|| refused(&format!("{} values do not make the shape {shape:?}", values.len())))?;
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .last_modified_time(DateTime::default())
+            .large_file(u32::try_from(array.len()).is_err());
+        writer.start_file(format!("{name}.npy"), options).map_err(|e| refused(&e))?;
+        writer.write_all(&array).map_err(|e| refused(&e))?;
+    }
+    Ok(writer.finish().map_err(|e| e.to_string())?.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use npyz::NpyFile;
+
+    #[test]
+    fn arrays_are_read_back_by_another_reader() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        let (q, t) = ([1.0, -2.5, 0.1, 4.0, 5.0, -0.0], [0.5]);
+        let arrays = [
+            NamedArray { name: "q", shape: vec![1, 3, 2], values: &q },
+            NamedArray { name: "time_s", shape: vec![], values: &t },
+            NamedArray { name: "none", shape: vec![0, 4], values: &[] },
+        ];
+        write_npz(&path, &arrays).unwrap();
+        let first = std::fs::read(&path).unwrap();
+        let entries = crate::npz::archive::entries(&first, |_| true).unwrap();
+        assert_eq!(entries.len(), 3);
+        let read = |name: &str| {
+            let array = NpyFile::new(&entries[name][..]).unwrap();
+            (array.shape().to_vec(), array.into_vec::<f64>().unwrap())
+        };
+        let (shape, values) = read("q");
+        assert_eq!(
+            (shape, values.iter().map(|x| x.to_bits()).collect()),
+            (vec![1, 3, 2], q.map(f64::to_bits).to_vec())
+        );
+        assert_eq!(read("time_s"), (vec![], vec![0.5]));
+        assert_eq!(read("none"), (vec![0, 4], vec![]));
+        write_npz(&path, &arrays).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), first);
+    }
+
+    #[test]
+    fn what_is_no_archive_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        let array = |name, shape: &[usize]| NamedArray { name, shape: shape.to_vec(), values: &[1.0, 2.0] };
+        for (arrays, cause) in [
+            (vec![array("a", &[3])], "array 'a': 2 values do not make the shape [3]"),
+            (vec![array("a", &[usize::MAX, 4])], "do not make the shape"),
+            (vec![array("", &[2])], "array '': letters"),
+            (vec![array("../a", &[2])], "array '../a': letters"),
+            (vec![array("a", &[2]), array("a", &[2])], "array 'a': "),
+        ] {
+            let refused = write_npz(&path, &arrays).unwrap_err().to_string();
+            assert!(refused.contains(cause), "{refused}");
+        }
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,108 @@
+//! Sound files: WAV, one channel.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use hound::{SampleFormat, WavSpec, WavWriter};
+
+use crate::{IoError, write_whole};
+
+/// How a sample is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WavFormat {
+    /// Integers of 16 bits: 1 is 32,767, and what is louder is cut there.
+    Pcm16,
+    /// Single precision, as loud as it is.
+    Float32,
+}
+
+/// The largest size that the format's 32 bits can tell, less its header.
+const MOST_BYTES: usize = u32::MAX as usize - 4096;
+
+/// Writes a sound of one channel; `rate` is samples in a second, and samples between -1 and 1 are what loudspeakers play.
+///
+/// # Errors
+/// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.
+pub fn write_wav(path: &Path, rate: u32, samples: &[f64], format: WavFormat) -> Result<(), IoError> {
+    let bytes =
+        to_bytes(rate, samples, format).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    write_whole(path, &bytes)
+}
+
+fn to_bytes(rate: u32, samples: &[f64], format: WavFormat) -> Result<Vec<u8>, String> {
+    let (bits_per_sample, sample_format) = match format {
+        WavFormat::Pcm16 => (16, SampleFormat::Int),
+        WavFormat::Float32 => (32, SampleFormat::Float),
+    };
+    let size = usize::from(bits_per_sample / 8);
+    if rate == 0 || rate > u32::MAX / size as u32 {
+        return Err(format!("a sound of {rate} samples in a second"));
+    }
+    if samples.len() > MOST_BYTES / size {
+        return Err(format!("{} samples are too many for one file", samples.len()));
+    }
+    if let Some(at) = samples.iter().position(|x| !(*x as f32).is_finite()) {
+        return Err(format!("sample {at} is {:e}", samples[at]));
+    }
+    let spec = WavSpec { channels: 1, sample_rate: rate, bits_per_sample, sample_format };
+    let mut file = Cursor::new(Vec::with_capacity(samples.len() * size + 128));
+    let refused = |error: hound::Error| error.to_string();
+    let mut writer = WavWriter::new(&mut file, spec).map_err(refused)?;
+    for x in samples {
+        match format {
+            WavFormat::Pcm16 => {
+                let full = f64::from(i16::MAX);
+                writer.write_sample((x * full).round().clamp(-full, full) as i16)
+            }
+            WavFormat::Float32 => writer.write_sample(*x as f32),
+        }
+        .map_err(refused)?;
+    }
+    writer.finalize().map_err(refused)?;
+    Ok(file.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hound::WavReader;
+
+    const SAMPLES: [f64; 6] = [0.0, 1.0, -1.0, 0.25, -1.5, 1e-9];
+
+    #[test]
+    fn sounds_are_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.wav");
+        write_wav(&path, 44_100, &SAMPLES, WavFormat::Float32).unwrap();
+        let mut reader = WavReader::open(&path).unwrap();
+        assert_eq!((reader.spec().channels, reader.spec().sample_rate), (1, 44_100));
+        let floats: Vec<f32> = reader.samples().map(Result::unwrap).collect();
+        assert_eq!(floats, SAMPLES.map(|x| x as f32));
+        write_wav(&path, 8_000, &SAMPLES, WavFormat::Pcm16).unwrap();
+        let mut reader = WavReader::open(&path).unwrap();
+        assert_eq!((reader.spec().bits_per_sample, reader.spec().sample_rate), (16, 8_000));
+        let integers: Vec<i16> = reader.samples().map(Result::unwrap).collect();
+        assert_eq!(integers, [0, 32_767, -32_767, 8192, -32_767, 0]);
+        write_wav(&path, 8_000, &[], WavFormat::Pcm16).unwrap();
+        assert_eq!(WavReader::open(&path).unwrap().len(), 0);
+    }
+
+    #[test]
+    fn what_is_no_sound_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.wav");
+        for (rate, samples, cause) in [
+            (8_000, [0.0, f64::NAN], "sample 1 is NaN"),
+            (8_000, [f64::INFINITY, 0.0], "sample 0 is inf"),
+            (8_000, [0.0, 1e300], "sample 1 is 1e300"),
+            (0, [0.0; 2], "a sound of 0 samples in a second"),
+            (u32::MAX, [0.0; 2], "a sound of 4294967295 samples in a second"),
+        ] {
+            for format in [WavFormat::Pcm16, WavFormat::Float32] {
+                let refused = write_wav(&path, rate, &samples, format).unwrap_err().to_string();
+                assert!(refused.ends_with(&format!("a.wav: {cause}")), "{refused}");
+            }
+        }
+        assert!(!path.exists());
+    }
+}
