@@ -188,7 +188,7 @@ fn the_motion_is_the_same_for_any_number_of_threads_and_any_detection() {
 fn a_killed_simulation_goes_on_to_the_same_bits() {
     let whole = folder(SCENE);
     assert_eq!(simulate(whole.path(), &["scene.toml", "--steps", "600"]).code, Some(0));
-    let long = SCENE.replace("duration = 0.1", "duration = 1e4");
+    let long = SCENE.replace("duration = 0.1", "duration = 1e3");
     let expected = {
         let whole = folder(&long);
         assert_eq!(simulate(whole.path(), &["scene.toml", "--steps", "700"]).code, Some(0));
@@ -201,8 +201,11 @@ fn a_killed_simulation_goes_on_to_the_same_bits() {
     for times in 1..=2 {
         let mut child =
             prepared(CACHE.path(), killed.path(), &["scene.toml"]).stderr(Stdio::null()).spawn().unwrap();
-        // Killed with states in the log that no checkpoint knows of.
-        while fs::metadata(&log).unwrap().len() < checkpointed + 1000 {
+        // Killed with states in the log that no checkpoint knows of: it cut off those of the run before, and wrote its own.
+        let length = || fs::metadata(&log).unwrap().len();
+        let (before, mut was_cut) = (length(), false);
+        while !(was_cut && length() >= checkpointed + 1000) {
+            was_cut |= times == 1 || length() != before;
             assert!(child.try_wait().unwrap().is_none(), "{times}");
             thread::sleep(Duration::from_millis(5));
         }
@@ -226,8 +229,7 @@ fn a_diverging_motion_is_named_and_kept() {
     let text = SCENE
         .replace("kind = \"linear\"\nrank = 10", "kind = \"nonlinear\"\nrank = 4")
         .replace("shake = [0.2, 0.5]", "shake = [1e15]")
-        .replace("detection = \"kinetic\"", "response = \"ignore\"")
-        .replace("[sound]\nmodes = 30\n", "");
+        .replace("detection = \"kinetic\"", "response = \"ignore\"");
     let folder = folder(&text);
     let run = simulate(folder.path(), &["scene.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
@@ -259,7 +261,7 @@ fn refusals() {
         ("gravity", "gravty", "bad.toml: line 4: unknown key 'gravty'; did you mean 'gravity'?"),
         ("density = 1000", "density = -1000", "bad.toml: line 14: density: a positive number"),
         ("= 8000", "= -8000", "bad.toml: line 2: steps_per_second: a positive number"),
-        ("= 8000", "= 2000", "sound: 2000 samples in a second"),
+        ("= 8000", "= 2000", "bad.toml: line 2: steps_per_second: sound needs from 8000"),
         ("shape = \"spring-4k\"", "file = \"none.obj\"", "none.obj: not found"),
         ("[0, 0, 0.2]", "[0, 0, 0]", "begins in the ground"),
         ("[sound]\nmodes = 30", PAIR, "body 1 (counted from 0) begins in body 0"),
@@ -269,8 +271,12 @@ fn refusals() {
         let message = refused(from, &to);
         assert!(message.contains(named), "{message}");
     }
+    fs::create_dir(folder.path().join("spring")).unwrap();
     for (args, named) in [
         (&["missing.toml"][..], "missing.toml: not found"),
+        (&["buny16"], "buny16: no such file; did you mean 'bunny16'?"),
+        // A folder of an earlier run is no scene.
+        (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["scene.toml", "--steps", "0"], "--steps"),
         (&["scene.toml", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["scene.toml", "--out", "scene.toml"], "scene.toml: no folder that can be written to"),

@@ -83,7 +83,7 @@ pub struct Body<'a> {
     /// What collides within the body, as of the last detection.
     pub(crate) pairs: Vec<Pair>,
     pub(crate) root_failed: bool,
-    is_pushed: bool,
+    pub(crate) is_pushed: bool,
 }
 
 #[derive(Clone)]
@@ -289,7 +289,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Is to be told when v was changed.
+    /// Is to be told when q or v was changed.
     pub(crate) fn was_pushed(&mut self) {
         self.is_pushed = true;
     }

@@ -6,8 +6,8 @@ use sscc::Certificates;
 use crate::DynamicsError;
 use crate::body::Body;
 
-/// Takes q back to the ellipsoid, and from v what leads out of it. Both lose energy: the ellipsoid is centred at the
-/// rest pose, or wherever the certificates have their centre.
+/// Takes q back to the ellipsoid, and from v what leads out of it. Where the ellipsoid is centred at the rest pose, both lose
+/// energy.
 ///
 /// # Errors
 /// When q is no configuration.
@@ -24,8 +24,8 @@ pub(crate) fn constrain(body: &mut Body<'_>) -> Result<(), DynamicsError> {
     let along: f64 = outwards.iter().zip(&body.v).map(|(x, v)| x * v).sum();
     if along > 0.0 && square > 0.0 {
         body.v.iter_mut().zip(&outwards).for_each(|(v, x)| *v -= x * (along / square));
-        body.was_pushed();
     }
+    body.was_pushed();
     Ok(())
 }
 

@@ -52,17 +52,16 @@ impl Crossing {
         // The less one reaches behind the other's plane, the more likely it came through there.
         let behind = |from: &Facet<'_>, to: &Facet<'_>, outwards: DVec3| {
             let deepest = from.corners.iter().map(|x| outwards.dot(to.corners[0] - *x)).fold(0.0, f64::max);
-            outwards / deepest.max(f64::MIN_POSITIVE)
+            outwards / deepest.max(LEAST)
         };
-        let apart =
-            behind(a, b, normals[1]).clamp_length_max(MOST) - behind(b, a, normals[0]).clamp_length_max(MOST);
+        let apart = behind(a, b, normals[1]) - behind(b, a, normals[0]);
         let normal = way.try_normalize().or_else(|| apart.try_normalize())?;
         Some(Self { weights, normal, depth })
     }
 }
 
-/// Lengths beyond this have squares beyond the range of numbers.
-const MOST: f64 = 1e100;
+/// What touches reaches so far, that quotients have squares within the range of numbers.
+const LEAST: f64 = 1e-100;
 
 /// The cosine of the angle between normals that look the same way.
 const ALIKE: f64 = 0.5;

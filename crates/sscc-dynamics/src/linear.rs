@@ -89,8 +89,13 @@ impl Step {
     fn new(lambda: f64, damping: f64, h: f64) -> Self {
         let a = damping / 2.0;
         let (c, s) = decaying(lambda, a, h);
-        // (1 - e^(-a h) (C + a S)) / lambda cancels where little happens in a step; then the integrand is smooth.
-        let qf = if lambda * h * h > 1e-2 {
+        // (1 - e^(-a h) (C + a S)) / lambda cancels where little happens in a step; then the integrand is smooth, or, of
+        // strong damping, the difference of two that decay.
+        let qf = if a * h > 1.0 && a * a > 2.0 * lambda {
+            let root = (a * a - lambda).sqrt();
+            let integral = |x: f64| if x > 0.0 { -libm::expm1(-x * h) / x } else { h };
+            (integral(lambda / (a + root)) - integral(a + root)) / (2.0 * root)
+        } else if lambda * h * h > 1e-2 {
             (1.0 - (c + a * s)) / lambda
         } else {
             GAUSS.iter().map(|(x, w)| w * h * decaying(lambda, a, h * x).1).sum()
@@ -182,6 +187,28 @@ mod tests {
             }
             near(q[0], x, 1e-9);
             near(v[0], y, 1e-9);
+        }
+    }
+
+    #[test]
+    fn one_step_is_as_many_small_ones() {
+        let h = 1e-3;
+        for lambda in [0.0, 1e-6, 1.0, 1e3, 1e5, 1e8] {
+            for c in [0.0, 10.0, 2.1e3, 1e4, 1e5, 1e6] {
+                let after = |steps: usize| {
+                    let damping = Damping { mass: c, stiffness: 0.0 };
+                    let oscillator = LinearOscillator::new(&[lambda], damping, h / steps as f64).unwrap();
+                    let (mut q, mut v) = ([0.0], [0.0]);
+                    (0..steps).for_each(|_| oscillator.advance(&mut q, &mut v, &[1.0]));
+                    (q[0], v[0])
+                };
+                let ((q, v), (x, y)) = (after(1), after(2000));
+                let is_near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-9 * size;
+                assert!(
+                    is_near(q, x, x.abs()) && is_near(v, y, y.abs() + x.abs() / h),
+                    "{lambda} {c}: {q} {x}, {v} {y}"
+                );
+            }
         }
     }
 

@@ -16,8 +16,8 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground.
-const RIGID: usize = 13 + 1;
+/// Position, orientation, momentum, angular momentum, preload of the ground, whether it was pushed.
+const RIGID: usize = 13 + 2;
 
 /// Bodies, triangles, weights, normal, offset, slack, preload and age of a contact.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
@@ -33,7 +33,7 @@ impl World<'_> {
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
-            numbers.push(near.preload);
+            numbers.extend([near.preload, f64::from(u8::from(body.is_pushed))]);
         }
         for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
@@ -73,6 +73,7 @@ impl World<'_> {
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
             near.forget();
             near.preload = next();
+            body.is_pushed = next() != 0.0;
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));

@@ -276,3 +276,25 @@ fn a_constrained_body_stays_where_the_root_proves_it_free() {
     }
     assert!(most > 0.99 * certificates.root_radius());
 }
+
+#[test]
+fn a_constrained_body_goes_on_from_its_state() {
+    let shape = elastic(&fork(6, 0.1, rubber()), 8, true, &[]);
+    let options = WorldOptions { response: Response::Constrain, ..space(1e-3) };
+    let run = |stop: Option<usize>| {
+        let mut world = clapping(&shape, options, Damping::default());
+        for step in 0..400 {
+            if stop == Some(step) {
+                let state = world.state();
+                world = clapping(&shape, options, Damping::default());
+                world.restore(&state).unwrap();
+            }
+            world.advance(&mut ()).unwrap();
+        }
+        world.state()
+    };
+    let whole = run(None);
+    for step in (1..400).step_by(37) {
+        assert!(run(Some(step)) == whole, "stopped at {step}");
+    }
+}

@@ -33,6 +33,9 @@ pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> 
     let mut bodies = Vec::new();
     for section in scene.sections("bodies", &KEYS)? {
         push(&section, models, &mut bodies)?;
+        if bodies.len() > MOST_BODIES {
+            return Err(scene.refused("bodies", format!("there are more than {MOST_BODIES}")));
+        }
     }
     if bodies.is_empty() {
         return Err(scene.refused("bodies", "there are none"));

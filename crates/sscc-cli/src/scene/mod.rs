@@ -4,6 +4,7 @@ mod bodies;
 mod model;
 mod section;
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str;
 
@@ -23,6 +24,12 @@ const MOST_BYTES: usize = 1 << 20;
 
 /// The most steps of a simulation.
 const MOST_STEPS: f64 = 1e9;
+
+/// Samples of a sound in a second.
+const RATES: RangeInclusive<f64> = 8000.0..=192_000.0;
+
+/// The most samples of a sound: what fits a WAV file.
+const MOST_SAMPLES: f64 = 1e9;
 
 /// A contact must last so many steps of its period, else it is over before it is seen.
 const LEAST_CONTACT_STEPS: f64 = 4.0;
@@ -160,7 +167,7 @@ impl Scene {
             detection: scene.word("detection", &DETECTIONS)?.unwrap_or_default(),
             models,
             bodies,
-            sound: sound(&scene)?,
+            sound: sound(&scene, rate, steps)?,
             frames_per_second: scene.positive("frames_per_second")?.unwrap_or(60.0),
         })
     }
@@ -204,8 +211,16 @@ fn response(scene: &Section<'_>) -> Result<Response> {
     Ok(scene.word("response", &words)?.unwrap_or_default())
 }
 
-fn sound(scene: &Section<'_>) -> Result<Option<Sound>> {
+/// One sample is made at each step.
+fn sound(scene: &Section<'_>, rate: f64, steps: f64) -> Result<Option<Sound>> {
     let Some(sound) = scene.section("sound", &["modes", "damping", "pitch"])? else { return Ok(None) };
+    if !RATES.contains(&rate) {
+        let cause = format!("sound needs from {} to {} samples in a second", RATES.start(), RATES.end());
+        return Err(scene.refused("steps_per_second", cause));
+    }
+    if steps > MOST_SAMPLES {
+        return Err(scene.refused("duration", format!("a sound has at most {MOST_SAMPLES:e} samples")));
+    }
     Ok(Some(Sound {
         modes: sound.count("modes", model::MOST_RANK)?.unwrap_or(200),
         damping: model::damping(&sound)?,

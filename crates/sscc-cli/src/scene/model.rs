@@ -28,6 +28,11 @@ pub struct ModelSpec {
 pub const QUICK_RANK: usize = 20;
 
 impl ModelSpec {
+    /// What the coordinates of its bodies are called in a file of arrays.
+    pub fn array_name(&self) -> String {
+        format!("q_{}", self.recipe.name.replace('-', "_"))
+    }
+
     /// The small spring in its place.
     pub fn quicken(&mut self) {
         let Recipe { shape, kind, cells, .. } = &mut self.recipe;
@@ -43,7 +48,16 @@ const KEYS: [&str; 9] =
 const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
 
 pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
-    scene.named("models", &KEYS)?.into_iter().map(|(name, model)| one(name, &model, folder)).collect()
+    let mut models: Vec<ModelSpec> = Vec::new();
+    for (name, section) in scene.named("models", &KEYS)? {
+        let model = one(name, &section, folder)?;
+        if let Some(other) = models.iter().find(|other| other.array_name() == model.array_name()) {
+            let cause = format!("'{name}' and '{}' differ by _ and - only", other.recipe.name);
+            return Err(section.refused("models", cause));
+        }
+        models.push(model);
+    }
+    Ok(models)
 }
 
 fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {

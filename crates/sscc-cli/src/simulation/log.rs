@@ -41,11 +41,17 @@ pub struct Checkpoint {
 }
 
 impl Log {
-    /// Opens the log of a folder, and gives the checkpoint that is there. `digest` is the hash of what is simulated.
+    /// Opens the log of a folder, and gives the checkpoint that is there; to begin again, what is there is removed. `digest` is
+    /// the hash of what is simulated.
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.
-    pub fn open(folder: &Path, digest: [u8; DIGEST], layout: Layout) -> Result<(Self, Option<Checkpoint>)> {
+    pub fn open(
+        folder: &Path,
+        digest: [u8; DIGEST],
+        layout: Layout,
+        again: bool,
+    ) -> Result<(Self, Option<Checkpoint>)> {
         let path = folder.join(LOG);
         let in_log = || path.display().to_string();
         let mut options = OpenOptions::new();
@@ -54,6 +60,10 @@ impl Log {
         // Two at once would write into each other's states.
         if file.try_lock().is_err() {
             bail!("{}: another simulation is writing to it", path.display());
+        }
+        if again {
+            Self::remove(&folder.join(CHECKPOINT))?;
+            file.set_len(0).with_context(in_log)?;
         }
         let mut first = Vec::new();
         (&mut file).take(DIGEST as u64).read_to_end(&mut first).with_context(in_log)?;
@@ -81,18 +91,14 @@ impl Log {
         folder.join(CHECKPOINT).exists()
     }
 
-    /// Removes what a simulation left in the folder.
-    pub fn restart(folder: &Path) -> Result<()> {
-        for name in [CHECKPOINT, LOG] {
-            let path = folder.join(name);
-            match fs::remove_file(&path) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(error).with_context(|| path.display().to_string());
-                }
-                _ => {}
+    /// Removes a file, if it is there.
+    fn remove(path: &Path) -> Result<()> {
+        match fs::remove_file(path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(error).with_context(|| path.display().to_string())
             }
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// The checkpoint of the folder, if it is whole, of this simulation, and the log has its states.
@@ -175,7 +181,7 @@ mod tests {
     use super::*;
 
     fn open(folder: &Path, digest: u8) -> Result<(Log, Option<Checkpoint>)> {
-        Log::open(folder, [digest; DIGEST], Layout::new([1]))
+        Log::open(folder, [digest; DIGEST], Layout::new([1]), false)
     }
 
     /// A state of the layout, 17 numbers.
@@ -234,9 +240,12 @@ mod tests {
         fs::write(path.join(CHECKPOINT), &good).unwrap();
         fs::write(path.join(LOG), [1; DIGEST]).unwrap();
         assert!(message(1).contains("the log beside it has fewer states"));
-        Log::restart(path).unwrap();
-        assert!(open(path, 2).unwrap().1.is_none());
-        Log::restart(path).unwrap();
-        Log::restart(path).unwrap();
+        // Not while somebody writes to it.
+        let again = || Log::open(path, [2; DIGEST], Layout::new([1]), true);
+        let (log, none) = again().unwrap();
+        assert!(none.is_none() && log.len() == 0);
+        assert!(again().err().unwrap().to_string().contains("another simulation is writing"));
+        drop(log);
+        assert!(again().unwrap().1.is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 use sscc_io::gltf::{Track, key_frames, write_animation};
 use sscc_io::{NamedArray, WavFormat, write_npz, write_wav, write_whole};
 
@@ -14,28 +14,32 @@ use crate::scene::Scene;
 /// How loud the loudest sample of the 16 bit file is; the other one is as loud as it was computed.
 const LOUDEST: f64 = 0.9;
 
-/// Writes all of them into a folder, and gives their names.
-pub fn write(folder: &Path, page: &Page<'_>) -> Result<Vec<PathBuf>> {
+/// Writes all of them into a folder. Gives the names of those that were written, and why another one was not: of
+/// a motion that diverges some numbers may fit no file.
+pub fn write(folder: &Path, page: &Page<'_>) -> (Vec<PathBuf>, Option<Error>) {
     let Page { scene, prepared, history, summary, .. } = *page;
-    let mut files = Vec::new();
-    let mut at = |name: &str| {
-        files.push(folder.join(name));
-        folder.join(name)
+    let (mut files, mut unwritten) = (Vec::new(), None);
+    let mut add = |name: &str, write: &dyn Fn(&Path) -> Result<()>| {
+        let path = folder.join(name);
+        match write(&path) {
+            Ok(()) => files.push(path),
+            Err(error) => unwritten = unwritten.take().or(Some(error)),
+        }
     };
-    trajectories(&at("trajectories.npz"), scene, prepared, history)?;
-    costs(&at("costs.npz"), scene, history, page)?;
-    animation(&at("animation.glb"), scene, prepared, history)?;
+    add("summary.json", &|path| Ok(write_whole(path, &serde_json::to_vec_pretty(summary)?)?));
+    add("report.html", &|path| Ok(write_whole(path, page.html().as_bytes())?));
+    add("trajectories.npz", &|path| trajectories(path, scene, prepared, history));
+    add("costs.npz", &|path| costs(path, scene, history, page));
+    add("animation.glb", &|path| animation(path, scene, prepared, history));
     if scene.sound.is_some() {
         let samples: Vec<f64> = (0..history.len()).map(|state| history.facts(state).sound).collect();
         let rate = (1.0 / scene.step).round() as u32;
         let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
         let loud: Vec<f64> = samples.iter().map(|x| x * LOUDEST / peak.max(f64::MIN_POSITIVE)).collect();
-        write_wav(&at("sound.wav"), rate, &loud, WavFormat::Pcm16)?;
-        write_wav(&at("sound_float.wav"), rate, &samples, WavFormat::Float32)?;
+        add("sound.wav", &|path| Ok(write_wav(path, rate, &loud, WavFormat::Pcm16)?));
+        add("sound_float.wav", &|path| Ok(write_wav(path, rate, &samples, WavFormat::Float32)?));
     }
-    write_whole(&at("summary.json"), &serde_json::to_vec_pretty(summary)?)?;
-    write_whole(&at("report.html"), page.html().as_bytes())?;
-    Ok(files)
+    (files, unwritten)
 }
 
 /// Times of all states (s).
@@ -73,8 +77,7 @@ fn trajectories(path: &Path, scene: &Scene, prepared: &Prepared, history: &Histo
             for state in 0..states {
                 own.iter().for_each(|body| q.extend(history.body(state, *body).q));
             }
-            let name = format!("q_{}", model.recipe.name.replace('-', "_"));
-            Some((name, vec![states, own.len(), history.layout().rank(*first)], q))
+            Some((model.array_name(), vec![states, own.len(), history.layout().rank(*first)], q))
         })
         .collect();
     let mut arrays = vec![

@@ -12,9 +12,6 @@ use sscc_modes::{MassProperties, ReducedForces};
 use crate::case::{self, Begun, Cache, Case, Kind, program};
 use crate::scene::{ModelSpec, Scene};
 
-/// The fewest samples of a sound in a second.
-const LEAST_RATE: f64 = 8000.0;
-
 /// The most memory that the sounds of all bodies may take: 2 GB.
 const MOST_SOUND: usize = 2_000_000_000;
 
@@ -78,15 +75,11 @@ impl PreparedModel {
         );
         let sound = scene.sound.as_ref().map(|sound| {
             let rate = 1.0 / scene.step;
-            ensure!(
-                rate >= LEAST_RATE,
-                "sound: {rate} samples in a second; it needs {LEAST_RATE} steps in a second"
-            );
             let (model, elasticity) = case::modes(&begun, Kind::Linear(sound.modes), cache)?;
             let damping = sound.damping.unwrap_or(spec.damping);
             let square = sound.pitch * sound.pitch;
             let eigenvalues: Vec<f64> = diagonal(&elasticity).iter().map(|x| x * square).collect();
-            Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
+            anyhow::Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
         });
         let shape = Shape::new(case.model.clone(), case.full.certificates.clone(), elasticity, mass)?;
         Ok(Self { case, shape, upright: begun.upright, sound: sound.transpose()? })

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Error, Result, anyhow};
+use anyhow::{Context, Error, Result, anyhow, ensure};
 use cpu_time::ThreadTime;
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, Start, State, World};
 
@@ -20,6 +20,9 @@ const CHECKPOINT: Duration = Duration::from_secs(10);
 /// So many numbers of states are kept in memory before they are appended to the log.
 const KEPT: usize = 1 << 14;
 
+/// The largest log: all outputs are made from it in memory.
+const MOST_BYTES: f64 = 4e9;
+
 /// The energy is computed at every so many steps.
 pub const ENERGY_STEPS: usize = 8;
 
@@ -32,17 +35,27 @@ pub struct Ran {
     pub failure: Option<Error>,
 }
 
-/// Lets a scene move for so many steps, or goes on with what is in the folder. Checks first that it can begin.
+/// Lets a scene move for so many steps, or goes on with what is in the folder (unless it is to begin `again`). Checks first that
+/// it can begin.
 ///
 /// # Errors
 /// When bodies begin in each other, in themselves or in the ground; when the folder cannot be written to. Of a
 /// motion that diverges, and of Ctrl-C, [`Ran::failure`] tells: the states so far are there.
-pub fn run(scene: &Scene, prepared: &Prepared, folder: &Path, steps: usize, meter: &Meter) -> Result<Ran> {
+pub fn run(
+    scene: &Scene,
+    prepared: &Prepared,
+    folder: &Path,
+    steps: usize,
+    again: bool,
+    meter: &Meter,
+) -> Result<Ran> {
     let mut world = world(scene, prepared)?;
     let mut sounds: Vec<Option<SoundBank>> =
         scene.bodies.iter().map(|body| prepared.models[body.model].sound.clone()).collect();
     let layout = Layout::new(scene.bodies.iter().map(|body| prepared.models[body.model].case.model.rank()));
-    let (mut log, checkpoint) = Log::open(folder, prepared.digest(scene)?, layout.clone())?;
+    let bytes = 8.0 * steps as f64 * layout.width() as f64;
+    ensure!(bytes <= MOST_BYTES, "{steps} steps take {:.0} GB: take fewer by --steps", bytes / 1e9);
+    let (mut log, checkpoint) = Log::open(folder, prepared.digest(scene)?, layout.clone(), again)?;
     if let Some(checkpoint) = checkpoint {
         let at = checkpoint.states;
         restore(&mut world, &mut sounds, at, &checkpoint.memory).context("the checkpoint")?;

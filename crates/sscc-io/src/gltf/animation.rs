@@ -54,6 +54,12 @@ pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     let count = if stride.is_finite() { (last as f64 / stride) as usize } else { 0 };
     let mut frames: Vec<usize> =
         (0..=count).map(|frame| ((frame as f64 * stride).round() as usize).min(last)).collect();
+    // Files hold times in single precision, in which frames may be too near to each other.
+    let time = |frame: usize| (frame as f64 * step) as f32;
+    frames.dedup_by_key(|frame| time(*frame));
+    while frames.last().is_some_and(|frame| *frame > 0 && time(*frame) >= time(last)) {
+        frames.pop();
+    }
     frames.push(last);
     frames.dedup();
     frames

@@ -18,9 +18,9 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The frame in which this box becomes about [-1, 1] along its longest side.
+    /// The frame in which this box (its corners in any order) becomes about [-1, 1] along its longest side.
     pub(super) fn of((lower, upper): Aabb) -> Self {
-        let half = (upper * 0.5 - lower * 0.5).max_element();
+        let half = (upper * 0.5 - lower * 0.5).abs().max_element();
         // A finite scale, so that 0 times it is a number.
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).min(f64::MAX) }
     }
@@ -53,7 +53,7 @@ mod tests {
         numbers.sort_by(f64::total_cmp);
         let sizes = [0.0, f64::from_bits(1), 1e-310, 1e-60, 1e-7, 1.0, 1e8, limits::LARGEST];
         for (i, center) in sizes.into_iter().enumerate() {
-            for half in sizes {
+            for half in sizes.into_iter().flat_map(|half| [half, -half]) {
                 let center = if i % 2 == 0 { center } else { -center };
                 let frame = Frame::of((DVec3::splat(center - half), DVec3::splat(center + half)));
                 let mapped: Vec<Vec4> = numbers.iter().map(|x| frame.map(DVec3::splat(*x))).collect();

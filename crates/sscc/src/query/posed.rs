@@ -106,7 +106,9 @@ impl<'a> PosedShape<'a> {
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<(DVec3, DVec3), Error> {
         let reach = pose.reach(self.asked.model.check_coordinates(q)?);
         // Rounding may carry a position a little beyond the exact reach.
-        if !(pose.rotation.is_finite() && reach * 1.001 <= limits::LARGEST) {
+        // What is no number hides from the largest of several.
+        let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
+        if !(is_finite && reach * 1.001 <= limits::LARGEST) {
             return Err(Error::CoordinatesRange);
         }
         self.state.q.copy_from_slice(q);
@@ -161,7 +163,7 @@ impl<'a> PosedShape<'a> {
         found[first..].sort_unstable();
     }
 
-    /// Adds the vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
+    /// Adds the vertices x of triangles with `normal . x < height` in the world, ascending; all of them up to rounding.
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();
         let Tables { vertices, clusters, bd_tree, .. } = &*self.boxes.tables;
@@ -367,9 +369,12 @@ mod tests {
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         let mut shape = PosedShape::new(&model, &certificates).unwrap();
         for wrong in [f64::NAN, f64::INFINITY, 1e61] {
-            let moved = Pose { translation: DVec3::X * wrong, ..Pose::default() };
+            for axis in 0..3 {
+                let mut moved = Pose::default();
+                moved.translation[axis] = wrong;
+                assert_eq!(shape.place(&[0.0; 2], &moved), Err(Error::CoordinatesRange));
+            }
             let turned = Pose { rotation: DMat3::IDENTITY * wrong, ..Pose::default() };
-            assert_eq!(shape.place(&[0.0; 2], &moved), Err(Error::CoordinatesRange));
             assert_eq!(shape.place(&[0.0; 2], &turned), Err(Error::CoordinatesRange));
         }
         assert!(matches!(shape.place(&[0.0], &Pose::default()), Err(Error::CoordinatesLength { .. })));

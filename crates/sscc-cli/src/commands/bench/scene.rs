@@ -86,12 +86,11 @@ fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Resul
     let folder = session.cache.folder().join(format!("{}-{hash}.scene", scene.name));
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let simulate = || pool.install(|| run(scene, prepared, &folder, scene.steps, &Meter::new()));
-    let Ran { history, failure, .. } = match simulate() {
+    let simulate = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &Meter::new()));
+    let Ran { history, failure, .. } = match simulate(false) {
         Err(error) if Log::is_begun(&folder) => {
             eprintln!("note: simulated anew: {}", one_line(&format!("{error:#}")));
-            Log::restart(&folder)?;
-            simulate()?
+            simulate(true)?
         }
         ran => ran?,
     };

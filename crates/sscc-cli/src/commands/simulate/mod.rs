@@ -9,22 +9,23 @@ use anyhow::{Context, Result, bail};
 
 use crate::args::Simulate;
 use crate::case::{Cache, models_folder};
+use crate::nearest::nearest;
 use crate::output::Output;
 use crate::scene::{SHIPPED, Scene};
-use crate::simulation::{Log, Meter, Page, Prepared, Ran, Summary, run, write};
+use crate::simulation::{Meter, Page, Prepared, Ran, Summary, run, write};
 use crate::{Outcome, interrupt, load};
 
 pub fn run_command(args: &Simulate) -> Result<Outcome> {
     let scene = read(&args.scene)?;
     let models = models_folder(args.models.as_deref())?;
     let cache = Cache::open(args.cache.as_deref())?;
-    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(&scene.name));
+    let folder = match &args.out {
+        Some(folder) => folder.clone(),
+        None => own_folder(&args.scene, &scene.name)?,
+    };
     let in_folder = || format!("{}: no folder that can be written to", folder.display());
     fs::create_dir_all(&folder).with_context(in_folder)?;
     tempfile::tempfile_in(&folder).with_context(in_folder)?;
-    if args.restart {
-        Log::restart(&folder)?;
-    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(load::threads(&args.threads)).build()?;
     pool.install(|| simulate(args, &scene, models.as_deref(), &cache, &folder))
 }
@@ -40,18 +41,24 @@ fn simulate(
     let prepared = Prepared::get(scene, models, cache).with_context(in_scene)?;
     let steps = args.steps.map_or(scene.steps, |steps| steps as usize);
     let Ran { history, processor_seconds, failure } =
-        run(scene, &prepared, folder, steps, &Meter::new()).with_context(in_scene)?;
+        run(scene, &prepared, folder, steps, args.restart, &Meter::new()).with_context(in_scene)?;
     if history.len() == 0 {
         return Err(failure.unwrap_or_else(|| anyhow::anyhow!("no step was made")).context(in_scene()));
     }
     let summary = Summary::new(scene, &prepared, &history, processor_seconds);
-    // Who presses Ctrl-C wants to wait no longer.
-    let traditional =
-        if interrupt::happened() { Vec::new() } else { traditional::costs(scene, &prepared, &history)? };
-    let failure = failure.map(|error| format!("{error:#}"));
+    // Who presses Ctrl-C wants to wait no longer, and what diverged may be out of range.
+    let traditional = match &failure {
+        None => traditional::costs(scene, &prepared, &history),
+        Some(_) => Ok(Vec::new()),
+    };
+    let (traditional, unmeasured) = match traditional {
+        Ok(costs) => (costs, None),
+        Err(error) => (Vec::new(), Some(error)),
+    };
+    let failure = failure.or(unmeasured).map(|error| format!("{error:#}"));
     let page =
         Page { scene, prepared: &prepared, history: &history, summary: &summary, traditional, failure };
-    let files = write(folder, &page)?;
+    let (files, unwritten) = write(folder, &page);
     let mut out = Output::new();
     if args.json.json {
         out.json(&summary)?;
@@ -60,20 +67,38 @@ fn simulate(
         files.iter().try_for_each(|file| out.line(format_args!("written: {}", file.display())))?;
     }
     out.finish()?;
-    match page.failure {
-        None => Ok(Outcome::Done),
-        Some(failure) if interrupt::happened() => {
+    match (page.failure, unwritten) {
+        (None, None) => Ok(Outcome::Done),
+        (None, Some(unwritten)) => Err(unwritten),
+        (Some(failure), _) if interrupt::happened() => {
             bail!("{failure} after {} steps; the same command goes on from there", history.len())
         }
-        Some(failure) => bail!("{failure}; what was simulated until then is in {}", folder.display()),
+        (Some(failure), unwritten) => {
+            let unwritten = unwritten.map(|error| format!(" ({error:#})")).unwrap_or_default();
+            bail!("{failure}; what was simulated until then is in {}{unwritten}", folder.display())
+        }
     }
+}
+
+/// The folder that is named after the scene.
+fn own_folder(path: &Path, name: &str) -> Result<PathBuf> {
+    let folder = PathBuf::from(name);
+    if name.is_empty() || name.starts_with('.') || folder.is_file() {
+        bail!("{}: no folder can have the scene's name; choose one by --out", path.display());
+    }
+    Ok(folder)
 }
 
 /// A file, or a scene that comes with the program.
 fn read(path: &Path) -> Result<Scene> {
     let shipped = path.to_str().and_then(|name| SHIPPED.iter().find(|(known, _)| *known == name));
     match shipped {
-        Some((name, text)) if !path.exists() => Scene::parse(Path::new(&format!("{name}.toml")), text),
+        Some((name, text)) if !path.is_file() => Scene::parse(Path::new(&format!("{name}.toml")), text),
+        // A name alone may be meant for a scene that comes with the program.
+        None if path.extension().is_none() && !path.exists() => {
+            let meant = nearest(&path.display().to_string(), SHIPPED.iter().map(|(name, _)| *name));
+            bail!("{}: no such file; did you mean '{}'?", path.display(), meant.unwrap_or_default())
+        }
         _ => Scene::read(path),
     }
 }

@@ -123,5 +123,10 @@ fn key_frames_are_at_the_rate() {
     assert_eq!(key_frames(4, 0.1, 60.0), [0, 1, 2, 3]);
     assert_eq!(key_frames(88_200, 1.0 / 44_100.0, 60.0).len(), 121);
     assert_eq!(key_frames(5, 0.01, 0.0), [0, 4]);
+    // Times that single precision cannot tell apart.
+    let (steps, step) = (20_000_001, 1.0 / 44_100.0);
+    let frames = key_frames(steps, step, 44_100.0);
+    assert!(frames.windows(2).all(|w| (w[0] as f64 * step) as f32 != (w[1] as f64 * step) as f32));
+    assert_eq!((frames[0], frames.last()), (0, Some(&(steps - 1))));
     assert_eq!((key_frames(0, 0.1, 60.0), key_frames(1, 0.1, 60.0)), (vec![], vec![0]));
 }
