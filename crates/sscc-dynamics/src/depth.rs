@@ -4,12 +4,13 @@
 //! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
 //! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005).
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-use crate::nearest::{Feature, nearest_point_triangle};
+use crate::nearest::nearest_point_triangle;
+use crate::normals::Normals;
 
 /// Grid points at most: 8 MB. Memory does not grow with the mesh.
 const MOST_POINTS: f64 = (1 << 21) as f64;
@@ -189,63 +190,6 @@ fn halves([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 2] {
     };
     let middle = (a + b) * 0.5;
     [[a, middle, c], [middle, b, c]]
-}
-
-/// Normals of faces, edges and vertices, for telling inside from outside.
-struct Normals {
-    faces: Vec<DVec3>,
-    classes: Vec<[u32; 3]>,
-    edges: BTreeMap<(u32, u32), DVec3>,
-    vertices: Vec<DVec3>,
-}
-
-impl Normals {
-    fn new(mesh: &TriMesh) -> Self {
-        let p = mesh.rest_positions();
-        // Vertices of equal position are one.
-        let mut order: Vec<u32> = (0..p.len() as u32).collect();
-        let key = |v: u32| p[v as usize].to_array().map(|x| x + 0.0);
-        let compare = |a: &u32, b: &u32| {
-            let (x, y) = (key(*a), key(*b));
-            (0..3).map(|n| x[n].total_cmp(&y[n])).find(|o| o.is_ne()).unwrap_or(a.cmp(b))
-        };
-        order.sort_unstable_by(compare);
-        let mut class: Vec<u32> = (0..p.len() as u32).collect();
-        for pair in order.windows(2) {
-            if key(pair[0]) == key(pair[1]) {
-                class[pair[1] as usize] = class[pair[0] as usize];
-            }
-        }
-        let classes: Vec<[u32; 3]> =
-            mesh.faces().iter().map(|face| face.map(|v| class[v as usize])).collect();
-        let mut faces = Vec::with_capacity(classes.len());
-        let (mut edges, mut vertices) = (BTreeMap::new(), vec![DVec3::ZERO; p.len()]);
-        for face in &classes {
-            let x = face.map(|v| p[v as usize]);
-            let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize_or_zero();
-            for n in 0..3 {
-                let [a, b, c] = [x[n], x[(n + 1) % 3], x[(n + 2) % 3]];
-                let [u, v] = [b - a, c - a];
-                vertices[face[n] as usize] += normal * libm::atan2(u.cross(v).length(), u.dot(v));
-                *edges.entry(edge(face[n], face[(n + 1) % 3])).or_insert(DVec3::ZERO) += normal;
-            }
-            faces.push(normal);
-        }
-        Self { faces, classes, edges, vertices }
-    }
-
-    fn of(&self, triangle: u32, feature: Feature) -> DVec3 {
-        let face = self.classes[triangle as usize];
-        match feature {
-            Feature::Face => self.faces[triangle as usize],
-            Feature::Edge(n) => self.edges[&edge(face[n], face[(n + 1) % 3])],
-            Feature::Vertex(n) => self.vertices[face[n] as usize],
-        }
-    }
-}
-
-fn edge(a: u32, b: u32) -> (u32, u32) {
-    (a.min(b), a.max(b))
 }
 
 #[cfg(test)]

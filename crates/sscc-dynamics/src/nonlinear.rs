@@ -9,11 +9,27 @@ use crate::{Damping, DynamicsError};
 /// Newton's iterations at most in one step.
 const ITERATIONS: usize = 60;
 
-/// Iterations with one derivative: a stiffness costs several times what forces cost, and changes little within a step.
-const REFACTOR: usize = 6;
+/// A derivative serves as long as iterations leave less than this share of the residual: a stiffness costs several
+/// times what forces cost, and changes little within a step.
+const SLOW: f64 = 0.2;
+
+/// The least part of an iteration's step that is tried.
+const LEAST_SHARE: f64 = 1e-6;
 
 /// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
 const SOLVED: f64 = 1e-11;
+
+/// A new acceleration that is tried, and what it leads to.
+struct Trial {
+    b: Vec<f64>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    /// The residual.
+    rest: Vec<f64>,
+    /// Its sum, and that of all that adds up to it.
+    left: f64,
+    size: f64,
+}
 
 /// A body with reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`, advanced by the implicit Newmark method
 /// of average acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is
@@ -60,35 +76,54 @@ impl<'a> NonlinearOscillator<'a> {
         g: &[f64],
     ) -> Result<(), DynamicsError> {
         let (r, h) = (self.forces.rank, self.step);
-        // With the new acceleration b: q + h v + h^2 (a + b) / 4 and v + h (a + b) / 2.
-        let mut b = a.to_vec();
-        let position = |b: &[f64]| -> Vec<f64> {
-            (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect()
-        };
-        let velocity = |b: &[f64]| -> Vec<f64> { (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect() };
-        let mut factor = None;
-        for iteration in 0..ITERATIONS {
-            let (x, y) = (position(&b), velocity(&b));
+        let residual = |b: Vec<f64>| {
+            let x: Vec<f64> = (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect();
+            let y: Vec<f64> = (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect();
             let (inner, damped) = (self.forces.at(&x), self.damped(&y));
-            let residual: Vec<f64> = (0..r).map(|k| b[k] + damped[k] + inner[k] - g[k]).collect();
+            let rest: Vec<f64> = (0..r).map(|k| b[k] + damped[k] + inner[k] - g[k]).collect();
             let parts = |k: usize| b[k].abs() + damped[k].abs() + inner[k].abs() + g[k].abs();
-            let size: f64 = (0..r).map(parts).sum();
-            let left: f64 = residual.iter().map(|x| x.abs()).sum();
-            if !size.is_finite() {
+            let size = (0..r).map(parts).sum();
+            let left: f64 = rest.iter().map(|x| x.abs()).sum();
+            let left = if left.is_nan() { f64::INFINITY } else { left };
+            Trial { b, x, y, rest, left, size }
+        };
+        // It begins with the last acceleration, or where the body is: modes much faster than the step throw the first
+        // guess far off.
+        let [on, stay] = [a.to_vec(), (0..r).map(|k| -a[k] - 4.0 * v[k] / h).collect()].map(residual);
+        let mut trial = if on.left <= stay.left { on } else { stay };
+        let mut factor = None;
+        for _ in 0..ITERATIONS {
+            if !trial.size.is_finite() {
                 break;
             }
-            if left <= SOLVED * size {
+            if trial.left <= SOLVED * trial.size {
+                let Trial { b, x, y, .. } = trial;
                 q.copy_from_slice(&x);
                 v.copy_from_slice(&y);
                 a.copy_from_slice(&b);
                 return Ok(());
             }
-            if iteration % REFACTOR == 0 {
-                factor = Some(self.derivative(&x).partial_piv_lu());
+            let is_fresh = factor.is_none();
+            let change = factor
+                .get_or_insert_with(|| self.derivative(&trial.x).partial_piv_lu())
+                .solve(Mat::from_fn(r, 1, |i, _| trial.rest[i]));
+            let step = |share: f64| residual((0..r).map(|k| trial.b[k] - share * change[(k, 0)]).collect());
+            let mut next = step(1.0);
+            // Along Newton's own direction a part of the step is better than none.
+            let mut share = 1.0;
+            while is_fresh && next.left >= trial.left && share > LEAST_SHARE {
+                share /= 2.0;
+                next = step(share);
             }
-            let Some(factor) = &factor else { break };
-            let change = factor.solve(Mat::from_fn(r, 1, |i, _| residual[i]));
-            b.iter_mut().enumerate().for_each(|(k, b)| *b -= change[(k, 0)]);
+            let is_slow = next.left >= SLOW * trial.left;
+            if next.left < trial.left {
+                trial = next;
+            } else if is_fresh {
+                break;
+            }
+            if is_slow {
+                factor = None;
+            }
         }
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
@@ -181,6 +216,22 @@ mod tests {
             oscillator.advance(&mut q, &mut v, &mut a, &force).unwrap();
         }
         assert!((q[0] - goal[0]).abs() + (q[1] - goal[1]).abs() < 1e-9, "{q:?}");
+    }
+
+    #[test]
+    fn modes_much_faster_than_the_step_are_solved() {
+        let forces = forces(4e7, 9e5, 1e8);
+        let oscillator = NonlinearOscillator::new(&forces, NONE, 1e-3).unwrap();
+        for speed in [5.0, 50.0] {
+            let (mut q, mut v) = (vec![0.2, -0.1], vec![-speed, speed / 2.0]);
+            let mut a = oscillator.acceleration(&q, &v, &[0.0; 2]);
+            let first = oscillator.energy(&q, &v);
+            for step in 0..500 {
+                oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2]).unwrap();
+                let energy = oscillator.energy(&q, &v);
+                assert!(energy < 1.5 * first, "step {step}: {energy}, not {first}");
+            }
+        }
     }
 
     #[test]

@@ -1,0 +1,66 @@
+//! Normals of a surface, for telling inside from outside (Baerentzen and Aanaes 2005).
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use sscc::TriMesh;
+
+use crate::nearest::Feature;
+
+/// Of faces, edges and vertices: those of edges are sums of their faces', those of vertices weigh them by angles.
+pub(crate) struct Normals {
+    faces: Vec<DVec3>,
+    classes: Vec<[u32; 3]>,
+    edges: BTreeMap<(u32, u32), DVec3>,
+    vertices: Vec<DVec3>,
+}
+
+impl Normals {
+    pub fn new(mesh: &TriMesh) -> Self {
+        let p = mesh.rest_positions();
+        // Vertices of equal position are one.
+        let mut order: Vec<u32> = (0..p.len() as u32).collect();
+        let key = |v: u32| p[v as usize].to_array().map(|x| x + 0.0);
+        let compare = |a: &u32, b: &u32| {
+            let (x, y) = (key(*a), key(*b));
+            (0..3).map(|n| x[n].total_cmp(&y[n])).find(|o| o.is_ne()).unwrap_or(a.cmp(b))
+        };
+        order.sort_unstable_by(compare);
+        let mut class: Vec<u32> = (0..p.len() as u32).collect();
+        for pair in order.windows(2) {
+            if key(pair[0]) == key(pair[1]) {
+                class[pair[1] as usize] = class[pair[0] as usize];
+            }
+        }
+        let classes: Vec<[u32; 3]> =
+            mesh.faces().iter().map(|face| face.map(|v| class[v as usize])).collect();
+        let mut faces = Vec::with_capacity(classes.len());
+        let (mut edges, mut vertices) = (BTreeMap::new(), vec![DVec3::ZERO; p.len()]);
+        for face in &classes {
+            let x = face.map(|v| p[v as usize]);
+            let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize_or_zero();
+            for n in 0..3 {
+                let [a, b, c] = [x[n], x[(n + 1) % 3], x[(n + 2) % 3]];
+                let [u, v] = [b - a, c - a];
+                vertices[face[n] as usize] += normal * libm::atan2(u.cross(v).length(), u.dot(v));
+                *edges.entry(edge(face[n], face[(n + 1) % 3])).or_insert(DVec3::ZERO) += normal;
+            }
+            faces.push(normal);
+        }
+        Self { faces, classes, edges, vertices }
+    }
+
+    /// The normal (of any length) where the point of a triangle is nearest that lies on this part of it.
+    pub fn of(&self, triangle: u32, feature: Feature) -> DVec3 {
+        let face = self.classes[triangle as usize];
+        match feature {
+            Feature::Face => self.faces[triangle as usize],
+            Feature::Edge(n) => self.edges[&edge(face[n], face[(n + 1) % 3])],
+            Feature::Vertex(n) => self.vertices[face[n] as usize],
+        }
+    }
+}
+
+fn edge(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
