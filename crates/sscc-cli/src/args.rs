@@ -419,6 +419,9 @@ pub struct Bench {
     /// Take a spring of 4,000 triangles for every model: whether all works, in seconds
     #[arg(long)]
     pub quick: bool,
+    /// Of growth: also draw it
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
     /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,

@@ -89,8 +89,12 @@ fn measurements() {
     let model = made.iter().find(|path| path.to_string_lossy().ends_with(".model.safetensors")).unwrap();
     let written = || fs::metadata(model).unwrap().modified().unwrap();
     let before = written();
-    let run = bench(folder.path(), &["growth", "--only", "spring-4k", "--samples", "2", "--json"]);
+    let growth = ["growth", "--only", "spring-4k", "--samples", "2", "--json", "--plot", "growth.svg"];
+    let run = bench(folder.path(), &growth);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    // A point of each line.
+    let plot = fs::read_to_string(folder.path().join("growth.svg")).unwrap();
+    assert_eq!((plot.matches("<circle").count(), plot.matches("certified (ms)").count()), (4, 1));
     assert_eq!((files(&cache), written()), (made.clone(), before));
     let [report] = &run.json()[..] else { panic!("{run:?}") };
     assert_eq!(keys(report), sorted("scenario, mismatches, sizes, exponents, machine"));
@@ -215,6 +219,7 @@ fn refusals() {
         (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
         (&["growth", "--steps", "2"], "--steps is for what moves"),
+        (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
         (&["growth", "--quick"], "--quick: growth needs its sizes"),
         (&[], "SCENARIO"),
     ] {

@@ -31,6 +31,9 @@ const RATES: RangeInclusive<f64> = 8000.0..=192_000.0;
 /// The most samples of a sound: what fits a WAV file.
 const MOST_SAMPLES: f64 = 1e9;
 
+/// A quick look shakes so many times as hard.
+const QUICK_SHAKE: f64 = 4.0;
+
 /// A contact must last so many steps of its period, else it is over before it is seen.
 const LEAST_CONTACT_STEPS: f64 = 4.0;
 
@@ -101,13 +104,14 @@ impl Scene {
         WorldOptions { step, gravity, ground, contact, response }
     }
 
-    /// For a quick look: a small spring in place of any model, for half a second.
+    /// For a quick look: a small spring in place of any model, for half a second, shaken harder so that it touches itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();
         }
         for body in &mut self.bodies {
             body.shake.truncate(model::QUICK_RANK);
+            body.shake.iter_mut().for_each(|speed| *speed *= QUICK_SHAKE);
         }
         self.steps = self.steps.min((0.5 / self.step).ceil() as usize);
         self.digest += " quick";

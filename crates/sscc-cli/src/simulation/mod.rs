@@ -15,6 +15,7 @@ pub use log::Log;
 pub use meter::Meter;
 pub use outputs::write;
 pub use page::Page;
+pub use plot::{Line, Plot};
 pub use prepared::Prepared;
 pub use run::{Ran, run};
 pub use summary::Summary;

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use serde::Serialize;
+use sscc_io::write_whole;
 
 use super::Session;
 use super::amplitudes::steps;
@@ -12,6 +13,7 @@ use crate::case::{Kind, Recipe, SPRING_RINGS, Shape};
 use crate::machine;
 use crate::output::Output;
 use crate::progress::Bar;
+use crate::simulation::{Line, Plot};
 
 /// The embedded spring, so many halves of its usual number of rings and of vertices in each; and the number of modes.
 const SPRINGS: [(&str, usize, usize); 6] = [
@@ -64,6 +66,9 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     }
     let mismatches = reports.iter().map(|report| report.mismatches).sum();
     let exponents = Exponents::of(&reports);
+    if let Some(path) = &session.args.plot {
+        write_whole(path, plot(&reports).as_bytes())?;
+    }
     if session.args.json.json {
         let machine = machine::description();
         out.json(&Growth { scenario: "growth", mismatches, sizes: &reports, exponents, machine })?;
@@ -104,6 +109,37 @@ impl Exponents {
         lines.extend(self.discrete_ms.0.iter().map(|(key, value)| line(key, *value)));
         lines
     }
+}
+
+/// What is drawn, and how.
+const LINES: [(&str, &str, &str); 4] = [
+    ("parry", "parry (ms)", "#777777"),
+    ("traditional", "traditional (ms)", "#cc6600"),
+    ("full", "certified (ms)", "#0066cc"),
+    ("", "certificates (s)", "#009966"),
+];
+
+/// Milliseconds of a query and seconds of certificates over the number of triangles, all in logarithms.
+fn plot(reports: &[Report]) -> String {
+    let fitted: Vec<&Report> = reports.iter().filter(|report| report.rank == RANK).collect();
+    let line = |(key, label, color)| {
+        let value = |report: &Report| match key {
+            "" => Some(report.certify_seconds),
+            key => report.discrete_ms.get(key),
+        };
+        let point = |report: &&Report| Some([(report.triangles as f64).log10(), value(report)?]);
+        Line { label, color, points: fitted.iter().filter_map(point).collect(), dots: true }
+    };
+    let plot = Plot {
+        title: "Growth with the number of triangles",
+        x_label: "number of triangles, as a power of ten",
+        y_label: "ms, s",
+        lines: LINES.into_iter().map(line).collect(),
+        marks: Vec::new(),
+        marks_label: "",
+        logarithmic: true,
+    };
+    plot.svg()
 }
 
 /// The slope of a line through logarithms (least squares); none of fewer than two different sizes.

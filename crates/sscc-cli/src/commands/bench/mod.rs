@@ -72,6 +72,7 @@ fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
     );
     ensure!(!moves || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
     let grows = matches!(scenario, Scenario::Growth);
+    ensure!(grows || args.plot.is_none(), "--plot is for growth");
     ensure!(!grows || !args.quick, "--quick: growth needs its sizes; choose one by --only");
     Ok(())
 }
