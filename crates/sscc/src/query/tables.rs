@@ -5,11 +5,13 @@ use super::asked::Asked;
 use super::bd_tree::BdTree;
 use super::clusters::Clusters;
 use super::contour::Contours;
+use super::rough::Rough;
 use super::vertices::Vertices;
 
 #[derive(Default)]
 pub(super) struct Tables {
     pub(super) vertices: Vertices,
+    pub(super) rough: Rough,
     pub(super) clusters: Clusters,
     pub(super) bd_tree: BdTree,
     /// For exact normal cones only.
@@ -34,6 +36,11 @@ impl Tables {
         } else {
             Contours::default()
         };
-        Self { vertices, clusters, bd_tree, contours }
+        let rough = match asked.method {
+            // Normals need all exact positions.
+            Method::NormalCones | Method::NormalConesApprox => Rough::default(),
+            _ => Rough::new(model, &clusters, &vertices),
+        };
+        Self { vertices, rough, clusters, bd_tree, contours }
     }
 }
