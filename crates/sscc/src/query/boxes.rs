@@ -6,9 +6,9 @@ use glam::{DVec3, Vec4};
 
 use super::apart::are_apart;
 use super::asked::{Asked, Ends};
+use super::motion::Motion;
 use super::pack::{Box32, Pack};
 use super::positions::Positions;
-use super::rough::Motion;
 use super::tables::Tables;
 use crate::hierarchy::Hierarchy;
 
@@ -29,6 +29,7 @@ pub(super) struct Boxes<const E: usize> {
     /// Whether boxes of triangles are made from positions in single precision, and how vertices move then.
     is_rough: bool,
     motion: Motion<E>,
+    rough: Vec<[Vec4; E]>,
     /// How far along an axis corners in the frame may be from the exact ones; infinite where that is not known.
     wrong_by: f32,
     /// The box of each node that is a cluster or larger.
@@ -54,7 +55,8 @@ impl<const E: usize> Boxes<E> {
             margin: 0.0,
             positions: Positions::new(tables.vertices.count()),
             is_rough: false,
-            motion: Motion::new(&tables.rough),
+            motion: Motion::default(),
+            rough: tables.rough.memory(),
             wrong_by: f32::INFINITY,
             nodes: vec![Box32::EMPTY; nodes],
             node_query: vec![0; nodes],
@@ -83,7 +85,9 @@ impl<const E: usize> Boxes<E> {
         let frame = self.positions.frame();
         // In the world coordinates have no bound; a ball's ends are corners of boxes.
         let is_plain = ends.pose.is_none() && ends.ball.is_none();
-        self.is_rough = is_plain && tables.rough.begin(&mut self.motion, ends.q, frame, self.margin);
+        self.is_rough = is_plain
+            && !tables.rough.is_empty()
+            && tables.units.begin(&mut self.motion, ends.q, frame, self.margin);
         self.wrong_by = match (is_plain, self.is_rough) {
             (false, _) => f32::INFINITY,
             (true, true) => self.motion.margin,
@@ -162,6 +166,10 @@ impl<const E: usize> Boxes<E> {
     #[inline]
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
         if self.node_query[n as usize] != self.query {
+            if let Some(aabb) = self.tables.bd_tree.rough(n, &self.motion).filter(|_| self.is_rough) {
+                self.set_node(n, aabb);
+                return;
+            }
             let frame = self.positions.frame();
             let margin = ends.ball.map_or(DVec3::ZERO, |ball| ball.of_node(n)) + self.margin;
             let aabb = self.tables.bd_tree.at(n, ends.q, margin);
@@ -183,7 +191,7 @@ impl<const E: usize> Boxes<E> {
         let Tables { clusters, rough, .. } = &*self.tables;
         let mut by = 0.0;
         if self.is_rough {
-            rough.move_cluster(cluster, &mut self.motion);
+            rough.move_cluster(cluster, &self.motion, &mut self.rough);
             by = self.wrong_by;
         }
         let n = clusters.node(cluster);
@@ -232,7 +240,7 @@ impl<const E: usize> Boxes<E> {
     fn mapped(&self, cluster: u32, place: usize) -> [[Vec4; E]; 3] {
         let Tables { clusters, rough, .. } = &*self.tables;
         if self.is_rough {
-            rough.corners(cluster, place, &self.motion)
+            rough.corners(cluster, place, &self.rough)
         } else {
             self.positions.mapped(clusters.corners()[place])
         }

@@ -16,6 +16,7 @@ mod finder;
 mod found;
 mod frame;
 mod kinetic;
+mod motion;
 mod near;
 mod never;
 mod normal_cones;

@@ -1,31 +1,21 @@
-//! Positions in single precision with a bound of their error. Boxes are made from them, so that exact positions are
-//! computed for the few triangles only whose boxes overlap.
-//!
-//! Half the bytes and four vertices side by side: moving vertices is what queries take longest for, and it waits for
-//! memory.
+//! Positions in single precision: boxes are made from them, so that exact ones are computed for the few triangles only that
+//! may meet.
 
 use std::ops::Range;
 
-use glam::{DVec3, Mat4, Vec4};
+use glam::{Mat4, Vec4};
 
 use super::clusters::Clusters;
-use super::frame::Frame;
+use super::motion::{Motion, Units};
 use super::vertices::Vertices;
-use crate::ReducedModel;
-use crate::hierarchy::bounding_box;
 
-/// Rest positions and modes of the vertices of each cluster. The rest pose is one more mode, the first, whose
-/// coordinate is 1; each is given as a share of its largest displacement.
+/// Rest positions and modes of the vertices of each cluster. Vertices of several clusters are there several times (of the
+/// dragon, 1.7): what is read together lies together.
 #[derive(Default)]
 pub(super) struct Rough {
-    /// The middle of the rest pose, and the largest distance from it along an axis.
-    center: DVec3,
-    half: f64,
-    /// The largest displacement by each mode.
-    sizes: Vec<f64>,
     /// For each cluster where its groups of four vertices begin, and the end.
     starts: Vec<u32>,
-    /// `[group * (rank + 1) + mode][axis]`: one lane for each vertex.
+    /// `[group * (rank + 1) + mode][axis]`, as [`Units`] tells: one lane for each vertex.
     shares: Vec<[Vec4; 3]>,
     /// The corners of the triangle at each place, among the vertices of its cluster.
     corners: Vec<[u8; 3]>,
@@ -34,39 +24,8 @@ pub(super) struct Rough {
 /// Vertices side by side.
 const GROUP: usize = 4;
 
-/// A larger error, in the coordinates of the frame, is not worth the time that it saves.
-const WORST_MARGIN: f64 = 1.0 / 2048.0;
-
-/// How vertices move in a query: what each share is multiplied by.
-#[derive(Clone)]
-pub(super) struct Motion<const E: usize> {
-    /// Where the middle of the rest pose is in the frame.
-    shift: [[Vec4; 3]; E],
-    /// For each mode the same number in all lanes.
-    factors: Vec<[Vec4; E]>,
-    /// How far along an axis positions may be from the exact ones, mapped to the frame.
-    pub(super) margin: f32,
-    /// Of the vertices of each cluster, if they have been moved in this query.
-    positions: Vec<[Vec4; E]>,
-}
-
-impl<const E: usize> Motion<E> {
-    pub(super) fn new(rough: &Rough) -> Self {
-        let groups = rough.starts.last().map_or(0, |end| *end as usize);
-        let positions = vec![[Vec4::ZERO; E]; groups * GROUP];
-        Self { shift: [[Vec4::ZERO; 3]; E], factors: Vec::new(), margin: 0.0, positions }
-    }
-}
-
 impl Rough {
-    pub(super) fn new(model: &ReducedModel, clusters: &Clusters, vertices: &Vertices) -> Self {
-        let rank = model.rank();
-        let at_rest = (0..vertices.count() as u32).map(|place| vertices.rest(place));
-        let (lower, upper) = if vertices.count() == 0 { Default::default() } else { bounding_box(at_rest) };
-        let center = lower * 0.5 + upper * 0.5;
-        let half = (upper - center).max(center - lower).max_element();
-        let sizes: Vec<f64> = (0..rank).map(|k| model.moved_by(k, 1.0)).collect();
-        let share = |u: DVec3, size: f64| if size > 0.0 { (u / size).as_vec3() } else { glam::Vec3::ZERO };
+    pub(super) fn new(units: &Units, clusters: &Clusters, vertices: &Vertices) -> Self {
         let (mut starts, mut shares, mut corners) = (vec![0], Vec::new(), Vec::new());
         let mut numbers = vec![0_u8; vertices.count()];
         for cluster in 0..clusters.count() as u32 {
@@ -78,71 +37,50 @@ impl Rough {
             }
             for group in own.chunks(GROUP) {
                 let first = shares.len();
-                shares.resize(first + rank + 1, [Vec4::ZERO; 3]);
                 for (lane, &v) in group.iter().enumerate() {
-                    let rest = share(vertices.rest(v) - center, half);
-                    let modes = vertices.modes(v).iter().zip(&sizes).map(|(u, size)| share(*u, *size));
-                    for (to, x) in shares[first..].iter_mut().zip(std::iter::once(rest).chain(modes)) {
-                        (0..3).for_each(|axis| to[axis][lane] = x[axis]);
+                    for (k, x) in
+                        units.shares(vertices.rest(v), vertices.modes(v).iter().copied()).enumerate()
+                    {
+                        if lane == 0 {
+                            shares.push([Vec4::ZERO; 3]);
+                        }
+                        (0..3).for_each(|axis| shares[first + k][axis][lane] = x[axis]);
                     }
                 }
             }
-            starts.push((shares.len() / (rank + 1)) as u32);
+            starts.push(starts[cluster as usize] + own.len().div_ceil(GROUP) as u32);
         }
-        Self { center, half, sizes, starts, shares, corners }
+        Self { starts, shares, corners }
     }
 
-    /// Takes up a query in a frame whose box contains all positions; `rounding` is how far computed positions may be
-    /// from those of real numbers. False where single precision would not do.
-    ///
-    /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
-    /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
-    /// u of that; shares, factors and products add 3 u d, the shift, the mapped position and the box's widening u (3 + d).
-    pub(super) fn begin<const E: usize>(
-        &self,
-        motion: &mut Motion<E>,
-        q: [&[f64]; E],
-        frame: &Frame,
-        rounding: f64,
-    ) -> bool {
-        if self.starts.is_empty() {
-            return false;
-        }
-        let unit = f64::from(f32::EPSILON) / 2.0;
-        let scale = frame.scale();
-        let rest = self.half * scale;
-        let mut most = 0.0_f64;
-        motion.factors.clear();
-        motion.factors.push([Vec4::splat(rest as f32); E]);
-        let mut sums = [rest; E];
-        for (k, size) in self.sizes.iter().enumerate() {
-            let factors = q.map(|q| q[k] * size * scale);
-            (0..E).for_each(|end| sums[end] += factors[end].abs());
-            motion.factors.push(factors.map(|x| Vec4::splat(x as f32)));
-        }
-        for sum in sums {
-            // Also where it is no number.
-            most = if sum <= most { most } else { sum };
-        }
-        let margin = unit * (q[0].len() + 12) as f64 * (1.0 + 2.0 * most) * 1.1 + 4.0 * rounding * scale;
-        let shift = frame.linear(self.center);
-        motion.shift = [[shift.x, shift.y, shift.z].map(|x| Vec4::splat(x as f32)); E];
-        motion.margin = (margin * (1.0 + 1e-6)) as f32;
-        margin <= WORST_MARGIN
+    /// Whether there is anything.
+    pub(super) fn is_empty(&self) -> bool {
+        self.starts.is_empty()
     }
 
-    /// Where all vertices of a cluster are kept.
+    /// Memory for the positions of all clusters.
+    pub(super) fn memory<const E: usize>(&self) -> Vec<[Vec4; E]> {
+        vec![[Vec4::ZERO; E]; GROUP * self.starts.last().map_or(0, |end| *end as usize)]
+    }
+
+    /// Where the groups of a cluster are.
     fn groups(&self, cluster: u32) -> Range<usize> {
         self.starts[cluster as usize] as usize..self.starts[cluster as usize + 1] as usize
     }
 
     /// Moves a cluster's vertices.
-    pub(super) fn move_cluster<const E: usize>(&self, cluster: u32, motion: &mut Motion<E>) {
+    pub(super) fn move_cluster<const E: usize>(
+        &self,
+        cluster: u32,
+        motion: &Motion<E>,
+        positions: &mut [[Vec4; E]],
+    ) {
         let (groups, modes) = (self.groups(cluster), motion.factors.len());
-        let positions = &mut motion.positions[groups.start * GROUP..groups.end * GROUP];
+        let positions = &mut positions[groups.start * GROUP..groups.end * GROUP];
         let shares = self.shares[groups.start * modes..groups.end * modes].chunks_exact(modes);
+        let shift = motion.shift.map(|x| [0, 1, 2].map(|axis| Vec4::splat(x[axis])));
         for (group, positions) in shares.zip(positions.as_chunks_mut::<GROUP>().0) {
-            let mut sums = motion.shift;
+            let mut sums = shift;
             for (share, factors) in group.iter().zip(&motion.factors) {
                 for end in 0..E {
                     for axis in 0..3 {
@@ -162,18 +100,21 @@ impl Rough {
         &self,
         cluster: u32,
         place: usize,
-        motion: &Motion<E>,
+        positions: &[[Vec4; E]],
     ) -> [[Vec4; E]; 3] {
         let first = self.starts[cluster as usize] as usize * GROUP;
-        self.corners[place].map(|v| motion.positions[first + v as usize])
+        self.corners[place].map(|v| positions[first + v as usize])
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::query::boxes::margin;
-    use crate::{Method, Modes, Query, Scope, TriMesh};
+    use crate::query::frame::Frame;
+    use crate::{Method, Modes, Query, ReducedModel, Scope, TriMesh};
 
     struct Random(u64);
 
@@ -226,17 +167,17 @@ mod tests {
             let ends = [&q[..], &later[..]];
             let rounding = margin(model.check_coordinates(&later).unwrap(), rank);
             let frame = Frame::of(tables.bd_tree.root(ends, DVec3::splat(rounding)));
-            let mut motion = Motion::new(&tables.rough);
-            if !tables.rough.begin(&mut motion, ends, &frame, rounding) {
+            let (mut motion, mut positions) = (Motion::default(), tables.rough.memory());
+            if !tables.units.begin(&mut motion, ends, &frame, rounding) {
                 unused += 1;
                 continue;
             }
             used += 1;
             let mut largest = 0.0_f64;
             for cluster in 0..tables.clusters.count() as u32 {
-                tables.rough.move_cluster(cluster, &mut motion);
+                tables.rough.move_cluster(cluster, &motion, &mut positions);
                 for place in tables.clusters.blocks(cluster).flat_map(|block| tables.clusters.places(block)) {
-                    let corners = tables.rough.corners(cluster, place, &motion);
+                    let corners = tables.rough.corners(cluster, place, &positions);
                     for (v, rough) in tables.clusters.corners()[place].into_iter().zip(corners) {
                         for (x, rough) in tables.vertices.position(v, ends).into_iter().zip(rough) {
                             let off = (rough.truncate().as_dvec3() - frame.linear(x)).abs().max_element();
