@@ -11,7 +11,7 @@ use super::{Made, name};
 use crate::args;
 
 /// What is known of principal components.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Components {
     pub frames: usize,
     /// The share of the variance that all modes together explain.
