@@ -17,12 +17,12 @@ use crate::pool::{Pool, threads};
 
 #[pyclass(frozen, sequence, module = "sscc", name = "Batch")]
 pub struct Batch {
-    answers: Vec<sscc::Answer>,
+    pub answers: Vec<sscc::Answer>,
     arrays: [Cached; 9],
 }
 
 impl Batch {
-    fn of(answers: Vec<sscc::Answer>) -> Self {
+    pub fn of(answers: Vec<sscc::Answer>) -> Self {
         Self { answers, arrays: std::array::from_fn(|_| Cached::new()) }
     }
 
@@ -145,6 +145,16 @@ fn rows<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec
     }
     let mut rows = room(array.shape()[0], "Q")?;
     rows.extend(array.as_slice()?.chunks_exact(rank));
+    Ok(rows)
+}
+
+/// The rows of Q, each of which is a configuration of the model.
+pub fn checked_rows<'a>(pool: &Pool, array: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<&'a [f64]>> {
+    let model = &pool.borrow_owner().loaded.model;
+    let rows = rows(array, model.rank())?;
+    for (row, q) in rows.iter().enumerate() {
+        model.check_coordinates(q).map_err(|error| refused(&error, &format!("Q[{row}]")))?;
+    }
     Ok(rows)
 }
 

@@ -33,7 +33,7 @@ enum Scheme {
 }
 
 impl Typed<'_, '_> {
-    fn options(&self, loaded: &Loaded) -> PyResult<CertifyOptions> {
+    pub fn options(&self, loaded: &Loaded) -> PyResult<CertifyOptions> {
         let default = CertifyOptions::default();
         let model = &loaded.model;
         let center = match self.center {

@@ -13,6 +13,7 @@ mod interrupt;
 mod kinetic;
 mod model;
 mod pool;
+mod shards;
 
 use pyo3::prelude::*;
 
@@ -33,6 +34,8 @@ mod _sscc {
     use super::kinetic::KineticQuery;
     #[pymodule_export]
     use super::model::{_model, Model};
+    #[pymodule_export]
+    use super::shards::{ShardWorker, _build, _certify_in_shards, _check_options, _configurations, _joined};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
