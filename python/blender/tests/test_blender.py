@@ -12,7 +12,7 @@ import pytest
 
 bpy: Any = pytest.importorskip("bpy", reason="Blender as a module (pip install bpy) is not installed")
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "blender"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 import sscc_shape_keys  # noqa: E402
 from sscc_shape_keys import panel, proof, shape  # noqa: E402
 
