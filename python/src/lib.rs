@@ -12,7 +12,10 @@ mod impacts;
 mod interrupt;
 mod kinetic;
 mod model;
+mod modes;
+mod oracle;
 mod pool;
+mod simulate;
 
 use pyo3::prelude::*;
 
@@ -33,6 +36,13 @@ mod _sscc {
     use super::kinetic::KineticQuery;
     #[pymodule_export]
     use super::model::{_model, Model};
+
+    #[pymodule_export]
+    use super::modes::{_elastic, _pca, _polynomial};
+    #[pymodule_export]
+    use super::oracle::_first_contact;
+    #[pymodule_export]
+    use super::simulate::_simulate;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
