@@ -191,12 +191,14 @@ pub fn check_many(
 
 /// For measurements: seconds that the core takes for the same without Python, `(batch, one by one)`.
 #[pyfunction]
+#[pyo3(signature = (certificates, Q, threads, one_by_one=true))]
 #[allow(non_snake_case)]
 pub fn _core_seconds(
     py: Python<'_>,
     certificates: &Certificates,
     Q: &Bound<'_, PyAny>,
     threads: Option<usize>,
+    one_by_one: bool,
 ) -> PyResult<(f64, Vec<f64>)> {
     let pool = &certificates.pool;
     let array = floats(Q, "Q")?;
@@ -208,7 +210,7 @@ pub fn _core_seconds(
             let batch = start.elapsed().as_secs_f64();
             let mut query = query.clone();
             let mut single = Vec::with_capacity(rows.len());
-            for q in &rows {
+            for q in rows.iter().filter(|_| one_by_one) {
                 let start = Instant::now();
                 query.discrete(q)?;
                 single.push(start.elapsed().as_secs_f64());

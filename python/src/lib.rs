@@ -12,8 +12,11 @@ mod impacts;
 mod interrupt;
 mod kinetic;
 mod model;
+mod modes;
+mod oracle;
 mod pool;
 mod shards;
+mod simulate;
 
 use pyo3::prelude::*;
 
@@ -36,6 +39,13 @@ mod _sscc {
     use super::model::{_model, Model};
     #[pymodule_export]
     use super::shards::{ShardWorker, _build, _certify_in_shards, _check_options, _configurations, _joined};
+
+    #[pymodule_export]
+    use super::modes::{_elastic, _pca, _polynomial};
+    #[pymodule_export]
+    use super::oracle::_first_contact;
+    #[pymodule_export]
+    use super::simulate::_simulate;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]

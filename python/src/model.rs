@@ -238,7 +238,11 @@ pub fn _model(
 
 /// A mesh from arrays: (V, 3) numbers and (F, 3) integers.
 pub fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
-    let positions = points(&floats(vertices, "vertices")?, "vertices")?;
+    mesh_of(points(&floats(vertices, "vertices")?, "vertices")?, faces)
+}
+
+/// A mesh of these vertices, from faces (F, 3).
+pub fn mesh_of(positions: Vec<DVec3>, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
     let corners = integers(faces, "faces")?;
     if corners.ndim() != 2 || corners.shape()[1] != 3 {
         return Err(value(format!("faces has shape {:?}: (F, 3) was expected", corners.shape())));

@@ -94,3 +94,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 pub fn threads(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<usize>> {
     crate::arguments::count(threads, "threads", 1..=1024)
 }
+
+/// Works on so many threads (none: all cores), in a pool of its own, which a forked process can make anew.
+pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}

@@ -5,6 +5,7 @@
 >>> certs.check(q).pairs
 """
 
+from sscc import modes
 from sscc._sscc import (
     Answer,
     Batch,
@@ -15,6 +16,7 @@ from sscc._sscc import (
     Model,
     __version__,
 )
+from sscc._simulate import Simulation, simulate
 
 __all__ = [
     "Answer",
@@ -24,5 +26,8 @@ __all__ = [
     "Impacts",
     "KineticQuery",
     "Model",
+    "Simulation",
     "__version__",
+    "modes",
+    "simulate",
 ]

@@ -312,10 +312,38 @@ class Batch:
     def __getitem__(self, index: SupportsIndex) -> Answer: ...
     def __iter__(self) -> Iterator[Answer]: ...
 
-def _core_seconds(certificates: Certificates, Q: ArrayLike, threads: int | None) -> tuple[float, list[float]]: ...
-def _certificates(bytes: bytes, model: Model) -> Certificates: ...
+def _core_seconds(
+    certificates: Certificates, Q: ArrayLike, threads: int | None, one_by_one: bool = True
+) -> tuple[float, list[float]]: ...
+def _first_contact(corners: ArrayLike) -> float | None: ...
+def _elastic(
+    source: object,
+    kind: Literal["linear", "nonlinear", "polynomial"],
+    rank: int | None,
+    fix: ArrayLike | None,
+    fix_box: ArrayLike | None,
+    material: tuple[float | None, float | None, float | None],
+    resolution: int | None,
+    threads: int | None,
+    progress: _Progress,
+) -> Model: ...
+def _polynomial(source: object, threads: int | None, progress: _Progress) -> Model: ...
+def _pca(
+    shapes: object, faces: ArrayLike | None, rank: int | None, threads: int | None, progress: _Progress
+) -> Model: ...
+def _simulate(
+    scene: _Path,
+    out: _Path | None,
+    steps: int | None,
+    restart: bool | None,
+    models: _Path | None,
+    cache: _Path | None,
+    threads: int | None,
+) -> tuple[str, str, list[str]]: ...
 
 # For sscc.batch.
+
+def _certificates(bytes: bytes, model: Model) -> Certificates: ...
 
 @final
 class _ShardWorker:

@@ -1,7 +1,7 @@
 //! The `sscc` command: certify a deformable model once, then ask whether it collides with itself.
 //!
 //! `args` holds what was typed, `commands` what it means; exit codes are decided here. What the Python package shares
-//! with the command is public: [`make`].
+//! with the command is public: [`make`] and [`simulate`].
 
 // This is the one crate that prints.
 #![allow(clippy::print_stderr)]
@@ -18,6 +18,7 @@ mod output;
 mod picture;
 mod progress;
 mod scene;
+pub mod simulate;
 mod simulation;
 mod usage;
 

@@ -55,6 +55,22 @@ pub struct Made {
 }
 
 impl Made {
+    /// Polynomial modes of a surface of that name, without a solid.
+    pub fn polynomial(mesh: TriMesh, modes: Modes, name: &str) -> Self {
+        Self {
+            is_split: false,
+            mesh,
+            modes,
+            metric: None,
+            elasticity: None,
+            elements: None,
+            degrees_of_freedom: None,
+            frequencies: None,
+            components: None,
+            provenance: format!("mesh {name}, polynomial modes"),
+        }
+    }
+
     /// The model, and what its file says beside it.
     pub fn into_model(self) -> Result<(ReducedModel, ModelInfo)> {
         let model = match self.metric {
@@ -140,19 +156,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<Made> {
     }
     let mesh = read_mesh(&args.source)?;
     let modes = polynomial_modes(&mesh).with_context(|| args.source.display().to_string())?;
-    let provenance = format!("mesh {}, polynomial modes", name(args));
-    Ok(Made {
-        is_split: false,
-        mesh,
-        modes,
-        metric: None,
-        elasticity: None,
-        elements: None,
-        degrees_of_freedom: None,
-        frequencies: None,
-        components: None,
-        provenance,
-    })
+    Ok(Made::polynomial(mesh, modes, &name(args)))
 }
 
 /// The name of the source, without its folder.
