@@ -18,6 +18,7 @@ import pytest
 
 import sscc
 from shapes import samples, torus
+from test_docs import blocks
 from sscc._worker import content_of
 
 pytest.importorskip("distributed", reason="dask.distributed is not installed")
@@ -264,3 +265,15 @@ def test_without_dask_the_message_says_what_to_install() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].endswith("pip install 'sscc[dask]'")
+
+
+def test_the_document_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks("docs/batch.md"):
+        exec(compile(block, "docs/batch.md", "exec"), names)
+    library = names["library"]
+    assert 0.9 <= library.certificates["plates"].root_radius <= 1
+    assert isinstance(library.failures["lost"], FileNotFoundError)
+    # Between -2 and 2 the triangles touch at -1 alone, which is none of the rows.
+    assert names["answers"].colliding.sum() == 0 and len(names["answers"]) == 10_000
