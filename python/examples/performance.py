@@ -1,4 +1,5 @@
-"""In which frames of a performance does a face with blendshapes touch itself, and when between the frames does it begin?
+"""In which frames of a performance does a face with blendshapes touch itself, and when between the frames does it
+begin?
 
     python performance.py [FACE.glb [MESH]]
 """

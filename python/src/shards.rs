@@ -135,8 +135,10 @@ pub fn _certify_in_shards(
                 let jobs = PyList::new(py, jobs.iter().map(|job| PyBytes::new(py, job)))?;
                 let share = f64::from_bits(share.0.load(Ordering::Relaxed));
                 let results = run.bind(py).call1((jobs, share))?;
-                let bytes = |any: Bound<'_, PyAny>| Ok(any.cast::<PyBytes>()?.as_bytes().to_vec());
-                results.try_iter()?.map(|result| bytes(result?)).collect()
+                let bytes = |any: PyResult<Bound<'_, PyAny>>| -> PyResult<Vec<u8>> {
+                    Ok(any?.cast::<PyBytes>()?.as_bytes().to_vec())
+                };
+                results.try_iter()?.map(bytes).collect()
             };
             Python::attach(call).map_err(|error| {
                 raised = Some(error);

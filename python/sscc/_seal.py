@@ -1,7 +1,8 @@
 """How results that come from other processes are sealed.
 
-A result is taken only if it arrived whole, and if its key is the one expected: the key is made, on both sides, of the build,
-of what was worked on and of the options. (A worker that lies is not found out: workers are trusted as this process is.)
+A result is taken only if it arrived whole, and if its key is the one expected: the key is made, on both sides, of the
+build, of what was worked on and of the options. (A worker that lies is not found out: workers are trusted as this
+process is.)
 """
 
 from __future__ import annotations

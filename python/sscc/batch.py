@@ -1,8 +1,8 @@
 """Many models, one large model, or many configurations on many machines, by ``dask.distributed``.
 
-Every function takes a ``distributed.Client`` and gives what this process alone would have given, byte for byte. Workers need this
-package and nothing else: models travel to them. What a worker did when it was lost is done again by another one. Needs
-``pip install sscc[dask]``.
+Every function takes a ``distributed.Client`` and gives what this process alone would have given, byte for byte. Workers
+need this package and nothing else: models travel to them. What a worker did when it was lost is done again by another
+one. Needs ``pip install sscc[dask]``.
 """
 
 from __future__ import annotations
@@ -64,9 +64,9 @@ def certify(
 ) -> Library:
     """Certifies each model of a library on a worker.
 
-    ``models``: models or files, or a mapping from names to them. Without names a file is named by its path, a model by its place
-    (``models[3]``). Files are read here, when their turn comes. ``options``: as of ``Model.certify``, the same for all;
-    each model is certified on ``threads`` threads, 1 if nothing is said.
+    ``models``: models or files, or a mapping from names to them. Without names a file is named by its path, a model by
+    its place (``models[3]``). Files are read here, when their turn comes. ``options``: as of ``Model.certify``, the
+    same for all; each model is certified on ``threads`` threads, 1 if nothing is said.
 
     A model that cannot be read or certified fails alone.
     """
@@ -127,9 +127,9 @@ def certify_in_shards(
 ) -> Certificates:
     """Certifies one large model by all workers.
 
-    The work goes in some twenty stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of the workers),
-    of one thread each; every number of shards gives the same certificates. Every worker process prepares the model once.
-    ``options``: as of ``Model.certify``; ``threads`` counts here.
+    The work goes in some twenty stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of
+    the workers), of one thread each; every number of shards gives the same certificates. Every worker process prepares
+    the model once. ``options``: as of ``Model.certify``; ``threads`` counts here.
     """
     _check_client(client)
     if not isinstance(model, Model):
@@ -229,7 +229,7 @@ def _model(given: Model | str | os.PathLike[str]) -> Model:
 
 def _named(models: Any) -> dict[str, Any]:
     if isinstance(models, (Model, str, os.PathLike)):
-        raise TypeError("models is a single one: give a list or a mapping; for one large model there is certify_in_shards")
+        raise TypeError("models is a single one: give a list or a mapping, or take certify_in_shards for a large one")
     if isinstance(models, Mapping):
         return {str(name): model for name, model in models.items()}
     named: dict[str, Any] = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import pickle
 import signal
@@ -117,12 +118,30 @@ def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> No
     data = (tmp_path / "good.model.safetensors").read_bytes()
     (tmp_path / "damaged.model.safetensors").write_bytes(data[:-1] + bytes([data[-1] ^ 1]))
     missing, damaged = (str(tmp_path / f"{name}.model.safetensors") for name in ("missing", "damaged"))
-    # Refused by the worker: so many triangles in one place that all collide.
-    vertices = np.tile([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], (5000, 1))
-    crowd = sscc.Model(vertices, np.arange(15000).reshape(-1, 3), np.ones((15000, 3, 1)))
     other_rank = sscc.Model(*torus(16, 8, 2))
-    models = [missing, good, damaged, crowd, other_rank, 3]
-    library = within(lambda: sscc.batch.certify(models, client, center=[0.0, 0.0, 0.0]))
+    too_large = sscc.Model(*torus(16, 9, 3))
+
+    def with_little_memory() -> None:
+        """Workers have no memory for the model that is too large."""
+        worker: Any = importlib.import_module("sscc._worker")
+        given = worker.key_of_model
+
+        def key_of_model(model: sscc.Model, options: dict[str, Any]) -> bytes:
+            if len(model.faces) == 2 * 16 * 9:
+                raise MemoryError("out of memory")
+            return given(model, options)
+
+        worker.key_of_model = key_of_model
+
+    def with_much_memory() -> None:
+        importlib.reload(importlib.import_module("sscc._worker"))
+
+    models = [missing, good, damaged, too_large, other_rank, 3]
+    client.run(with_little_memory)
+    try:
+        library = within(lambda: sscc.batch.certify(models, client, center=[0.0, 0.0, 0.0]))
+    finally:
+        client.run(with_much_memory)
     assert list(library.certificates) == ["models[1]"]
     assert content_of(library.certificates["models[1]"]) == content_of(good.certify(center=[0.0, 0.0, 0.0]))
     assert list(library.failures) == [missing, damaged, "models[3]", "models[4]", "models[5]"]
@@ -130,6 +149,7 @@ def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> No
         assert str(error).startswith(name) and "\n" not in str(error)
     assert isinstance(library.failures[missing], FileNotFoundError)
     assert "BLAKE3" in str(library.failures[damaged]) or "damaged" in str(library.failures[damaged])
+    assert str(library.failures["models[3]"]) == "models[3]: out of memory"
     assert "center" in str(library.failures["models[4]"])
 
 
@@ -181,11 +201,10 @@ def test_results_of_another_build_are_refused(client: Any, certs: sscc.Certifica
     model = sscc.Model(*torus(16, 8, 3))
 
     def pretend(build: str) -> None:
-        import sscc._seal
+        seals: Any = importlib.import_module("sscc._seal")
+        seals._build = lambda: build
 
-        sscc._seal._build = lambda: build
-
-    here = sscc._seal._build()
+    here = sscc._sscc._build()
     try:
         client.run(pretend, "0.0.0 elsewhere")
         library = within(lambda: sscc.batch.certify([model], client))

@@ -7,7 +7,13 @@ import bpy
 from . import proof
 from .shape import Unsupported
 
-ICONS = {"free": "CHECKMARK", "colliding": "ERROR", "changed": "FILE_REFRESH", "uncertified": "QUESTION", "unsupported": "INFO"}
+ICONS = {
+    "free": "CHECKMARK",
+    "colliding": "ERROR",
+    "changed": "FILE_REFRESH",
+    "uncertified": "QUESTION",
+    "unsupported": "INFO",
+}
 RED = (1.0, 0.1, 0.05, 1.0)
 
 _overlay = None

@@ -1,7 +1,7 @@
 """Certificates by fingerprint, and what may be said of an object now.
 
-Certificates are found by the content of mesh and keys, read anew each time that something is said. So nothing that was said of
-one shape can be on show for another one; and what is undone is certified again at once.
+Certificates are found by the content of mesh and keys, read anew each time that something is said. So nothing that was
+said of one shape can be on show for another one; and what is undone is certified again at once.
 """
 
 from __future__ import annotations

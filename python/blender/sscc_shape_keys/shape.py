@@ -1,7 +1,7 @@
 """What the shape of a mesh with shape keys is: basis + sum of value_k (key_k - the key that it is relative to).
 
-This is how Blender evaluates relative keys: the differences are those of the stored keys, whatever the values of others are. Blender
-adds in single precision, certificates speak of the sum in double precision.
+This is how Blender evaluates relative keys: the differences are those of the stored keys, whatever the values of others
+are. Blender adds in single precision, certificates speak of the sum in double precision.
 """
 
 from __future__ import annotations

@@ -26,7 +26,8 @@ def addon() -> Iterator[None]:
 
 
 def jaws() -> Any:
-    """Two plates of 6 x 6 quads, 1 apart, with the keys Close (the upper falls by 2), Lift and Tilt, all of the upper plate."""
+    """Two plates of 6 x 6 quads, 1 apart, with the keys Close (the upper falls by 2), Lift and Tilt, all of the upper
+    plate."""
     side = np.arange(7) / 6
     x, y = (part.ravel() for part in np.meshgrid(side, side))
     lower = np.stack([x, y, 0 * x], axis=1)

@@ -1,8 +1,8 @@
 //! The tasks that precomputation consists of, and who solves them.
 //!
-//! Certificates are computed in stages (`precompute.rs`, `grow.rs`): the tasks of one stage are independent of each other, the next
-//! stage depends on their results. A result depends on the task alone, so that it does not matter who solves it: the threads
-//! of this process ([`Here`]) or other processes (`shards.rs`).
+//! Certificates are computed in stages (`precompute.rs`, `grow.rs`): the tasks of one stage are independent of each
+//! other, the next stage depends on their results. A result depends on the task alone, so that it does not matter who
+//! solves it: the threads of this process ([`Here`]) or other processes (`shards.rs`).
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,8 +1,8 @@
 //! One large model certified by many processes, with the same result byte for byte.
 //!
-//! [`Certificates::compute_in_shards`] makes the jobs of one stage after the other, as bytes, and a function that is given to it
-//! has them done: each by a [`ShardWorker`] in any process that was given the same model and options. What comes back
-//! is sealed: a result that was damaged, or is of another model, options or build, is refused.
+//! [`Certificates::compute_in_shards`] makes the jobs of one stage after the other, as bytes, and a function that is
+//! given to it has them done: each by a [`ShardWorker`] in any process that was given the same model and options. What
+//! comes back is sealed: a result that was damaged, or is of another model, options or build, is refused.
 
 mod job;
 mod seal;
@@ -25,8 +25,8 @@ use crate::{Error, Progress, ReducedModel};
 pub type RunJobs<'a> = dyn FnMut(Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Error> + 'a;
 
 impl Certificates {
-    /// As [`Certificates::compute`], by workers: each stage as at most `shards` jobs, which `run` has done. Every shard count
-    /// gives the same certificates. A few times as many shards as workers keep all of them busy to the end.
+    /// As [`Certificates::compute`], by workers: each stage as at most `shards` jobs, which `run` has done. Every shard
+    /// count gives the same certificates. A few times as many shards as workers keep all of them busy to the end.
     ///
     /// # Errors
     /// As `compute`; what `run` returns; [`Error::Shard`] for a result that is none of the job's.
@@ -55,8 +55,8 @@ pub struct ShardWorker {
 }
 
 impl ShardWorker {
-    /// Prepares what all jobs need: model and options as given to [`Certificates::compute_in_shards`] (the budget and the
-    /// number of threads apart).
+    /// Prepares what all jobs need: model and options as given to [`Certificates::compute_in_shards`] (the budget and
+    /// the number of threads apart).
     ///
     /// # Errors
     /// As [`Certificates::compute`].
@@ -93,8 +93,8 @@ struct Elsewhere<'a> {
 }
 
 impl Elsewhere<'_> {
-    /// Has the tasks of a stage done: job j of k has the tasks j, j + k, j + 2k, ..., since neighbours are often equally hard.
-    /// Results are given in the order of the jobs, together with their number.
+    /// Has the tasks of a stage done: job j of k has the tasks j, j + k, j + 2k, ..., since neighbours are often
+    /// equally hard. Results are given in the order of the jobs, together with their number.
     fn run(
         &mut self,
         count: usize,

@@ -1,5 +1,6 @@
-//! How jobs and their results are sealed: nothing that was damaged on its way, or that is of another model, other options or
-//! another build, is taken for what it is not. (A worker that lies is not found out: workers are trusted as this process is.)
+//! How jobs and their results are sealed: nothing that was damaged on its way, or that is of another model, other
+//! options or another build, is taken for what it is not. (A worker that lies is not found out: workers are trusted as
+//! this process is.)
 
 use super::super::task::Prepared;
 use crate::Error;
@@ -7,8 +8,8 @@ use crate::Error;
 /// The length of a key and of a seal.
 const HASH: usize = 32;
 
-/// The version of the crate and a hash of its source: another build may bound otherwise, so that results of both are not to be
-/// mixed.
+/// The version of the crate and a hash of its source: another build may bound otherwise, so that results of both are
+/// not to be mixed.
 pub const BUILD: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("SSCC_SOURCE"));
 
 /// What jobs and results must have in common to be of one computation.
@@ -16,7 +17,8 @@ pub const BUILD: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("SSCC_SOURC
 pub(super) struct Key([u8; HASH]);
 
 impl Key {
-    /// The build; model, metric, centre, rule and exceptions (the digest); epsilon; the hierarchy, whose nodes jobs name.
+    /// The build; model, metric, centre, rule and exceptions (the digest); epsilon; the hierarchy, whose nodes jobs
+    /// name.
     pub(super) fn of(prepared: &Prepared) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("sscc shards 2026-11-22");
         hasher.update(&(BUILD.len() as u64).to_le_bytes()).update(BUILD.as_bytes());
