@@ -66,7 +66,8 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
     install.args(["install", "--quiet", "--no-deps", "--no-index", "--force-reinstall"]).args(files(&wheels));
     succeed(&mut install, "the wheel cannot be installed")?;
     succeed(cargo().args(["build", "--package", "sscc-cli"]), "the command cannot be built")?;
-    let command = env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
+    let command =
+        env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
 
     let mut pytest = Command::new(&python);
     pytest.args(["-m", "pytest"]).args(arguments).current_dir(&package).env("SSCC_SKIP_LOG", log);
@@ -87,18 +88,22 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
 fn environment(package: &Path) -> Result<PathBuf, Stop> {
     let outside = env::var_os("SSCC_PYTHON").unwrap_or_else(|| "python3".into());
     let shown = outside.to_string_lossy().into_owned();
-    let version = "import sys, platform; print(*sys.version_info[:2], platform.python_version(), sys.executable)";
+    let version =
+        "import sys, platform; print(*sys.version_info[:2], platform.python_version(), sys.executable)";
     let told = Command::new(&outside).args(["-c", version]).output();
     let told = told.map_err(|error| Stop::Missing(format!("{shown}: {error}")))?;
     let told = String::from_utf8_lossy(&told.stdout).trim().to_owned();
     let mut numbers = told.split(' ').map(|word| word.parse::<u32>().unwrap_or(0));
     if (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) < OLDEST {
         let (major, minor) = OLDEST;
-        return Err(Stop::Missing(format!("{shown} is no Python {major}.{minor} or later; SSCC_PYTHON names one")));
+        return Err(Stop::Missing(format!(
+            "{shown} is no Python {major}.{minor} or later; SSCC_PYTHON names one"
+        )));
     }
 
     let requirements = package.join("requirements-test.txt");
-    let wanted = fs::read_to_string(&requirements).map_err(|error| Stop::Broken(format!("{}: {error}", requirements.display())))?;
+    let wanted = fs::read_to_string(&requirements)
+        .map_err(|error| Stop::Broken(format!("{}: {error}", requirements.display())))?;
     let (folder, stamp) = (package.join(".venv"), format!("{told}\n{wanted}"));
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let made_for = folder.join("made-for.txt");
@@ -110,8 +115,11 @@ fn environment(package: &Path) -> Result<PathBuf, Stop> {
         Stop::Broken(why) => Stop::Missing(why),
         missing => missing,
     };
-    succeed(Command::new(&outside).args(["-m", "venv", "--clear"]).arg(&folder), "no virtual environment can be made")
-        .map_err(missing)?;
+    succeed(
+        Command::new(&outside).args(["-m", "venv", "--clear"]).arg(&folder),
+        "no virtual environment can be made",
+    )
+    .map_err(missing)?;
     let mut install = pip(&python);
     install.args(["install", "--quiet", "--requirement"]).arg(&requirements);
     succeed(&mut install, "the packages that the tests need cannot be installed").map_err(missing)?;
