@@ -32,9 +32,9 @@ class Model:
     Raises TypeError or ValueError, whose message names the argument and the row.
     """
 
-    def __init__(
-        self, vertices: ArrayLike, faces: ArrayLike, modes: ArrayLike, metric: _Metric | None = None
-    ) -> None: ...
+    def __new__(
+        cls, vertices: ArrayLike, faces: ArrayLike, modes: ArrayLike, metric: _Metric | None = None
+    ) -> Model: ...
     @classmethod
     def load(cls, path: _Path, modes: _Path | None = None, *, mesh_name: str | None = None) -> Model:
         """Reads ``*.model.safetensors``, ``.glb`` or ``.gltf`` with morph targets, a complete ``.npz``, or a mesh (OBJ,
@@ -115,8 +115,8 @@ class Certificates:
     All radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
     """
 
-    @staticmethod
-    def load(path: _Path, model: Model) -> Certificates:
+    @classmethod
+    def load(cls, path: _Path, model: Model) -> Certificates:
         """Reads ``*.sscc.safetensors``; refuses certificates of another model (ValueError)."""
     def save(self, path: _Path) -> None:
         """Writes ``*.sscc.safetensors``, whole or not at all."""

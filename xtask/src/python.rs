@@ -70,7 +70,8 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
         env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
 
     let mut pytest = Command::new(&python);
-    pytest.args(["-m", "pytest"]).args(arguments).current_dir(&package).env("SSCC_SKIP_LOG", log);
+    // -P: what is installed is tested, not the sources beside the tests.
+    pytest.args(["-P", "-m", "pytest"]).args(arguments).current_dir(&package).env("SSCC_SKIP_LOG", log);
     if let Some(command) = command.filter(|path| path.is_file()) {
         pytest.env("SSCC_COMMAND", command);
     }
