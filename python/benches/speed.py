@@ -19,13 +19,13 @@ import sscc
 from sscc._sscc import _core_seconds
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from shapes import torus  # noqa: E402
+from shapes import F64, torus  # noqa: E402
 
 #: Rounds of each measurement; their medians are told.
 ROUNDS = 7
 
 
-def single(certs: sscc.Certificates, qs: np.ndarray[tuple[int, int], np.dtype[np.float64]], label: str) -> None:
+def single(certs: sscc.Certificates, qs: F64, label: str) -> None:
     """The median of one check, in Python and in Rust. Reading the clock costs both the same, and is taken off."""
     clock, python, rust = [], [], []
     rows = list(qs)
@@ -41,10 +41,11 @@ def single(certs: sscc.Certificates, qs: np.ndarray[tuple[int, int], np.dtype[np
         rust += [1e9 * seconds for seconds in _core_seconds(certs, qs, 1)[1]]
     ours = statistics.median(python) - statistics.median(clock)
     theirs = statistics.median(rust)
-    print(f"check, {label:22} Python {ours / 1e3:9.2f} us   Rust {theirs / 1e3:9.2f} us   {(ours - theirs) / 1e3:+.2f} us")
+    more = (ours - theirs) / 1e3
+    print(f"check, {label:27} Python {ours / 1e3:9.2f} us   Rust {theirs / 1e3:9.2f} us   {more:+.2f} us")
 
 
-def batch(certs: sscc.Certificates, qs: np.ndarray[tuple[int, int], np.dtype[np.float64]], label: str) -> None:
+def batch(certs: sscc.Certificates, qs: F64, label: str) -> None:
     """A whole batch on all cores, in Python and in Rust by turns."""
     python, rust = [], []
     for _ in range(ROUNDS):

@@ -15,7 +15,7 @@ use crate::errors::{refused, room, value};
 use crate::interrupt::run;
 use crate::pool::{Pool, threads};
 
-#[pyclass(frozen, sequence, module = "sscc", name = "Batch")]
+#[pyclass(frozen, module = "sscc", name = "Batch")]
 pub struct Batch {
     pub answers: Vec<sscc::Answer>,
     arrays: [Cached; 9],
@@ -106,10 +106,15 @@ impl Batch {
         self.answers.len()
     }
 
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let indices = builtins.call_method1("range", (slf.get().answers.len(),))?;
+        builtins.call_method1("map", (slf.getattr("__getitem__")?, indices))
+    }
+
     fn __getitem__(&self, index: isize) -> PyResult<Answer> {
-        // Python counts negative ones from the end before it asks a sequence.
-        let answer = usize::try_from(index).ok().and_then(|index| self.answers.get(index));
-        match answer {
+        let from_start = if index < 0 { index + self.answers.len() as isize } else { index };
+        match usize::try_from(from_start).ok().and_then(|index| self.answers.get(index)) {
             Some(answer) => Ok(Answer::of(answer.pairs.clone(), answer.norm, answer.statistics)),
             None => Err(PyIndexError::new_err(format!("the batch has {} answers", self.answers.len()))),
         }

@@ -30,38 +30,28 @@ impl Progress for Signals {
     fn report(&self, _done: usize, _total: usize) {}
 
     fn is_cancelled(&self) -> bool {
-        CALL.with_borrow_mut(|call| {
-            if call.raised.is_some() {
-                return true;
-            }
-            let now = Instant::now();
-            if now - *call.asked.get_or_insert(now) < PERIOD {
-                return false;
-            }
-            call.asked = Some(now);
-            call.raised = Python::attach(|py| py.check_signals()).err();
-            call.raised.is_some()
+        let now = Instant::now();
+        let known = CALL.with_borrow_mut(|call| {
+            let is_early = now - *call.asked.get_or_insert(now) < PERIOD;
+            (call.raised.is_some() || is_early).then_some(call.raised.is_some())
+        });
+        known.unwrap_or_else(|| {
+            // Not borrowed meanwhile: what handles the signal may ask a query of its own.
+            let raised = Python::attach(|py| py.check_signals()).err();
+            let is_raised = raised.is_some();
+            CALL.set(Call { asked: Some(now), raised });
+            is_raised
         })
     }
 }
 
 /// Answers one query on this thread, without the GIL; what a signal raised meanwhile is the error.
 pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    CALL.set(Call { asked: None, raised: None });
+    let outer = CALL.replace(Call { asked: None, raised: None });
     let answer = py.detach(work);
-    match CALL.take_raised() {
+    match CALL.replace(outer).raised {
         Some(error) => Err(error),
         None => Ok(answer),
-    }
-}
-
-trait TakeRaised {
-    fn take_raised(&'static self) -> Option<PyErr>;
-}
-
-impl TakeRaised for thread::LocalKey<RefCell<Call>> {
-    fn take_raised(&'static self) -> Option<PyErr> {
-        self.with_borrow_mut(|call| call.raised.take())
     }
 }
 

@@ -13,8 +13,8 @@ use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertic
 
 use crate::arguments::{check_ending, path};
 use crate::arrays::{floats, integers, line, table, vector};
-use crate::errors::{file, kind, refused, room, value};
 use crate::certify;
+use crate::errors::{file, kind, refused, room, value};
 
 /// A model with what is known beside it.
 #[derive(Clone)]
@@ -300,7 +300,8 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
             }
             other => {
                 return Err(value(format!(
-                    "metric is '{}': 'energy', 'displacement', 'mass', 'identity', weights (r,) or a matrix (r, r) was expected",
+                    "metric is '{}': 'energy', 'displacement', 'mass', 'identity', weights (r,) or a matrix (r, r) \
+                     was expected",
                     other.escape_debug()
                 )));
             }

@@ -33,7 +33,9 @@ impl Source {
             Ok(pair) if pair.len() == 2 => Ok(Self::Surface(mesh(&pair.get_item(0)?, &pair.get_item(1)?)?)),
             _ => {
                 let found = any.get_type().name()?;
-                Err(kind(format!("source is a {found}: the name of a file or (vertices, faces) was expected")))
+                Err(kind(format!(
+                    "source is a {found}: the name of a file or (vertices, faces) was expected"
+                )))
             }
         }
     }
@@ -122,7 +124,11 @@ fn loaded(made: make::Model) -> Model {
 }
 
 fn read_material(
-    (youngs, poisson, density): &(Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>),
+    (youngs, poisson, density): &(
+        Option<Bound<'_, PyAny>>,
+        Option<Bound<'_, PyAny>>,
+        Option<Bound<'_, PyAny>>,
+    ),
 ) -> PyResult<Material> {
     let default = Material::default();
     Ok(Material {
@@ -135,7 +141,10 @@ fn read_material(
 fn vertex_numbers(any: &Bound<'_, PyAny>) -> PyResult<Vec<u32>> {
     let array = integers(any, "fix")?;
     if array.ndim() != 1 {
-        return Err(value(format!("fix has shape {:?}: a list of vertex numbers was expected", array.shape())));
+        return Err(value(format!(
+            "fix has shape {:?}: a list of vertex numbers was expected",
+            array.shape()
+        )));
     }
     let number = |(at, v): (usize, &i64)| {
         u32::try_from(*v).map_err(|_| value(format!("fix[{at}] is {v}: a vertex number was expected")))
@@ -163,7 +172,9 @@ pub fn _pca(
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         (frames.mesh, frames.positions, format!("meshes in {name}"), splits_vertices(&frames.paths[0]))
     } else {
-        let Some(faces) = faces else { return Err(kind("faces is missing: (F, 3) vertex numbers of the shapes")) };
+        let Some(faces) = faces else {
+            return Err(kind("faces is missing: (F, 3) vertex numbers of the shapes"));
+        };
         let frames = read_shapes(shapes)?;
         let Some(first) = frames.first() else { return Err(value("shapes is empty")) };
         (mesh_of(first.clone(), faces)?, frames, "shapes in memory".into(), false)
@@ -173,7 +184,8 @@ pub fn _pca(
         on_threads(threads, || pca_modes(&mesh, &frames, rank, progress))
     })?;
     let found = found.map_err(|error: ModesError| value(format!("shapes: {error}")))?;
-    let model = sscc::ReducedModel::new(found.mesh, found.modes).map_err(|error| value(format!("shapes: {error}")))?;
+    let model = sscc::ReducedModel::new(found.mesh, found.modes)
+        .map_err(|error| value(format!("shapes: {error}")))?;
     let info = ModelInfo::new("", format!("mean and principal components of {count} {name}"));
     Ok(Model::of(Loaded::new(model, info, is_split)))
 }
@@ -184,7 +196,12 @@ fn read_shapes(any: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<DVec3>>> {
     let entries = match *array.shape() {
         [_, _, 3] => array.shape()[1] * 3,
         [_, entries] if entries % 3 == 0 => entries,
-        _ => return Err(value(format!("shapes has shape {:?}: (n, V, 3) or (n, 3V) was expected", array.shape()))),
+        _ => {
+            return Err(value(format!(
+                "shapes has shape {:?}: (n, V, 3) or (n, 3V) was expected",
+                array.shape()
+            )));
+        }
     };
     let mut shapes = room(array.shape()[0], "shapes")?;
     for shape in array.as_slice()?.chunks_exact(entries.max(1)) {

@@ -60,11 +60,13 @@ pub fn _simulate(
     stop(false);
     match written? {
         Ok(Ok(written)) => Ok((written.summary, written.folder, written.files)),
-        Ok(Err(error)) => Err(match (error.downcast_ref::<IoError>(), error.downcast_ref::<std::io::Error>()) {
-            (Some(error), _) => file(error),
-            (None, Some(_)) => PyOSError::new_err(format!("{error:#}")),
-            (None, None) => value(format!("{error:#}")),
-        }),
+        Ok(Err(error)) => {
+            Err(match (error.downcast_ref::<IoError>(), error.downcast_ref::<std::io::Error>()) {
+                (Some(error), _) => file(error),
+                (None, Some(_)) => PyOSError::new_err(format!("{error:#}")),
+                (None, None) => value(format!("{error:#}")),
+            })
+        }
         Err(panic) => std::panic::resume_unwind(panic),
     }
 }

@@ -38,8 +38,8 @@ def simulate(
     steps: how many from the beginning; None: those of the scene. ``restart`` begins again.
     models, cache: the folder of real models; where models and certificates are kept from run to run.
 
-    A bar is shown where standard error is a terminal. Ctrl-C stops after the step at hand. One simulation at a time in each
-    process. Raises FileNotFoundError, OSError, ValueError, RuntimeError.
+    A bar is shown where standard error is a terminal. Ctrl-C stops after the step at hand. One simulation at a time in
+    each process. Raises FileNotFoundError, OSError, ValueError, RuntimeError.
     """
     summary, folder, files = _simulate(scene, out, steps, restart, models, cache, threads)
     return Simulation(json.loads(summary), Path(folder), [Path(file) for file in files])

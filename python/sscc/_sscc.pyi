@@ -32,9 +32,9 @@ class Model:
     Raises TypeError or ValueError, whose message names the argument and the row.
     """
 
-    def __init__(
-        self, vertices: ArrayLike, faces: ArrayLike, modes: ArrayLike, metric: _Metric | None = None
-    ) -> None: ...
+    def __new__(
+        cls, vertices: ArrayLike, faces: ArrayLike, modes: ArrayLike, metric: _Metric | None = None
+    ) -> Model: ...
     @classmethod
     def load(cls, path: _Path, modes: _Path | None = None, *, mesh_name: str | None = None) -> Model:
         """Reads ``*.model.safetensors``, ``.glb`` or ``.gltf`` with morph targets, a complete ``.npz``, or a mesh (OBJ,
@@ -64,9 +64,9 @@ class Model:
         epsilon: relative error allowed of the root's radius (0.1).
         metric: as of the model; None: the model's own.
         center: the q about which radii are measured (r,); None: 0, the rest pose.
-        scheme: "full" (default) also stores pairs of nodes, within ``budget`` bytes for each triangle (16); "paper" none.
+        scheme: "full" (default) also stores pairs of nodes, within ``budget`` bytes for each triangle (16); "paper" not.
         neighbours: whether triangles that share exactly one vertex count where they meet beside it.
-        weld: whether vertices of equal position and modes are one, for adjacency; None: for STL and glTF files.
+        weld: whether vertices of equal position and modes are one, for adjacency; None: STL and glTF files.
         ignore_rest: pairs that collide at rest are left out for good.
         max_exceptions: how many pairs that collide at the centre may be tested in every query; None: F / 2.
         progress: a function that is called with the share done, from 0 to 1; True: a bar on standard error; False:
@@ -115,13 +115,13 @@ class Certificates:
     All radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
     """
 
-    @staticmethod
-    def load(path: _Path, model: Model) -> Certificates:
+    @classmethod
+    def load(cls, path: _Path, model: Model) -> Certificates:
         """Reads ``*.sscc.safetensors``; refuses certificates of another model (ValueError)."""
     def save(self, path: _Path) -> None:
         """Writes ``*.sscc.safetensors``, whole or not at all."""
     def check(self, q: ArrayLike, limit: SupportsIndex | None = None) -> Answer:
-        """Which pairs of triangles intersect or touch at q (r,). With ``limit`` at most so many, which ones is not fixed."""
+        """Which pairs of triangles intersect or touch at q (r,). With ``limit`` at most so many; which is not fixed."""
     def check_many(
         self,
         Q: ArrayLike,
@@ -197,7 +197,7 @@ class Certificates:
 
 @final
 class Hierarchy:
-    """The tree over the triangles. Node n holds the triangles ``order[first[n]:first[n] + count[n]]``; 0 is the root."""
+    """The tree over the triangles. Node n holds ``order[first[n]:first[n] + count[n]]``; node 0 is the root."""
 
     @property
     def parent(self) -> _I32:

@@ -1,8 +1,8 @@
 """Models from bodies and from samples: their modes are made here.
 
 A ``source`` is the name of a file or a surface as ``(vertices, faces)``: (V, 3) numbers and (F, 3) integers. Files are
-triangle meshes (OBJ, PLY, OFF, STL) or solids of tetrahedra and cubes (Medit ``.mesh``, VegaFEM ``.veg``, gmsh ``.msh``,
-TetGen ``.node``, ``.ele``). A surface must be closed; a lattice of cubes around it is the solid then.
+triangle meshes (OBJ, PLY, OFF, STL) or solids of tetrahedra and cubes (Medit ``.mesh``, VegaFEM ``.veg``, gmsh
+``.msh``, TetGen ``.node``, ``.ele``). A surface must be closed; a lattice of cubes around it is the solid then.
 
 Common arguments:
 
@@ -79,8 +79,8 @@ def polynomial(
 ) -> Model:
     """The 24 quadratic polynomials of the rest position, rigid motions taken out.
 
-    A surface needs no volume for them, and its metric is displacement. With ``solid=True``, a ``resolution`` or a material,
-    and for solids in files, they get the stiffness and the forces of the body, and the metric is its strain energy.
+    A surface needs no volume for them, and its metric is displacement. With ``solid=True``, a ``resolution`` or a
+    material, and for solids in files, they get the stiffness and the forces of the body, and the metric is its strain energy.
     """
     material = (youngs, poisson, density)
     options = (*material, resolution)

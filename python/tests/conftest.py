@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from pathlib import Path
 
@@ -20,6 +21,24 @@ def skip(test: str, reason: str) -> None:
         with open(log, "a") as file:
             file.write(f"SKIPPED: python: {test}: {reason}\n")
     pytest.skip(reason)
+
+
+@pytest.fixture
+def libigl(request: pytest.FixtureRequest) -> None:
+    """Needs the package libigl."""
+    needs(request, "igl")
+
+
+@pytest.fixture
+def ipctk(request: pytest.FixtureRequest) -> None:
+    """Needs the package ipctk."""
+    needs(request, "ipctk")
+
+
+def needs(request: pytest.FixtureRequest, module: str) -> None:
+    """Skips a test that needs a module which is not there."""
+    if importlib.util.find_spec(module) is None:
+        skip(request.node.name, f"there is no package {module} for this interpreter")
 
 
 @pytest.fixture

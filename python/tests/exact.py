@@ -47,9 +47,9 @@ def configurations(model: sscc.Model, count: int) -> F64:
     scales[scales == 0] = 1
     qs = random.normal(size=(count, model.rank)) / np.arange(1, model.rank + 1) / scales
     shares = 10 ** random.uniform(-3, np.log10(0.2), count)
-    for q, share in zip(qs, shares, strict=True):
-        q *= share * half / np.linalg.norm(modes @ q, axis=1).max()
-    return qs
+    largest = np.array([np.linalg.norm(modes @ q, axis=1).max() for q in qs])
+    scaled: F64 = qs * (shares * half / largest)[:, None]
+    return scaled
 
 
 def libigl_pairs(positions: F64, faces: NDArray[np.int64]) -> U32:
@@ -59,7 +59,8 @@ def libigl_pairs(positions: F64, faces: NDArray[np.int64]) -> U32:
     found = igl.copyleft.cgal.remesh_self_intersections(positions, faces, detect_only=True)[2]
     pairs = np.unique(np.sort(np.asarray(found, np.int64).reshape(-1, 2), axis=1), axis=0)
     share = (faces[pairs[:, 0]][:, :, None] == faces[pairs[:, 1]][:, None, :]).any(axis=(1, 2))
-    return pairs[~share].astype(np.uint32)
+    apart: U32 = pairs[~share].astype(np.uint32)
+    return apart
 
 
 def _ask(question: tuple[F64, NDArray[np.int64]]) -> U32:
@@ -80,7 +81,6 @@ def differences(name: str, models: Path, count: int = COUNT) -> tuple[int, int, 
     batch = certs.check_many(qs, progress=False)
     faces = model.faces.astype(np.int64)
     answers = libigl_answers((model.positions(q), faces) for q in qs)
-    wrong = [
-        i for i, (answer, exact) in enumerate(zip(batch, answers, strict=True)) if not np.array_equal(answer.pairs, exact)
-    ]
+    both = enumerate(zip(batch, answers, strict=True))
+    wrong = [i for i, (answer, exact) in both if not np.array_equal(answer.pairs, exact)]
     return int(batch.colliding.sum()), len(batch.pairs), wrong

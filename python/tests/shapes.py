@@ -15,8 +15,7 @@ def torus(around: int, across: int, rank: int) -> tuple[F64, I64, F64]:
     u, v = 2 * np.pi * u.ravel(), 2 * np.pi * v.ravel()
     radius = 1 + 0.3 * np.cos(v)
     vertices = np.stack([radius * np.cos(u), radius * np.sin(u), 0.3 * np.sin(v)], axis=1)
-    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
-    i, j = i.ravel(), j.ravel()
+    i, j = np.divmod(np.arange(around * across), across)
     a, b = i * across + j, (i + 1) % around * across + j
     c, d = (i + 1) % around * across + (j + 1) % across, i * across + (j + 1) % across
     faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])

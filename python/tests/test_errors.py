@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -104,7 +105,7 @@ def test_there_are_no_other_options() -> None:
     with pytest.raises(TypeError, match="bugdet"):
         model().certify(bugdet=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="positional"):
-        model().certify(0.1)  # type: ignore[misc]
+        model().certify(0.1)  # type: ignore[call-arg]
 
 
 QS: list[tuple[Any, type[Exception], str]] = [
@@ -116,7 +117,7 @@ QS: list[tuple[Any, type[Exception], str]] = [
     (1.0, ValueError, "{} has shape []: one configuration was expected"),
     (None, TypeError, "{} is a NoneType that is no array of numbers"),
     (["a"] * 6, TypeError, "{} is a list that is no array of numbers"),
-    (np.ma.masked_array(np.zeros(6), mask=[1, 0, 0, 0, 0, 0]), TypeError, "{} is a masked array: fill it first"),
+    (np.ma.masked_array(np.zeros(6), mask=np.arange(6) == 0), TypeError, "{} is a masked array: fill it first"),
     (np.zeros(6, "M8[s]"), TypeError, "{} is a ndarray that is no array of numbers"),
     ([2**53 + 1, 0, 0, 0, 0, 0], ValueError, "{}: the integer 9007199254740993 is beyond 2^53"),
     ([-(2**63), 0, 0, 0, 0, 0], ValueError, "{}: the integer -9223372036854775808 is beyond 2^53"),
@@ -126,7 +127,7 @@ QS: list[tuple[Any, type[Exception], str]] = [
 @pytest.mark.parametrize(("q", "error", "message"), QS, ids=[m for _, _, m in QS])
 def test_configurations(certs: sscc.Certificates, q: Any, error: type[Exception], message: str) -> None:
     good = np.zeros(6)
-    calls = {
+    calls: dict[str, list[Callable[[], object]]] = {
         "q": [
             lambda: certs.check(q),
             lambda: certs.safe_scale(q),
@@ -163,10 +164,13 @@ def test_rows_are_named(certs: sscc.Certificates) -> None:
 
 
 def test_limits(certs: sscc.Certificates) -> None:
-    for limit, error in ((0, ValueError), (-3, ValueError), (1.5, TypeError), ("1", TypeError), (True, TypeError)):
-        for call in (lambda: certs.check(np.zeros(6), limit), lambda: certs.check_many(np.zeros((2, 6)), limit)):
-            with pytest.raises(error, match="^limit is "):
-                call()  # type: ignore[no-untyped-call]
+    limits: list[Any] = [0, -3, 1.5, "1", True]
+    for limit in limits:
+        error = ValueError if type(limit) is int else TypeError
+        with pytest.raises(error, match="^limit is "):
+            certs.check(np.zeros(6), limit)
+        with pytest.raises(error, match="^limit is "):
+            certs.check_many(np.zeros((2, 6)), limit)
     assert certs.check(np.full(6, 2.0), np.int8(3)).count == 3
     with pytest.raises(ValueError, match="^node is 100000: a whole number from 0 to "):
         certs.radius(100000)

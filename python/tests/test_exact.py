@@ -8,9 +8,7 @@ import pytest
 
 import exact
 
-pytest.importorskip("igl", reason="libigl has no package for this interpreter")
-
-
+@pytest.mark.usefixtures("libigl")
 @pytest.mark.parametrize("name", exact.MODELS)
 def test_answers_equal_libigls(name: str, models: Path) -> None:
     colliding, pairs, wrong = exact.differences(name, models)

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sscc
@@ -66,6 +67,15 @@ def test_single_queries_stop_on_ctrl_c(large_certs: sscc.Certificates) -> None:
     assert seconds_until_stopped(lambda: certs.continuous([0.9], [1.0])) < SOON
     assert seconds_until_stopped(lambda: certs.kinetic().check([1.0])) < SOON
     assert certs.check([0.0]).count == 0
+
+
+def test_builders_of_modes_stop_on_ctrl_c() -> None:
+    vertices, faces, _ = torus(30, 20, 1)
+    shapes = vertices + np.random.default_rng(3).normal(size=(2500, 600, 3))
+    assert seconds_until_stopped(lambda: sscc.modes.pca(shapes, faces)) < SOON
+    assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < SOON
+    with pytest.raises(ZeroDivisionError):
+        sscc.modes.pca(shapes, faces, progress=lambda share: 1 / 0)
 
 
 def test_what_was_stopped_leaves_queries_whole(certs: sscc.Certificates) -> None:

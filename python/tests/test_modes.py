@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import sscc
 from shapes import torus
 
 
+Surface = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+
 @pytest.fixture(scope="module")
-def surface() -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
+def surface() -> Surface:
     vertices, faces, _ = torus(24, 12, 1)
     return vertices, faces
 
 
-def test_linear_modes(surface: tuple[object, object]) -> None:
-    model = sscc.modes.linear(surface, 8, resolution=14)  # type: ignore[arg-type]
+def test_linear_modes(surface: Surface) -> None:
+    model = sscc.modes.linear(surface, 8, resolution=14)
     assert model.rank == 8 and model.metric == "energy"
     stiffness = model.stiffness
     assert stiffness is not None
@@ -31,26 +37,26 @@ def test_linear_modes(surface: tuple[object, object]) -> None:
     assert not model.certify().check(np.zeros(8)).colliding
 
 
-def test_fixed_bodies_do_not_move_there(surface: tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], object]) -> None:
+def test_fixed_bodies_do_not_move_there(surface: Surface) -> None:
     vertices = surface[0]
-    box = sscc.modes.linear(surface, 3, resolution=14, fix_box=[[-2, -2, -2], [-1, 2, 2]])  # type: ignore[arg-type]
+    box = sscc.modes.linear(surface, 3, resolution=14, fix_box=[[-2, -2, -2], [-1, 2, 2]])
     moved = np.abs(box.modes).max(axis=(1, 2))
     assert moved[vertices[:, 0] <= -1].max() < 1e-12 < 1e-3 < moved.max()
     held = np.flatnonzero(vertices[:, 0] <= -1)
-    some = sscc.modes.linear(surface, 3, resolution=14, fix=held)  # type: ignore[arg-type]
+    some = sscc.modes.linear(surface, 3, resolution=14, fix=held)
     assert np.abs(some.modes[held]).max() < 1e-12
 
 
-def test_nonlinear_and_polynomial_modes(surface: tuple[object, object]) -> None:
-    nonlinear = sscc.modes.nonlinear(surface, 10, resolution=10, youngs=1e4)  # type: ignore[arg-type]
+def test_nonlinear_and_polynomial_modes(surface: Surface) -> None:
+    nonlinear = sscc.modes.nonlinear(surface, 10, resolution=10, youngs=1e4)
     assert nonlinear.rank == 10 and nonlinear.stiffness is not None
-    plain = sscc.modes.polynomial(surface)  # type: ignore[arg-type]
+    plain = sscc.modes.polynomial(surface)
     assert plain.rank == 24 and plain.metric == "displacement" and plain.stiffness is None
-    solid = sscc.modes.polynomial(surface, solid=True, resolution=10)  # type: ignore[arg-type]
+    solid = sscc.modes.polynomial(surface, solid=True, resolution=10)
     assert solid.rank == 24 and solid.metric == "energy" and solid.stiffness is not None
 
 
-def test_files_give_what_the_command_gives(tmp_path: Path, command: Path, surface: tuple[object, object]) -> None:
+def test_files_give_what_the_command_gives(tmp_path: Path, command: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(24, 12, 1)
     rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
     rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
@@ -58,7 +64,8 @@ def test_files_give_what_the_command_gives(tmp_path: Path, command: Path, surfac
     mesh.write_text("\n".join(rows))
     for kind in ("linear", "nonlinear", "polynomial"):
         options = [] if kind == "polynomial" else ["--rank", "6", "--resolution", "10"]
-        done = subprocess.run([command, "modes", mesh, "-o", theirs, "--kind", kind, "--json", *options], capture_output=True)
+        arguments = ["modes", mesh, "-o", theirs, "--kind", kind, "--json", *options]
+        done = subprocess.run([command, *arguments], capture_output=True)
         assert done.returncode == 0 and json.loads(done.stdout)["triangles"] == 576
         make = getattr(sscc.modes, kind)
         model = make(mesh) if kind == "polynomial" else make(mesh, 6, resolution=10)
@@ -93,11 +100,13 @@ def test_a_folder_of_meshes_is_an_animation(tmp_path: Path) -> None:
     assert np.array_equal(files.modes, memory.modes) and np.array_equal(files.vertices, memory.vertices)
 
 
-def test_what_is_wrong_is_named(tmp_path: Path, surface: tuple[object, object]) -> None:
+def test_what_is_wrong_is_named(tmp_path: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(12, 8, 1)
-    cases = [
+    text: Any = "x"
+    not_a_pair: Any = vertices
+    cases: list[tuple[Callable[[], object], type[Exception], str]] = [
         (lambda: sscc.modes.linear((vertices, faces[1:]), 3), ValueError, "^source: "),
-        (lambda: sscc.modes.linear(vertices, 3), TypeError, "^source is a ndarray: the name of a file or"),
+        (lambda: sscc.modes.linear(not_a_pair, 3), TypeError, "^source is a ndarray: the name of a file or"),
         (lambda: sscc.modes.linear(tmp_path / "a.obj", 3), FileNotFoundError, r"a\.obj: not found$"),
         (lambda: sscc.modes.linear((vertices, faces), 0), ValueError, "^rank is 0: a whole number from 1 to 500"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[96]), ValueError, "^source: fix: there is no vertex 96"),
@@ -105,7 +114,7 @@ def test_what_is_wrong_is_named(tmp_path: Path, surface: tuple[object, object]) 
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[-1]), ValueError, r"^fix\[0\] is -1"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix_box=[[0, 0, 0]]), ValueError, "^fix_box has 1 rows"),
         (lambda: sscc.modes.linear((vertices, faces), 3, youngs=-1), ValueError, "^source: "),
-        (lambda: sscc.modes.linear((vertices, faces), 3, poisson="x"), TypeError, "^poisson is a str"),  # type: ignore[arg-type]
+        (lambda: sscc.modes.linear((vertices, faces), 3, poisson=text), TypeError, "^poisson is a str"),
         (lambda: sscc.modes.nonlinear((vertices, faces), 3, threads=-1), ValueError, "^threads is -1"),
         (lambda: sscc.modes.polynomial((vertices, faces), resolution=0), ValueError, "^resolution is 0"),
         (lambda: sscc.modes.pca(vertices, faces), ValueError, "^shapes: "),

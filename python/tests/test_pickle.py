@@ -36,7 +36,7 @@ def test_models_and_certificates(certs: sscc.Certificates) -> None:
 
 def test_damaged_pickles_are_refused() -> None:
     for name in ("_answer", "_batch", "_impacts", "_model", "_certificates"):
-        make = getattr(sscc._sscc, name)  # type: ignore[attr-defined]
+        make = getattr(sscc._sscc, name)
         with pytest.raises((TypeError, ValueError)):
             make(b"x")
     with pytest.raises(ValueError, match="damaged"):

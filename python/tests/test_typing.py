@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def run(*arguments: str) -> None:
-    done = subprocess.run([sys.executable, "-m", *arguments], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-P", "-m", *arguments], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -19,4 +19,5 @@ def test_package_and_tests_are_typed_strictly() -> None:
 
 
 def test_stubs_say_what_is_there() -> None:
-    run("mypy.stubtest", "sscc", "--ignore-disjoint-bases", "--ignore-missing-stub", "--allowlist", "tests/stubtest.txt")
+    options = ("--ignore-disjoint-bases", "--ignore-missing-stub", "--allowlist", "tests/stubtest.txt")
+    run("mypy.stubtest", "sscc", *options)

@@ -18,7 +18,9 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
         None => {
-            eprintln!("Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]");
+            eprintln!(
+                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]"
+            );
             ExitCode::from(2)
         }
     }

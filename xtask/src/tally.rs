@@ -27,7 +27,8 @@ impl Tally {
     /// skipped counts as passed: the log of skipped tests tells which these are.
     pub fn add_pytest(&mut self, line: &str) {
         let line = line.trim_matches(['=', ' ']);
-        let ends_in_time = line.rsplit_once(" in ").is_some_and(|(_, time)| time.starts_with(|c: char| c.is_ascii_digit()));
+        let ends_in_time =
+            line.rsplit_once(" in ").is_some_and(|(_, time)| time.starts_with(|c: char| c.is_ascii_digit()));
         if !ends_in_time || !line.starts_with(|c: char| c.is_ascii_digit()) {
             return;
         }

@@ -47,7 +47,8 @@ pub struct Written {
 pub fn simulate(request: Request) -> Result<Written> {
     let Request { scene, out, steps, restart, models, cache, threads } = request;
     let threads = Threads { threads };
-    let arguments = Simulate { scene, out, steps, restart, models, cache, threads, json: Json { json: true } };
+    let arguments =
+        Simulate { scene, out, steps, restart, models, cache, threads, json: Json { json: true } };
     let Simulated { summary, folder, files, .. } = simulated(&arguments)?.whole()?;
     let summary = serde_json::to_string(&summary).context("the summary is no JSON")?;
     Ok(Written { summary, folder, files })

@@ -111,7 +111,8 @@ fn the_range_of_numbers_does_not_matter() {
 
 #[test]
 fn frames_without_components_are_refused() {
-    let message = |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank, &()).unwrap_err().to_string();
+    let message =
+        |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank, &()).unwrap_err().to_string();
     let frame = frames().remove(0);
     assert!(message(&[], None).starts_with("0 frames"));
     assert!(message(std::slice::from_ref(&frame), None).starts_with("1 frames"));

@@ -28,8 +28,8 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, material, name(args), &bar)
 }
 
-/// Modes of a solid with fixed vertices; without a rank as many as usual. `name` is that of the source, and `material` what
-/// it is made of where that has none of its own.
+/// Modes of a solid with fixed vertices; without a rank as many as usual. `name` is that of the source, and `material`
+/// what it is made of where that has none of its own.
 pub fn of_solid(
     kind: ModesKind,
     rank: Option<usize>,

@@ -20,7 +20,8 @@ use pca::Components;
 pub use source::{Source, is_solid};
 
 /// Why polynomial modes take neither.
-const POLYNOMIALS_ARE_FREE: &str = "--rank and --fix: polynomial modes are always all 24, and move every vertex";
+const POLYNOMIALS_ARE_FREE: &str =
+    "--rank and --fix: polynomial modes are always all 24, and move every vertex";
 
 #[derive(Serialize)]
 struct Report {
