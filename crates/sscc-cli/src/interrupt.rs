@@ -25,6 +25,11 @@ pub fn happened() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
+/// For programs that hear of Ctrl-C by themselves.
+pub fn set(happened: bool) {
+    INTERRUPTED.store(happened, Ordering::Relaxed);
+}
+
 /// Cancels queries on Ctrl-C.
 pub struct Interrupt;
 

@@ -1,9 +1,13 @@
 //! Modes of an animation: the principal components of its frames.
 
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use glam::DVec3;
-use sscc::{Modes, TriMesh, limits};
+use sscc::{Modes, Progress, TriMesh, limits};
 
 use crate::ModesError;
 use crate::diagonalize::eigen;
@@ -14,6 +18,15 @@ const EXPLAINED: f64 = 0.999;
 /// A component of at most this share of the largest variance is none: products of frames leave about 1e-15 for each
 /// frame.
 const ZERO_SHARE: f64 = 1e-12;
+
+/// So many rows of frames, or vertices, are worked on at once.
+const CHUNK: usize = 1 << 12;
+
+/// So many frames are decomposed in a fraction of a second.
+const QUICK: usize = 200;
+
+/// How often to look whether to go on while others work.
+const PERIOD: Duration = Duration::from_millis(20);
 
 /// The mean of an animation, and the principal components about it: see [`pca_modes`].
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +55,13 @@ pub struct Pca {
 ///
 /// # Errors
 /// When there are fewer than two frames, one has another number of vertices or a position out of range, all are equal,
-/// or fewer independent directions exist than were asked for.
-pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> Result<Pca, ModesError> {
+/// or fewer independent directions exist than were asked for; when `progress` cancels.
+pub fn pca_modes(
+    mesh: &TriMesh,
+    frames: &[Vec<DVec3>],
+    rank: Option<usize>,
+    progress: &dyn Progress,
+) -> Result<Pca, ModesError> {
     let vertices = mesh.rest_positions().len();
     check(frames, vertices)?;
     let count = frames.len() as f64;
@@ -53,7 +71,7 @@ pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> 
         frames[0][v] + sum / count
     };
     let mean: Vec<DVec3> = (0..vertices).map(mean).collect();
-    let (mut variances, vectors, noise) = components(&mesh.used_vertices(), frames, &mean)?;
+    let (mut variances, vectors, noise) = components(&mesh.used_vertices(), frames, &mean, progress)?;
     variances.reverse();
     let total: f64 = variances.iter().map(|x| x.max(0.0)).sum();
     let least = (ZERO_SHARE * variances[0]).max(noise);
@@ -71,6 +89,9 @@ pub fn pca_modes(mesh: &TriMesh, frames: &[Vec<DVec3>], rank: Option<usize>) -> 
     let root = (last as f64).sqrt();
     let mut displacements = vec![DVec3::ZERO; vertices * rank];
     for (v, modes) in displacements.chunks_exact_mut(rank.max(1)).enumerate() {
+        if v.is_multiple_of(CHUNK) {
+            check_cancelled(progress)?;
+        }
         for (frame, of_frame) in frames.iter().zip(vectors.chunks_exact(frames.len())) {
             let moved = frame[v] - mean[v];
             modes.iter_mut().enumerate().for_each(|(k, u)| *u += moved * (of_frame[last - k] / root));
@@ -106,34 +127,64 @@ fn components(
     used: &[u32],
     frames: &[Vec<DVec3>],
     mean: &[DVec3],
+    progress: &dyn Progress,
 ) -> Result<(Vec<f64>, Vec<f64>, f64), ModesError> {
     let moved = |row: usize, frame: usize| {
         let v = used[row / 3] as usize;
         (frames[frame][v] - mean[v])[row % 3]
     };
     let count = frames.len();
-    let centred = Mat::from_fn(3 * used.len(), count, moved);
-    let mut gram = Mat::zeros(count, count);
-    matmul(
-        gram.as_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Replace,
-        centred.transpose(),
-        BlockStructure::Rectangular,
-        &centred,
-        BlockStructure::Rectangular,
-        1.0,
-        Par::Seq,
-    );
+    let (rows, mut gram) = (3 * used.len(), Mat::zeros(count, count));
+    for begin in (0..rows).step_by(CHUNK) {
+        progress.report(begin, 2 * rows);
+        check_cancelled(progress)?;
+        let centred = Mat::from_fn(CHUNK.min(rows - begin), count, |row, frame| moved(begin + row, frame));
+        matmul(
+            gram.as_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            centred.transpose(),
+            BlockStructure::Rectangular,
+            &centred,
+            BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+    }
     let whole: Vec<f64> = (0..count * count)
         .map(|at| (at / count, at % count))
         .map(|(i, j)| gram[(i.max(j), i.min(j))])
         .collect();
-    let (values, vectors) = eigen(count, &whole)?;
+    let (values, vectors) = eigen_or_leave(count, whole, progress)?;
     // A position is rounded by half a unit in the last place; so is the mean.
     let reach = used.iter().fold(0.0_f64, |m, v| m.max(mean[*v as usize].abs().max_element()));
     let rounding = f64::EPSILON * reach;
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
+}
+
+/// [`eigen`], which cannot be stopped: on a thread of its own, which is left to itself where `progress` cancels.
+fn eigen_or_leave(
+    count: usize,
+    matrix: Vec<f64>,
+    progress: &dyn Progress,
+) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+    if count <= QUICK {
+        return eigen(count, &matrix);
+    }
+    let (found, waiting) = channel();
+    let work = move || found.send(eigen(count, &matrix));
+    thread::spawn(work);
+    loop {
+        match waiting.recv_timeout(PERIOD) {
+            Ok(found) => return found,
+            Err(RecvTimeoutError::Timeout) => check_cancelled(progress)?,
+            Err(RecvTimeoutError::Disconnected) => return Err(ModesError::NoEigenvalues),
+        }
+    }
+}
+
+fn check_cancelled(progress: &dyn Progress) -> Result<(), ModesError> {
+    if progress.is_cancelled() { Err(sscc::Error::Cancelled.into()) } else { Ok(()) }
 }
 
 /// How many of the largest variances it takes to explain so much.

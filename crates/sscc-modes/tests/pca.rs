@@ -52,7 +52,7 @@ fn coordinates(pca: &Pca, frame: &[DVec3]) -> Vec<f64> {
 #[test]
 fn known_components_are_found() {
     for rank in [None, Some(2)] {
-        let pca = pca_modes(&strip(), &frames(), rank).unwrap();
+        let pca = pca_modes(&strip(), &frames(), rank, &()).unwrap();
         assert_eq!((pca.modes.rank(), pca.mesh.faces()), (2, strip().faces()));
         for (found, known) in pca.deviations.iter().zip([3.0, 1.0]) {
             assert!((found - known).abs() < 1e-12, "{:?}", pca.deviations);
@@ -65,7 +65,7 @@ fn known_components_are_found() {
             assert!(modes[0].distance(z[v] * 3.0) < 1e-12 && modes[1].distance(y[v]) < 1e-12, "{modes:?}");
         }
     }
-    let one = pca_modes(&strip(), &frames(), Some(1)).unwrap();
+    let one = pca_modes(&strip(), &frames(), Some(1), &()).unwrap();
     assert_eq!((one.modes.rank(), one.deviations.len(), one.shares.len()), (1, 1, 1));
 }
 
@@ -74,7 +74,7 @@ fn every_frame_is_recovered_from_all_components() {
     let mut random = Random(7);
     let mut moved = || random.vector() * 1e-3 + DVec3::X * 50.0;
     let frames: Vec<Vec<DVec3>> = (0..9).map(|_| (0..VERTICES).map(|_| moved()).collect()).collect();
-    let pca = pca_modes(&strip(), &frames, Some(8)).unwrap();
+    let pca = pca_modes(&strip(), &frames, Some(8), &()).unwrap();
     assert!((pca.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
     assert!(pca.deviations.is_sorted_by(|a, b| a >= b));
     for frame in &frames {
@@ -89,21 +89,21 @@ fn every_frame_is_recovered_from_all_components() {
         let squares: f64 = frames.iter().map(|frame| coordinates(&pca, frame)[k].powi(2)).sum();
         assert!((squares / 8.0 - 1.0).abs() < 1e-9);
     }
-    assert_eq!(pca_modes(&strip(), &frames, Some(8)).unwrap(), pca);
+    assert_eq!(pca_modes(&strip(), &frames, Some(8), &()).unwrap(), pca);
     assert_eq!(
-        pca_modes(&strip(), &frames, Some(9)).unwrap_err().to_string(),
+        pca_modes(&strip(), &frames, Some(9), &()).unwrap_err().to_string(),
         "9 components were asked for, but the frames differ in 8 independent ways: ask for at most that many"
     );
 }
 
 #[test]
 fn the_range_of_numbers_does_not_matter() {
-    let expected = pca_modes(&strip(), &frames(), None).unwrap();
+    let expected = pca_modes(&strip(), &frames(), None, &()).unwrap();
     for exponent in [-190, 190] {
         let scale = 2.0_f64.powi(exponent);
         let scaled: Vec<Vec<DVec3>> =
             frames().iter().map(|f| f.iter().map(|p| *p * scale).collect()).collect();
-        let found = pca_modes(&strip(), &scaled, None).unwrap();
+        let found = pca_modes(&strip(), &scaled, None, &()).unwrap();
         assert_eq!(found.deviations[0], expected.deviations[0] * scale);
         assert_eq!(found.modes.of_vertex(3)[0], expected.modes.of_vertex(3)[0] * scale);
     }
@@ -111,7 +111,8 @@ fn the_range_of_numbers_does_not_matter() {
 
 #[test]
 fn frames_without_components_are_refused() {
-    let message = |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank).unwrap_err().to_string();
+    let message =
+        |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank, &()).unwrap_err().to_string();
     let frame = frames().remove(0);
     assert!(message(&[], None).starts_with("0 frames"));
     assert!(message(std::slice::from_ref(&frame), None).starts_with("1 frames"));

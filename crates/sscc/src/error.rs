@@ -146,6 +146,9 @@ pub enum Error {
     /// Parts of certificates that do not fit together.
     #[error("the certificates are damaged: {0}")]
     Certificates(String),
+    /// A job or a result of a computation in shards that cannot be used, or that could not be done.
+    #[error("shards: {0}")]
+    Shard(String),
     /// Stopped by the caller.
     #[error("cancelled")]
     Cancelled,

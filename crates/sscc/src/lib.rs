@@ -265,7 +265,9 @@ mod query;
 mod threads;
 
 pub use audit::{AuditOptions, AuditReport, audit};
-pub use certificates::{CertificateParts, Certificates, CertifyOptions, Digest, PairTree, Scope};
+pub use certificates::{
+    BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
+};
 pub use continuous::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub use error::Error;
 pub use intersect::{intersect_beyond_vertex, intersect_triangle_triangle};

@@ -7,7 +7,7 @@ mod check;
 mod demo;
 mod info;
 pub mod modes;
-mod simulate;
+pub mod simulate;
 
 use crate::Outcome;
 use crate::args::{Cli, Command};

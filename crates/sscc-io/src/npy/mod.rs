@@ -58,6 +58,16 @@ fn array<T>(
 }
 
 impl<T: Copy> Array<T> {
+    /// An array of that shape, from its entries in C order (last axis fastest); none where their number is another.
+    pub fn from_c_order(shape: &[usize], data: Vec<T>) -> Option<Self> {
+        let size = shape.iter().try_fold(1_usize, |size, n| size.checked_mul(*n));
+        (size == Some(data.len())).then(|| Self {
+            shape: shape.to_vec(),
+            strides: strides(shape, false),
+            data,
+        })
+    }
+
     /// The length of each axis. Their product is the number of entries.
     pub fn shape(&self) -> &[usize] {
         &self.shape

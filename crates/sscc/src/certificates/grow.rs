@@ -7,10 +7,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 use super::pair_tree::{Entry, MOST_ENTRIES, PairTree, roots_of, round_down};
 use super::search::Search;
+use super::task::Solver;
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Progress};
 
@@ -37,27 +36,77 @@ const STEPS: usize = 64;
 
 /// A pair of nodes in the making.
 #[derive(Clone, Copy)]
-struct Grown {
-    pair: (u32, u32),
+pub(super) struct Grown {
+    pub(super) pair: (u32, u32),
     /// Where the pairs that it is split into start, side by side, behind it; or one of the two below.
-    first: u32,
+    pub(super) first: u32,
     /// A lower bound of its radius, at least its parent's.
-    lower: f32,
+    pub(super) lower: f32,
 }
 
 /// Not split yet; of two small nodes: not bounded, except that they are free up to the lower bound.
-const OPEN: u32 = 0;
+pub(super) const OPEN: u32 = 0;
 /// Two small nodes whose radius is known.
-const BOUNDED: u32 = u32::MAX;
+pub(super) const BOUNDED: u32 = u32::MAX;
 
 impl Grown {
-    fn new(pair: (u32, u32), lower: f32) -> Self {
+    pub(super) fn new(pair: (u32, u32), lower: f32) -> Self {
         Self { pair, first: OPEN, lower }
     }
 
     fn is_split(&self) -> bool {
         self.first != OPEN && self.first != BOUNDED
     }
+}
+
+/// What is asked of the open pairs of a round.
+#[derive(Clone, Copy)]
+pub(super) struct Round {
+    /// Pairs whose lower bound is below this are split.
+    pub(super) limit: f64,
+    /// The global radius: more is not asked for.
+    pub(super) most: f64,
+    /// How many pairs there may be more.
+    pub(super) room: usize,
+}
+
+/// A pair anew, and behind it all pairs below it that are split off, numbered in this list. `used` counts these in all lists of the
+/// round; once there is no room for them the list is left unfinished.
+pub(super) fn expand(
+    pair: Grown,
+    Round { limit, most, room }: Round,
+    hierarchy: &Hierarchy,
+    search: &mut Search<'_>,
+    used: &AtomicUsize,
+    progress: &dyn Progress,
+) -> Vec<Grown> {
+    let mut list = vec![pair];
+    let mut next = 0;
+    while next < list.len() && used.load(Ordering::Relaxed) <= room {
+        if next.is_multiple_of(STEPS) && progress.is_cancelled() {
+            break;
+        }
+        let (n, m) = list[next].pair;
+        match hierarchy.split_large(n, m) {
+            None => {
+                let cap = (AHEAD * limit).min(most);
+                let lower = search.roughly(n, m, cap);
+                list[next].first = if lower < cap || cap == most { BOUNDED } else { OPEN };
+                list[next].lower = list[next].lower.max(round_down(lower));
+            }
+            Some(split) => {
+                let lower = list[next].lower.max(round_down(search.bound(n, m, limit)));
+                list[next].lower = lower;
+                if f64::from(lower) < limit {
+                    list[next].first = list.len() as u32;
+                    used.fetch_add(split.children().len(), Ordering::Relaxed);
+                    list.extend(split.pairs().map(|pair| Grown::new(pair, lower)));
+                }
+            }
+        }
+        next += 1;
+    }
+    list
 }
 
 /// Lower bounds of pairs of nodes: of all that may be below a limit.
@@ -71,13 +120,12 @@ pub(super) struct Grove {
 }
 
 impl Grove {
-    /// Grows the pairs for a tree of at most `budget` entries. `search` makes one searcher for each thread.
-    pub(super) fn grow<'a>(
+    /// Grows the pairs for a tree of at most `budget` entries.
+    pub(super) fn grow(
         hierarchy: &Hierarchy,
         global_radius: f64,
         budget: usize,
-        search: impl Fn() -> Search<'a> + Sync,
-        progress: &dyn Progress,
+        solver: &mut dyn Solver,
     ) -> Result<Self, Error> {
         let budget = budget.min(MOST_ENTRIES);
         let mut grove = Self { grown: Vec::new(), roots: Vec::new(), reached: 0.0, budget };
@@ -95,7 +143,7 @@ impl Grove {
         // Beyond this there are too many.
         let mut beyond = f64::INFINITY;
         loop {
-            if grove.round(hierarchy, limit, global_radius, room, &search, progress)? {
+            if grove.round(hierarchy, limit, global_radius, room, solver)? {
                 grove.reached = limit;
             } else {
                 beyond = limit;
@@ -119,58 +167,20 @@ impl Grove {
     }
 
     /// Splits and bounds every pair below the limit. False, and nothing changed, where there would be more than `room`.
-    fn round<'a>(
+    fn round(
         &mut self,
         hierarchy: &Hierarchy,
         limit: f64,
         most: f64,
         room: usize,
-        search: &(impl Fn() -> Search<'a> + Sync),
-        progress: &dyn Progress,
+        solver: &mut dyn Solver,
     ) -> Result<bool, Error> {
         let grown = &mut self.grown;
         let is_open = |pair: &Grown| pair.first == OPEN && f64::from(pair.lower) < limit;
         let open: Vec<u32> = (0..grown.len() as u32).filter(|at| is_open(&grown[*at as usize])).collect();
-        let used = AtomicUsize::new(grown.len());
-        // Each gives its pair anew, and all pairs below it, numbered in this list.
-        let lists: Vec<Vec<Grown>> = open
-            .par_iter()
-            .map_init(search, |search, at| {
-                let mut list = vec![grown[*at as usize]];
-                let mut next = 0;
-                while next < list.len() && used.load(Ordering::Relaxed) <= room {
-                    if next.is_multiple_of(STEPS) && progress.is_cancelled() {
-                        break;
-                    }
-                    let (n, m) = list[next].pair;
-                    match hierarchy.split_large(n, m) {
-                        None => {
-                            let cap = (AHEAD * limit).min(most);
-                            let lower = search.roughly(n, m, cap);
-                            list[next].first = if lower < cap || cap == most { BOUNDED } else { OPEN };
-                            list[next].lower = list[next].lower.max(round_down(lower));
-                        }
-                        Some(split) => {
-                            let lower = list[next].lower.max(round_down(search.bound(n, m, limit)));
-                            list[next].lower = lower;
-                            if f64::from(lower) < limit {
-                                list[next].first = list.len() as u32;
-                                used.fetch_add(split.children().len(), Ordering::Relaxed);
-                                list.extend(split.pairs().map(|pair| Grown::new(pair, lower)));
-                            }
-                        }
-                    }
-                    next += 1;
-                }
-                list
-            })
-            .collect();
-        if progress.is_cancelled() {
-            return Err(Error::Cancelled);
-        }
-        if used.into_inner() > room {
-            return Ok(false);
-        }
+        let pairs: Vec<Grown> = open.iter().map(|at| grown[*at as usize]).collect();
+        let round = Round { limit, most, room: room.saturating_sub(grown.len()) };
+        let Some(lists) = solver.grow(&pairs, round)? else { return Ok(false) };
         for (at, list) in open.into_iter().zip(lists) {
             // The pair itself stays where it is, the others follow.
             let offset = grown.len() as u32 - 1;

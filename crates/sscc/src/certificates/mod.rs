@@ -8,6 +8,8 @@ mod pair_tree;
 mod precompute;
 mod scope;
 mod search;
+mod shards;
+mod task;
 
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
@@ -18,6 +20,7 @@ pub(crate) use pair_tree::{Entry as PairEntry, roots_of};
 pub(crate) use precompute::{child_pairs, within_small};
 pub use scope::Scope;
 pub(crate) use search::Search;
+pub use shards::{BUILD, RunJobs, ShardWorker};
 
 /// How certificates are computed.
 #[derive(Clone, Debug)]

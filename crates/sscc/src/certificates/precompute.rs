@@ -5,222 +5,155 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
-use super::global::global_radius;
 use super::grow::Grove;
 use super::pair_tree::Entry;
-use super::search::{Precision, Search};
-use super::{CertificateParts, CertifyOptions, Digest, Scope};
-use crate::bounds::{ClusterBounds, ScaledModel};
+use super::search::Precision;
+use super::task::{Here, NodeTask, Prepared, Solver};
+use super::{CertificateParts, CertifyOptions, PairTree};
 use crate::hierarchy::{Hierarchy, Node};
-use crate::metric::check_scaled_modes;
-use crate::pairs::PairFilter;
-use crate::query::colliding_pairs;
 use crate::threads::on_threads;
-use crate::{Error, Pair, Progress, ReducedModel};
+use crate::{Error, Progress, ReducedModel};
 
 pub(super) fn compute(
     model: &ReducedModel,
     options: &CertifyOptions,
     progress: &dyn Progress,
 ) -> Result<CertificateParts, Error> {
-    on_threads(options.threads, || compute_here(model, options, progress))
-}
-
-/// On the threads of the current pool.
-fn compute_here(
-    model: &ReducedModel,
-    options: &CertifyOptions,
-    progress: &dyn Progress,
-) -> Result<CertificateParts, Error> {
-    if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
-        return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
-    }
-    let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
-    check_scaled_modes(model.mesh(), model.modes(), &metric)?;
-    let rest = vec![0.0; model.rank()];
-    let center = options.center.clone().unwrap_or_else(|| rest.clone());
-    model.check_coordinates(&center)?;
-    let hierarchy = Hierarchy::build(model, &metric);
-    let mut rule = options.rule.clone();
-    let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress)?;
-    let rest_collisions = at_rest.len() as u64;
-    let at_center = if center == rest {
-        at_rest.clone()
-    } else {
-        colliding_pairs(model, &hierarchy, &rule, &center, progress)?
-    };
-    if options.ignore_rest {
-        rule = rule.ignoring(at_rest);
-    }
-    let counts = |pair: &Pair| rule.ignored().binary_search(pair).is_err();
-    let mut exceptions: Vec<Pair> = at_center.into_iter().filter(counts).collect();
-    let triangles = model.mesh().faces().len();
-    if exceptions.len() > options.max_exceptions.unwrap_or(CertifyOptions::default_exceptions(triangles)) {
-        exceptions.clear();
-    }
-    let scope = Scope { metric, center, rule, exceptions };
-    let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
-    let filter = PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions);
-    let clusters = ClusterBounds::new(&scaled, &hierarchy);
-    let global_radius = global_radius(model, &scope.metric, &scope.center);
-    let work = Work {
-        scaled: &scaled,
-        filter: &filter,
-        hierarchy: &hierarchy,
-        clusters: &clusters,
-        options,
-        global_radius,
-        progress,
-    };
-    let budget = options.budget.saturating_mul(triangles) / size_of::<Entry>();
-    let grove = Grove::grow(&hierarchy, global_radius, budget, || work.search(), progress)?;
-    let (node_radii, root_pair_radii) = work.run(&grove)?;
-    let pair_tree = grove.harvest(&hierarchy, &node_radii);
-    Ok(CertificateParts {
-        digest: Digest::of(model, &scope),
-        scope,
-        rest_collisions,
-        hierarchy,
-        epsilon: options.epsilon,
-        global_radius,
-        node_radii,
-        root_pair_radii,
-        pair_tree,
+    on_threads(options.threads, || {
+        let prepared = Prepared::new(model, options, progress)?;
+        let mut here = Here { prepared: &prepared, progress };
+        let radii = Radii::compute(&prepared, options.budget, &mut here, progress)?;
+        Ok(radii.of(prepared))
     })
 }
 
-struct Work<'a> {
-    scaled: &'a ScaledModel,
-    filter: &'a PairFilter,
-    hierarchy: &'a Hierarchy,
-    clusters: &'a ClusterBounds,
-    options: &'a CertifyOptions,
-    global_radius: f64,
-    progress: &'a dyn Progress,
+/// What is computed, stage by stage.
+pub(super) struct Radii {
+    nodes: Vec<f64>,
+    root_pairs: Vec<f64>,
+    pair_tree: PairTree,
 }
 
-impl Work<'_> {
-    /// All radii: first roughly, then precisely those that may be below what was learnt of the root's.
-    fn run(&self, grove: &Grove) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let nodes = self.hierarchy.nodes();
-        let mut radii = vec![0.0; nodes.len()];
-        let mut root_pairs = vec![0.0; child_pairs(&nodes[0]).count()];
-        let tally = Tally::new(self.progress, 2 * (nodes.len() + root_pairs.len()));
-        let upper = self.pass(Precision::Rough, f64::INFINITY, &mut radii, &mut root_pairs, grove, &tally);
-        self.pass(Precision::Full, upper, &mut radii, &mut root_pairs, grove, &tally);
-        tally.finish()?;
-        Ok((radii, root_pairs))
+impl Radii {
+    /// All radii, and a pair tree of so many bytes a triangle.
+    pub(super) fn compute(
+        prepared: &Prepared,
+        budget: usize,
+        solver: &mut dyn Solver,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        let hierarchy = &prepared.hierarchy;
+        let budget = budget.saturating_mul(hierarchy.order().len()) / size_of::<Entry>();
+        let grove = Grove::grow(hierarchy, prepared.global_radius, budget, solver)?;
+        let mut work = Work::new(prepared, &grove, progress);
+        let upper = work.pass(Precision::Rough, f64::INFINITY, solver)?;
+        // Then precisely those that may be below what was learnt of the root's.
+        work.pass(Precision::Full, upper, solver)?;
+        work.tally.finish()?;
+        let Work { nodes, root_pairs, .. } = work;
+        let pair_tree = grove.harvest(hierarchy, &nodes);
+        Ok(Self { nodes, root_pairs, pair_tree })
+    }
+
+    /// The certificates of the model that was prepared.
+    pub(super) fn of(self, prepared: Prepared) -> CertificateParts {
+        let Prepared { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } = prepared;
+        CertificateParts {
+            digest,
+            scope,
+            rest_collisions,
+            hierarchy,
+            epsilon,
+            global_radius,
+            node_radii: self.nodes,
+            root_pair_radii: self.root_pairs,
+            pair_tree: self.pair_tree,
+        }
+    }
+}
+
+/// The radii so far.
+struct Work<'a> {
+    prepared: &'a Prepared,
+    grove: &'a Grove,
+    tally: Tally<'a>,
+    nodes: Vec<f64>,
+    root_pairs: Vec<f64>,
+}
+
+impl<'a> Work<'a> {
+    fn new(prepared: &'a Prepared, grove: &'a Grove, progress: &'a dyn Progress) -> Self {
+        let nodes = prepared.hierarchy.nodes();
+        let (count, pairs) = (nodes.len(), child_pairs(&nodes[0]).count());
+        let tally = Tally::new(progress, 2 * (count + pairs));
+        Self { prepared, grove, tally, nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] }
     }
 
     /// Computes the radii of all nodes that are below a limit, which also gives an upper bound of the root's.
     ///
     /// Nodes of one level are independent of each other: level by level from the leaves, each result
-    /// depends only on the model, whatever the number of threads.
-    fn pass(
-        &self,
-        precision: Precision,
-        below: f64,
-        radii: &mut [f64],
-        root_pairs: &mut [f64],
-        grove: &Grove,
-        tally: &Tally<'_>,
-    ) -> f64 {
-        let nodes = self.hierarchy.nodes();
-        let within_small = within_small(self.hierarchy);
-        let search = || {
-            let mut search = self.search();
-            search.set_precision(precision);
-            search
-        };
+    /// depends only on the model, whoever solves the tasks.
+    fn pass(&mut self, precision: Precision, below: f64, solver: &mut dyn Solver) -> Result<f64, Error> {
+        let hierarchy = &self.prepared.hierarchy;
+        let nodes = hierarchy.nodes();
+        let within_small = within_small(hierarchy);
         let mut upper = f64::INFINITY;
-        let mut take = |known: &mut [f64], computed: Vec<(f64, f64)>| {
-            for (radius, (better, met)) in known.iter_mut().zip(computed) {
-                *radius = radius.max(better);
-                upper = upper.min(met);
-            }
+        let mut take = |radius: &mut f64, (better, met): (f64, f64)| {
+            *radius = radius.max(better);
+            upper = upper.min(met);
         };
-        for level in self.hierarchy.levels().into_iter().rev().filter(|level| level.start != 0) {
-            let one = |search: &mut Search<'_>, n: usize| {
-                tally.step(|| {
-                    if radii[n] < below && !within_small[n] {
-                        (self.node(search, n as u32, &nodes[n], radii, grove), search.upper())
-                    } else {
-                        (radii[n], f64::INFINITY)
-                    }
-                })
+        for level in hierarchy.levels().into_iter().rev() {
+            if level.start == 0 && !nodes[0].is_leaf() {
+                continue;
+            }
+            let wanted = |n: &usize| self.nodes[*n] < below && !within_small[*n];
+            let wanted: Vec<usize> = level.clone().filter(wanted).collect();
+            self.tally.add(level.len() - wanted.len());
+            let task = |at: usize| {
+                let node = &nodes[wanted[at]];
+                let cap = self.least_child(node);
+                self.task(wanted[at], 0..child_pairs(node).count(), cap)
             };
-            let computed = level.clone().into_par_iter().map_init(search, one).collect();
-            take(&mut radii[level], computed);
+            let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
+            wanted.into_iter().zip(found).for_each(|(n, found)| take(&mut self.nodes[n], found));
         }
-        let root = &nodes[0];
-        if root.is_leaf() {
-            let mut search = search();
-            let radius = tally.step(|| (self.node(&mut search, 0, root, radii, grove), search.upper()));
-            take(&mut radii[..1], vec![radius]);
-        } else {
+        if !nodes[0].is_leaf() {
             // Between the children of the root each pair has a radius of its own.
-            let pairs: Vec<(u32, u32)> = child_pairs(root).collect();
-            let one = |search: &mut Search<'_>, at: usize| {
-                tally.step(|| {
-                    if root_pairs[at] < below {
-                        let pair = [pairs[at]];
-                        let radius = self.between(search, 0, at..at + 1, pair, self.global_radius, grove);
-                        (radius, search.upper())
-                    } else {
-                        (root_pairs[at], f64::INFINITY)
-                    }
-                })
-            };
-            let computed = (0..pairs.len()).into_par_iter().map_init(search, one).collect();
-            take(root_pairs, computed);
-            radii[0] = self.least_child(root, radii);
-            radii[0] = root_pairs.iter().copied().fold(radii[0], f64::min);
+            let wanted = |at: &usize| self.root_pairs[*at] < below;
+            let wanted: Vec<usize> = (0..self.root_pairs.len()).filter(wanted).collect();
+            self.tally.add(self.root_pairs.len() - wanted.len() + 1);
+            let task = |at: usize| self.task(0, wanted[at]..wanted[at] + 1, self.prepared.global_radius);
+            let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
+            wanted.into_iter().zip(found).for_each(|(at, found)| take(&mut self.root_pairs[at], found));
+            self.nodes[0] = self.root_pairs.iter().copied().fold(self.least_child(&nodes[0]), f64::min);
         }
         // Parents come before their children.
         for (n, node) in nodes.iter().enumerate() {
             for child in node.children().filter(|child| within_small[*child as usize]) {
-                radii[child as usize] = radii[n];
+                self.nodes[child as usize] = self.nodes[n];
             }
         }
-        upper
+        Ok(upper)
     }
 
-    fn search(&self) -> Search<'_> {
-        let epsilon = self.options.epsilon;
-        Search::new(self.scaled, self.filter, self.hierarchy, self.clusters, epsilon, self.progress)
+    fn least_child(&self, node: &Node) -> f64 {
+        let radii = node.children().map(|child| self.nodes[child as usize]);
+        radii.fold(self.prepared.global_radius, f64::min)
     }
 
-    fn least_child(&self, node: &Node, radii: &[f64]) -> f64 {
-        node.children().map(|child| radii[child as usize]).fold(self.global_radius, f64::min)
-    }
-
-    fn node(&self, search: &mut Search<'_>, n: u32, node: &Node, radii: &[f64], grove: &Grove) -> f64 {
-        if node.is_leaf() || self.hierarchy.is_whole(n) {
-            return search.within(n, self.global_radius);
+    /// To find the radius, at most `cap`, of a node or of some pairs of its children.
+    fn task(&self, node: usize, which: Range<usize>, cap: f64) -> NodeTask {
+        let hierarchy = &self.prepared.hierarchy;
+        let node = node as u32;
+        if hierarchy.is_whole(node) || hierarchy.nodes()[node as usize].is_leaf() {
+            // It is searched within, whatever its parts have: they were not.
+            let cap = self.prepared.global_radius;
+            return NodeTask { node, which, cap, known: cap, small: Vec::new() };
         }
-        let cap = self.least_child(node, radii);
-        if cap <= 0.0 {
-            return 0.0;
-        }
-        self.between(search, n, 0..child_pairs(node).count(), child_pairs(node), cap, grove)
-    }
-
-    /// The radius, at most `cap`, of some pairs of children of a node, given with their places.
-    fn between(
-        &self,
-        search: &mut Search<'_>,
-        n: u32,
-        which: Range<usize>,
-        pairs: impl IntoIterator<Item = (u32, u32)>,
-        cap: f64,
-        grove: &Grove,
-    ) -> f64 {
         // Pairs that the grove does not know are at least what it has reached.
-        let known = cap.min(grove.reached());
-        let radius = search.among(grove.small(self.hierarchy, n, which, known), known);
-        if radius < known || known == cap { radius } else { search.between(pairs, cap) }
+        let known = cap.min(self.grove.reached());
+        let small = self.grove.small(hierarchy, node, which.clone(), known);
+        NodeTask { node, which, cap, known, small }
     }
 }
 
@@ -239,8 +172,11 @@ pub(crate) fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
     children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
 }
 
+/// Steps between two reports.
+const REPORT: usize = 64;
+
 /// Counts finished steps, reports them, and skips the rest once the caller has cancelled.
-struct Tally<'a> {
+pub(super) struct Tally<'a> {
     progress: &'a dyn Progress,
     done: AtomicUsize,
     total: usize,
@@ -251,16 +187,22 @@ impl<'a> Tally<'a> {
         Self { progress, done: AtomicUsize::new(0), total }
     }
 
-    fn step(&self, work: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
+    /// One step, and its results: the radius that promises nothing once the caller has cancelled.
+    pub(super) fn step(&self, work: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
         if self.progress.is_cancelled() {
             return (0.0, 0.0);
         }
         let result = work();
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        if done.is_multiple_of(64) || done == self.total {
-            self.progress.report(done, self.total);
-        }
+        self.add(1);
         result
+    }
+
+    /// So many steps are finished.
+    pub(super) fn add(&self, count: usize) {
+        let before = self.done.fetch_add(count, Ordering::Relaxed);
+        if before / REPORT != (before + count) / REPORT {
+            self.progress.report(before + count, self.total);
+        }
     }
 
     fn finish(&self) -> Result<(), Error> {

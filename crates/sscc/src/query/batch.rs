@@ -1,5 +1,7 @@
 //! Many q at once, on all cores.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
 use super::{Query, Statistics};
@@ -17,6 +19,9 @@ pub struct Answer {
     pub statistics: Statistics,
 }
 
+/// After so many q progress is reported: often enough for people, and no cost to the cheapest queries.
+const REPORTED: usize = 64;
+
 impl Query<'_> {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
     /// of threads (none: all cores).
@@ -29,15 +34,33 @@ impl Query<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<Answer>, Error> {
-        let answer = |query: &mut Query<'_>, q: &Q| {
+        self.batch_at_most(batch, usize::MAX, threads, progress)
+    }
+
+    /// As [`Query::batch`], at most `limit` pairs of each q: see [`Query::discrete_at_most`].
+    ///
+    /// # Errors
+    /// As [`Query::batch`].
+    pub fn batch_at_most<Q: AsRef<[f64]> + Sync>(
+        &self,
+        batch: &[Q],
+        limit: usize,
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Answer>, Error> {
+        let done = AtomicUsize::new(0);
+        let answer = |query: &mut Query<'_>, (index, q): (usize, &Q)| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            let pairs = query.discrete(q.as_ref())?.to_vec();
+            let pairs = query.discrete_at_most(q.as_ref(), limit)?.to_vec();
+            if index.is_multiple_of(REPORTED) {
+                progress.report(done.fetch_add(REPORTED, Ordering::Relaxed), batch.len());
+            }
             Ok(Answer { pairs, norm: query.norm(), statistics: query.statistics() })
         };
         let answers: Vec<Result<Answer, Error>> =
-            on_threads(threads, || batch.par_iter().map_init(|| self.clone(), answer).collect());
+            on_threads(threads, || batch.par_iter().enumerate().map_init(|| self.clone(), answer).collect());
         progress.report(batch.len(), batch.len());
         answers.into_iter().collect()
     }

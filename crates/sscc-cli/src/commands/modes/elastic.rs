@@ -9,7 +9,7 @@ use sscc_modes::{
 };
 
 use super::source::Source;
-use super::{Made, fix, material, name};
+use super::{Made, POLYNOMIALS_ARE_FREE, fix, material, name};
 use crate::args::{self, ModesKind};
 use crate::progress::Bar;
 
@@ -18,33 +18,47 @@ const LINEAR_RANK: usize = 20;
 const NONLINEAR_RANK: usize = 30;
 
 pub fn make(args: &args::Modes) -> Result<Made> {
-    let polynomial = args.kind == ModesKind::Polynomial;
-    if polynomial && (args.rank.is_some() || args.fix.is_some()) {
-        bail!("--rank and --fix: polynomial modes are always all 24, and move every vertex");
+    if args.kind == ModesKind::Polynomial && (args.rank.is_some() || args.fix.is_some()) {
+        bail!(POLYNOMIALS_ARE_FREE);
     }
     let material = material::parse(args.material.as_deref())?;
     let bar = Bar::new("modes");
     let source = Source::read(&args.source, args.resolution, material, &bar)?;
     let fixed = fix::vertices(args.fix.as_deref(), &source)?;
-    let (solid, progress): (_, &dyn Progress) = (source.solid(), &bar);
-    let rank = |default| args.rank.map_or(default, |rank| rank as usize);
-    let (found, of_surface): (SolidModes, Modes) = match args.kind {
+    of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, material, name(args), &bar)
+}
+
+/// Modes of a solid with fixed vertices; without a rank as many as usual. `name` is that of the source, and `material`
+/// what it is made of where that has none of its own.
+pub fn of_solid(
+    kind: ModesKind,
+    rank: Option<usize>,
+    source: Source,
+    fixed: &[u32],
+    material: Material,
+    name: String,
+    progress: &dyn Progress,
+) -> Result<Made> {
+    if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
+        bail!(POLYNOMIALS_ARE_FREE);
+    }
+    let solid = source.solid();
+    let (found, of_surface): (SolidModes, Modes) = match kind {
         ModesKind::Linear => {
-            let found = linear_modes(solid, &fixed, rank(LINEAR_RANK), progress)?;
+            let found = linear_modes(solid, fixed, rank.unwrap_or(LINEAR_RANK), progress)?;
             let modes = source.on_surface(&found.modes)?;
             (found, modes)
         }
         ModesKind::Nonlinear => {
-            let found = nonlinear_modes(solid, &fixed, rank(NONLINEAR_RANK), progress)?;
+            let found = nonlinear_modes(solid, fixed, rank.unwrap_or(NONLINEAR_RANK), progress)?;
             let modes = source.on_surface(&found.modes)?;
             (found, modes)
         }
         ModesKind::Polynomial => polynomial_solid_modes(solid, source.mesh(), progress)?,
         ModesKind::Pca => unreachable!("principal components are made without a solid"),
     };
-    drop(bar);
     // Natural frequencies are as they are; those of other modes may be very high, and are filtered (paper, section 6).
-    let weights = match args.kind {
+    let weights = match kind {
         ModesKind::Linear => found.eigenvalues.clone(),
         _ => filter_eigenvalues(&found.eigenvalues, DEFAULT_ELL)?,
     };
@@ -59,9 +73,8 @@ pub fn make(args: &args::Modes) -> Result<Made> {
         "materials of the file".into()
     };
     let provenance = format!(
-        "{of_source} {}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
-        name(args),
-        args.kind.name(),
+        "{of_source} {name}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
+        kind.name(),
     );
     let frequencies = found.frequencies();
     Ok(Made {

@@ -15,9 +15,13 @@ use sscc_modes::polynomial_modes;
 use crate::args::{self, ModesKind};
 use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
-pub use elastic::elasticity;
+pub use elastic::{elasticity, of_solid};
 use pca::Components;
 pub use source::{Source, is_solid};
+
+/// Why polynomial modes take neither.
+const POLYNOMIALS_ARE_FREE: &str =
+    "--rank and --fix: polynomial modes are always all 24, and move every vertex";
 
 #[derive(Serialize)]
 struct Report {
@@ -36,9 +40,9 @@ struct Report {
 }
 
 /// A surface with modes, and what else was found.
-struct Made {
+pub struct Made {
     /// Whether vertices are known to be split along seams.
-    is_split: bool,
+    pub is_split: bool,
     mesh: TriMesh,
     modes: Modes,
     /// If not given, displacement.
@@ -51,6 +55,38 @@ struct Made {
     provenance: String,
 }
 
+impl Made {
+    /// Polynomial modes of a surface of that name, without a solid.
+    pub fn polynomial(mesh: TriMesh, modes: Modes, name: &str) -> Self {
+        Self {
+            is_split: false,
+            mesh,
+            modes,
+            metric: None,
+            elasticity: None,
+            elements: None,
+            degrees_of_freedom: None,
+            frequencies: None,
+            components: None,
+            provenance: format!("mesh {name}, polynomial modes"),
+        }
+    }
+
+    /// The model, and what its file says beside it.
+    pub fn into_model(self) -> Result<(ReducedModel, ModelInfo)> {
+        let model = match self.metric {
+            Some(metric) => ReducedModel::with_metric(self.mesh, self.modes, metric),
+            None => ReducedModel::new(self.mesh, self.modes),
+        };
+        let info = ModelInfo::new("", self.provenance);
+        let info = match self.elasticity {
+            Some(elasticity) => info.with_elasticity(elasticity),
+            None => info,
+        };
+        Ok((model?, info))
+    }
+}
+
 pub fn run(args: &args::Modes) -> Result<Outcome> {
     load::check_output(&args.output, ".model.safetensors", &[&args.source])?;
     let in_source = || args.source.display().to_string();
@@ -59,16 +95,9 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         ModesKind::Pca => pca::make(args)?,
         _ => elastic::make(args).with_context(in_source)?,
     };
-    let model = match made.metric {
-        Some(metric) => ReducedModel::with_metric(made.mesh, made.modes, metric),
-        None => ReducedModel::new(made.mesh, made.modes),
-    };
-    let model = model.with_context(in_source)?;
-    let info = ModelInfo::new("", made.provenance);
-    let info = match made.elasticity {
-        Some(elasticity) => info.with_elasticity(elasticity),
-        None => info,
-    };
+    let (is_split, elements, degrees_of_freedom) = (made.is_split, made.elements, made.degrees_of_freedom);
+    let (frequencies, components) = (made.frequencies.clone(), made.components.clone());
+    let (model, info) = made.into_model().with_context(in_source)?;
     interrupt::check()?;
     write_model(&args.output, &model, &info)?;
 
@@ -76,10 +105,10 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         triangles: model.mesh().faces().len(),
         vertices: model.mesh().rest_positions().len(),
         rank: model.rank(),
-        elements: made.elements,
-        degrees_of_freedom: made.degrees_of_freedom,
-        frequencies_hz: made.frequencies,
-        components: made.components,
+        elements,
+        degrees_of_freedom,
+        frequencies_hz: frequencies,
+        components,
     };
     let mut out = Output::new();
     if args.json.json {
@@ -111,7 +140,7 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     }
     out.finish()?;
     let file = report.components.as_ref().map_or(&args.source, |components| &components.first);
-    if made.is_split || sscc_io::splits_vertices(file) {
+    if is_split || sscc_io::splits_vertices(file) {
         eprintln!("note: vertices are split along seams: certify it with --weld");
     }
     Ok(Outcome::Done)
@@ -124,23 +153,11 @@ fn asks_for_solid(args: &args::Modes) -> bool {
 
 fn surface_polynomials(args: &args::Modes) -> Result<Made> {
     if args.rank.is_some() || args.fix.is_some() {
-        bail!("--rank and --fix: polynomial modes are always all 24, and move every vertex");
+        bail!(POLYNOMIALS_ARE_FREE);
     }
     let mesh = read_mesh(&args.source)?;
     let modes = polynomial_modes(&mesh).with_context(|| args.source.display().to_string())?;
-    let provenance = format!("mesh {}, polynomial modes", name(args));
-    Ok(Made {
-        is_split: false,
-        mesh,
-        modes,
-        metric: None,
-        elasticity: None,
-        elements: None,
-        degrees_of_freedom: None,
-        frequencies: None,
-        components: None,
-        provenance,
-    })
+    Ok(Made::polynomial(mesh, modes, &name(args)))
 }
 
 /// The name of the source, without its folder.

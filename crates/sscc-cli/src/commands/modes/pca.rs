@@ -9,9 +9,10 @@ use sscc_modes::pca_modes;
 
 use super::{Made, name};
 use crate::args;
+use crate::progress::Bar;
 
 /// What is known of principal components.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Components {
     pub frames: usize,
     /// The share of the variance that all modes together explain.
@@ -34,7 +35,9 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     );
     let frames = read_frames(&args.source)?;
     let rank = args.rank.map(|rank| rank as usize);
-    let pca = pca_modes(&frames.mesh, &frames.positions, rank).with_context(|| shown.to_string())?;
+    let bar = Bar::new("modes");
+    let pca = pca_modes(&frames.mesh, &frames.positions, rank, &bar).with_context(|| shown.to_string())?;
+    drop(bar);
     let count = frames.paths.len();
     let components = Components {
         frames: count,

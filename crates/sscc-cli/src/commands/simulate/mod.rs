@@ -15,7 +15,34 @@ use crate::scene::{SHIPPED, Scene};
 use crate::simulation::{Meter, Page, Prepared, Ran, Summary, run, write};
 use crate::{Outcome, interrupt, load};
 
+/// A simulation that has come to its end, or was stopped on its way.
+pub struct Simulated {
+    pub summary: Summary,
+    /// The folder, and what was written to it.
+    pub folder: PathBuf,
+    pub files: Vec<PathBuf>,
+    /// Why it ended early, if it did.
+    failure: Option<String>,
+    /// What could not be written.
+    unwritten: Option<anyhow::Error>,
+    steps: usize,
+}
+
 pub fn run_command(args: &Simulate) -> Result<Outcome> {
+    let simulated = simulated(args)?;
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&simulated.summary)?;
+    } else {
+        simulated.summary.lines().into_iter().try_for_each(|line| out.line(line))?;
+        simulated.files.iter().try_for_each(|file| out.line(format_args!("written: {}", file.display())))?;
+    }
+    out.finish()?;
+    simulated.whole().map(|_| Outcome::Done)
+}
+
+/// Simulates a scene and writes what comes out; nothing is printed.
+pub fn simulated(args: &Simulate) -> Result<Simulated> {
     let scene = read(&args.scene)?;
     let models = models_folder(args.models.as_deref())?;
     let cache = Cache::open(args.cache.as_deref())?;
@@ -36,7 +63,7 @@ fn simulate(
     models: Option<&Path>,
     cache: &Cache,
     folder: &Path,
-) -> Result<Outcome> {
+) -> Result<Simulated> {
     let in_scene = || scene.name.clone();
     let prepared = Prepared::get(scene, models, cache).with_context(in_scene)?;
     let steps = args.steps.map_or(scene.steps, |steps| steps as usize);
@@ -59,23 +86,24 @@ fn simulate(
     let page =
         Page { scene, prepared: &prepared, history: &history, summary: &summary, traditional, failure };
     let (files, unwritten) = write(folder, &page);
-    let mut out = Output::new();
-    if args.json.json {
-        out.json(&summary)?;
-    } else {
-        summary.lines().into_iter().try_for_each(|line| out.line(line))?;
-        files.iter().try_for_each(|file| out.line(format_args!("written: {}", file.display())))?;
-    }
-    out.finish()?;
-    match (page.failure, unwritten) {
-        (None, None) => Ok(Outcome::Done),
-        (None, Some(unwritten)) => Err(unwritten),
-        (Some(failure), _) if interrupt::happened() => {
-            bail!("{failure} after {} steps; the same command goes on from there", history.len())
-        }
-        (Some(failure), unwritten) => {
-            let unwritten = unwritten.map(|error| format!(" ({error:#})")).unwrap_or_default();
-            bail!("{failure}; what was simulated until then is in {}{unwritten}", folder.display())
+    let Page { failure, .. } = page;
+    Ok(Simulated { summary, folder: folder.to_owned(), files, failure, unwritten, steps: history.len() })
+}
+
+impl Simulated {
+    /// The same, if nothing went wrong.
+    pub fn whole(self) -> Result<Self> {
+        match (&self.failure, self.unwritten) {
+            (None, None) => Ok(Self { unwritten: None, ..self }),
+            (None, Some(unwritten)) => Err(unwritten),
+            (Some(failure), _) if interrupt::happened() => {
+                bail!("{failure} after {} steps; the same command goes on from there", self.steps)
+            }
+            (Some(failure), unwritten) => {
+                let unwritten = unwritten.map(|error| format!(" ({error:#})")).unwrap_or_default();
+                let folder = self.folder.display();
+                bail!("{failure}; what was simulated until then is in {folder}{unwritten}")
+            }
         }
     }
 }

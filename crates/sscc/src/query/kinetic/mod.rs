@@ -15,7 +15,7 @@ use super::finder::Finder;
 use super::{Query, Statistics};
 use crate::bounds::ScaledModel;
 use crate::metric::check_scaled_modes;
-use crate::{Certificates, Error, Pair, ReducedModel};
+use crate::{Certificates, Error, Pair, Progress, ReducedModel};
 pub(super) use ball::Ball;
 use front::Front;
 use margin::Margins;
@@ -82,6 +82,13 @@ impl<'a> KineticQuery<'a> {
             work: Vec::new(),
             query,
         })
+    }
+
+    /// The same query, which looks now and then whether it was cancelled. Nothing is reported.
+    #[must_use]
+    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
+        self.query = self.query.cancelled_by(progress);
+        self
     }
 
     /// All colliding pairs at q, as [`Query::discrete`].

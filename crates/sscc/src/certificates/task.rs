@@ -1,0 +1,176 @@
+//! The tasks that precomputation consists of, and who solves them.
+//!
+//! Certificates are computed in stages (`precompute.rs`, `grow.rs`): the tasks of one stage are independent of each
+//! other, the next stage depends on their results. A result depends on the task alone, so that it does not matter who
+//! solves it: the threads of this process ([`Here`]) or other processes (`shards.rs`).
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::grow::{Grown, Round, expand};
+use super::precompute::Tally;
+use super::search::{Precision, Search};
+use super::{CertifyOptions, Digest, Scope, child_pairs, global::global_radius};
+use crate::bounds::{ClusterBounds, ScaledModel};
+use crate::hierarchy::Hierarchy;
+use crate::metric::check_scaled_modes;
+use crate::pairs::PairFilter;
+use crate::query::colliding_pairs;
+use crate::{Error, Pair, Progress, ReducedModel};
+
+/// What every task needs to know. Made of the model and the options alone: the same in every process.
+pub(super) struct Prepared {
+    pub(super) digest: Digest,
+    pub(super) scope: Scope,
+    pub(super) hierarchy: Hierarchy,
+    pub(super) global_radius: f64,
+    pub(super) rest_collisions: u64,
+    pub(super) epsilon: f64,
+    scaled: ScaledModel,
+    filter: PairFilter,
+    clusters: ClusterBounds,
+}
+
+impl Prepared {
+    /// On the threads of the current pool.
+    pub(super) fn new(
+        model: &ReducedModel,
+        options: &CertifyOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
+            return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
+        }
+        let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
+        check_scaled_modes(model.mesh(), model.modes(), &metric)?;
+        let rest = vec![0.0; model.rank()];
+        let center = options.center.clone().unwrap_or_else(|| rest.clone());
+        model.check_coordinates(&center)?;
+        let hierarchy = Hierarchy::build(model, &metric);
+        let mut rule = options.rule.clone();
+        let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress)?;
+        let rest_collisions = at_rest.len() as u64;
+        let at_center = if center == rest {
+            at_rest.clone()
+        } else {
+            colliding_pairs(model, &hierarchy, &rule, &center, progress)?
+        };
+        if options.ignore_rest {
+            rule = rule.ignoring(at_rest);
+        }
+        let counts = |pair: &Pair| rule.ignored().binary_search(pair).is_err();
+        let mut exceptions: Vec<Pair> = at_center.into_iter().filter(counts).collect();
+        let triangles = model.mesh().faces().len();
+        if exceptions.len() > options.max_exceptions.unwrap_or(CertifyOptions::default_exceptions(triangles))
+        {
+            exceptions.clear();
+        }
+        let scope = Scope { metric, center, rule, exceptions };
+        let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
+        Ok(Self {
+            digest: Digest::of(model, &scope),
+            filter: PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions),
+            clusters: ClusterBounds::new(&scaled, &hierarchy),
+            global_radius: global_radius(model, &scope.metric, &scope.center),
+            rest_collisions,
+            epsilon: options.epsilon,
+            scope,
+            hierarchy,
+            scaled,
+        })
+    }
+
+    pub(super) fn search<'a>(&'a self, progress: &'a dyn Progress) -> Search<'a> {
+        Search::new(&self.scaled, &self.filter, &self.hierarchy, &self.clusters, self.epsilon, progress)
+    }
+}
+
+/// The radius of a node, or of one pair of its children.
+pub(super) struct NodeTask {
+    pub(super) node: u32,
+    /// Which pairs of children.
+    pub(super) which: Range<usize>,
+    /// More is not asked for.
+    pub(super) cap: f64,
+    /// Up to here the radius is that of the pairs of small nodes given, at most `cap`.
+    pub(super) known: f64,
+    /// These, each with a lower bound.
+    pub(super) small: Vec<Pair2>,
+}
+
+/// Two nodes and a lower bound of their radius.
+pub(super) type Pair2 = ((u32, u32), f64);
+
+impl NodeTask {
+    /// The radius, and the smallest upper bound of any radius that the searcher has met.
+    pub(super) fn solve(self, prepared: &Prepared, search: &mut Search<'_>) -> (f64, f64) {
+        let Self { node, which, cap, known, small } = self;
+        let parent = &prepared.hierarchy.nodes()[node as usize];
+        let radius = if parent.is_leaf() || prepared.hierarchy.is_whole(node) {
+            search.within(node, cap)
+        } else {
+            let radius = search.among(small, known);
+            if radius < known || known == cap {
+                radius
+            } else {
+                search.between(child_pairs(parent).skip(which.start).take(which.len()), cap)
+            }
+        };
+        (radius, search.upper())
+    }
+}
+
+/// Solves the tasks of one stage after the other.
+pub(super) trait Solver {
+    /// What becomes of each open pair ([`expand`]); none where that would be more pairs than there is room for.
+    fn grow(&mut self, open: &[Grown], round: Round) -> Result<Option<Vec<Vec<Grown>>>, Error>;
+
+    /// The results of `count` tasks ([`NodeTask::solve`]), which are made when their turn comes.
+    fn radii(
+        &mut self,
+        precision: Precision,
+        count: usize,
+        task: &(dyn Fn(usize) -> NodeTask + Sync),
+        tally: &Tally<'_>,
+    ) -> Result<Vec<(f64, f64)>, Error>;
+}
+
+/// The threads of the current pool.
+pub(super) struct Here<'a> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) progress: &'a dyn Progress,
+}
+
+impl Solver for Here<'_> {
+    fn grow(&mut self, open: &[Grown], round: Round) -> Result<Option<Vec<Vec<Grown>>>, Error> {
+        let Self { prepared, progress } = *self;
+        let used = AtomicUsize::new(0);
+        let one = |search: &mut Search<'_>, pair: &Grown| {
+            expand(*pair, round, &prepared.hierarchy, search, &used, progress)
+        };
+        let lists = open.par_iter().map_init(|| prepared.search(progress), one).collect();
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        Ok((used.load(Ordering::Relaxed) <= round.room).then_some(lists))
+    }
+
+    fn radii(
+        &mut self,
+        precision: Precision,
+        count: usize,
+        task: &(dyn Fn(usize) -> NodeTask + Sync),
+        tally: &Tally<'_>,
+    ) -> Result<Vec<(f64, f64)>, Error> {
+        let Self { prepared, progress } = *self;
+        let search = || {
+            let mut search = prepared.search(progress);
+            search.set_precision(precision);
+            search
+        };
+        let one = |search: &mut Search<'_>, at| tally.step(|| task(at).solve(prepared, search));
+        Ok((0..count).into_par_iter().map_init(search, one).collect())
+    }
+}

@@ -1,0 +1,105 @@
+"""What the shape of a mesh with shape keys is: basis + sum of value_k (key_k - the key that it is relative to).
+
+This is how Blender evaluates relative keys: the differences are those of the stored keys, whatever the values of others
+are. Blender adds in single precision, certificates speak of the sum in double precision.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+
+class Unsupported(Exception):
+    """Why nothing can be said of an object as it is now, and what to do."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """All that certificates depend on."""
+
+    basis: np.ndarray  #: (V, 3) float32
+    keys: np.ndarray  #: (K, V, 3) float32, without the basis
+    relative: np.ndarray  #: (K) int64: to which key each is relative, -1 for the basis
+    loops: np.ndarray  #: vertices of all polygons' corners
+    starts: np.ndarray  #: where each polygon begins among them
+
+    def fingerprint(self) -> bytes:
+        """A hash of everything: the same only for the same shape."""
+        digest = hashlib.blake2b(digest_size=32)
+        for array in (self.basis, self.keys, self.relative, self.loops, self.starts):
+            digest.update(f"{array.dtype} {array.shape} ".encode())
+            digest.update(np.ascontiguousarray(array))
+        return digest.digest()
+
+    def modes(self) -> np.ndarray:
+        """What each key adds: (V, 3, K) float64."""
+        references = np.concatenate([self.keys, self.basis[None]]).astype(float)[self.relative]
+        return np.moveaxis(self.keys.astype(float) - references, 0, -1)
+
+
+def check(obj: bpy.types.Object | None) -> None:
+    """Refuses objects whose shape on the screen is not that of their keys."""
+    if obj is None or obj.type != "MESH":
+        raise Unsupported("select a mesh")
+    mesh = obj.data
+    if mesh.shape_keys is None or len(mesh.shape_keys.key_blocks) < 2:
+        raise Unsupported("the mesh has no shape keys beside the basis")
+    if not mesh.shape_keys.use_relative:
+        raise Unsupported("absolute shape keys are not supported: make them relative")
+    if obj.mode != "OBJECT" or mesh.is_editmode:
+        raise Unsupported("go to Object Mode: the mesh is being edited")
+    if obj.show_only_shape_key:
+        raise Unsupported("only the active key is shown: switch Shape Key Lock off")
+    masked = [key.name for key in mesh.shape_keys.key_blocks if key.vertex_group]
+    if masked:
+        raise Unsupported(f"key '{masked[0]}' is masked by a vertex group, which is not supported: apply the mask")
+    shown = [modifier.name for modifier in obj.modifiers if modifier.show_viewport]
+    if shown:
+        raise Unsupported(f"modifier '{shown[0]}' changes the shape: switch it off in the viewport")
+
+
+def read(obj: bpy.types.Object) -> Shape:
+    """The shape as it is stored now."""
+    mesh = obj.data
+    blocks = list(mesh.shape_keys.key_blocks)
+    count = len(mesh.vertices)
+    points = np.empty((len(blocks), count, 3), np.float32)
+    for place, block in enumerate(blocks):
+        if len(block.points) != count:
+            raise Unsupported(f"key '{block.name}' has {len(block.points)} points, the mesh has {count} vertices")
+        block.points.foreach_get("co", points[place].reshape(-1))
+    basis = blocks.index(mesh.shape_keys.reference_key)
+    keys = [place for place in range(len(blocks)) if place != basis]
+    place_of = {basis: -1, **{place: k for k, place in enumerate(keys)}}
+    relative = [place_of[blocks.index(blocks[place].relative_key)] for place in keys]
+    loops = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", loops)
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return Shape(points[basis], points[keys], np.array(relative, np.int64), loops, starts)
+
+
+def values(obj: bpy.types.Object) -> np.ndarray:
+    """How far each key is on: what its slider says, 0 where it is muted."""
+    keys = obj.data.shape_keys
+    blocks = [block for block in keys.key_blocks if block != keys.reference_key]
+    return np.array([0.0 if block.mute else block.value for block in blocks])
+
+
+def triangles(obj: bpy.types.Object, shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """The triangles into which Blender cuts the polygons of the basis, and of which polygon each is."""
+    mesh = obj.data.copy()
+    try:
+        mesh.vertices.foreach_set("co", shape.basis.reshape(-1))
+        mesh.calc_loop_triangles()
+        count = len(mesh.loop_triangles)
+        corners, polygons = np.empty(3 * count, np.int32), np.empty(count, np.int32)
+        mesh.loop_triangles.foreach_get("vertices", corners)
+        mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    finally:
+        bpy.data.meshes.remove(mesh)
+    return corners.reshape(-1, 3), polygons

@@ -1,0 +1,90 @@
+//! Arguments that are no arrays: numbers with a range, names, files.
+
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyString};
+
+use crate::errors::{kind, value};
+
+/// A whole number in a range, if anything was said.
+pub fn count(
+    any: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    range: RangeInclusive<usize>,
+) -> PyResult<Option<usize>> {
+    let Some(any) = any else { return Ok(None) };
+    let (least, most) = (*range.start(), *range.end());
+    let wanted = || match most {
+        usize::MAX => format!("a whole number of at least {least}"),
+        _ => format!("a whole number from {least} to {most}"),
+    };
+    // Numbers of NumPy are taken, too; True is no number.
+    let index = any.call_method0("__index__").ok().filter(|_| !any.is_instance_of::<PyBool>());
+    let Some(index) = index else {
+        return Err(kind(format!("{name} is a {}: {} was expected", any.get_type().name()?, wanted())));
+    };
+    match index.extract::<usize>() {
+        Ok(number) if range.contains(&number) => Ok(Some(number)),
+        _ => Err(value(format!("{name} is {index}: {} was expected", wanted()))),
+    }
+}
+
+/// A number, if anything was said.
+pub fn number(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<f64>> {
+    let Some(any) = any else { return Ok(None) };
+    match any.extract::<f64>() {
+        Ok(number) if !any.is_instance_of::<PyBool>() => Ok(Some(number)),
+        _ => Err(kind(format!("{name} is a {}: a number was expected", any.get_type().name()?))),
+    }
+}
+
+/// Yes or no, if anything was said.
+pub fn switch(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<bool>> {
+    let Some(any) = any else { return Ok(None) };
+    match any.extract::<bool>() {
+        Ok(switch) => Ok(Some(switch)),
+        Err(_) => Err(kind(format!("{name} is a {}: True or False was expected", any.get_type().name()?))),
+    }
+}
+
+/// One of a few names, if anything was said.
+pub fn choice<T: Copy>(
+    any: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    choices: &[(&str, T)],
+) -> PyResult<Option<T>> {
+    let Some(any) = any else { return Ok(None) };
+    let known = || choices.iter().map(|(known, _)| format!("'{known}'")).collect::<Vec<_>>().join(" or ");
+    let Ok(text) = any.cast::<PyString>() else {
+        return Err(kind(format!("{name} is a {}: {} was expected", any.get_type().name()?, known())));
+    };
+    let text = text.to_str()?;
+    match choices.iter().find(|(known, _)| *known == text) {
+        Some((_, choice)) => Ok(Some(*choice)),
+        None => Err(value(format!("{name} is '{}': {} was expected", text.escape_debug(), known()))),
+    }
+}
+
+/// The name of a file: str or os.PathLike.
+pub fn path(any: &Bound<'_, PyAny>, name: &str) -> PyResult<PathBuf> {
+    any.extract().map_err(|_| {
+        kind(format!(
+            "{name} is a {}: the name of a file was expected",
+            any.get_type().name().map_or_else(|_| "?".into(), |n| n.to_string())
+        ))
+    })
+}
+
+/// Refuses the name of a file to be written with another ending.
+pub fn check_ending(path: &std::path::Path, ending: &str) -> PyResult<()> {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if name.ends_with(ending) && name.len() > ending.len() {
+        return Ok(());
+    }
+    Err(value(format!(
+        "{}: the name of the file must end in {ending}",
+        path.to_string_lossy().escape_debug()
+    )))
+}

@@ -1,0 +1,179 @@
+//! Arrays in and out. In: any memory order, byte order and numeric type, or lists of numbers. Out: read-only.
+
+use numpy::ndarray::{Array1, Array2};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyDict;
+use sscc::Pair;
+
+use crate::errors::{kind, value};
+
+/// Beyond it, not every integer is a float64.
+const LARGEST_EXACT: i128 = 1 << 53;
+
+/// The floats of one argument in C order; `name` is the argument's.
+pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    if let Ok(array) = any.cast_exact::<PyArrayDyn<f64>>()
+        && is_plain(array.as_untyped())
+    {
+        return borrow(array, name);
+    }
+    let array = numbers(any, name)?;
+    let dtype = array.getattr("dtype")?;
+    let (letter, size): (char, usize) =
+        (dtype.getattr("kind")?.extract()?, dtype.getattr("itemsize")?.extract()?);
+    match letter {
+        'f' if size <= 8 => {}
+        'i' | 'u' if size < 8 => {}
+        'i' | 'u' => check_exact(&array, name)?,
+        _ => {
+            return Err(kind(format!(
+                "{name} is an array of {dtype}: float64, float32 or integers were expected"
+            )));
+        }
+    }
+    borrow(require(&array, "float64")?.cast::<PyArrayDyn<f64>>()?, name)
+}
+
+/// The integers of one argument in C order.
+pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
+    let array = numbers(any, name)?;
+    let dtype = array.getattr("dtype")?;
+    let letter: char = dtype.getattr("kind")?.extract()?;
+    if !matches!(letter, 'i' | 'u') {
+        return Err(kind(format!("{name} is an array of {dtype}: integers were expected")));
+    }
+    if letter == 'u' && dtype.getattr("itemsize")?.extract::<usize>()? == 8 && !is_empty(&array)? {
+        let most: u64 = array.call_method0("max")?.extract()?;
+        i64::try_from(most).map_err(|_| value(format!("{name}: {most} is too large")))?;
+    }
+    borrow(require(&array, "int64")?.cast::<PyArrayDyn<i64>>()?, name)
+}
+
+/// One configuration: r numbers. Read where they are, if they are float64 side by side.
+#[inline]
+pub fn vector<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray1<'py, f64>> {
+    if let Ok(array) = any.cast_exact::<PyArray1<f64>>()
+        && let Ok(array) = array.try_readonly()
+        && array.as_slice().is_ok()
+    {
+        return Ok(array);
+    }
+    let array = floats(any, name)?;
+    match array.cast::<PyArray1<f64>>() {
+        Ok(array) => Ok(array.readonly()),
+        Err(_) => Err(value(format!(
+            "{name} has shape {:?}: one configuration was expected, one number for each mode",
+            array.shape()
+        ))),
+    }
+}
+
+/// Something that NumPy takes for an array of numbers, without a mask.
+fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    let py = any.py();
+    let numpy = py.import("numpy")?;
+    if any.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+        return Err(kind(format!("{name} is a masked array: fill it first, as by {name}.filled(0)")));
+    }
+    let refused = |error: PyErr| {
+        if error.is_instance_of::<PyMemoryError>(py)
+            || !error.is_instance_of::<pyo3::exceptions::PyException>(py)
+        {
+            return error;
+        }
+        let message = format!("{name}: no array of numbers: {}", error.value(py));
+        if error.is_instance_of::<PyValueError>(py) { value(message) } else { kind(message) }
+    };
+    let array = numpy.call_method1("asarray", (any,)).map_err(refused)?;
+    let letter: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if matches!(letter, 'O' | 'U' | 'S' | 'M' | 'm' | 'V') {
+        let found = any.get_type().name()?;
+        return Err(kind(format!("{name} is a {found} that is no array of numbers")));
+    }
+    // What is empty has no numbers that could be of the wrong type: a list [] is float64 to NumPy.
+    Ok(array)
+}
+
+fn is_empty(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(array.getattr("size")?.extract::<usize>()? == 0)
+}
+
+/// Refuses integers that would be rounded.
+fn check_exact(array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    if is_empty(array)? {
+        return Ok(());
+    }
+    let (least, most): (i128, i128) =
+        (array.call_method0("min")?.extract()?, array.call_method0("max")?.extract()?);
+    let far = if least < -LARGEST_EXACT { least } else { most };
+    if far.abs() > LARGEST_EXACT {
+        return Err(value(format!("{name}: the integer {far} is beyond 2^53, no exact float64")));
+    }
+    Ok(())
+}
+
+/// The same numbers side by side in C order, aligned, in the machine's byte order.
+fn require<'py>(array: &Bound<'py, PyAny>, dtype: &str) -> PyResult<Bound<'py, PyAny>> {
+    array.py().import("numpy")?.call_method1("require", (array, dtype, ["C", "A", "E"]))
+}
+
+fn is_plain(array: &Bound<'_, PyUntypedArray>) -> bool {
+    array.is_c_contiguous()
+        && array
+            .getattr("flags")
+            .and_then(|flags| flags.getattr("aligned"))
+            .is_ok_and(|is| is.is_truthy().unwrap_or(false))
+}
+
+fn borrow<'py, T: Element>(
+    array: &Bound<'py, PyArrayDyn<T>>,
+    name: &str,
+) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    array.try_readonly().map_err(|_| value(format!("{name} is being written to")))
+}
+
+/// An array made when it is asked for the first time, and the same one from then on.
+pub type Cached = PyOnceLock<Py<PyAny>>;
+
+/// The cached array, or the one that `make` makes, which nobody can write to.
+pub fn cached<'py>(
+    py: Python<'py>,
+    cell: &Cached,
+    make: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = cell.get_or_try_init(py, || frozen(make()?).map(Bound::unbind))?;
+    Ok(array.bind(py).clone())
+}
+
+/// The same array, which nobody can write to.
+pub fn frozen(array: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyAny>> {
+    let flags = PyDict::new(array.py());
+    flags.set_item("write", false)?;
+    array.call_method("setflags", (), Some(&flags))?;
+    Ok(array)
+}
+
+/// An array of one axis.
+pub fn line<'py, T: Element>(py: Python<'py>, items: Vec<T>) -> Bound<'py, PyAny> {
+    PyArray1::from_owned_array(py, Array1::from_vec(items)).into_any()
+}
+
+/// An array with so many columns, from its entries in C order.
+pub fn table<'py, T: Element>(py: Python<'py>, columns: usize, items: Vec<T>) -> PyResult<Bound<'py, PyAny>> {
+    let rows = items.len() / columns;
+    let array = Array2::from_shape_vec((rows, columns), items).map_err(|error| value(error.to_string()))?;
+    Ok(PyArray2::from_owned_array(py, array).into_any())
+}
+
+/// Pairs of triangles as an array (n, 2) of uint32.
+pub fn pairs<'py>(py: Python<'py>, pairs: &[Pair]) -> PyResult<Bound<'py, PyAny>> {
+    let mut entries = crate::errors::room(2 * pairs.len(), "pairs")?;
+    entries.extend(pairs.iter().flat_map(|(i, j)| [*i, *j]));
+    table::<u32>(py, 2, entries)
+}

@@ -1,0 +1,227 @@
+//! `sscc.Batch`: the answers to many q.
+
+use std::time::Instant;
+
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::answer::{Answer, Pickled, pickled, unpickled};
+use crate::arguments::count;
+use crate::arrays::{Cached, cached, floats, line, table};
+use crate::certificates::Certificates;
+use crate::errors::{refused, room, value};
+use crate::interrupt::run;
+use crate::pool::{Pool, threads};
+
+#[pyclass(frozen, module = "sscc", name = "Batch")]
+pub struct Batch {
+    pub answers: Vec<sscc::Answer>,
+    arrays: [Cached; 9],
+}
+
+impl Batch {
+    pub fn of(answers: Vec<sscc::Answer>) -> Self {
+        Self { answers, arrays: std::array::from_fn(|_| Cached::new()) }
+    }
+
+    fn column<'py, T: numpy::Element>(
+        &self,
+        py: Python<'py>,
+        place: usize,
+        of: impl Fn(&sscc::Answer) -> T,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.arrays[place], || {
+            let mut items = room(self.answers.len(), "Batch")?;
+            items.extend(self.answers.iter().map(of));
+            Ok(line(py, items))
+        })
+    }
+}
+
+#[pymethods]
+impl Batch {
+    #[getter]
+    fn colliding<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 0, |answer| !answer.pairs.is_empty())
+    }
+
+    #[getter]
+    fn count<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 1, |answer| answer.pairs.len() as i64)
+    }
+
+    #[getter]
+    fn norm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 2, |answer| answer.norm)
+    }
+
+    #[getter]
+    fn complete<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 3, |answer| answer.statistics.complete)
+    }
+
+    #[getter]
+    fn root_certified<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 4, |answer| answer.statistics.root_certified)
+    }
+
+    #[getter]
+    fn opened<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 5, |answer| answer.statistics.opened)
+    }
+
+    #[getter]
+    fn triangle_tests<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 6, |answer| answer.statistics.triangle_tests)
+    }
+
+    #[getter]
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.arrays[7], || {
+            let total: usize = self.answers.iter().map(|answer| answer.pairs.len()).sum();
+            let mut entries = room(2 * total, "pairs")?;
+            let all = self.answers.iter().flat_map(|answer| &answer.pairs);
+            entries.extend(all.flat_map(|(i, j)| [*i, *j]));
+            table::<u32>(py, 2, entries)
+        })
+    }
+
+    #[getter]
+    fn offsets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.arrays[8], || {
+            let mut offsets = room(self.answers.len() + 1, "offsets")?;
+            offsets.push(0_i64);
+            let mut end = 0;
+            offsets.extend(self.answers.iter().map(|answer| {
+                end += answer.pairs.len() as i64;
+                end
+            }));
+            Ok(line(py, offsets))
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        self.answers.len()
+    }
+
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let indices = builtins.call_method1("range", (slf.get().answers.len(),))?;
+        builtins.call_method1("map", (slf.getattr("__getitem__")?, indices))
+    }
+
+    fn __getitem__(&self, index: isize) -> PyResult<Answer> {
+        let from_start = if index < 0 { index + self.answers.len() as isize } else { index };
+        match usize::try_from(from_start).ok().and_then(|index| self.answers.get(index)) {
+            Some(answer) => Ok(Answer::of(answer.pairs.clone(), answer.norm, answer.statistics)),
+            None => Err(PyIndexError::new_err(format!("the batch has {} answers", self.answers.len()))),
+        }
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.answers == other.answers
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyList>,))> {
+        let answers: PyResult<Vec<Pickled<'py>>> =
+            self.answers.iter().map(|answer| Ok(pickled(py, answer))).collect();
+        Ok((py.import("sscc._sscc")?.getattr("_batch")?, (PyList::new(py, answers?)?,)))
+    }
+
+    fn __repr__(&self) -> String {
+        let colliding = self.answers.iter().filter(|answer| !answer.pairs.is_empty()).count();
+        format!("<sscc.Batch: {} answers, {colliding} colliding>", self.answers.len())
+    }
+}
+
+/// What a pickled batch becomes.
+#[pyfunction]
+pub fn _batch(answers: Vec<Pickled<'_>>) -> PyResult<Batch> {
+    Ok(Batch::of(answers.iter().map(unpickled).collect::<PyResult<_>>()?))
+}
+
+/// The rows of Q (n, r).
+fn rows<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<&'a [f64]>> {
+    if array.ndim() != 2 || array.shape()[1] != rank {
+        let hint = if array.ndim() == 1 { "; for one q there is check" } else { "" };
+        return Err(value(format!("Q has shape {:?}: (n, {rank}) was expected{hint}", array.shape())));
+    }
+    let mut rows = room(array.shape()[0], "Q")?;
+    rows.extend(array.as_slice()?.chunks_exact(rank));
+    Ok(rows)
+}
+
+/// The rows of Q, each of which is a configuration of the model.
+pub fn checked_rows<'a>(pool: &Pool, array: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<&'a [f64]>> {
+    let model = &pool.borrow_owner().loaded.model;
+    let rows = rows(array, model.rank())?;
+    for (row, q) in rows.iter().enumerate() {
+        model.check_coordinates(q).map_err(|error| refused(&error, &format!("Q[{row}]")))?;
+    }
+    Ok(rows)
+}
+
+/// Answers every row of Q.
+pub fn check_many(
+    py: Python<'_>,
+    pool: &Pool,
+    #[allow(non_snake_case)] Q: &Bound<'_, PyAny>,
+    limit: Option<&Bound<'_, PyAny>>,
+    threads_typed: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Batch> {
+    let model = &pool.borrow_owner().loaded.model;
+    let limit = count(limit, "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX);
+    let threads = threads(threads_typed)?;
+    let array = floats(Q, "Q")?;
+    let rows = rows(&array, model.rank())?;
+    let answers = run(py, progress, "checking", |progress| {
+        pool.with_first(|query| {
+            query.clone().cancelled_by(progress).batch_at_most(&rows, limit, threads, progress)
+        })
+    })?;
+    let error = match answers {
+        Ok(answers) => return Ok(Batch::of(answers)),
+        Err(error) => error,
+    };
+    let at_fault =
+        rows.iter().enumerate().find_map(|(row, q)| Some((row, model.check_coordinates(q).err()?)));
+    Err(match at_fault {
+        Some((row, error)) => refused(&error, &format!("Q[{row}]")),
+        None => refused(&error, "Q"),
+    })
+}
+
+/// For measurements: seconds that the core takes for the same without Python, `(batch, one by one)`.
+#[pyfunction]
+#[pyo3(signature = (certificates, Q, threads, one_by_one=true))]
+#[allow(non_snake_case)]
+pub fn _core_seconds(
+    py: Python<'_>,
+    certificates: &Certificates,
+    Q: &Bound<'_, PyAny>,
+    threads: Option<usize>,
+    one_by_one: bool,
+) -> PyResult<(f64, Vec<f64>)> {
+    let pool = &certificates.pool;
+    let array = floats(Q, "Q")?;
+    let rows = rows(&array, pool.borrow_owner().loaded.model.rank())?;
+    let measured = py.detach(|| {
+        pool.with_first(|query| {
+            let start = Instant::now();
+            query.batch(&rows, threads, &())?;
+            let batch = start.elapsed().as_secs_f64();
+            let mut query = query.clone();
+            let mut single = Vec::with_capacity(rows.len());
+            for q in rows.iter().filter(|_| one_by_one) {
+                let start = Instant::now();
+                query.discrete(q)?;
+                single.push(start.elapsed().as_secs_f64());
+            }
+            Ok((batch, single))
+        })
+    });
+    measured.map_err(|error: sscc::Error| refused(&error, "Q"))
+}

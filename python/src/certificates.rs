@@ -1,0 +1,271 @@
+//! `sscc.Certificates`: computed once for a model, asked from then on.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyType};
+use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
+use sscc_io::{read_certificates, write_certificates};
+
+use crate::answer::Answer;
+use crate::arguments::{check_ending, count, path};
+use crate::arrays::{line, pairs, vector};
+use crate::batch::{self, Batch};
+use crate::errors::{file, refused, value};
+use crate::hierarchy::Hierarchy;
+use crate::impacts::Impacts;
+use crate::interrupt::answer;
+use crate::kinetic::KineticQuery;
+use crate::model::{Model, factor};
+use crate::pool::{Certified, Pool};
+
+#[pyclass(frozen, module = "sscc", name = "Certificates")]
+pub struct Certificates {
+    pub model: Py<Model>,
+    pub pool: Arc<Pool>,
+}
+
+impl Certificates {
+    fn with(model: &Bound<'_, Model>, certificates: sscc::Certificates, name: &str) -> PyResult<Self> {
+        let loaded = Arc::clone(&model.get().loaded);
+        let pool = model.py().detach(|| Pool::of(Certified { loaded, certificates }));
+        let pool = pool.map_err(|error| refused(&error, name))?;
+        Ok(Self { model: model.clone().unbind(), pool: Arc::new(pool) })
+    }
+
+    #[inline]
+    fn core(&self) -> &sscc::Certificates {
+        &self.pool.borrow_owner().certificates
+    }
+
+    /// Whether one comparison answers: then leaving and taking the GIL would take most of the time.
+    #[inline]
+    fn is_quick(&self, q: &[f64]) -> bool {
+        let core = self.core();
+        q.len() == core.center().len() && core.exceptions().is_empty() && core.norm(q) < core.root_radius()
+    }
+}
+
+#[pymethods]
+impl Certificates {
+    #[classmethod]
+    fn load(
+        _class: &Bound<'_, PyType>,
+        py: Python<'_>,
+        path: &Bound<'_, PyAny>,
+        model: &Bound<'_, Model>,
+    ) -> PyResult<Self> {
+        let path = self::path(path, "path")?;
+        let read = py.detach(|| read_certificates(&path)).map_err(|error| file(&error))?;
+        Self::with(model, read, &path.to_string_lossy())
+    }
+
+    fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {
+        let path = self::path(path, "path")?;
+        check_ending(&path, ".sscc.safetensors")?;
+        py.detach(|| write_certificates(&path, self.core())).map_err(|error| file(&error))
+    }
+
+    #[pyo3(signature = (q, limit=None))]
+    fn check(
+        &self,
+        py: Python<'_>,
+        q: &Bound<'_, PyAny>,
+        limit: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Answer> {
+        let q = vector(q, "q")?;
+        let q = q.as_slice()?;
+        let limit = match limit {
+            Some(limit) => count(Some(limit), "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX),
+            None => usize::MAX,
+        };
+        let ask = |q: &[f64]| {
+            self.pool.ask(|query| {
+                let pairs = query.discrete_at_most(q, limit).map(<[_]>::to_vec)?;
+                Ok(Answer::of(pairs, query.norm(), query.statistics()))
+            })
+        };
+        let found = if self.is_quick(q) {
+            ask(q)
+        } else {
+            // Others may write to the array meanwhile.
+            let q = q.to_vec();
+            answer(py, || ask(&q))?
+        };
+        found.map_err(|error| refused(&error, "q"))
+    }
+
+    #[pyo3(signature = (Q, limit=None, *, threads=None, progress=None))]
+    #[allow(non_snake_case)]
+    fn check_many(
+        &self,
+        py: Python<'_>,
+        Q: &Bound<'_, PyAny>,
+        limit: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Batch> {
+        batch::check_many(py, &self.pool, Q, limit, threads, progress)
+    }
+
+    fn continuous(&self, py: Python<'_>, q0: &Bound<'_, PyAny>, q1: &Bound<'_, PyAny>) -> PyResult<Impacts> {
+        let [q0, q1] = [copied(q0, "q0")?, copied(q1, "q1")?];
+        let found = answer(py, || {
+            self.pool.ask(|query| {
+                let impacts = query.continuous(&q0, &q1)?.to_vec();
+                Ok(Impacts::of(&impacts, query.norm(), query.statistics()))
+            })
+        })?;
+        // The core refuses the first end that it can refuse.
+        let at_fault =
+            if self.model.get().loaded.model.check_coordinates(&q0).is_err() { "q0" } else { "q1" };
+        found.map_err(|error| refused(&error, at_fault))
+    }
+
+    fn safe_scale(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<f64> {
+        let q = copied(q, "q")?;
+        let scale = answer(py, || self.pool.ask(|query| query.safe_scale(&q)))?;
+        scale.map_err(|error| refused(&error, "q"))
+    }
+
+    fn clamp<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let q = vector(q, "q")?;
+        let clamped = self.core().clamp(q.as_slice()?).map_err(|error| refused(&error, "q"))?;
+        Ok(clamped.map(|clamped| line(py, clamped)))
+    }
+
+    fn norm(&self, q: &Bound<'_, PyAny>) -> PyResult<f64> {
+        let q = vector(q, "q")?;
+        let q = q.as_slice()?;
+        self.model.get().loaded.model.check_coordinates(q).map_err(|error| refused(&error, "q"))?;
+        Ok(self.core().norm(q))
+    }
+
+    fn radius(&self, node: &Bound<'_, PyAny>) -> PyResult<f64> {
+        let nodes = self.core().hierarchy().nodes().len();
+        let node = count(Some(node), "node", 0..=nodes - 1)?.unwrap_or_default();
+        Ok(self.core().node_radius(node as u32))
+    }
+
+    fn kinetic(&self, py: Python<'_>) -> PyResult<KineticQuery> {
+        let pool = Arc::clone(&self.pool);
+        py.detach(|| KineticQuery::of(pool)).map_err(|error| refused(&error, ""))
+    }
+
+    #[getter]
+    fn model(&self, py: Python<'_>) -> Py<Model> {
+        self.model.clone_ref(py)
+    }
+
+    #[getter]
+    fn root_radius(&self) -> f64 {
+        self.core().root_radius()
+    }
+
+    #[getter]
+    fn global_radius(&self) -> f64 {
+        self.core().global_radius()
+    }
+
+    #[getter]
+    fn epsilon(&self) -> f64 {
+        self.core().parts().epsilon
+    }
+
+    #[getter]
+    fn metric(&self) -> &'static str {
+        self.core().metric().kind().name()
+    }
+
+    #[getter]
+    fn metric_factor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        factor(py, self.core().metric())
+    }
+
+    #[getter]
+    fn center<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        line(py, self.core().center().to_vec())
+    }
+
+    #[getter]
+    fn neighbours(&self) -> &'static str {
+        self.core().rule().neighbours.name()
+    }
+
+    #[getter]
+    fn weld(&self) -> bool {
+        self.core().rule().weld
+    }
+
+    #[getter]
+    fn ignored<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        pairs(py, self.core().rule().ignored())
+    }
+
+    #[getter]
+    fn exceptions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        pairs(py, self.core().exceptions())
+    }
+
+    #[getter]
+    fn rest_collisions(&self) -> u64 {
+        self.core().rest_collisions()
+    }
+
+    #[getter]
+    fn nodes(&self) -> usize {
+        self.core().hierarchy().nodes().len()
+    }
+
+    #[getter]
+    fn pairs(&self) -> usize {
+        self.core().parts().root_pair_radii.len() + self.core().parts().pair_tree.len()
+    }
+
+    #[getter]
+    fn pair_limit(&self) -> f64 {
+        self.core().parts().pair_tree.limit()
+    }
+
+    #[getter]
+    fn digest(&self) -> String {
+        self.core().parts().digest.0.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    #[getter]
+    fn hierarchy(&self) -> Hierarchy {
+        Hierarchy::of(Arc::clone(&self.pool))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, Py<Model>))> {
+        let bytes = certificates_to_bytes(self.core()).map_err(|error| value(error.to_string()))?;
+        let make = py.import("sscc._sscc")?.getattr("_certificates")?;
+        Ok((make, (PyBytes::new(py, &bytes), self.model.clone_ref(py))))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<sscc.Certificates: root radius {:.4}, {} nodes, {} pairs, metric {}>",
+            self.root_radius(),
+            self.nodes(),
+            self.pairs(),
+            self.metric()
+        )
+    }
+}
+
+/// One configuration that others may write to meanwhile.
+fn copied(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
+    Ok(vector(any, name)?.as_slice()?.to_vec())
+}
+
+/// What pickled certificates become.
+#[pyfunction]
+pub fn _certificates(bytes: &[u8], model: &Bound<'_, Model>) -> PyResult<Certificates> {
+    let name = "pickled certificates";
+    let read = certificates_from_bytes(bytes).map_err(|error| value(format!("{name}: {error}")))?;
+    Certificates::with(model, read, name)
+}

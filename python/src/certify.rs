@@ -1,0 +1,87 @@
+//! `Model.certify`: what was typed, and what it means.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use sscc::{CertifyOptions, Error, Neighbours, PairRule};
+
+use crate::arguments::{choice, count, number, switch};
+use crate::arrays::vector;
+use crate::certificates::Certificates;
+use crate::errors::{refused, value};
+use crate::interrupt::run;
+use crate::model::{Loaded, Model, read_metric};
+use crate::pool::{Certified, Pool, threads};
+
+pub struct Typed<'a, 'py> {
+    pub epsilon: Option<&'a Bound<'py, PyAny>>,
+    pub metric: Option<&'a Bound<'py, PyAny>>,
+    pub center: Option<&'a Bound<'py, PyAny>>,
+    pub scheme: Option<&'a Bound<'py, PyAny>>,
+    pub budget: Option<&'a Bound<'py, PyAny>>,
+    pub neighbours: Option<&'a Bound<'py, PyAny>>,
+    pub weld: Option<&'a Bound<'py, PyAny>>,
+    pub ignore_rest: Option<&'a Bound<'py, PyAny>>,
+    pub max_exceptions: Option<&'a Bound<'py, PyAny>>,
+    pub threads: Option<&'a Bound<'py, PyAny>>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Scheme {
+    Paper,
+    Full,
+}
+
+impl Typed<'_, '_> {
+    pub fn options(&self, loaded: &Loaded) -> PyResult<CertifyOptions> {
+        let default = CertifyOptions::default();
+        let model = &loaded.model;
+        let center = match self.center {
+            None => None,
+            Some(center) => {
+                let center = vector(center, "center")?.as_slice()?.to_vec();
+                model.check_coordinates(&center).map_err(|error| refused(&error, "center"))?;
+                Some(center)
+            }
+        };
+        let epsilon = number(self.epsilon, "epsilon")?.unwrap_or(default.epsilon);
+        if !(epsilon > 0.0 && epsilon < 1.0) {
+            return Err(value(format!("epsilon is {epsilon}: a number between 0 and 1 was expected")));
+        }
+        let scheme = choice(self.scheme, "scheme", &[("full", Scheme::Full), ("paper", Scheme::Paper)])?;
+        let budget = count(self.budget, "budget", 0..=u32::MAX as usize)?;
+        if scheme == Some(Scheme::Paper) && budget.is_some() {
+            return Err(value("scheme 'paper' stores no pairs of nodes: leave budget out"));
+        }
+        let budget = if scheme == Some(Scheme::Paper) { 0 } else { budget.unwrap_or(default.budget) };
+        let rules = [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|rule| (rule.name(), rule));
+        let neighbours = choice(self.neighbours, "neighbours", &rules)?.unwrap_or_default();
+        let weld = switch(self.weld, "weld")?.unwrap_or(loaded.is_split);
+        Ok(CertifyOptions {
+            epsilon,
+            metric: read_metric(model, self.metric)?,
+            center,
+            rule: PairRule::new(neighbours, weld),
+            ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
+            max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
+            budget,
+            threads: threads(self.threads)?,
+        })
+    }
+}
+
+/// Computes certificates; stopped by Ctrl-C.
+pub fn certify(
+    model: &Bound<'_, Model>,
+    typed: &Typed<'_, '_>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Certificates> {
+    let loaded = Arc::clone(&model.get().loaded);
+    let options = typed.options(&loaded)?;
+    let pool = run(model.py(), progress, "certifying", move |progress| -> Result<Pool, Error> {
+        let certificates = sscc::Certificates::compute(&loaded.model, &options, progress)?;
+        Pool::of(Certified { loaded, certificates })
+    })?;
+    let pool = pool.map_err(|error| refused(&error, ""))?;
+    Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
+}

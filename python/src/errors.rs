@@ -1,0 +1,51 @@
+//! Refusals of the libraries as Python exceptions that name the argument.
+
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyMemoryError, PyOSError, PyRuntimeError, PyTypeError, PyValueError,
+};
+use pyo3::prelude::*;
+use sscc::Error;
+use sscc_io::IoError;
+
+/// A `ValueError`.
+pub fn value(message: impl Into<String>) -> PyErr {
+    PyValueError::new_err(message.into())
+}
+
+/// A `TypeError`.
+pub fn kind(message: impl Into<String>) -> PyErr {
+    PyTypeError::new_err(message.into())
+}
+
+/// A refusal of the core. What it says of "q" is said of the argument `name`, such as `q1` or `Q[5]`.
+pub fn refused(error: &Error, name: &str) -> PyErr {
+    let message = error.to_string();
+    match error {
+        Error::CoordinatesLength { .. } | Error::CoordinatesValue { .. } | Error::CoordinatesRange => {
+            value(format!("{name}{}", message.strip_prefix('q').unwrap_or(&message)))
+        }
+        // Work is cancelled for a reason, and that is raised instead.
+        Error::Cancelled => PyRuntimeError::new_err(message),
+        _ if name.is_empty() => value(message),
+        _ => value(format!("{name}: {message}")),
+    }
+}
+
+/// A file that could not be read, understood or written.
+pub fn file(error: &IoError) -> PyErr {
+    let message = error.to_string();
+    match error {
+        IoError::NotFound { .. } => PyFileNotFoundError::new_err(message),
+        IoError::NotAFile { .. } | IoError::System { .. } => PyOSError::new_err(message),
+        _ => value(message),
+    }
+}
+
+/// Room for so many entries, or a `MemoryError`: sizes come from the caller.
+pub fn room<T>(count: usize, what: &str) -> PyResult<Vec<T>> {
+    let mut vec = Vec::new();
+    match vec.try_reserve_exact(count) {
+        Ok(()) => Ok(vec),
+        Err(_) => Err(PyMemoryError::new_err(format!("{what}: {count} entries do not fit into memory"))),
+    }
+}

@@ -1,0 +1,37 @@
+//! `sscc.KineticQuery`: for every small step of a simulation.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use sscc::Error;
+
+use crate::answer::Answer;
+use crate::arrays::vector;
+use crate::errors::refused;
+use crate::interrupt::answer;
+use crate::pool::{Kinetic, Pool};
+
+#[pyclass(frozen, module = "sscc", name = "KineticQuery")]
+pub struct KineticQuery {
+    kinetic: Kinetic,
+}
+
+impl KineticQuery {
+    pub fn of(pool: Arc<Pool>) -> Result<Self, Error> {
+        Ok(Self { kinetic: Kinetic::of(pool)? })
+    }
+}
+
+#[pymethods]
+impl KineticQuery {
+    fn check(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<Answer> {
+        let q = vector(q, "q")?.as_slice()?.to_vec();
+        let found = answer(py, || {
+            self.kinetic.ask(|query| {
+                let pairs = query.discrete(&q)?.to_vec();
+                Ok(Answer::of(pairs, query.norm(), query.statistics()))
+            })
+        })?;
+        found.map_err(|error: Error| refused(&error, "q"))
+    }
+}

@@ -1,0 +1,53 @@
+//! The extension module of the Python package `sscc`. What it holds is documented in `sscc/_sscc.pyi`.
+
+mod answer;
+mod arguments;
+mod arrays;
+mod batch;
+mod certificates;
+mod certify;
+mod errors;
+mod hierarchy;
+mod impacts;
+mod interrupt;
+mod kinetic;
+mod model;
+mod modes;
+mod oracle;
+mod pool;
+mod shards;
+mod simulate;
+
+use pyo3::prelude::*;
+
+// Threads without a GIL have not been tried.
+#[pymodule(gil_used = true)]
+mod _sscc {
+    #[pymodule_export]
+    use super::answer::{_answer, Answer};
+    #[pymodule_export]
+    use super::batch::{_batch, _core_seconds, Batch};
+    #[pymodule_export]
+    use super::certificates::{_certificates, Certificates};
+    #[pymodule_export]
+    use super::hierarchy::Hierarchy;
+    #[pymodule_export]
+    use super::impacts::{_impacts, Impacts};
+    #[pymodule_export]
+    use super::kinetic::KineticQuery;
+    #[pymodule_export]
+    use super::model::{_model, Model};
+    #[pymodule_export]
+    use super::shards::{ShardWorker, _build, _certify_in_shards, _check_options, _configurations, _joined};
+
+    #[pymodule_export]
+    use super::modes::{_elastic, _pca, _polynomial};
+    #[pymodule_export]
+    use super::oracle::_first_contact;
+    #[pymodule_export]
+    use super::simulate::_simulate;
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

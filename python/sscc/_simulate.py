@@ -1,0 +1,45 @@
+"""Simulations of scenes."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from sscc._sscc import _simulate
+
+
+class Simulation(NamedTuple):
+    """What a simulation came to."""
+
+    summary: dict[str, Any]
+    """The keys of ``sscc simulate --json``."""
+    folder: Path
+    """Where its results are."""
+    files: list[Path]
+    """What was written: motions (``.npz``), an animation (``.glb``), a report (``.html``), sound."""
+
+
+def simulate(
+    scene: str | PathLike[str],
+    out: str | PathLike[str] | None = None,
+    *,
+    steps: int | None = None,
+    restart: bool = False,
+    models: str | PathLike[str] | None = None,
+    cache: str | PathLike[str] | None = None,
+    threads: int | None = None,
+) -> Simulation:
+    """Lets the bodies of a scene move, as ``sscc simulate`` does.
+
+    scene: a ``.toml`` file, or the name of a scene that comes with the package, such as "spring".
+    out: the folder to write to; None: the scene's name. A run that was stopped goes on from there.
+    steps: how many from the beginning; None: those of the scene. ``restart`` begins again.
+    models, cache: the folder of real models; where models and certificates are kept from run to run.
+
+    A bar is shown where standard error is a terminal. Ctrl-C stops after the step at hand. One simulation at a time in
+    each process. Raises FileNotFoundError, OSError, ValueError, RuntimeError.
+    """
+    summary, folder, files = _simulate(scene, out, steps, restart, models, cache, threads)
+    return Simulation(json.loads(summary), Path(folder), [Path(file) for file in files])

@@ -1,0 +1,76 @@
+"""What `sscc.batch` has workers do. Needs no dask."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sscc._seal import key, options_bytes, seal
+from sscc._sscc import Certificates, Model, _ShardWorker
+
+
+def as_given(data: bytes) -> bytes:
+    """Data for other tasks."""
+    return data
+
+
+def certify_whole(model: Model, options: dict[str, Any]) -> bytes:
+    """The certificates of a model, sealed."""
+    certificates = model.certify(**options, progress=False)
+    return seal(key_of_model(model, options), content_of(certificates))
+
+
+def check_chunk(held: bytes, rows: NDArray[np.float64], limit: int | None) -> bytes:
+    """The answers to some rows, pickled and sealed. `held`: the certificates."""
+    certificates, content = _prepared(held, lambda certificates: (certificates, content_of(certificates)))
+    answers = certificates.check_many(rows, limit, threads=1, progress=False)
+    return seal(key_of_chunk(content, rows, limit), pickle.dumps(answers))
+
+
+def do_job(held: bytes, job: bytes) -> bytes:
+    """The result of a job of one large model, sealed by the core. `held`: the model and its options."""
+    worker: _ShardWorker = _prepared(held, lambda model_and_options: _ShardWorker(*model_and_options))
+    return worker.run(job)
+
+
+def content_of(whole: Model | Certificates) -> bytes:
+    """A model or certificates as the bytes of a file."""
+    content: bytes = _reduced(whole)[0]
+    return content
+
+
+def _reduced(whole: Model | Certificates) -> Any:
+    """What is pickled: the bytes of a file first."""
+    reduced: Any = whole.__reduce__()
+    return reduced[1]
+
+
+def key_of_model(model: Model, options: dict[str, Any]) -> bytes:
+    content, *_, is_split = _reduced(model)
+    return key("certify", content, repr(is_split).encode(), options_bytes(options))
+
+
+def key_of_chunk(content: bytes, rows: NDArray[np.float64], limit: int | None) -> bytes:
+    return key("check", content, repr(limit).encode(), np.ascontiguousarray(rows).tobytes())
+
+
+#: What this process has prepared last, and for what.
+_last: tuple[bytes, Any] = (b"", None)
+_preparing = threading.Lock()
+
+
+def _prepared(held: bytes, prepare: Callable[[Any], Any]) -> Any:
+    """What `prepare` makes of the object that is held: made once while it is asked for the same one."""
+    global _last
+    name = hashlib.blake2b(held).digest()
+    with _preparing:
+        if _last[0] != name:
+            _last = (b"", None)
+            _last = (name, prepare(pickle.loads(held)))
+        return _last[1]

@@ -1,0 +1,262 @@
+"""Many models, one large model, or many configurations on many machines, by ``dask.distributed``.
+
+Every function takes a ``distributed.Client`` and gives what this process alone would have given, byte for byte. Workers
+need this package and nothing else: models travel to them. What a worker did when it was lost is done again by another
+one. Needs ``pip install sscc[dask]``.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from sscc import _progress
+from sscc._seal import unseal
+from sscc._sscc import (
+    Batch,
+    Certificates,
+    Model,
+    _certificates,
+    _certify_in_shards,
+    _check_options,
+    _configurations,
+    _joined,
+)
+from sscc._worker import as_given, certify_whole, check_chunk, content_of, do_job, key_of_chunk, key_of_model
+
+try:
+    import dask
+    from distributed import Client, Future, as_completed
+except ImportError as error:
+    raise ImportError("sscc.batch needs dask.distributed, which is not installed: pip install 'sscc[dask]'") from error
+
+__all__ = ["Library", "certify", "certify_in_shards", "check"]
+
+#: Models on their way for each thread of the workers: one in work, one waiting.
+_WAITING = 2
+
+#: Jobs of one stage for each thread of the workers, so that all are busy to the end.
+_JOBS = 4
+
+#: Data travels as the argument of a task, which the scheduler keeps and can give to another worker: no reason to warn.
+_LARGE = {"distributed.admin.large-graph-warning-threshold": "1TB"}
+
+
+@dataclass
+class Library:
+    """What became of the models of a library, each under its name, in the order given."""
+
+    #: Certificates of those that were certified.
+    certificates: dict[str, Certificates] = field(default_factory=dict)
+    #: Why the others were not. Messages begin with the name.
+    failures: dict[str, Exception] = field(default_factory=dict)
+
+
+def certify(
+    models: Mapping[str, Model | str | os.PathLike[str]] | Iterable[Model | str | os.PathLike[str]],
+    client: Client,
+    *,
+    progress: Any = None,
+    **options: Any,
+) -> Library:
+    """Certifies each model of a library on a worker.
+
+    ``models``: models or files, or a mapping from names to them. Without names a file is named by its path, a model by
+    its place (``models[3]``). Files are read here, when their turn comes. ``options``: as of ``Model.certify``, the
+    same for all; each model is certified on ``threads`` threads, 1 if nothing is said.
+
+    A model that cannot be read or certified fails alone.
+    """
+    _check_client(client)
+    options = {"threads": 1, **options}
+    _check_options(None, options)
+    named = _named(models)
+    library = Library()
+    done: dict[str, Certificates | Exception] = {}
+    waiting: dict[Future, tuple[str, Model, bytes]] = {}
+    names = iter(named)
+    shown = _progress.start(progress, "certifying")
+
+    def send() -> Future | None:
+        """Sends the next model that can be read."""
+        for name in names:
+            try:
+                model = _model(named[name])
+                _check_options(model, options)
+            except Exception as error:
+                done[name] = error
+                continue
+            of = key_of_model(model, options)
+            future = _submit(client, certify_whole, model, options)
+            waiting[future] = (name, model, of)
+            return future
+        return None
+
+    try:
+        sent = [future for _ in range(_WAITING * _threads(client)) if (future := send()) is not None]
+        arriving = as_completed(sent)
+        for future in arriving:
+            name, model, of = waiting.pop(future)
+            try:
+                done[name] = _certificates(unseal(of, future.result()), model)
+            except Exception as error:
+                done[name] = error
+            future.release()
+            if (following := send()) is not None:
+                arriving.add(following)
+            if shown:
+                shown[0](len(done) / len(named))
+    finally:
+        _drop(client, waiting)
+        if shown:
+            shown[1]()
+    for name in named:
+        result = done[name]
+        if isinstance(result, Certificates):
+            library.certificates[name] = result
+        else:
+            library.failures[name] = _named_error(name, result)
+    return library
+
+
+def certify_in_shards(
+    model: Model, client: Client, *, shards: int | None = None, progress: Any = None, **options: Any
+) -> Certificates:
+    """Certifies one large model by all workers.
+
+    The work goes in some twenty stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of
+    the workers), of one thread each; every number of shards gives the same certificates. Every worker process prepares
+    the model once. ``options``: as of ``Model.certify``; ``threads`` counts here.
+    """
+    _check_client(client)
+    if not isinstance(model, Model):
+        raise TypeError(f"model is a {type(model).__name__}: a sscc.Model was expected; for many there is certify")
+    _check_options(model, options)
+    if shards is None:
+        shards = _JOBS * _threads(client)
+    held = _hold(client, (model, {**options, "threads": 1}))
+    shown = _progress.start(progress, "certifying")
+
+    def run(jobs: list[bytes], share: float) -> list[bytes]:
+        if shown:
+            shown[0](share)
+        futures = [_submit(client, do_job, held, job) for job in jobs]
+        try:
+            return client.gather(futures)
+        finally:
+            _drop(client, futures)
+
+    try:
+        certificates = _certify_in_shards(model, options, shards, run)
+        if shown:
+            shown[0](1.0)
+        return certificates
+    finally:
+        _drop(client, [held])
+        if shown:
+            shown[1]()
+
+
+def check(
+    certificates: Certificates,
+    Q: Any,
+    client: Client,
+    *,
+    limit: int | None = None,
+    chunk: int = 4096,
+    progress: Any = None,
+) -> Batch:
+    """Answers every row of ``Q`` (n, r) as ``certificates.check_many`` does, in chunks of so many rows."""
+    _check_client(client)
+    if not isinstance(certificates, Certificates):
+        raise TypeError(f"certificates is a {type(certificates).__name__}: sscc.Certificates were expected")
+    if isinstance(chunk, bool) or not isinstance(chunk, int) or chunk < 1:
+        raise ValueError(f"chunk is {chunk!r}: a whole number of at least 1 was expected")
+    rows = _configurations(certificates, Q)
+    if len(rows) == 0:
+        return certificates.check_many(rows, limit, progress=False)
+    # Refuses the limit here.
+    certificates.check_many(rows[:0], limit, progress=False)
+    shown = _progress.start(progress, "checking")
+    held = _hold(client, certificates)
+    content = content_of(certificates)
+    chunks = [rows[start : start + chunk] for start in range(0, len(rows), chunk)]
+    futures = [_submit(client, check_chunk, held, part, limit) for part in chunks]
+    try:
+        for count, _ in enumerate(as_completed(futures), 1):
+            if shown:
+                shown[0](count / len(futures))
+        answers = client.gather(futures)
+    finally:
+        _drop(client, [held, *futures])
+        if shown:
+            shown[1]()
+    keys = (key_of_chunk(content, part, limit) for part in chunks)
+    return _joined([pickle.loads(unseal(of, sealed)) for of, sealed in zip(keys, answers)])
+
+
+def _hold(client: Client, data: object) -> Future:
+    """Data for many tasks, as the result of a task: made again where the worker that had it is lost."""
+    return _submit(client, as_given, pickle.dumps(data))
+
+
+def _submit(client: Client, task: Any, *arguments: Any) -> Future:
+    with dask.config.set(_LARGE):
+        return client.submit(task, *arguments, pure=False)
+
+
+def _drop(client: Client, futures: Iterable[Future]) -> None:
+    """Stops what is not done, and forgets the rest."""
+    futures = list(futures)
+    if futures and client.status == "running":
+        client.cancel(futures)
+
+
+def _threads(client: Client) -> int:
+    return max(1, sum(client.nthreads().values()))
+
+
+def _model(given: Model | str | os.PathLike[str]) -> Model:
+    if isinstance(given, Model):
+        return given
+    if isinstance(given, (str, os.PathLike)):
+        return Model.load(given)
+    raise TypeError(f"a {type(given).__name__}: a sscc.Model or the name of a file was expected")
+
+
+def _named(models: Any) -> dict[str, Any]:
+    if isinstance(models, (Model, str, os.PathLike)):
+        raise TypeError("models is a single one: give a list or a mapping, or take certify_in_shards for a large one")
+    if isinstance(models, Mapping):
+        return {str(name): model for name, model in models.items()}
+    named: dict[str, Any] = {}
+    for place, model in enumerate(models):
+        name = os.fspath(model) if isinstance(model, (str, os.PathLike)) else f"models[{place}]"
+        if name in named:
+            raise ValueError(f"models[{place}] is {name} again: each name may stand for one model")
+        named[name] = model
+    return named
+
+
+def _named_error(name: str, error: Exception) -> Exception:
+    """The same error, its message beginning with the name."""
+    text = str(error)
+    if text.startswith(name):
+        return error
+    made: Exception
+    try:
+        made = type(error)(f"{name}: {text}")
+    except Exception:
+        made = RuntimeError(f"{name}: {text}")
+    return made.with_traceback(error.__traceback__)
+
+
+def _check_client(client: Any) -> None:
+    if not isinstance(client, Client) or client.asynchronous:
+        found = "an asynchronous client" if isinstance(client, Client) else f"a {type(client).__name__}"
+        raise TypeError(f"client is {found}: a distributed.Client was expected, such as Client(address) makes")
+
+

@@ -1,0 +1,72 @@
+"""Where tests find their data, and how they say that they did without it."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+
+import pytest
+
+import sscc
+from shapes import torus
+
+PROJECT = Path(__file__).parents[2]
+
+
+def skip(test: str, reason: str) -> None:
+    """Skips a test and notes it where ``cargo xtask test`` lists what was skipped."""
+    log = os.environ.get("SSCC_SKIP_LOG")
+    if log:
+        with open(log, "a") as file:
+            file.write(f"SKIPPED: python: {test}: {reason}\n")
+    pytest.skip(reason)
+
+
+@pytest.fixture
+def libigl(request: pytest.FixtureRequest) -> None:
+    """Needs the package libigl."""
+    needs(request, "igl")
+
+
+@pytest.fixture
+def ipctk(request: pytest.FixtureRequest) -> None:
+    """Needs the package ipctk."""
+    needs(request, "ipctk")
+
+
+def needs(request: pytest.FixtureRequest, module: str) -> None:
+    """Skips a test that needs a module which is not there."""
+    if importlib.util.find_spec(module) is None:
+        skip(request.node.name, f"there is no package {module} for this interpreter")
+
+
+@pytest.fixture
+def models(request: pytest.FixtureRequest) -> Path:
+    """The folder of real models; it is no part of the project."""
+    folder = Path(os.environ.get("SSCC_MODELS") or PROJECT.parent / "shared" / "models")
+    if not folder.is_dir():
+        skip(request.node.name, "no real models found; set SSCC_MODELS to their folder")
+    return folder
+
+
+@pytest.fixture
+def command(request: pytest.FixtureRequest) -> Path:
+    """The ``sscc`` command, as ``cargo xtask python`` has built it."""
+    path = os.environ.get("SSCC_COMMAND")
+    if not path:
+        skip(request.node.name, "SSCC_COMMAND does not name the sscc command")
+    assert path is not None
+    return Path(path)
+
+
+@pytest.fixture(scope="session")
+def model() -> sscc.Model:
+    """A torus of 576 triangles with 6 smooth modes; it is not to be changed."""
+    return sscc.Model(*torus(24, 12, 6))
+
+
+@pytest.fixture(scope="session")
+def certs(model: sscc.Model) -> sscc.Certificates:
+    """Certificates of that torus."""
+    return model.certify()

@@ -1,0 +1,298 @@
+"""`sscc.batch` on a local cluster of two worker processes: what this process alone gives, byte for byte."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import pytest
+
+import sscc
+from shapes import samples, torus
+from test_docs import blocks
+from sscc._worker import content_of
+
+pytest.importorskip("distributed", reason="dask.distributed is not installed")
+
+from distributed import Client, LocalCluster  # noqa: E402
+
+import sscc.batch  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("default")
+
+T = TypeVar("T")
+
+#: Seconds after which something hangs; the machine may be busy.
+LONG = 600
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def within(work: Callable[[], T], seconds: float = LONG) -> T:
+    """The result of some work; fails when it takes too long."""
+    found: list[T] = []
+    raised: list[BaseException] = []
+
+    def run() -> None:
+        try:
+            found.append(work())
+        except BaseException as error:
+            raised.append(error)
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    thread.join(seconds)
+    assert not thread.is_alive(), f"no end after {seconds} seconds"
+    if raised:
+        raise raised[0]
+    return found[0]
+
+
+class Killer:
+    """Kills, once, a worker that is doing one of these tasks."""
+
+    def __init__(self, client: Any, task: str) -> None:
+        self.client, self.task = client, task
+        self.killed: list[int] = []
+        self.pids: dict[str, int] = client.run(os.getpid)
+        self.thread = threading.Thread(target=self.watch, daemon=True)
+
+    def watch(self) -> None:
+        end = time.monotonic() + LONG
+        while not self.killed and time.monotonic() < end:
+            for address, keys in self.client.processing().items():
+                if any(str(key).startswith(self.task) for key in keys) and address in self.pids:
+                    os.kill(self.pids[address], signal.SIGKILL)
+                    self.killed.append(self.pids[address])
+                    return
+            time.sleep(0.002)
+
+    def __enter__(self) -> Killer:
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.thread.join()
+        # The next test finds two workers again.
+        self.client.wait_for_workers(2, timeout=LONG)
+        assert self.killed and self.killed[0] not in self.client.run(os.getpid).values()
+
+
+def large() -> sscc.Model:
+    """Takes a few seconds."""
+    return sscc.Model(*torus(64, 32, 8))
+
+
+def test_a_library_is_certified_as_here(client: Any, tmp_path: Path) -> None:
+    models: dict[str, Any] = {f"torus {n}": sscc.Model(*torus(16, n, 3)) for n in (8, 10, 12)}
+    file = tmp_path / "saved.model.safetensors"
+    models["torus 10"].save(file)
+    models["from a file"] = file
+    library = within(lambda: sscc.batch.certify(models, client, epsilon=0.2))
+    assert list(library.certificates) == list(models) and library.failures == {}
+    for name, certificates in library.certificates.items():
+        model = sscc.Model.load(file) if name == "from a file" else models[name]
+        assert content_of(certificates) == content_of(model.certify(epsilon=0.2)), name
+
+
+def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> None:
+    good = sscc.Model(*torus(16, 8, 3))
+    good.save(tmp_path / "good.model.safetensors")
+    data = (tmp_path / "good.model.safetensors").read_bytes()
+    (tmp_path / "damaged.model.safetensors").write_bytes(data[:-1] + bytes([data[-1] ^ 1]))
+    missing, damaged = (str(tmp_path / f"{name}.model.safetensors") for name in ("missing", "damaged"))
+    other_rank = sscc.Model(*torus(16, 8, 2))
+    too_large = sscc.Model(*torus(16, 9, 3))
+
+    def with_little_memory() -> None:
+        """Workers have no memory for the model that is too large."""
+        worker: Any = importlib.import_module("sscc._worker")
+        given = worker.key_of_model
+
+        def key_of_model(model: sscc.Model, options: dict[str, Any]) -> bytes:
+            if len(model.faces) == 2 * 16 * 9:
+                raise MemoryError("out of memory")
+            return given(model, options)
+
+        worker.key_of_model = key_of_model
+
+    def with_much_memory() -> None:
+        importlib.reload(importlib.import_module("sscc._worker"))
+
+    models = [missing, good, damaged, too_large, other_rank, 3]
+    client.run(with_little_memory)
+    try:
+        library = within(lambda: sscc.batch.certify(models, client, center=[0.0, 0.0, 0.0]))
+    finally:
+        client.run(with_much_memory)
+    assert list(library.certificates) == ["models[1]"]
+    assert content_of(library.certificates["models[1]"]) == content_of(good.certify(center=[0.0, 0.0, 0.0]))
+    assert list(library.failures) == [missing, damaged, "models[3]", "models[4]", "models[5]"]
+    for name, error in library.failures.items():
+        assert str(error).startswith(name) and "\n" not in str(error)
+    assert isinstance(library.failures[missing], FileNotFoundError)
+    assert "BLAKE3" in str(library.failures[damaged]) or "damaged" in str(library.failures[damaged])
+    assert str(library.failures["models[3]"]) == "models[3]: out of memory"
+    assert "center" in str(library.failures["models[4]"])
+
+
+def test_shards_give_the_same_bytes(client: Any) -> None:
+    model = sscc.Model(*torus(32, 16, 5))
+    for options in ({}, {"scheme": "paper"}, {"budget": 64, "weld": True, "neighbours": "include-one-vertex"}):
+        here = content_of(model.certify(**options))
+        for shards in (None, 1, 50):
+            there = within(lambda: sscc.batch.certify_in_shards(model, client, shards=shards, **options))
+            assert content_of(there) == here, (options, shards)
+
+
+def test_queries_in_chunks_give_the_same_answers(client: Any, certs: sscc.Certificates) -> None:
+    Q = samples(1000, 6, 1.0)
+    here = certs.check_many(Q)
+    assert 0 < here.colliding.sum() < 1000
+    for chunk in (64, 999, 5000):
+        there = within(lambda: sscc.batch.check(certs, Q, client, chunk=chunk))
+        assert there == here and pickle.dumps(there) == pickle.dumps(here)
+    limited = within(lambda: sscc.batch.check(certs, np.asfortranarray(Q), client, limit=1, chunk=100))
+    assert limited.count.max() == 1 and (limited.colliding == here.colliding).all()
+    assert len(within(lambda: sscc.batch.check(certs, np.empty((0, 6)), client))) == 0
+
+
+def test_a_killed_worker_loses_no_shard(client: Any) -> None:
+    model = large()
+    with Killer(client, "do_job"):
+        there = within(lambda: sscc.batch.certify_in_shards(model, client))
+    assert content_of(there) == content_of(model.certify())
+
+
+def test_a_killed_worker_loses_no_model(client: Any) -> None:
+    models = {f"torus {n}": sscc.Model(*torus(32, n, 5)) for n in (12, 13, 14, 15)}
+    with Killer(client, "certify_whole"):
+        library = within(lambda: sscc.batch.certify(models, client))
+    assert library.failures == {}
+    for name, certificates in library.certificates.items():
+        assert content_of(certificates) == content_of(models[name].certify()), name
+
+
+def test_a_killed_worker_loses_no_query(client: Any, certs: sscc.Certificates) -> None:
+    Q = samples(20_000, 6, 3.0)
+    with Killer(client, "check_chunk"):
+        there = within(lambda: sscc.batch.check(certs, Q, client, chunk=500))
+    assert there == certs.check_many(Q)
+
+
+def test_results_of_another_build_are_refused(client: Any, certs: sscc.Certificates) -> None:
+    model = sscc.Model(*torus(16, 8, 3))
+
+    def pretend(build: str) -> None:
+        seals: Any = importlib.import_module("sscc._seal")
+        seals._build = lambda: build
+
+    here = sscc._sscc._build()
+    try:
+        client.run(pretend, "0.0.0 elsewhere")
+        library = within(lambda: sscc.batch.certify([model], client))
+        assert "another build" in str(library.failures["models[0]"])
+        with pytest.raises(ValueError, match="another build"):
+            within(lambda: sscc.batch.check(certs, samples(10, 6, 1.0), client))
+    finally:
+        client.run(pretend, here)
+    assert within(lambda: sscc.batch.certify([model], client)).failures == {}
+
+
+def test_damaged_and_foreign_results_are_refused() -> None:
+    from sscc._seal import key, seal, unseal
+
+    mine, other = key("certify", b"model"), key("certify", b"other model")
+    sealed = seal(mine, b"content")
+    assert unseal(mine, sealed) == b"content"
+    with pytest.raises(ValueError, match="another model"):
+        unseal(other, sealed)
+    for place in range(len(sealed)):
+        with pytest.raises(ValueError, match="damaged"):
+            unseal(mine, sealed[:place])
+        with pytest.raises(ValueError, match="damaged"):
+            unseal(mine, sealed[:place] + bytes([sealed[place] ^ 4]) + sealed[place + 1 :])
+    with pytest.raises(ValueError, match="damaged"):
+        unseal(mine, sealed + b"0")
+
+
+def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -> None:
+    model = certs.model
+    Q = samples(10, 6, 1.0)
+    Q[7, 2] = np.nan
+    check: Any = sscc.batch.check
+    certify: Any = sscc.batch.certify
+    in_shards: Any = sscc.batch.certify_in_shards
+    with pytest.raises(ValueError, match=r"^Q\[7\]\[2\] is NaN"):
+        check(certs, Q, client)
+    with pytest.raises(TypeError, match="masked"):
+        check(certs, np.ma.masked_invalid(Q), client)
+    with pytest.raises(ValueError, match=r"Q has shape \[10, 5\]"):
+        check(certs, Q[:, :5], client)
+    with pytest.raises(ValueError, match="chunk is 0"):
+        check(certs, Q[:5], client, chunk=0)
+    with pytest.raises(ValueError, match="limit is 0"):
+        check(certs, Q[:5], client, limit=0)
+    with pytest.raises(TypeError, match="certificates is a Model"):
+        check(model, Q, client)
+    for refused in (None, "tcp://127.0.0.1:8786"):
+        with pytest.raises(TypeError, match="distributed.Client was expected"):
+            check(certs, Q, refused)
+    with pytest.raises(TypeError, match="'epsilom' is no option"):
+        certify([model], client, epsilom=0.1)
+    with pytest.raises(TypeError, match="certify_in_shards"):
+        certify(model, client)
+    with pytest.raises(ValueError, match=r"models\[1\] is a.obj again"):
+        certify(["a.obj", "a.obj"], client)
+    with pytest.raises(ValueError, match="epsilon is 2"):
+        in_shards(model, client, epsilon=2)
+    with pytest.raises(ValueError, match="shards is 0"):
+        in_shards(model, client, shards=0)
+    with pytest.raises(TypeError, match="model is a list"):
+        in_shards([model], client)
+
+
+def test_workers_show_no_bars_and_this_process_does(client: Any, model: sscc.Model, capfd: Any) -> None:
+    shares: list[float] = []
+    within(lambda: sscc.batch.certify_in_shards(model, client, progress=shares.append))
+    assert shares == sorted(shares) and shares[0] == 0 and shares[-1] == 1
+    shares.clear()
+    within(lambda: sscc.batch.certify([model, model], client, progress=shares.append))
+    assert shares == [0.5, 1]
+    assert "certifying" not in capfd.readouterr().err
+
+
+def test_without_dask_the_message_says_what_to_install() -> None:
+    code = "import sys; sys.modules['distributed'] = None; import sscc; import sscc.batch"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1].endswith("pip install 'sscc[dask]'")
+
+
+def test_the_document_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks("docs/batch.md"):
+        exec(compile(block, "docs/batch.md", "exec"), names)
+    library = names["library"]
+    assert 0.9 <= library.certificates["plates"].root_radius <= 1
+    assert isinstance(library.failures["lost"], FileNotFoundError)
+    # Between -2 and 2 the triangles touch at -1 alone, which is none of the rows.
+    assert names["answers"].colliding.sum() == 0 and len(names["answers"]) == 10_000

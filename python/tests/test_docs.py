@@ -1,0 +1,25 @@
+"""The examples of the documentation run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import PROJECT
+
+
+def blocks(page: str) -> list[str]:
+    text = (PROJECT / page).read_text()
+    return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def test_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    found = blocks("docs/python.md")
+    assert len(found) > 5
+    names: dict[str, Any] = {}
+    for block in found:
+        exec(compile(block, "docs/python.md", "exec"), names)

@@ -1,0 +1,159 @@
+"""Long calls tell how far they are, and stop at once: by Ctrl-C or by what a progress function raises."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sscc
+from shapes import samples, torus
+
+# A second is the promise; machines that do other work beside the tests are granted more.
+SOON = 5.0
+
+
+@pytest.fixture(scope="module")
+def large() -> sscc.Model:
+    """A torus of 160,000 triangles: certificates take minutes."""
+    return sscc.Model(*torus(400, 200, 12))
+
+
+@pytest.fixture(scope="module")
+def large_certs() -> sscc.Certificates:
+    """Of a torus where a query in which everything collides takes long."""
+    return sscc.Model(*torus(240, 120, 3)).certify(scheme="paper", epsilon=0.9)
+
+
+def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> float:
+    """Presses Ctrl-C while the work goes on; how long it takes to stop."""
+    pressed = []
+
+    def press() -> None:
+        pressed.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after, press)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+    finally:
+        timer.cancel()
+        timer.join()
+    return time.monotonic() - pressed[0]
+
+
+def test_certify_stops_on_ctrl_c(large: sscc.Model) -> None:
+    assert seconds_until_stopped(large.certify) < SOON
+
+
+def test_check_many_stops_on_ctrl_c(large_certs: sscc.Certificates) -> None:
+    qs = samples(100_000, 3, 0.5)
+    assert seconds_until_stopped(lambda: large_certs.check_many(qs)) < SOON
+
+
+def test_single_queries_stop_on_ctrl_c(large_certs: sscc.Certificates) -> None:
+    # Everything ends in one point: each pair of triangles collides.
+    vertices, faces, _ = torus(240, 120, 1)
+    certs = sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
+    assert seconds_until_stopped(lambda: certs.check([1.0])) < SOON
+    assert seconds_until_stopped(lambda: certs.continuous([0.9], [1.0])) < SOON
+    assert seconds_until_stopped(lambda: certs.kinetic().check([1.0])) < SOON
+    assert certs.check([0.0]).count == 0
+
+
+def test_builders_of_modes_stop_on_ctrl_c() -> None:
+    vertices, faces, _ = torus(30, 20, 1)
+    shapes = vertices + np.random.default_rng(3).normal(size=(2500, 600, 3))
+    assert seconds_until_stopped(lambda: sscc.modes.pca(shapes, faces)) < SOON
+    assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < SOON
+    with pytest.raises(ZeroDivisionError):
+        sscc.modes.pca(shapes, faces, progress=lambda share: 1 / 0)
+
+
+def test_what_was_stopped_leaves_queries_whole(certs: sscc.Certificates) -> None:
+    qs = samples(300_000, 6, 0.4)
+    expected = certs.check_many(qs[:50])
+    kinetic = certs.kinetic()
+    with pytest.raises(ZeroDivisionError):
+        certs.check_many(qs, progress=lambda share: 1 / 0)
+    assert certs.check_many(qs[:50]) == expected
+    assert [kinetic.check(q).pairs.tolist() for q in qs[:50]] == [a.pairs.tolist() for a in expected]
+
+
+def test_progress_is_told_in_order(model: sscc.Model) -> None:
+    shares: list[float] = []
+    certs = model.certify(progress=shares.append)
+    assert shares[-1] == 1.0 and shares == sorted(shares) and 0 < shares[0]
+    assert len(certs.hierarchy) > 1
+
+
+def test_progress_is_told_while_work_goes_on(large: sscc.Model) -> None:
+    class Enough(Exception):
+        pass
+
+    told: list[tuple[float, threading.Thread]] = []
+
+    def tell(share: float) -> None:
+        told.append((share, threading.current_thread()))
+        if len(told) == 3:
+            raise Enough("three are enough")
+
+    start = time.monotonic()
+    with pytest.raises(Enough, match="three are enough"):
+        large.certify(progress=tell)
+    assert 0 < told[0][0] < told[-1][0] < 1
+    assert {thread for _, thread in told} == {threading.current_thread()}
+    assert time.monotonic() - start < 60
+
+
+def test_bars_are_for_people(model: sscc.Model, capfd: pytest.CaptureFixture[str]) -> None:
+    from sscc._progress import Bar, start
+
+    model.certify()
+    assert capfd.readouterr() == ("", "")
+    assert start(None, "x") is None and start(False, "x") is None
+    bar = Bar("certifying")
+    bar(0.5)
+    bar.close()
+    assert capfd.readouterr() == ("", "")  # too soon to be of interest
+    bar.start -= 10
+    bar(0.5)
+    bar.close()
+    assert capfd.readouterr().err == "\rcertifying [###############...............]  50% 10 s\n"
+    begun = start(True, "x")
+    assert begun is not None and isinstance(begun[0], Bar)
+
+
+def test_nothing_is_left_half_written(tmp_path: Path, large: sscc.Model) -> None:
+    path = tmp_path / "a.sscc.safetensors"
+    assert seconds_until_stopped(lambda: large.certify().save(path)) < SOON
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_threads_other_than_the_first_can_be_stopped_by_progress(large: sscc.Model) -> None:
+    stop = threading.Event()
+    raised: list[BaseException] = []
+
+    def tell(_share: float) -> None:
+        if stop.is_set():
+            raise InterruptedError("stopped")
+
+    def work() -> None:
+        try:
+            large.certify(progress=tell)
+        except InterruptedError as error:
+            raised.append(error)
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    stop.set()
+    worker.join(60)
+    assert not worker.is_alive() and str(raised[0]) == "stopped"

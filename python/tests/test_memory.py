@@ -1,0 +1,50 @@
+"""What is created, used and dropped leaves nothing behind."""
+
+from __future__ import annotations
+
+import gc
+import pickle
+from pathlib import Path
+
+import pytest
+
+import sscc
+from shapes import samples, torus
+
+STATM = Path("/proc/self/statm")
+
+
+def resident() -> int:
+    """Memory that this process holds, in bytes."""
+    gc.collect()
+    return int(STATM.read_text().split()[1]) * 4096
+
+
+@pytest.mark.skipif(not STATM.exists(), reason="only Linux tells a process its memory this way")
+def test_a_thousand_cycles_leave_memory_flat() -> None:
+    vertices, faces, modes = torus(12, 8, 4)
+    qs = samples(8, 4, 0.4)
+
+    def cycle() -> None:
+        model = sscc.Model(vertices, faces, modes)
+        certs = model.certify(scheme="paper", epsilon=0.5, threads=1)
+        kinetic = certs.kinetic()
+        for q in qs[:2]:
+            kinetic.check(q).pairs.sum()
+            certs.check(q).pairs.sum()
+        certs.continuous(qs[0], qs[1]).times.sum()
+        certs.safe_scale(qs[0])
+        batch = certs.check_many(qs, threads=2)
+        assert pickle.loads(pickle.dumps(batch)) == batch
+        with pytest.raises(ValueError):
+            certs.check([0.0])
+        assert len(certs.hierarchy.order) == 192
+
+    for _ in range(100):
+        cycle()
+    before = resident()
+    for _ in range(1000):
+        cycle()
+    grown = resident() - before
+    # A leak of 8 kB in each cycle would show.
+    assert grown < 8 << 20, f"{grown / 2**20:.1f} MB more after 1,000 cycles"

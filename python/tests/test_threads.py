@@ -1,0 +1,62 @@
+"""Certificates serve any number of threads at once."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import sscc
+from shapes import samples
+
+THREADS = 8
+
+
+def test_eight_threads_get_the_same_answers(certs: sscc.Certificates) -> None:
+    qs = samples(160, 6, 0.4)
+    expected = [certs.check(q) for q in qs]
+    ways = [certs.continuous(q, q / 2) for q in qs[:20]]
+    start = threading.Barrier(THREADS)
+
+    def ask(thread: int) -> None:
+        start.wait()
+        for i in range(len(qs)):
+            i = (i + 20 * thread) % len(qs)
+            assert certs.check(qs[i]) == expected[i]
+            if i < len(ways):
+                assert certs.continuous(qs[i], qs[i] / 2) == ways[i]
+        assert list(certs.check_many(qs, threads=2)) == expected
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        for outcome in [pool.submit(ask, thread) for thread in range(THREADS)]:
+            outcome.result()
+
+
+def test_one_kinetic_query_serves_threads_in_turn(certs: sscc.Certificates) -> None:
+    qs = samples(40, 6, 0.4)
+    expected = [certs.check(q).pairs.tolist() for q in qs]
+    kinetic = certs.kinetic()
+
+    def ask(_thread: int) -> list[object]:
+        return [kinetic.check(q).pairs.tolist() for q in qs]
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        assert list(pool.map(ask, range(THREADS))) == [expected] * THREADS
+
+
+def test_others_work_meanwhile(model: sscc.Model) -> None:
+    """Long calls release the GIL: another thread counts while certificates are computed."""
+    counted = 0
+    done = threading.Event()
+
+    def count() -> None:
+        nonlocal counted
+        while not done.wait(0.001):
+            counted += 1
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    for _ in range(3):
+        model.certify(epsilon=0.02, threads=1)
+    done.set()
+    counter.join()
+    assert counted > 10

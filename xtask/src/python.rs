@@ -1,0 +1,171 @@
+//! `cargo xtask python`: builds the wheel of the Python package into a virtual environment inside the project, and
+//! runs its tests there.
+//!
+//! The environment is `python/.venv`; it is made anew when the requirements or the interpreter change. `SSCC_PYTHON`
+//! names the interpreter, else it is `python3`. Without one of version 3.11 or later, or without the packages (they are
+//! downloaded once), the tests are skipped.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use crate::tally::{SkipLog, Tally};
+use crate::test::{cargo, passed_on};
+
+const OLDEST: (u32, u32) = (3, 11);
+
+/// Runs the tests; arguments are passed on to pytest.
+pub fn run(arguments: Vec<String>) -> ExitCode {
+    let log = SkipLog::new();
+    let tally = test(&arguments, log.path());
+    log.conclude(tally)
+}
+
+/// Why there are no results.
+enum Stop {
+    /// What the tests need is not on this machine.
+    Missing(String),
+    /// Something is wrong with the package.
+    Broken(String),
+}
+
+/// What the tests came to.
+pub fn test(arguments: &[String], log: &Path) -> Tally {
+    println!("== Python package");
+    match build_and_test(arguments, log) {
+        Ok(tally) => tally,
+        Err(Stop::Missing(why)) => skipped("all tests of the Python package", &why, log),
+        Err(Stop::Broken(why)) => {
+            println!("error: {why}");
+            Tally::BROKEN
+        }
+    }
+}
+
+/// Says what is skipped, and why.
+fn skipped(what: &str, why: &str, log: &Path) -> Tally {
+    println!("SKIPPED: {what}: {why}");
+    let noted = fs::OpenOptions::new().append(true).create(true).open(log).and_then(|mut file| {
+        use std::io::Write;
+        writeln!(file, "SKIPPED: {what}: {why}")
+    });
+    // The log takes one from those that passed.
+    if noted.is_ok() { Tally { passed: 1, failed: 0 } } else { Tally::BROKEN }
+}
+
+fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python");
+    let package = package.canonicalize().map_err(|error| Stop::Broken(format!("python/: {error}")))?;
+    let python = environment(&package)?;
+    let wheels = package.join(".venv/wheels");
+    let _ = fs::remove_dir_all(&wheels);
+    // The profile of the other tests: what is compiled for them serves here, too.
+    let mut maturin = Command::new(&python);
+    maturin.args(["-m", "maturin", "build", "--profile", "dev", "--interpreter"]).arg(&python);
+    maturin.arg("--out").arg(&wheels).current_dir(&package);
+    succeed(&mut maturin, "the wheel cannot be built")?;
+    install(&python, &wheels)?;
+    succeed(cargo().args(["build", "--package", "sscc-cli"]), "the command cannot be built")?;
+    let command =
+        env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
+
+    let pytest = |python: &Path, tests: &[String]| {
+        let mut pytest = Command::new(python);
+        // -P: what is installed is tested, not the sources beside the tests.
+        pytest.args(["-P", "-m", "pytest"]).args(tests).current_dir(&package).env("SSCC_SKIP_LOG", log);
+        if let Some(command) = command.as_ref().filter(|path| path.is_file()) {
+            pytest.env("SSCC_COMMAND", command);
+        }
+        let mut tally = Tally::default();
+        let success = passed_on(&mut pytest, |line| tally.add_pytest(line))
+            .map_err(|error| Stop::Broken(format!("pytest cannot be run: {error}")))?;
+        if !success && tally.failed == 0 {
+            println!("error: pytest did not run to its end (see above)");
+            tally.failed = 1;
+        }
+        Ok(tally)
+    };
+    let tally = pytest(&python, arguments)?;
+    if !arguments.is_empty() {
+        return Ok(tally);
+    }
+    // Blender as a module is for one version of Python and of NumPy.
+    let blender = match environment(&package.join("blender")) {
+        Ok(python) => {
+            install(&python, &wheels)?;
+            pytest(&python, &["blender/tests".to_owned()])?
+        }
+        Err(Stop::Missing(why)) => skipped("all tests of the Blender add-on", &why, log),
+        Err(broken) => return Err(broken),
+    };
+    Ok(Tally { passed: tally.passed + blender.passed, failed: tally.failed + blender.failed })
+}
+
+/// Installs the wheel into an environment.
+fn install(python: &Path, wheels: &Path) -> Result<(), Stop> {
+    let mut install = pip(python);
+    install.args(["install", "--quiet", "--no-deps", "--no-index", "--force-reinstall"]).args(files(wheels));
+    succeed(&mut install, "the wheel cannot be installed")
+}
+
+/// The interpreter of the virtual environment, which is made if there is none for these requirements.
+fn environment(package: &Path) -> Result<PathBuf, Stop> {
+    let outside = env::var_os("SSCC_PYTHON").unwrap_or_else(|| "python3".into());
+    let shown = outside.to_string_lossy().into_owned();
+    let version =
+        "import sys, platform; print(*sys.version_info[:2], platform.python_version(), sys.executable)";
+    let told = Command::new(&outside).args(["-c", version]).output();
+    let told = told.map_err(|error| Stop::Missing(format!("{shown}: {error}")))?;
+    let told = String::from_utf8_lossy(&told.stdout).trim().to_owned();
+    let mut numbers = told.split(' ').map(|word| word.parse::<u32>().unwrap_or(0));
+    if (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) < OLDEST {
+        let (major, minor) = OLDEST;
+        return Err(Stop::Missing(format!(
+            "{shown} is no Python {major}.{minor} or later; SSCC_PYTHON names one"
+        )));
+    }
+
+    let requirements = package.join("requirements-test.txt");
+    let wanted = fs::read_to_string(&requirements)
+        .map_err(|error| Stop::Broken(format!("{}: {error}", requirements.display())))?;
+    let (folder, stamp) = (package.join(".venv"), format!("{told}\n{wanted}"));
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let made_for = folder.join("made-for.txt");
+    if fs::read_to_string(&made_for).is_ok_and(|made_for| made_for == stamp) && python.is_file() {
+        return Ok(python);
+    }
+    println!("making {} (packages are downloaded once)", folder.display());
+    let missing = |stop| match stop {
+        Stop::Broken(why) => Stop::Missing(why),
+        missing => missing,
+    };
+    succeed(
+        Command::new(&outside).args(["-m", "venv", "--clear"]).arg(&folder),
+        "no virtual environment can be made",
+    )
+    .map_err(missing)?;
+    let mut install = pip(&python);
+    install.args(["install", "--quiet", "--requirement"]).arg(&requirements);
+    succeed(&mut install, "the packages that the tests need cannot be installed").map_err(missing)?;
+    fs::write(&made_for, stamp).map_err(|error| Stop::Broken(format!("{}: {error}", made_for.display())))?;
+    Ok(python)
+}
+
+fn pip(python: &Path) -> Command {
+    let mut pip = Command::new(python);
+    pip.args(["-m", "pip", "--disable-pip-version-check", "--no-input"]);
+    pip
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
+}
+
+fn succeed(command: &mut Command, failure: &str) -> Result<(), Stop> {
+    match passed_on(command, |_| {}) {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Stop::Broken(format!("{failure} (see above)"))),
+        Err(error) => Err(Stop::Broken(format!("{failure}: {error}"))),
+    }
+}
