@@ -1,7 +1,7 @@
 //! `sscc info`: what is in a file.
 
 mod certified;
-mod frequencies;
+pub mod frequencies;
 mod meshes;
 mod model;
 mod surface;
