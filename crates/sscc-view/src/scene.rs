@@ -50,7 +50,7 @@ pub struct ModelScene {
     /// At rest.
     #[serde(rename = "box")]
     bounds: Bounds,
-    frequencies: Option<Vec<Option<f64>>>,
+    frequencies: Option<Vec<f64>>,
     mode_names: Option<Vec<String>>,
     /// `z_k = scales[k] (q_k - center_k)`, where the metric is diagonal.
     scales: Option<Vec<f64>>,
@@ -86,7 +86,7 @@ struct Bounds {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelDetails {
     /// Of each mode (Hz), where it is known.
-    pub frequencies: Option<Vec<Option<f64>>>,
+    pub frequencies: Option<Vec<f64>>,
     /// Of each mode, or none.
     pub mode_names: Vec<String>,
     /// The q that a file shows when nothing moves it; none: the centre.

@@ -3,14 +3,12 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use sscc_io::Elasticity;
-use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server, ViewError};
+use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
 
-use super::info::frequencies;
-use crate::args::{self, View};
+use crate::args::View;
 use crate::interrupt::{self, Interrupt};
 use crate::output::{Output, file_name};
-use crate::{Outcome, load};
+use crate::{Outcome, frequencies, load};
 
 /// The report in a folder of `simulate` or `demo`.
 const REPORT: &str = "report.html";
@@ -29,7 +27,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     // Taken before the page is made, so that a port in use is told at once.
     let server = bind(args)?;
     let details = ModelDetails {
-        frequencies: loaded.info.elasticity.as_ref().and_then(of_modes),
+        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies::of_modes),
         mode_names: loaded.mode_names,
         default_q: loaded.default_q,
     };
@@ -37,9 +35,9 @@ pub fn run(args: &View) -> Result<Outcome> {
     let in_model = || path.display().to_string();
     let mut arrays = Arrays::default();
     let mut scene = Scene::new(&name);
-    scene.models.push(
-        ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?,
-    );
+    scene
+        .models
+        .push(ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?);
     let live = Live::new(model, &certificates, scene, arrays, &Interrupt).with_context(in_model)?;
     announce(args, &server)?;
     server.serve(&live, &interrupt::happened)?;
@@ -58,9 +56,12 @@ fn show_report(args: &View, report: &Path) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn bind(args: &View) -> Result<Server, ViewError> {
-    let port = args.port.unwrap_or(0);
-    Server::bind(port)
+/// Listens at the port that is wanted.
+fn bind(args: &View) -> Result<Server> {
+    Ok(match args.port {
+        Some(port) => Server::bind(port).with_context(|| format!("--port {port}"))?,
+        None => Server::bind(0)?,
+    })
 }
 
 /// Tells where the page is, and opens it.
@@ -76,9 +77,4 @@ fn announce(args: &View, server: &Server) -> Result<()> {
         eprintln!("note: no browser was found: open the address above in one");
     }
     Ok(())
-}
-
-/// The frequency of each mode, where modes do not act on each other.
-fn of_modes(elasticity: &Elasticity) -> Option<Vec<Option<f64>>> {
-    frequencies::of_modes(elasticity).map(|all| all.into_iter().map(Some).collect())
 }

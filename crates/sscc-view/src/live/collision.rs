@@ -88,7 +88,8 @@ fn end(model: &ReducedModel, direction: &[f64]) -> f64 {
     let rest = model.mesh().rest_positions();
     let Some(first) = rest.first() else { return f64::INFINITY };
     let (min, max) = rest.iter().fold((*first, *first), |(min, max), p| (min.min(*p), max.max(*p)));
-    let speed = |v: u32| model.modes().of_vertex(v).iter().zip(direction).map(|(u, d)| *u * *d).sum::<glam::DVec3>();
+    let speed =
+        |v: u32| model.modes().of_vertex(v).iter().zip(direction).map(|(u, d)| *u * *d).sum::<glam::DVec3>();
     let fastest = (0..rest.len() as u32).map(|v| speed(v).length()).fold(0.0, f64::max);
     0.5 * (max - min).length() / fastest
 }

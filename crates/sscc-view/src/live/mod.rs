@@ -100,7 +100,8 @@ impl<'a> Live<'a> {
                     .cancelled_by(*progress),
             ),
         };
-        let (count, microseconds) = check::timed(|| query.discrete_at_most(q, check::MOST_FOUND).map(<[_]>::len));
+        let (count, microseconds) =
+            check::timed(|| query.discrete_at_most(q, check::MOST_FOUND).map(<[_]>::len));
         Ok(TraditionalAnswer { microseconds, count: count? })
     }
 

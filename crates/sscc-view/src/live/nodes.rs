@@ -88,15 +88,15 @@ pub(super) fn boxes(
 ) -> Result<BoxesAnswer, ViewError> {
     let hierarchy = certificates.hierarchy();
     let levels = hierarchy.levels();
-    let missing = || ViewError::Request(format!("there is no level {level}: the hierarchy has {}", levels.len()));
+    let missing =
+        || ViewError::Request(format!("there is no level {level}: the hierarchy has {}", levels.len()));
     let nodes = &hierarchy.nodes()[levels.get(*level).ok_or_else(missing)?.clone()];
     let (positions, faces) = (model.positions(q)?, model.mesh().faces());
     let of = |node| {
         let corners = hierarchy.triangles(node).iter().flat_map(|t| faces[*t as usize]);
-        let (min, max) = corners.map(|v| positions[v as usize]).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(min, max), p| (min.min(p), max.max(p)),
-        );
+        let (min, max) = corners
+            .map(|v| positions[v as usize])
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
         [min.x, min.y, min.z, max.x, max.y, max.z]
     };
     Ok(BoxesAnswer { boxes: nodes.iter().map(of).collect() })

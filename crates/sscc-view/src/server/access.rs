@@ -50,8 +50,9 @@ impl Access {
         &self.token
     }
 
-    /// Whether the request came by a name of this machine, from the page, and knows the token.
-    pub(super) fn check(&self, head: &Head) -> Result<(), Refusal> {
+    /// Whether the request came by a name of this machine, from the page, and knows the token. What is `open` holds no
+    /// data: there a token may be missing, but not wrong.
+    pub(super) fn check(&self, head: &Head, open: bool) -> Result<(), Refusal> {
         let known = |host: &str| self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host));
         if !head.host.as_deref().is_some_and(known) {
             return Err(Refusal::Host);
@@ -60,9 +61,10 @@ impl Access {
         if origin.is_some_and(|origin| !origin.strip_prefix("http://").is_some_and(known)) {
             return Err(Refusal::Origin);
         }
-        let given = head.token.as_deref().or(head.parameter("token")).unwrap_or_default();
         // In a time that does not tell how much of it is right.
-        if constant_time_eq(given.as_bytes(), self.token.as_bytes()) { Ok(()) } else { Err(Refusal::Token) }
+        let is_right = |given: &str| constant_time_eq(given.as_bytes(), self.token.as_bytes());
+        let given = head.token.as_deref().or(head.parameter("token"));
+        if given.map_or(open, is_right) { Ok(()) } else { Err(Refusal::Token) }
     }
 }
 
@@ -85,7 +87,7 @@ mod tests {
             token: Some(access.token.clone()),
             ..Head::default()
         };
-        let check = |head: Head| access.check(&head);
+        let check = |head: Head| access.check(&head, false);
         assert_eq!(check(good()), Ok(()));
         assert_eq!(check(Head { host: Some("LOCALHOST:8000".into()), ..good() }), Ok(()));
         for origin in ["http://127.0.0.1:8000", "http://localhost:8000"] {
@@ -95,8 +97,19 @@ mod tests {
             assert_eq!(check(Head { host: Some(host.into()), ..good() }), Err(Refusal::Host), "{host}");
         }
         assert_eq!(check(Head { host: None, ..good() }), Err(Refusal::Host));
-        for origin in ["null", "", "http://example.com", "https://127.0.0.1:8000", "http://127.0.0.1", "http://127.0.0.1:8001"] {
-            assert_eq!(check(Head { origin: Some(origin.into()), ..good() }), Err(Refusal::Origin), "{origin}");
+        for origin in [
+            "null",
+            "",
+            "http://example.com",
+            "https://127.0.0.1:8000",
+            "http://127.0.0.1",
+            "http://127.0.0.1:8001",
+        ] {
+            assert_eq!(
+                check(Head { origin: Some(origin.into()), ..good() }),
+                Err(Refusal::Origin),
+                "{origin}"
+            );
         }
         let query = |query: String| Head { token: None, query, ..good() };
         assert_eq!(check(query(format!("token={}", access.token))), Ok(()));
@@ -106,5 +119,7 @@ mod tests {
             assert_eq!(check(query(format!("token={wrong}"))), Err(Refusal::Token), "{wrong}");
         }
         assert_eq!(check(query(String::new())), Err(Refusal::Token));
+        assert_eq!(access.check(&query(String::new()), true), Ok(()));
+        assert_eq!(access.check(&query("token=".into()), true), Err(Refusal::Token));
     }
 }

@@ -65,7 +65,7 @@ pub(super) fn talk(
 
 /// What is said to a request whose body is not even read.
 fn refusal(head: &Head, access: &Access, site: &Site<'_, '_>) -> Option<Response<'static>> {
-    if let Err(refusal) = access.check(head) {
+    if let Err(refusal) = access.check(head, site.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
     }
     site.check(head).err().map(|(status, message)| Response::error(status, message))

@@ -15,14 +15,22 @@ pub(super) struct Timed<'a> {
 }
 
 impl<'a> Timed<'a> {
-    pub(super) fn new(stream: &'a TcpStream, time: Duration, is_stopped: &'a (dyn Fn() -> bool + Sync)) -> Self {
+    pub(super) fn new(
+        stream: &'a TcpStream,
+        time: Duration,
+        is_stopped: &'a (dyn Fn() -> bool + Sync),
+    ) -> Self {
         Self { stream, end: Instant::now() + time, is_stopped }
     }
 
     /// How long the system may wait now.
     fn slice(&self) -> io::Result<Duration> {
         let left = self.end.saturating_duration_since(Instant::now());
-        if left.is_zero() || (self.is_stopped)() { Err(ErrorKind::TimedOut.into()) } else { Ok(left.min(SLICE)) }
+        if left.is_zero() || (self.is_stopped)() {
+            Err(ErrorKind::TimedOut.into())
+        } else {
+            Ok(left.min(SLICE))
+        }
     }
 
     /// Tries again until the end.

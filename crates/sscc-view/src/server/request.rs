@@ -103,7 +103,8 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
         }
         Err(_) => return Err(BadHead::Refused(400, "this is no request")),
     };
-    let (path, query) = request.path.unwrap_or_default().split_once('?').unwrap_or((request.path.unwrap_or_default(), ""));
+    let (path, query) =
+        request.path.unwrap_or_default().split_once('?').unwrap_or((request.path.unwrap_or_default(), ""));
     let mut head = Head {
         method: request.method.unwrap_or_default().to_owned(),
         path: path.to_owned(),

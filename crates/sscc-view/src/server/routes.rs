@@ -28,6 +28,12 @@ struct Route<'a> {
 }
 
 impl<'a> Site<'a, '_> {
+    /// Whether that is for everybody on this machine: the live page itself, which holds no data, so that it can be
+    /// loaded again when it has taken the token out of its address. A report holds data.
+    pub(super) fn is_open(&self, path: &str) -> bool {
+        matches!((self, path), (Self::Live(_), "/"))
+    }
+
     /// Refuses what cannot be answered, before the body is read: with the status and one line.
     pub(super) fn check(&self, head: &Head) -> Result<(), (u16, &'static str)> {
         let route = self.route(&head.path).ok_or((404, "there is nothing of that name"))?;

@@ -112,7 +112,10 @@ fn what_is_no_animation_is_refused() {
     let mut wide = good();
     wide.weights[3] = 1e300;
     assert_eq!(message(&TIMES, wide), "a number of an animation is inf in single precision");
-    assert_eq!(animation_to_bytes(&models, &TIMES, &[]).unwrap_err(), "an animation needs a key frame and a body");
+    assert_eq!(
+        animation_to_bytes(&models, &TIMES, &[]).unwrap_err(),
+        "an animation needs a key frame and a body"
+    );
     assert_eq!(message(&[], good()), "an animation needs a key frame and a body");
 }
 
