@@ -438,6 +438,7 @@ Examples:
   sscc view spring.model.safetensors --certificates spring.sscc.safetensors
   sscc view head.glb --no-open --port 8080
   sscc view demo/
+  sscc view spring.model.safetensors --compare-metrics
 
 The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C.
 The metric and the other options come from the certificates; a flag that contradicts them is refused.")]
@@ -453,6 +454,10 @@ pub struct View {
     /// Only print the address, and open no browser
     #[arg(long)]
     pub no_open: bool,
+    /// Of models that know their stiffness: also draw how far the root's certificate reaches under the energy and the
+    /// displacement metric, with ever more modes; certificates are computed for each of them first
+    #[arg(long)]
+    pub compare_metrics: bool,
     #[command(flatten)]
     pub options: Options,
 }

@@ -1,5 +1,7 @@
 //! `sscc view`: the page, live.
 
+mod metrics;
+
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -28,8 +30,8 @@ pub fn run(args: &View) -> Result<Outcome> {
     let server = bind(args)?;
     let details = ModelDetails {
         frequencies: loaded.info.elasticity.as_ref().and_then(frequencies::of_modes),
-        mode_names: loaded.mode_names,
-        default_q: loaded.default_q,
+        mode_names: loaded.mode_names.clone(),
+        default_q: loaded.default_q.clone(),
     };
     let name = file_name(path);
     let in_model = || path.display().to_string();
@@ -38,6 +40,9 @@ pub fn run(args: &View) -> Result<Outcome> {
     scene
         .models
         .push(ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?);
+    if args.compare_metrics {
+        scene.plots.push(metrics::compare(&loaded, path)?);
+    }
     let live = Live::new(model, &certificates, scene, arrays, &Interrupt).with_context(in_model)?;
     announce(args, &server)?;
     server.serve(&live, &interrupt::happened)?;
