@@ -140,7 +140,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
 function marks(app: App): void {
     const { body, checker, chosen } = app;
     if (!body || !checker) return;
-    body.setMarks(0, checker.answer?.pairs.flat() ?? [], chosen ?? []);
+    body.setMarks(0, checker.answer?.triangles ?? checker.answer?.pairs.flat() ?? [], chosen ?? []);
 }
 
 function summary(source: Source): Tab[] {

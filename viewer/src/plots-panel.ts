@@ -2,7 +2,7 @@
 import type { App } from "./app";
 import { h } from "./dom";
 import { type Plot, plot } from "./plot";
-import type { Model, PlotData, Scene } from "./protocol";
+import type { Model, PlotData } from "./protocol";
 
 /** The radii of the certificates per level of the hierarchy (the paper's Figure 7). */
 function levels(model: Model): PlotData {
@@ -38,17 +38,6 @@ export function contactSpans(times: number[], pairs: number[][]): [number, numbe
     return spans;
 }
 
-function costs(scene: Scene): PlotData | null {
-    const data = scene.playback?.costs;
-    if (!data?.series?.length) return null;
-    return {
-        title: "Cost over time",
-        x: { label: "time (s)", log: false },
-        y: { label: "seconds per step", log: true },
-        series: data.series.map((s) => ({ name: s.name, x: data.times, y: s.y })),
-    };
-}
-
 export class PlotsPanel {
     readonly element = h("div", { class: "plots" });
     private readonly timed: Plot[] = [];
@@ -57,7 +46,7 @@ export class PlotsPanel {
         const { scene } = app;
         const pairs = scene.playback?.bodies.flatMap((b) => (b.pairs ? [b.pairs] : [])) ?? [];
         const spans = contactSpans(scene.playback?.times ?? [], pairs);
-        const overTime = costs(scene);
+        const overTime = scene.playback?.costs ?? null;
         const all = [
             ...(overTime ? [overTime] : []),
             ...scene.plots,

@@ -67,7 +67,7 @@ export interface PlaybackData {
     colliding: { offsets: string; triangles: string } | null;
     ground: number | null;
     sound: string | null;
-    costs: { times: number[]; series: { name: string; y: (number | null)[] }[] } | null;
+    costs: PlotData | null;
 }
 
 export interface Scene {
@@ -92,6 +92,8 @@ export interface Answer {
     count: number;
     complete: boolean;
     pairs: [number, number][];
+    /** Every triangle of any pair found; pairs may be too many to list. */
+    triangles?: number[];
     microseconds: number;
     root_certified: boolean;
     opened: number;

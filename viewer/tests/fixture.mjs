@@ -149,10 +149,12 @@ export function report({ sound = false, playback = true, change = () => {} } = {
                   ground: 0,
                   sound: sound ? "sound" : null,
                   costs: {
-                      times,
+                      title: "Cost over time",
+                      x: { label: "time (s)", log: false },
+                      y: { label: "seconds for a step", log: true },
                       series: [
-                          { name: "sscc", y: times.map((t) => 1e-6 * (1 + t)) },
-                          { name: "traditional", y: times.map((t) => 2e-3 + 1e-4 * Math.sin(9 * t)) },
+                          { name: "sscc", x: times, y: times.map((t) => 1e-6 * (1 + t)) },
+                          { name: "traditional", x: times, y: times.map((t) => 2e-3 + 1e-4 * Math.sin(9 * t)) },
                       ],
                   },
               }

@@ -191,12 +191,9 @@ fn browser_tests() -> Result<Tally, String> {
 
 /// Adds up the lines `# pass 3` and `# fail 0` of TAP. What was skipped or cancelled did not pass.
 fn results(text: &str) -> Tally {
-    let count = |what: &str| -> u64 {
-        let number =
-            text.lines().filter_map(|line| line.strip_prefix("# ")?.strip_prefix(what)?.trim().parse().ok());
-        number.sum::<u64>()
-    };
-    Tally { passed: count("pass "), failed: count("fail ") + count("cancelled ") + count("skipped ") }
+    let number = |line: &str, what: &str| line.strip_prefix(what)?.trim().parse::<u64>().ok();
+    let count = |what: &str| text.lines().filter_map(|line| number(line, what)).sum::<u64>();
+    Tally { passed: count("# pass "), failed: count("# fail ") + count("# cancelled ") + count("# skipped ") }
 }
 
 #[cfg(test)]

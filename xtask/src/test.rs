@@ -9,6 +9,8 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{self, Command, ExitCode, Stdio};
 
+use crate::page;
+
 /// Adds up the lines `test result: ok. 3 passed; 0 failed; ...`.
 #[derive(Default)]
 pub struct Tally {
