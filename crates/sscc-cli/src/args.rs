@@ -45,6 +45,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Measure queries by every method, and beside another library
     Bench(Bench),
+    /// Show a model on a page: drag its modes, see what collides and how far it is certified
+    View(View),
 }
 
 /// `sscc demo`
@@ -427,6 +429,32 @@ pub struct Bench {
     pub cache: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+}
+
+/// `sscc view`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc view spring.model.safetensors --certificates spring.sscc.safetensors
+  sscc view head.glb --no-open --port 8080
+  sscc view demo/
+
+The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C.
+The metric and the other options come from the certificates; a flag that contradicts them is refused.")]
+pub struct View {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    /// The port of the address [default: any that is free]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
+    /// Only print the address, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
+    #[command(flatten)]
+    pub options: Options,
 }
 
 /// The form of the result.

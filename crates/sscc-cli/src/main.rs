@@ -8,6 +8,7 @@
 mod args;
 mod case;
 mod commands;
+mod frequencies;
 mod interrupt;
 mod load;
 mod machine;
