@@ -74,7 +74,9 @@ export class CertificatesPanel {
         const { model } = this.app.shape;
         const rows: [string, string][] = [
             ["root radius", digits(model.root_radius)],
-            ["resolved up to", model.resolved_up_to === null ? "every q" : digits(model.resolved_up_to)],
+            ...(model.resolved_up_to === null
+                ? []
+                : [["resolved up to", digits(model.resolved_up_to)] as [string, string]]),
             ["global radius", digits(model.global_radius)],
             ["metric", model.metric],
             ["nodes", model.nodes.toLocaleString("en")],

@@ -1,6 +1,7 @@
 /** What can be taken away: a picture of the view, and the motion as GLB. */
 import type { App } from "./app";
 import { save } from "./dom";
+import { type Moved, writeGlb } from "./glb";
 
 function fileName(app: App, ending: string): string {
     return `${app.shape.model.name.replace(/[^\w.-]+/g, "_") || "shape"}.${ending}`;
@@ -23,8 +24,18 @@ export function track(app: App): { q: number[][]; times: number[] } {
     return { q: rows, times };
 }
 
-export async function exportGlb(app: App): Promise<void> {
-    const bytes = await app.source.bytes("/api/glb", track(app));
-    save(fileName(app, "glb"), new Blob([bytes], { type: "model/gltf-binary" }));
+/** The recording while it is shown; else the motion of the shape. A report has no server to write it. */
+export async function exportGlb(app: App, recorded: { bodies: Moved[]; times: number[] } | null): Promise<void> {
+    const { q, times } = track(app);
+    let file: Blob;
+    if (recorded) file = writeGlb(recorded.bodies, recorded.times);
+    else if (app.source.live) {
+        file = new Blob([await app.source.bytes("/api/glb", { q, times })], { type: "model/gltf-binary" });
+    } else {
+        const rows = Float32Array.from(q.flat());
+        const { shape } = app;
+        file = writeGlb([{ name: shape.model.name, shape, q: rows, rigid: null, center: [0, 0, 0] }], times);
+    }
+    save(fileName(app, "glb"), file);
     app.say(`saved ${fileName(app, "glb")}: the motion itself, modes as morph targets`);
 }

@@ -101,11 +101,11 @@ export async function page(source: Source, layout: Layout): Promise<void> {
 
     const actions = {
         png: () => void attempt(shared, () => exportPng(shared)),
-        glb: () => void attempt(shared, () => exportGlb(shared)),
+        glb: () => void attempt(shared, () => exportGlb(shared, player.shown)),
         theme: () => theme.toggle(),
     };
     layout.button("PNG", "save a picture of the view (P)", actions.png);
-    if (source.live) layout.button("GLB", "save the motion as GLB (G)", actions.glb);
+    layout.button("GLB", "save the motion as GLB (G)", actions.glb);
     layout.button("◐", "light or dark (T)", actions.theme);
     layout.button("?", "help (?)", help);
     const focused = (): number => modes.focused() ?? 0;
@@ -127,7 +127,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         k: () => certificates.cycle(),
         b: () => certificates.toggleBoxes(),
         p: actions.png,
-        g: source.live ? actions.glb : undefined,
+        g: actions.glb,
         t: actions.theme,
         "?": help,
     });

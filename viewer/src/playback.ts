@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import type { App } from "./app";
 import type { Body } from "./body";
+import type { Moved } from "./glb";
 import type { PlaybackData } from "./protocol";
 import type { Shape } from "./shape";
 import type { Source } from "./source";
@@ -76,6 +77,15 @@ export class Playback {
         return this.data.times.map((_, t) => known.reduce((sum, pairs) => sum + pairs[t], 0));
     }
 
+    get moved(): Moved[] {
+        return this.data.bodies.map((b, i) => ({
+            ...this.tracks[i],
+            name: b.name,
+            shape: this.shapes.get(b.model)!,
+            center: b.center,
+        }));
+    }
+
     row(body: number, frame: number): Float32Array {
         const { q } = this.tracks[body];
         const rank = q.length / this.frames;
@@ -113,9 +123,13 @@ export class Playback {
         const pairs = this.pairs;
         const recorded = pairs ? { pairs: pairs[frame], what: "as recorded" } : null;
         if (this.posed) {
-            if (!app.checker) app.recorded = recorded;
+            // Live, each frame is asked about again.
             if (app.checker) app.motion.propose(this.row(0, frame));
-            else app.pose.show(this.row(0, frame));
+            else {
+                app.recorded = recorded;
+                app.pose.show(this.row(0, frame));
+                app.body?.setMarks(0, this.triangles(0, frame) ?? []);
+            }
             return;
         }
         app.recorded = recorded;

@@ -1,6 +1,7 @@
 /** Goes between the shape that is explored and what was recorded. */
 import type { App } from "./app";
 import { h } from "./dom";
+import type { Moved } from "./glb";
 import type { Layout } from "./layout";
 import { Playback } from "./playback";
 import { Shape } from "./shape";
@@ -66,6 +67,12 @@ export class Player {
         this.timeline?.start();
     }
 
+    /** The recording, while it is on show. */
+    get shown(): { bodies: Moved[]; times: number[] } | null {
+        if (this.exploring || !this.recorded) return null;
+        return { bodies: this.recorded.moved, times: this.recorded.data.times };
+    }
+
     step(by: number): void {
         if (!this.timeline) return;
         this.timeline.pause();
@@ -76,7 +83,10 @@ export class Player {
     explore(): void {
         if (this.showing || this.exploring) return;
         this.app.recorded = null;
-        if (this.recorded?.posed) return;
+        if (this.recorded?.posed) {
+            if (!this.app.checker) this.app.body?.setMarks(0, []);
+            return;
+        }
         this.timeline?.pause();
         this.exploring = true;
         this.modeButton.hidden = false;

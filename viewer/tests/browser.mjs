@@ -6,6 +6,9 @@ import { chromium } from "playwright-core";
 
 const here = dirname(fileURLToPath(import.meta.url));
 export const builtPage = join(here, "../../crates/sscc-view/page/index.html");
+/** Drawing without a graphics card takes its time on a busy machine (ms). */
+const PATIENCE = 240_000;
+
 const places = [
     process.env.SSCC_CHROMIUM,
     "/usr/bin/chromium",
@@ -29,14 +32,15 @@ export function launch(more = []) {
 }
 
 /** A page of its own that notes what goes wrong in it, and every request. */
-export async function open(browser, address, { width = 1280, height = 720, scheme = "light", ...more } = {}) {
+export async function open(browser, address, { width = 900, height = 560, scheme = "light", ...more } = {}) {
     const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, ...more });
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const seen = { errors: [], requests: [] };
     page.on("pageerror", (error) => seen.errors.push(String(error)));
     page.on("console", (line) => line.type() === "error" && seen.errors.push(line.text()));
     page.on("request", (request) => seen.requests.push(request.url()));
     await page.goto(address);
-    await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 120_000 });
+    await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
     return { page, context, ...seen };
 }

@@ -2,7 +2,7 @@
 
 /** Pixels of an element as the screen shows them: `at(x, y)` gives [r, g, b]. */
 export async function pixels(page, selector = ".stage canvas") {
-    const png = await page.locator(selector).screenshot({ timeout: 120_000 });
+    const png = await page.locator(selector).screenshot();
     const data = await page.evaluate(async (base64) => {
         const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
         const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));

@@ -7,6 +7,7 @@ import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { builtPage, launch, open } from "./browser.mjs";
 import { report, withReport } from "./fixture.mjs";
+import { atTime, parse } from "./glb.mjs";
 import { drawnBox, expectedBox, orange, pixels, settled } from "./picture.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "sscc-page-"));
@@ -111,14 +112,14 @@ describe("the shape", () => {
             const q = () => page.evaluate(() => [...globalThis.sscc.pose.q]);
             await page.getByRole("button", { name: "Load q…" }).click();
             await page.getByRole("textbox", { name: "numbers" }).fill("[0.25, -0.5\n 0 1e-1]");
-            await page.getByRole("button", { name: "Show" }).click();
+            await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.deepEqual(await q(), [0.25, -0.5, 0, 0.1]);
             await page.keyboard.press("l");
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2 x");
-            await page.getByRole("button", { name: "Show" }).click();
+            await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.match(await page.locator(".dialog .wrong").innerText(), /line 1: 'x' is no number/);
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2");
-            await page.getByRole("button", { name: "Show" }).click();
+            await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.match(await page.locator(".dialog .wrong").innerText(), /2 numbers, the model has 4 modes/);
             const file = {
                 name: "q.npy",
@@ -142,7 +143,8 @@ describe("the shape", () => {
 /** A .npy file of float64. */
 function npy(values, shape) {
     const tuple = shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`;
-    const header = `{'descr': '<f8', 'fortran_order': False, 'shape': ${tuple}, }`.padEnd(117) + "\n";
+    const words = `{'descr': '<f8', 'fortran_order': False, 'shape': ${tuple}, }`;
+    const header = `${words.padEnd(117)}\n`;
     const head = Buffer.from([0x93, ...Buffer.from("NUMPY"), 1, 0, header.length, 0]);
     return Buffer.concat([head, Buffer.from(header, "latin1"), Buffer.from(new Float64Array(values).buffer)]);
 }
@@ -170,8 +172,8 @@ describe("playback", () => {
             await page.keyboard.press(".");
             assert.equal(await slider.inputValue(), "21");
             await page.getByRole("button", { name: "play", exact: true }).click();
-            await page.waitForFunction(() => globalThis.player.timeline.frame > 40, null, { timeout: 60_000 });
-            await page.waitForFunction(() => !globalThis.player.timeline.playing, null, { timeout: 60_000 });
+            await page.waitForFunction(() => globalThis.player.timeline.frame > 40);
+            await page.waitForFunction(() => !globalThis.player.timeline.playing);
             assert.equal(await slider.inputValue(), "59");
         }));
 
@@ -204,13 +206,36 @@ describe("playback", () => {
                 1.25,
                 1,
             ];
-            due.forEach((value, i) => assert.ok(Math.abs(place[i] - value) < 1e-6, `${i}: ${place[i]}`));
+            for (const [i, value] of due.entries()) assert.ok(Math.abs(place[i] - value) < 1e-6, `${i}: ${place[i]}`);
+        }));
+
+    test("is saved as GLB with the same positions, as three.js plays them", () =>
+        look({}, async (page) => {
+            const button = page.getByRole("button", { name: "save the motion" });
+            const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+            const glb = await parse(readFileSync(await download.path()));
+            const { shapes, box } = await page.evaluate(() => {
+                const { shape } = globalThis.sscc;
+                const frame = 30;
+                const q = [0, 1, 2].map((b) => [0.4 * Math.sin(6 + b), 0, 0.2 * Math.cos(5), 0]);
+                return { shapes: q.map((row) => [...shape.deformed(row)]), frame, box: 2 * shape.radius };
+            });
+            const meshes = [0, 1, 2].map((b) => atTime(glb, 1, `tube_${b + 1}`));
+            shapes.forEach((x, b) => {
+                // R (p + U q) + x at one second: a turn about z.
+                const [c, s] = [Math.cos(0.4 + 0.2 * b), Math.sin(0.4 + 0.2 * b)];
+                for (let v = 0; v < x.length; v += 3) {
+                    const due = [c * x[v] - s * x[v + 1] + 1.2 * (b - 1), s * x[v] + c * x[v + 1], x[v + 2] + 1.25];
+                    for (let i = 0; i < 3; i++) assert.ok(Math.abs(meshes[b][v + i] - due[i]) < 1e-5 * box);
+                }
+            });
         }));
 
     test("a slider leaves the recording, a button goes back", () =>
         look({}, async (page) => {
             await page.locator('.mode input[type="range"]').first().fill("0.5");
             assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 1);
+            await settled(page);
             assert.match(await page.locator(".verdict-text").innerText(), /not checked/);
             await page.getByRole("button", { name: "back to the recording" }).click();
             assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 3);
@@ -218,21 +243,19 @@ describe("playback", () => {
 
     test("sound and picture keep together", () =>
         look({ sound: true }, async (page) => {
-            await page.getByRole("button", { name: "play", exact: true }).click();
-            await page.waitForFunction(() => document.querySelector("audio").currentTime > 0.7, null, {
-                timeout: 60_000,
-            });
-            const apart = await page.evaluate(() => {
+            await page.evaluate(() => document.querySelector(".play").click());
+            // In one go within the page: the recording lasts two seconds only.
+            const apart = await page.evaluate(async () => {
                 const { timeline } = globalThis.player;
-                return new Promise((done) =>
-                    requestAnimationFrame(() =>
-                        done(document.querySelector("audio").currentTime - timeline.track.times[timeline.frame]),
-                    ),
-                );
+                const audio = document.querySelector("audio");
+                const frame = () => new Promise((done) => requestAnimationFrame(done));
+                while (audio.currentTime < 0.7) await frame();
+                const apart = audio.currentTime - timeline.track.times[timeline.frame];
+                document.querySelector(".play").click();
+                return apart;
             });
-            // One recorded frame is 0.033 s; a slow picture may be a few behind.
+            // A recorded frame lasts 0.033 s; a slow picture may be a few behind.
             assert.ok(Math.abs(apart) < 0.25, `${apart} s apart`);
-            await page.getByRole("button", { name: "pause" }).click();
             assert.ok(await page.evaluate(() => document.querySelector("audio").paused));
         }));
 });
