@@ -1,6 +1,7 @@
-//! Tasks of the project: `cargo xtask test` runs every test and says what it skipped.
+//! Tasks of the project: `cargo xtask test` runs every test and says what it skipped; `cargo xtask page` builds the page.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod page;
 mod test;
 
 use std::process::ExitCode;
@@ -9,12 +10,14 @@ fn main() -> ExitCode {
     let mut args = std::env::args().skip(1);
     match args.next().as_deref() {
         Some("test") => test::run(args.collect()),
+        Some("page") => page::run(&args.collect::<Vec<_>>()),
         Some(other) => {
-            eprintln!("error: no task '{other}'; there is: test");
+            eprintln!("error: no task '{other}'; there are: test, page");
             ExitCode::from(2)
         }
         None => {
             eprintln!("Usage: cargo xtask test [arguments for cargo test]");
+            eprintln!("       cargo xtask page [--write]");
             ExitCode::from(2)
         }
     }

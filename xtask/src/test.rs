@@ -9,15 +9,22 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{self, Command, ExitCode, Stdio};
 
+use crate::page;
+
 /// Adds up the lines `test result: ok. 3 passed; 0 failed; ...`.
 #[derive(Default)]
-struct Tally {
-    passed: u64,
-    failed: u64,
+pub struct Tally {
+    pub passed: u64,
+    pub failed: u64,
 }
 
 impl Tally {
-    fn add(&mut self, line: &str) {
+    pub fn add(&mut self, other: &Tally) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+    }
+
+    fn add_line(&mut self, line: &str) {
         let Some(result) = line.strip_prefix("test result: ") else { return };
         let count = |what: &str| {
             let words: Vec<&str> = result.split([' ', ';']).filter(|w| !w.is_empty()).collect();
@@ -42,23 +49,28 @@ pub fn run(arguments: Vec<String>) -> ExitCode {
         }
     };
 
+    let strict = env::var_os("SSCC_NO_SKIPS").is_some_and(|value| !value.is_empty());
     let mut skipped: Vec<&str> = skipped.lines().collect();
     skipped.sort_unstable();
+    // Arguments choose among the tests of the crates.
+    let page = if arguments.is_empty() { page::test(strict) } else { page::Outcome::default() };
     println!();
     skipped.iter().for_each(|line| println!("{line}"));
+    page.skipped.iter().for_each(|line| println!("{line}"));
     if !success && tally.failed == 0 {
         println!("error: cargo test did not run to its end (see above)");
         tally.failed = 1;
     }
-    let strict = env::var_os("SSCC_NO_SKIPS").is_some_and(|value| !value.is_empty());
-    if strict && !skipped.is_empty() {
+    if strict && !(skipped.is_empty() && page.skipped.is_empty()) {
         println!("error: SSCC_NO_SKIPS is set, so skipped tests count as failed");
-        tally.failed += skipped.len() as u64;
+        tally.failed += (skipped.len() + page.skipped.len()) as u64;
     }
     // To the test harness they passed.
     tally.passed = tally.passed.saturating_sub(skipped.len() as u64);
-    if !skipped.is_empty() {
-        println!("{} skipped, named above", skipped.len());
+    tally.add(&page.tally);
+    let skips = skipped.len() + page.skipped.len();
+    if skips > 0 {
+        println!("{skips} skipped, named above");
     }
     println!("{} passed, {} failed", tally.passed, tally.failed);
     if tally.failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
@@ -79,7 +91,7 @@ fn cargo_test(arguments: &[String], log: &PathBuf) -> io::Result<(Tally, bool)> 
         for line in BufReader::new(stdout).split(b'\n') {
             let line = line?;
             let text = String::from_utf8_lossy(&line);
-            tally.add(&text);
+            tally.add_line(&text);
             writeln!(out, "{text}")?;
             out.flush()?;
         }
@@ -94,11 +106,11 @@ mod tests {
     #[test]
     fn results_are_added_up() {
         let mut tally = Tally::default();
-        tally.add("running 3 tests");
-        tally.add(
+        tally.add_line("running 3 tests");
+        tally.add_line(
             "test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 2 filtered out; finished in 0.1s",
         );
-        tally.add("test result: FAILED. 4 passed; 2 failed; 0 ignored; 0 measured; 0 filtered out");
+        tally.add_line("test result: FAILED. 4 passed; 2 failed; 0 ignored; 0 measured; 0 filtered out");
         assert_eq!((tally.passed, tally.failed), (7, 2));
     }
 }
