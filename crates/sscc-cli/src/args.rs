@@ -424,6 +424,9 @@ pub struct Bench {
     /// Of growth: also draw it
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Also write what was measured as a page, in one file; of scenes, amplitudes and growth
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
