@@ -1,7 +1,8 @@
 //! Tasks of the project: `cargo xtask test` runs every test and says what it skipped, `cargo xtask python` those of the
-//! Python package.
+//! Python package, `cargo xtask page` builds the page.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod page;
 mod python;
 mod tally;
 mod test;
@@ -13,13 +14,14 @@ fn main() -> ExitCode {
     match args.next().as_deref() {
         Some("test") => test::run(args.collect()),
         Some("python") => python::run(args.collect()),
+        Some("page") => page::run(&args.collect::<Vec<_>>()),
         Some(other) => {
-            eprintln!("error: no task '{other}'; there are: test, python");
+            eprintln!("error: no task '{other}'; there are: test, python, page");
             ExitCode::from(2)
         }
         None => {
             eprintln!(
-                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]"
+                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write]"
             );
             ExitCode::from(2)
         }

@@ -35,23 +35,12 @@ pub fn test(arguments: &[String], log: &Path) -> Tally {
     println!("== Python package");
     match build_and_test(arguments, log) {
         Ok(tally) => tally,
-        Err(Stop::Missing(why)) => skipped("all tests of the Python package", &why, log),
+        Err(Stop::Missing(why)) => SkipLog::skip(log, "all tests of the Python package", &why),
         Err(Stop::Broken(why)) => {
             println!("error: {why}");
             Tally::BROKEN
         }
     }
-}
-
-/// Says what is skipped, and why.
-fn skipped(what: &str, why: &str, log: &Path) -> Tally {
-    println!("SKIPPED: {what}: {why}");
-    let noted = fs::OpenOptions::new().append(true).create(true).open(log).and_then(|mut file| {
-        use std::io::Write;
-        writeln!(file, "SKIPPED: {what}: {why}")
-    });
-    // The log takes one from those that passed.
-    if noted.is_ok() { Tally { passed: 1, failed: 0 } } else { Tally::BROKEN }
 }
 
 fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
@@ -86,20 +75,20 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
         }
         Ok(tally)
     };
-    let tally = pytest(&python, arguments)?;
+    let mut tally = pytest(&python, arguments)?;
     if !arguments.is_empty() {
         return Ok(tally);
     }
     // Blender as a module is for one version of Python and of NumPy.
-    let blender = match environment(&package.join("blender")) {
+    tally += match environment(&package.join("blender")) {
         Ok(python) => {
             install(&python, &wheels)?;
             pytest(&python, &["blender/tests".to_owned()])?
         }
-        Err(Stop::Missing(why)) => skipped("all tests of the Blender add-on", &why, log),
+        Err(Stop::Missing(why)) => SkipLog::skip(log, "all tests of the Blender add-on", &why),
         Err(broken) => return Err(broken),
     };
-    Ok(Tally { passed: tally.passed + blender.passed, failed: tally.failed + blender.failed })
+    Ok(tally)
 }
 
 /// Installs the wheel into an environment.

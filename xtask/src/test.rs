@@ -1,5 +1,5 @@
 //! `cargo xtask test`: all tests of all crates, examples in the documentation included, and those of the Python
-//! package.
+//! package and of the page.
 //!
 //! Output is passed on as it comes. Then follow the tests that found their data missing, and as the last line
 //! `N passed, N failed`. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
@@ -9,6 +9,7 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
+use crate::page;
 use crate::python;
 use crate::tally::{SkipLog, Tally};
 
@@ -17,8 +18,8 @@ pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
     let mut tally = cargo_test(&arguments, log.path());
     if arguments.is_empty() {
-        let of_python = python::test(&[], log.path());
-        tally = Tally { passed: tally.passed + of_python.passed, failed: tally.failed + of_python.failed };
+        tally += python::test(&[], log.path());
+        tally += page::test(log.path());
     }
     log.conclude(tally)
 }

@@ -45,6 +45,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Measure queries by every method, and beside another library
     Bench(Bench),
+    /// Show a model on a page: drag its modes, see what collides and how far it is certified
+    View(View),
 }
 
 /// `sscc demo`
@@ -422,11 +424,45 @@ pub struct Bench {
     /// Of growth: also draw it
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Also write what was measured as a page, in one file; of scenes, amplitudes and growth
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+}
+
+/// `sscc view`
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  sscc view spring.model.safetensors --certificates spring.sscc.safetensors
+  sscc view head.glb --no-open --port 8080
+  sscc view demo/
+  sscc view spring.model.safetensors --compare-metrics
+
+The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C.
+The metric and the other options come from the certificates; a flag that contradicts them is refused.")]
+pub struct View {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    /// The port of the address [default: any that is free]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
+    /// Only print the address, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
+    /// Of models that know their stiffness: also draw how far the root's certificate reaches under the energy and the
+    /// displacement metric, with ever more modes; certificates are computed for each of them first
+    #[arg(long)]
+    pub compare_metrics: bool,
+    #[command(flatten)]
+    pub options: Options,
 }
 
 /// The form of the result.

@@ -9,6 +9,7 @@
 mod args;
 mod case;
 mod commands;
+mod frequencies;
 mod interrupt;
 mod load;
 mod machine;

@@ -141,6 +141,21 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
     computed.with_context(|| path.display().to_string())
 }
 
+/// Certificates for one run of a command that was given none: says so, and leaves out the pairs of nodes unless they were
+/// asked for, because a few queries do not make up for the time that they take.
+pub fn certificates_now(
+    model: &ReducedModel,
+    files: &args::Model,
+    typed: &args::Options,
+) -> Result<Certificates> {
+    let mut options = options(model, files, typed)?;
+    if (typed.scheme, typed.budget) == (None, None) {
+        options.budget = 0;
+    }
+    eprintln!("note: no --certificates given: computing them first (sscc certify keeps them in a file)");
+    certify(model, &files.path, &options)
+}
+
 /// Reads certificates, and refuses those of another model, or other than the options typed say.
 pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) -> Result<Certificates> {
     let certificates = sscc_io::read_certificates(path)?;

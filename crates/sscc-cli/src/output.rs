@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Write as _};
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, StdoutLock, Write};
+use std::path::Path;
 
 use anyhow::Context;
 use serde::Serialize;
@@ -84,6 +85,11 @@ pub fn length(value: f64) -> String {
         }
         v => format!("{v:.3e}"),
     }
+}
+
+/// The name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// A number with its noun: "1 pair", "2 pairs".

@@ -83,4 +83,4 @@ pub use npz::{NamedArray, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
 pub use solid::{Material, Solid, read_solid};
-pub use wav::{WavFormat, write_wav};
+pub use wav::{WavFormat, wav_to_bytes, write_wav};

@@ -24,12 +24,16 @@ const MOST_BYTES: usize = u32::MAX as usize - 4096;
 /// # Errors
 /// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.
 pub fn write_wav(path: &Path, rate: u32, samples: &[f64], format: WavFormat) -> Result<(), IoError> {
-    let bytes =
-        to_bytes(rate, samples, format).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    let bytes = wav_to_bytes(rate, samples, format)
+        .map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
     write_whole(path, &bytes)
 }
 
-fn to_bytes(rate: u32, samples: &[f64], format: WavFormat) -> Result<Vec<u8>, String> {
+/// The bytes of the file that [`write_wav`] writes.
+///
+/// # Errors
+/// As [`write_wav`]: one line without a file's name.
+pub fn wav_to_bytes(rate: u32, samples: &[f64], format: WavFormat) -> Result<Vec<u8>, String> {
     let (bits_per_sample, sample_format) = match format {
         WavFormat::Pcm16 => (16, SampleFormat::Int),
         WavFormat::Float32 => (32, SampleFormat::Float),

@@ -8,6 +8,7 @@ mod demo;
 mod info;
 pub mod modes;
 pub mod simulate;
+mod view;
 
 use crate::Outcome;
 use crate::args::{Cli, Command};
@@ -23,5 +24,6 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run_command(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::View(args) => view::run(&args),
     }
 }

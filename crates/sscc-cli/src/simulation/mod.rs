@@ -5,6 +5,7 @@ mod log;
 mod meter;
 mod outputs;
 mod page;
+mod playback;
 mod plot;
 mod prepared;
 mod run;

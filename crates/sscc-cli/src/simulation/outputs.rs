@@ -12,7 +12,7 @@ use super::prepared::Prepared;
 use crate::scene::Scene;
 
 /// How loud the loudest sample of the 16 bit file is; the other one is as loud as it was computed.
-const LOUDEST: f64 = 0.9;
+pub(super) const LOUDEST: f64 = 0.9;
 
 /// Writes all of them into a folder. Gives the names of those that were written, and why another one was not: of
 /// a motion that diverges some numbers may fit no file.
@@ -27,19 +27,23 @@ pub fn write(folder: &Path, page: &Page<'_>) -> (Vec<PathBuf>, Option<Error>) {
         }
     };
     add("summary.json", &|path| Ok(write_whole(path, &serde_json::to_vec_pretty(summary)?)?));
-    add("report.html", &|path| Ok(write_whole(path, page.html().as_bytes())?));
+    add("report.html", &|path| Ok(write_whole(path, page.html()?.as_bytes())?));
     add("trajectories.npz", &|path| trajectories(path, scene, prepared, history));
     add("costs.npz", &|path| costs(path, scene, history, page));
     add("animation.glb", &|path| animation(path, scene, prepared, history));
     if scene.sound.is_some() {
-        let samples: Vec<f64> = (0..history.len()).map(|state| history.facts(state).sound).collect();
-        let rate = (1.0 / scene.step).round() as u32;
-        let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-        let loud: Vec<f64> = samples.iter().map(|x| x * LOUDEST / peak.max(f64::MIN_POSITIVE)).collect();
+        let (samples, rate) = page.samples();
+        let loud = loud(&samples, LOUDEST);
         add("sound.wav", &|path| Ok(write_wav(path, rate, &loud, WavFormat::Pcm16)?));
         add("sound_float.wav", &|path| Ok(write_wav(path, rate, &samples, WavFormat::Float32)?));
     }
     (files, unwritten)
+}
+
+/// Sound whose loudest sample is that loud.
+pub(super) fn loud(samples: &[f64], loudest: f64) -> Vec<f64> {
+    let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    samples.iter().map(|x| x * loudest / peak.max(f64::MIN_POSITIVE)).collect()
 }
 
 /// Times of all states (s).

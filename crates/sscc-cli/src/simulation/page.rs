@@ -1,20 +1,18 @@
-//! The report of a simulation: one HTML file that needs no other.
+//! The report of a simulation: the page with its motion, one HTML file that needs no other.
 
-use std::fmt::Write;
+use anyhow::{Context, Result};
+use sscc_view::{Arrays, Axis, ModelDetails, ModelScene, Plot, Report, Scene as View, Series};
 
 use super::history::History;
-use super::plot::{Line, Plot, escaped, thinned};
+use super::playback::playback;
+use super::plot::thinned;
 use super::prepared::Prepared;
 use super::summary::Summary;
+use crate::frequencies;
 use crate::scene::Scene;
 
 /// Points of a line at most.
 const POINTS: usize = 700;
-
-const OURS: &str = "#2a8a3e";
-const THEIRS: &str = "#c0392b";
-const BLUE: &str = "#0b6bb8";
-const GREY: &str = "#777";
 
 /// What a page tells of.
 pub struct Page<'a> {
@@ -29,47 +27,39 @@ pub struct Page<'a> {
 }
 
 impl Page<'_> {
-    pub fn html(&self) -> String {
-        let mut body = format!("<h1>{}</h1>\n", escaped(&self.scene.name));
-        // Writing to a String never fails.
-        if let Some(failure) = &self.failure {
-            let _ = writeln!(body, "<p class=\"failure\">Stopped early: {}</p>", escaped(failure));
+    pub fn html(&self) -> Result<String> {
+        let mut arrays = Arrays::default();
+        let mut view = View::new(&self.scene.name);
+        for (index, model) in self.prepared.models.iter().enumerate() {
+            let case = &model.case;
+            let details = ModelDetails {
+                frequencies: frequencies::of_modes(&case.elasticity),
+                ..ModelDetails::default()
+            };
+            let certificates = &case.full.certificates;
+            let made = ModelScene::new(index, &case.name, &case.model, certificates, details, &mut arrays);
+            view.models.push(made.with_context(|| case.name.clone())?);
         }
-        for line in self.summary.lines() {
-            let _ = writeln!(body, "<p>{}</p>", escaped(&line));
-        }
-        let mut section = |title: &str, about: &str, svg: String| {
-            let _ = writeln!(body, "<h2>{title}</h2>\n<p>{about}</p>\n{svg}");
-        };
-        section(
-            "Cost over time",
-            "What each step took to find the triangles in which bodies collide with themselves, in the manner of the paper's Figure \
-             12. The certified method is timed within the simulation (the slowest of each stretch of steps), the traditional one, \
-             without certificates, at some of its states.",
-            self.costs(),
-        );
-        section(
-            "Radius per level",
-            "The median radius of each level of the hierarchies, the root's first, as in the paper's Figure 7: shapes whose q is \
-             shorter are proven free of self-collisions within such a part.",
-            self.radii(),
-        );
-        section("Energy", "Kinetic, elastic and potential energy of all bodies.", self.energy());
+        let failure = self.failure.iter().map(|failure| ("stopped early".to_owned(), failure.clone()));
+        view.summary = failure.chain(self.summary.table()).collect();
+        view.plots.push(self.energy());
         if self.scene.sound.is_some() {
-            section("Sound", "The loudest samples of each stretch.", self.sound());
+            view.plots.push(self.sound());
         }
-        let _ = writeln!(body, "<p class=\"small\">{}</p>", escaped(&self.summary.machine));
-        format!(
-            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-             content=\"width=device-width\">\n<title>{} - sscc simulate</title>\n<style>body{{font:16px/1.5 \
-             sans-serif;max-width:900px;margin:2em auto;padding:0 1em}}svg{{width:100%}}p{{margin:.4em 0}}.failure{{color:#c0392b}}\
-             .small{{color:#777;font-size:13px}}</style>\n{body}</html>\n",
-            escaped(&self.scene.name)
-        )
+        let (playback, notes) = playback(self, &mut arrays)?;
+        view.playback = playback;
+        view.summary.extend(notes.into_iter().map(|note| ("note".to_owned(), note)));
+        Ok(Report { scene: view, arrays }.html()?)
     }
 
-    fn time(&self, state: usize) -> f64 {
+    pub(super) fn time(&self, state: usize) -> f64 {
         state as f64 * self.scene.step
+    }
+
+    /// The sound, and its samples in a second.
+    pub(super) fn samples(&self) -> (Vec<f64>, u32) {
+        let samples = (0..self.history.len()).map(|state| self.history.facts(state).sound).collect();
+        (samples, (1.0 / self.scene.step).round() as u32)
     }
 
     /// A value of each state.
@@ -77,102 +67,46 @@ impl Page<'_> {
         (0..self.history.len()).map(|state| [self.time(state), of(state)]).collect()
     }
 
-    fn costs(&self) -> String {
+    /// What each step took to find the triangles in which bodies collide with themselves, in the manner of the paper's Figure
+    /// 12. The certified method is timed within the simulation (the slowest of each stretch of steps), the traditional one,
+    /// without certificates, at some of its states.
+    pub(super) fn costs(&self) -> Plot {
         let own = self.line(|state| 1e3 * self.history.facts(state).own());
-        let traditional =
-            self.traditional.iter().map(|(state, seconds)| [self.time(*state), 1e3 * seconds]).collect();
-        let plot = Plot {
-            title: "Cost over time",
-            x_label: "time (s)",
-            y_label: "ms in a step",
-            lines: vec![
-                Line { label: "traditional", color: THEIRS, points: traditional, dots: true },
-                Line {
-                    label: "certified",
-                    color: OURS,
-                    points: thinned(&own, POINTS, f64::max),
-                    dots: false,
-                },
+        let of = |(state, seconds): &(usize, f64)| [self.time(*state), 1e3 * seconds];
+        Plot {
+            title: "Cost over time".into(),
+            x: time(),
+            y: Axis::logarithmic("self-collisions, ms in a step"),
+            series: vec![
+                Series::new("traditional", self.traditional.iter().map(of)),
+                Series::new("certified", thinned(&own, POINTS, f64::max)),
             ],
-            marks: self.contacts(),
-            marks_label: "self-contact",
-            logarithmic: true,
-        };
-        plot.svg()
-    }
-
-    /// Stretches of time in which some body collides with itself.
-    fn contacts(&self) -> Vec<[f64; 2]> {
-        let mut marks: Vec<[f64; 2]> = Vec::new();
-        let gap = self.time(self.history.len()) / POINTS as f64;
-        for state in (0..self.history.len()).filter(|state| self.history.colliding(*state) > 0) {
-            let [from, to] = [self.time(state), self.time(state + 1)];
-            match marks.last_mut() {
-                Some(last) if from - last[1] <= gap => last[1] = to,
-                _ => marks.push([from, to]),
-            }
         }
-        marks
     }
 
-    fn radii(&self) -> String {
-        let colors = [BLUE, OURS, THEIRS, GREY];
-        let lines = self.prepared.models.iter().zip(colors.iter().cycle()).map(|(model, color)| {
-            let parts = model.case.full.certificates.parts();
-            let median = |level: std::ops::Range<usize>| {
-                let mut radii = parts.node_radii[level].to_vec();
-                radii.sort_by(f64::total_cmp);
-                radii[radii.len() / 2]
-            };
-            let levels = parts.hierarchy.levels().into_iter().enumerate();
-            let points = levels.map(|(level, nodes)| [level as f64, median(nodes)]).collect();
-            Line { label: &model.case.name, color, points, dots: true }
-        });
-        let plot = Plot {
-            title: "Radius per level",
-            x_label: "level of the hierarchy",
-            y_label: "median radius",
-            lines: lines.collect(),
-            marks: Vec::new(),
-            marks_label: "",
-            logarithmic: true,
-        };
-        plot.svg()
-    }
-
-    fn energy(&self) -> String {
+    fn energy(&self) -> Plot {
         let mut points = self.line(|state| self.history.facts(state).energy);
         points.retain(|point| point[1].is_finite());
-        let plot = Plot {
-            title: "Energy",
-            x_label: "time (s)",
-            y_label: "energy (J)",
-            lines: vec![Line {
-                label: "all bodies",
-                color: BLUE,
-                points: thinned(&points, POINTS, f64::max),
-                dots: false,
-            }],
-            marks: self.contacts(),
-            marks_label: "self-contact",
-            logarithmic: false,
-        };
-        plot.svg()
+        Plot {
+            title: "Energy".into(),
+            x: time(),
+            y: Axis::linear("kinetic, elastic and potential (J)"),
+            series: vec![Series::new("all bodies", thinned(&points, POINTS, f64::max))],
+        }
     }
 
-    fn sound(&self) -> String {
+    fn sound(&self) -> Plot {
         let points = self.line(|state| self.history.facts(state).sound);
-        let line =
-            |label, pick| Line { label, color: BLUE, points: thinned(&points, POINTS, pick), dots: false };
-        let plot = Plot {
-            title: "Sound",
-            x_label: "time (s)",
-            y_label: "sample",
-            lines: vec![line("largest", f64::max as fn(f64, f64) -> f64), line("least", f64::min)],
-            marks: self.contacts(),
-            marks_label: "self-contact",
-            logarithmic: false,
-        };
-        plot.svg()
+        let line = |name, pick| Series::new(name, thinned(&points, POINTS, pick));
+        Plot {
+            title: "Sound".into(),
+            x: time(),
+            y: Axis::linear("sample"),
+            series: vec![line("largest", f64::max as fn(f64, f64) -> f64), line("least", f64::min)],
+        }
     }
+}
+
+fn time() -> Axis {
+    Axis::linear("time (s)")
 }

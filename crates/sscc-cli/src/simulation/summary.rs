@@ -97,19 +97,33 @@ impl Summary {
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for model in &self.models {
-            lines.push(format!(
-                "{}: {} triangles, {} modes ({})",
-                model.name,
-                grouped(model.triangles as u64),
-                model.rank,
-                model.source
-            ));
+            lines.push(format!("{}: {}", model.name, model.line()));
             lines.extend(model.note.iter().map(|note| format!("note: {note}")));
         }
-        let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
-        lines.push(format!(
-            "{}: {}, {}, {} s, simulated in {:.2} s ({:.2} times real time{})",
-            self.scene,
+        lines.push(format!("{}: {}", self.scene, self.motion()));
+        lines.push(format!("self-contact in {}", self.contact()));
+        lines.push(format!("detecting self-collisions took {}", self.share()));
+        lines
+    }
+
+    /// The same as rows of a table, and the machine.
+    pub fn table(&self) -> Vec<(String, String)> {
+        let row = |label: &str, value: String| (label.to_owned(), value);
+        let mut rows = Vec::new();
+        for model in &self.models {
+            rows.push(row(&model.name, model.line()));
+            rows.extend(model.note.iter().map(|note| row("note", note.clone())));
+        }
+        rows.push(row("motion", self.motion()));
+        rows.push(row("self-contact", format!("in {}", self.contact())));
+        rows.push(row("detecting self-collisions", self.share()));
+        rows.push(row("machine", self.machine.clone()));
+        rows
+    }
+
+    fn motion(&self) -> String {
+        format!(
+            "{}, {}, {} s, simulated in {:.2} s ({:.2} times real time{})",
             if self.objects == 1 { "one body".into() } else { format!("{} bodies", self.objects) },
             counted(self.steps as u64, "step"),
             self.simulated_seconds,
@@ -117,18 +131,27 @@ impl Summary {
             self.real_time_factor,
             self.real_time_factor_processor
                 .map_or(String::new(), |factor| format!(", {factor:.2} on one core"))
-        ));
-        lines.push(format!(
-            "self-contact in {} of {} steps ({:.1}%), in {:.1}% with each body counted",
+        )
+    }
+
+    fn contact(&self) -> String {
+        let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
+        format!(
+            "{} of {} steps ({:.1}%), in {:.1}% with each body counted",
             grouped(self.colliding_steps as u64),
             grouped(self.steps as u64),
             share(self.colliding_steps, self.steps),
             share(self.colliding_body_steps, self.body_steps)
-        ));
-        lines.push(format!(
-            "detecting self-collisions took {:.1}% of the time",
-            100.0 * self.self_collision_share
-        ));
-        lines
+        )
+    }
+
+    fn share(&self) -> String {
+        format!("{:.1}% of the time", 100.0 * self.self_collision_share)
+    }
+}
+
+impl ModelFacts {
+    fn line(&self) -> String {
+        format!("{} triangles, {} modes ({})", grouped(self.triangles as u64), self.rank, self.source)
     }
 }

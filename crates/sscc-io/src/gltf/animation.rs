@@ -40,8 +40,8 @@ pub fn write_animation(
     times: &[f64],
     tracks: &[Track],
 ) -> Result<(), IoError> {
-    let bytes =
-        to_bytes(models, times, tracks).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    let bytes = animation_to_bytes(models, times, tracks)
+        .map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
     write_whole(path, &bytes)
 }
 
@@ -65,7 +65,11 @@ pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     frames
 }
 
-pub(super) fn to_bytes(
+/// The bytes of the file that [`write_animation`] writes.
+///
+/// # Errors
+/// As [`write_animation`]: one line without a file's name.
+pub fn animation_to_bytes(
     models: &[(&str, &ReducedModel)],
     times: &[f64],
     tracks: &[Track],

@@ -71,6 +71,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     }
     if session.args.json.json {
         let machine = machine::description();
+        reports.iter().for_each(|report| session.rows.add(report));
         out.json(&Growth { scenario: "growth", mismatches, sizes: &reports, exponents, machine })?;
     } else {
         reports.iter().try_for_each(|report| session.print(std::slice::from_ref(report), out))?;

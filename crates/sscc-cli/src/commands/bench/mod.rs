@@ -10,6 +10,7 @@ mod follow;
 mod growth;
 mod kinetic;
 mod measure;
+mod page;
 mod paper;
 mod peer;
 mod random;
@@ -25,11 +26,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 
-use crate::Outcome;
 use crate::args::Bench;
 use crate::case::{Cache, Case, Kind, Recipe, Shape, models_folder};
 use crate::machine;
 use crate::output::Output;
+use crate::{Outcome, load};
+use page::Rows;
 use report::Report;
 use scenario::Scenario;
 use table::Table;
@@ -46,7 +48,10 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     };
     check_options(args, scenario)?;
     let models = models_folder(args.models.as_deref())?;
-    let session = Session { args, models, cache: Cache::open(args.cache.as_deref())? };
+    if let Some(report) = &args.report {
+        load::check_output(report, ".html", &[])?;
+    }
+    let session = Session { args, models, cache: Cache::open(args.cache.as_deref())?, rows: Rows::default() };
     let mismatches = match scenario {
         Scenario::Amplitudes => amplitudes::run(&session, &mut out),
         Scenario::Growth => growth::run(&session, &mut out),
@@ -58,6 +63,9 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
         out.line(format_args!("measured on: {}", machine::description()))?;
     }
     out.finish()?;
+    if let Some(report) = &args.report {
+        session.rows.write(report, args.scenario.as_deref().unwrap_or_default())?;
+    }
     ensure!(mismatches == 0, "exact methods differ in {mismatches} of the steps: this is a defect");
     Ok(Outcome::Done)
 }
@@ -73,6 +81,8 @@ fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
     ensure!(!moves || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
     let grows = matches!(scenario, Scenario::Growth);
     ensure!(grows || args.plot.is_none(), "--plot is for growth");
+    let is_told = !matches!(scenario, Scenario::Kinetic);
+    ensure!(is_told || args.report.is_none(), "--report is not for kinetic");
     ensure!(!grows || !args.quick, "--quick: growth needs its sizes; choose one by --only");
     Ok(())
 }
@@ -82,6 +92,8 @@ struct Session<'a> {
     args: &'a Bench,
     models: Option<PathBuf>,
     cache: Cache,
+    /// For `--report`.
+    rows: Rows,
 }
 
 impl Session<'_> {
@@ -118,6 +130,7 @@ impl Session<'_> {
 
     /// Prints reports of one model: each as JSON on a line of its own, or a table of all.
     fn print(&self, reports: &[Report], out: &mut Output) -> anyhow::Result<()> {
+        reports.iter().for_each(|report| self.rows.add(report));
         if self.args.json.json {
             return reports.iter().try_for_each(|report| out.json(report));
         }

@@ -48,15 +48,7 @@ pub fn run(args: &Check) -> Result<Outcome> {
     let certificates = match &args.certificates {
         Some(path) => Some(load::certificates(path, &model, &args.options)?),
         None if args.method == args::Method::Certified => {
-            let mut options = load::options(&model, &args.model, &args.options)?;
-            // The few queries of one run do not make up for the time that pairs of nodes take.
-            if (args.options.scheme, args.options.budget) == (None, None) {
-                options.budget = 0;
-            }
-            eprintln!(
-                "note: no --certificates given: computing them first (sscc certify keeps them in a file)"
-            );
-            Some(load::certify(&model, &args.model.path, &options)?)
+            Some(load::certificates_now(&model, &args.model, &args.options)?)
         }
         None => None,
     };

@@ -2,6 +2,7 @@
 
 mod animation;
 mod frames;
+mod page;
 mod report;
 mod save;
 
@@ -44,7 +45,8 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         report.lines().into_iter().try_for_each(|line| out.line(line))?;
     }
     if let Some(folder) = &args.out {
-        save::save(folder, spring, &certificates, &animation)?;
+        let page = page::html(&spring, &certificates, &animation, &frames, &report)?;
+        save::save(folder, spring, &certificates, &animation, &page)?;
         if !args.json.json {
             save::what_next(folder).into_iter().try_for_each(|line| out.line(line))?;
         }

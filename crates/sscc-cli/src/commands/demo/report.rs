@@ -100,6 +100,28 @@ impl Report {
         lines
     }
 
+    /// The main lines as rows of a table.
+    pub fn table(&self) -> Vec<(String, String)> {
+        let row = |label: &str, value: String| (label.to_owned(), value);
+        let mut rows = vec![
+            row("modes", format!("{} lowest vibrations, found in {:.2} s", self.rank, self.modes_seconds)),
+            row(
+                "certificates",
+                format!(
+                    "computed in {:.2} s on {}",
+                    self.certify_seconds,
+                    counted(self.threads as u64, "thread")
+                ),
+            ),
+        ];
+        rows.extend(self.frames.iter().filter(|group| group.frames > 0).map(|group| {
+            let [ours, theirs] = [group.certified_microseconds, group.traditional_microseconds].map(duration);
+            let frames = counted(group.frames as u64, "frame");
+            row(group.group, format!("{frames}: {ours}, traditional {theirs}"))
+        }));
+        rows
+    }
+
     fn all(&self) -> &Group {
         &self.frames[self.frames.len() - 1]
     }

@@ -14,6 +14,7 @@ const MESH: &str = "spring.obj";
 const MODEL: &str = "spring.model.safetensors";
 const CERTIFICATES: &str = "spring.sscc.safetensors";
 const ANIMATION: &str = "spring.npy";
+const REPORT: &str = "report.html";
 
 /// Makes the folder, and refuses one that cannot be written to before any work is done.
 pub fn prepare(folder: &Path) -> Result<()> {
@@ -23,12 +24,13 @@ pub fn prepare(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Writes the four files.
+/// Writes the five files.
 pub fn save(
     folder: &Path,
     spring: ElasticShape,
     certificates: &Certificates,
     animation: &Rows,
+    page: &str,
 ) -> Result<()> {
     let ElasticShape { model, eigenvalues, forces } = spring;
     write_whole(&folder.join(MESH), to_obj(model.mesh()).as_bytes())?;
@@ -37,6 +39,7 @@ pub fn save(
     write_model(&folder.join(MODEL), &model, &info)?;
     write_certificates(&folder.join(CERTIFICATES), certificates)?;
     write_npy(&folder.join(ANIMATION), &[animation.rows, animation.columns], &animation.data)?;
+    write_whole(&folder.join(REPORT), page.as_bytes())?;
     Ok(())
 }
 
@@ -48,7 +51,11 @@ pub fn what_next(folder: &Path) -> Vec<String> {
     let sscc = std::env::args().next().unwrap_or_else(|| "sscc".into());
     vec![
         String::new(),
-        format!("Written to {}: {MESH}, {MODEL}, {CERTIFICATES}, {ANIMATION}. Next:", folder.display()),
+        format!(
+            "Written to {}: {MESH}, {MODEL}, {CERTIFICATES}, {ANIMATION}, {REPORT}. Next:",
+            folder.display()
+        ),
+        format!("  {sscc} view {model} --certificates {certificates}"),
         format!("  {sscc} info {certificates}"),
         format!("  {sscc} check {model} --certificates {certificates} --trajectory {}", file(ANIMATION)),
         format!("  {sscc} audit {model} --certificates {certificates} --samples 1000"),

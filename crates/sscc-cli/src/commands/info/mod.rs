@@ -1,7 +1,6 @@
 //! `sscc info`: what is in a file.
 
 mod certified;
-mod frequencies;
 mod meshes;
 mod model;
 mod surface;

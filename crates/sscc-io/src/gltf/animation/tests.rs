@@ -48,7 +48,7 @@ fn our_reader_reads_the_model_back() {
 fn another_reader_plays_the_motion() {
     let model = model();
     let tracks = [track("a", 0.0), track("b", 3.0)];
-    let bytes = to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
+    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     let animation = file.animations().next().unwrap();
@@ -104,7 +104,7 @@ fn another_reader_plays_the_motion() {
 fn what_is_no_animation_is_refused() {
     let model = model();
     let models = [("t", &model)];
-    let message = |times: &[f64], track: Track| to_bytes(&models, times, &[track]).unwrap_err();
+    let message = |times: &[f64], track: Track| animation_to_bytes(&models, times, &[track]).unwrap_err();
     let good = || track("a", 0.0);
     assert_eq!(message(&[0.0, 1.0], good()), "body a has not one entry for each of the 2 key frames");
     assert_eq!(message(&[0.0, 1.0, 1.0 + 1e-12], good()), "key frame 2 is not after the one before it");
@@ -112,7 +112,10 @@ fn what_is_no_animation_is_refused() {
     let mut wide = good();
     wide.weights[3] = 1e300;
     assert_eq!(message(&TIMES, wide), "a number of an animation is inf in single precision");
-    assert_eq!(to_bytes(&models, &TIMES, &[]).unwrap_err(), "an animation needs a key frame and a body");
+    assert_eq!(
+        animation_to_bytes(&models, &TIMES, &[]).unwrap_err(),
+        "an animation needs a key frame and a body"
+    );
     assert_eq!(message(&[], good()), "an animation needs a key frame and a body");
 }
 

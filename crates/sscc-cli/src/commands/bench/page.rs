@@ -1,0 +1,88 @@
+//! `--report`: what was measured, on the page.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use anyhow::Result;
+use sscc_io::write_whole;
+use sscc_view::{Arrays, Axis, Plot, Report as Page, Scene, Series};
+
+use super::report::{Means, Report};
+use crate::machine;
+use crate::output::duration;
+
+/// What is told of each report.
+#[derive(Default)]
+pub struct Rows(RefCell<Vec<Row>>);
+
+struct Row {
+    scenario: String,
+    share: f64,
+    triangles: usize,
+    milliseconds: Vec<(&'static str, f64)>,
+}
+
+impl Rows {
+    pub fn add(&self, report: &Report) {
+        let Report { scenario, share, triangles, discrete_ms: Means(milliseconds), .. } = report;
+        self.0.borrow_mut().push(Row {
+            scenario: scenario.clone(),
+            share: *share,
+            triangles: *triangles,
+            milliseconds: milliseconds.clone(),
+        });
+    }
+
+    /// Writes all that was added.
+    pub fn write(&self, path: &Path, title: &str) -> Result<()> {
+        let rows = self.0.borrow();
+        let mut scene = Scene::new(format!("sscc bench {title}"));
+        scene.summary = rows.iter().map(Row::line).collect();
+        scene.summary.push(("machine".into(), machine::description()));
+        // A model over how far it is displaced; ...
+        for group in rows.chunk_by(|a, b| a.scenario == b.scenario).filter(|group| group.len() > 1) {
+            let x = Axis::logarithmic("largest displacement, % of half the box's diagonal");
+            scene.plots.push(plot(&group[0].scenario, x, group, |row| row.share));
+        }
+        // ... one shape in several sizes.
+        if title == "growth" && rows.len() > 1 {
+            let x = Axis::logarithmic("triangles");
+            scene.plots.push(plot(title, x, &rows, |row| row.triangles as f64));
+        }
+        write_whole(path, Page { scene, arrays: Arrays::default() }.html()?.as_bytes())?;
+        Ok(())
+    }
+}
+
+impl Row {
+    fn get(&self, key: &str) -> Option<f64> {
+        self.milliseconds.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
+    }
+
+    /// Both methods of the paper, and their ratio.
+    fn line(&self) -> (String, String) {
+        let label = format!("{}, displaced by {:.1}%", self.scenario, self.share);
+        let value = match (self.get("full"), self.get("traditional")) {
+            (Some(ours), Some(theirs)) => format!(
+                "certified {}, traditional {}: {:.1} times",
+                duration(1e3 * ours),
+                duration(1e3 * theirs),
+                theirs / ours
+            ),
+            _ => "-".into(),
+        };
+        (label, value)
+    }
+}
+
+/// A line for each method.
+fn plot(title: &str, x: Axis, rows: &[Row], at: impl Fn(&Row) -> f64) -> Plot {
+    let keys = rows[0].milliseconds.iter().map(|(key, _)| *key);
+    let line = |key| Series::new(key, rows.iter().filter_map(|row| Some([at(row), row.get(key)?])));
+    Plot {
+        title: title.to_owned(),
+        x,
+        y: Axis::logarithmic("discrete query, mean ms"),
+        series: keys.map(line).collect(),
+    }
+}

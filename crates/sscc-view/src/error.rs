@@ -1,0 +1,22 @@
+//! What cannot be shown.
+
+/// Why a model cannot be shown, or a request not be answered.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// Of the core: other certificates, a q that is none.
+    #[error(transparent)]
+    Core(#[from] sscc::Error),
+    /// The page computes in single precision.
+    #[error("the model's numbers are beyond what a page can show (1e30): choose another unit")]
+    Range,
+    /// What was asked for does not exist or does not fit.
+    #[error("{0}")]
+    Request(String),
+    /// The system refused.
+    #[error(transparent)]
+    System(#[from] std::io::Error),
+    /// No random numbers for the token.
+    #[error("the system gives no random numbers: {0}")]
+    Random(getrandom::Error),
+}

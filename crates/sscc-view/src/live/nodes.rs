@@ -1,0 +1,103 @@
+//! The hierarchy, and what of it the certificates leave open.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use sscc::{Certificates, ReducedModel};
+
+use super::ORDER;
+use crate::ViewError;
+
+/// The hierarchy, node by node.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NodesAnswer {
+    /// -1 of the root.
+    parent: Vec<i64>,
+    level: Vec<usize>,
+    radius: Vec<f64>,
+    /// Where its triangles begin in the order.
+    first: Vec<u32>,
+    count: Vec<u32>,
+    /// Name of the array of triangles.
+    order: &'static str,
+}
+
+/// Nodes at which Algorithm 1 looks (paper, sections 3 and 4), each against itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Frontier {
+    /// Their certificates fail.
+    opened: Vec<u32>,
+    /// Their certificates hold: nothing below is looked at.
+    culled: Vec<u32>,
+}
+
+/// Which boxes.
+#[derive(Clone, Debug, Deserialize)]
+pub struct BoxesRequest {
+    q: Vec<f64>,
+    level: usize,
+}
+
+/// Least x, y, z and greatest x, y, z of each node of the level.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoxesAnswer {
+    boxes: Vec<[f64; 6]>,
+}
+
+pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
+    let hierarchy = certificates.hierarchy();
+    let nodes = hierarchy.nodes();
+    let (mut parent, mut level) = (vec![-1; nodes.len()], vec![0; nodes.len()]);
+    for (n, node) in nodes.iter().enumerate() {
+        for child in node.children() {
+            (parent[child as usize], level[child as usize]) = (n as i64, level[n] + 1);
+        }
+    }
+    NodesAnswer {
+        parent,
+        level,
+        radius: certificates.parts().node_radii.clone(),
+        first: nodes.iter().map(|node| node.first_triangle).collect(),
+        count: nodes.iter().map(|node| node.triangle_count).collect(),
+        order: ORDER,
+    }
+}
+
+/// What queries at that `|z|` open. They do not look into small nodes.
+pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
+    let nodes = certificates.hierarchy().nodes();
+    let (mut opened, mut culled) = (Vec::new(), Vec::new());
+    let mut waiting = vec![0];
+    while let Some(n) = waiting.pop() {
+        if norm < certificates.node_radius(n) {
+            culled.push(n);
+        } else {
+            opened.push(n);
+            let node = &nodes[n as usize];
+            waiting.extend(node.children().filter(|_| !node.is_small()));
+        }
+    }
+    opened.sort_unstable();
+    culled.sort_unstable();
+    Frontier { opened, culled }
+}
+
+pub(super) fn boxes(
+    model: &ReducedModel,
+    certificates: &Certificates,
+    BoxesRequest { q, level }: &BoxesRequest,
+) -> Result<BoxesAnswer, ViewError> {
+    let hierarchy = certificates.hierarchy();
+    let levels = hierarchy.levels();
+    let missing =
+        || ViewError::Request(format!("there is no level {level}: the hierarchy has {}", levels.len()));
+    let nodes = &hierarchy.nodes()[levels.get(*level).ok_or_else(missing)?.clone()];
+    let (positions, faces) = (model.positions(q)?, model.mesh().faces());
+    let of = |node| {
+        let corners = hierarchy.triangles(node).iter().flat_map(|t| faces[*t as usize]);
+        let (min, max) = corners
+            .map(|v| positions[v as usize])
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
+        [min.x, min.y, min.z, max.x, max.y, max.z]
+    };
+    Ok(BoxesAnswer { boxes: nodes.iter().map(of).collect() })
+}

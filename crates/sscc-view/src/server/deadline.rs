@@ -1,0 +1,72 @@
+//! Reading and writing with an end.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+/// Between two looks at whether to stop.
+const SLICE: Duration = Duration::from_millis(100);
+
+/// A connection of which everything must be done by a time, however little by little the other side goes.
+pub(super) struct Timed<'a> {
+    stream: &'a TcpStream,
+    end: Instant,
+    is_stopped: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl<'a> Timed<'a> {
+    pub(super) fn new(
+        stream: &'a TcpStream,
+        time: Duration,
+        is_stopped: &'a (dyn Fn() -> bool + Sync),
+    ) -> Self {
+        Self { stream, end: Instant::now() + time, is_stopped }
+    }
+
+    /// How long the system may wait now.
+    fn slice(&self) -> io::Result<Duration> {
+        let left = self.end.saturating_duration_since(Instant::now());
+        if left.is_zero() || (self.is_stopped)() {
+            Err(ErrorKind::TimedOut.into())
+        } else {
+            Ok(left.min(SLICE))
+        }
+    }
+
+    /// Tries again until the end.
+    fn until_done(
+        &self,
+        set: impl Fn(Duration) -> io::Result<()>,
+        mut work: impl FnMut() -> io::Result<usize>,
+    ) -> io::Result<usize> {
+        loop {
+            set(self.slice()?)?;
+            match work() {
+                Err(error)
+                    if matches!(
+                        error.kind(),
+                        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+                    ) => {}
+                done => return done,
+            }
+        }
+    }
+}
+
+impl Read for Timed<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let mut stream = self.stream;
+        self.until_done(|slice| self.stream.set_read_timeout(Some(slice)), || stream.read(into))
+    }
+}
+
+impl Write for Timed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut stream = self.stream;
+        self.until_done(|slice| self.stream.set_write_timeout(Some(slice)), || stream.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,106 @@
+//! The server of the page, for this machine alone.
+//!
+//! Anybody can knock: other programs of this machine, and any page that is open in a browser. So only those are answered who
+//! know the token of the address, came by a name of this machine (`Host`, against names that are made to point here) and from
+//! the page itself (`Origin`). Heads, bodies, times and the number of connections are bounded.
+//!
+//! Made on `httparse` rather than taken whole: tiny_http (0.12) has no limits of time or connections, and what has them
+//! (hyper) brings an asynchronous runtime for one page.
+
+mod access;
+mod connection;
+mod deadline;
+mod request;
+mod response;
+mod routes;
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use crate::{Live, ViewError};
+use access::Access;
+use routes::Site;
+
+/// A browser opens six; nobody needs more than a few.
+const MOST_CONNECTIONS: usize = 64;
+
+/// Between two looks at whether to stop.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Listens on 127.0.0.1.
+pub struct Server {
+    listener: TcpListener,
+    access: Access,
+    port: u16,
+}
+
+impl Server {
+    /// Takes a port; 0: any that is free.
+    ///
+    /// # Errors
+    /// When the port is taken, or the system has no random numbers.
+    pub fn bind(port: u16) -> Result<Self, ViewError> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        let port = listener.local_addr()?.port();
+        Ok(Self { listener, access: Access::new(port)?, port })
+    }
+
+    /// Where the page is, with the token.
+    pub fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/?token={}", self.port, self.access.token())
+    }
+
+    /// Answers questions about a model until it is to stop, which is looked at now and then.
+    ///
+    /// # Errors
+    /// When the system refuses threads.
+    pub fn serve(&self, live: &Live<'_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+        self.run(&Site::Live(live), is_stopped)
+    }
+
+    /// Shows a report, in the same way.
+    ///
+    /// # Errors
+    /// As [`Server::serve`].
+    pub fn serve_report(&self, html: &str, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+        self.run(&Site::Report(html), is_stopped)
+    }
+
+    fn run(&self, site: &Site<'_, '_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+        let connections = AtomicUsize::new(0);
+        let (connections, access) = (&connections, &self.access);
+        thread::scope(|scope| {
+            thread::Builder::new().spawn_scoped(scope, || {
+                while !is_stopped() {
+                    thread::sleep(PAUSE);
+                }
+                // Wakes the loop below, which waits for somebody to knock.
+                let here = SocketAddr::from((Ipv4Addr::LOCALHOST, self.port));
+                let _ = TcpStream::connect_timeout(&here, Duration::from_secs(1));
+            })?;
+            while !is_stopped() {
+                let Ok((stream, _)) = self.listener.accept() else {
+                    // Too many open files, or one who has left already.
+                    thread::sleep(PAUSE);
+                    continue;
+                };
+                if connections.fetch_add(1, Ordering::Relaxed) >= MOST_CONNECTIONS {
+                    connections.fetch_sub(1, Ordering::Relaxed);
+                    continue;
+                }
+                let talk = move || {
+                    // Who hangs up has left; there is nobody to tell.
+                    let _ = connection::talk(stream, access, site, is_stopped);
+                    connections.fetch_sub(1, Ordering::Relaxed);
+                };
+                if thread::Builder::new().spawn_scoped(scope, talk).is_err() {
+                    connections.fetch_sub(1, Ordering::Relaxed);
+                }
+            }
+            Ok(())
+        })
+    }
+}

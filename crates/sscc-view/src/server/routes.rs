@@ -1,0 +1,98 @@
+//! What can be asked for.
+
+use serde::de::DeserializeOwned;
+
+use super::request::Head;
+use super::response::Response;
+use crate::{Live, PAGE, ViewError};
+
+/// Bytes of a body at the most: a q of 10,000 numbers and more.
+const MOST_BODY: usize = 1 << 20;
+
+/// The same for a motion to be written as a file.
+const MOST_MOTION: usize = 64 << 20;
+
+/// What is on show.
+pub(super) enum Site<'a, 'm> {
+    /// A model that answers.
+    Live(&'a Live<'m>),
+    /// A page that has all in it.
+    Report(&'a str),
+}
+
+/// A way in: how it is asked for, and how long the body may be.
+struct Route<'a> {
+    method: &'static str,
+    most: usize,
+    answer: Box<dyn Fn(&[u8]) -> Response<'a> + 'a>,
+}
+
+impl<'a> Site<'a, '_> {
+    /// Whether that is for everybody on this machine: the live page itself, which holds no data, so that it can be
+    /// loaded again when it has taken the token out of its address. A report holds data.
+    pub(super) fn is_open(&self, path: &str) -> bool {
+        matches!((self, path), (Self::Live(_), "/"))
+    }
+
+    /// Refuses what cannot be answered, before the body is read: with the status and one line.
+    pub(super) fn check(&self, head: &Head) -> Result<(), (u16, &'static str)> {
+        let route = self.route(&head.path).ok_or((404, "there is nothing of that name"))?;
+        if route.method != head.method {
+            return Err((405, "this is asked for by another method"));
+        }
+        if head.length > route.most { Err((413, "the body is too large")) } else { Ok(()) }
+    }
+
+    /// The answer to what [`Site::check`] let pass.
+    pub(super) fn answer(&self, head: &Head, body: &[u8]) -> Response<'a> {
+        match self.route(&head.path) {
+            Some(route) => (route.answer)(body),
+            None => Response::error(404, "there is nothing of that name"),
+        }
+    }
+
+    fn route(&self, path: &str) -> Option<Route<'a>> {
+        let live = match (self, path) {
+            (Self::Live(_), "/") => return Some(get(|| Response::html(PAGE))),
+            (Self::Report(html), "/") => {
+                let html = *html;
+                return Some(get(move || Response::html(html)));
+            }
+            (Self::Report(_), _) => return None,
+            (Self::Live(live), _) => *live,
+        };
+        if let Some(name) = path.strip_prefix("/api/array/") {
+            let bytes = live.array(name)?;
+            return Some(get(move || Response::binary(bytes)));
+        }
+        Some(match path {
+            "/api/scene" => get(|| Response::json(live.scene())),
+            "/api/nodes" => get(|| Response::json(&live.nodes())),
+            "/api/check" => post(MOST_BODY, |request| Ok(Response::json(&live.check(&request)?))),
+            "/api/traditional" => post(MOST_BODY, |request| Ok(Response::json(&live.traditional(&request)?))),
+            "/api/safe_scale" => post(MOST_BODY, |request| Ok(Response::json(&live.safe_scale(&request)?))),
+            "/api/boxes" => post(MOST_BODY, |request| Ok(Response::json(&live.boxes(&request)?))),
+            "/api/glb" => post(MOST_MOTION, |request| Ok(Response::binary(live.animation(&request)?))),
+            _ => return None,
+        })
+    }
+}
+
+fn get<'a>(answer: impl Fn() -> Response<'a> + 'a) -> Route<'a> {
+    Route { method: "GET", most: 0, answer: Box::new(move |_| answer()) }
+}
+
+/// Asked by JSON.
+fn post<'a, T: DeserializeOwned>(
+    most: usize,
+    answer: impl Fn(T) -> Result<Response<'a>, ViewError> + 'a,
+) -> Route<'a> {
+    let answer = move |body: &[u8]| {
+        let refused = |error: &dyn ToString| Response::error(400, &error.to_string());
+        match serde_json::from_slice(body) {
+            Ok(request) => answer(request).unwrap_or_else(|error| refused(&error)),
+            Err(error) => refused(&error),
+        }
+    };
+    Route { method: "POST", most, answer: Box::new(answer) }
+}

@@ -1,0 +1,40 @@
+//! Reports: one file with all in it.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use common::{scene, strips};
+use serde_json::Value;
+use sscc_view::Report;
+
+#[test]
+fn a_report_has_all_its_data_in_it() {
+    let (model, certificates) = strips();
+    let (mut scene, arrays) = scene(&model, &certificates);
+    scene.title = "</script><img src=x onerror=alert(1)>".into();
+    scene.summary.push(("a".into(), "<!-- & \u{2028}".into()));
+    let html = Report { scene: scene.clone(), arrays: arrays.clone() }.html().unwrap();
+
+    let start = "<script type=\"application/json\" id=\"sscc-report\">";
+    let [before, rest] = html.split(start).collect::<Vec<_>>()[..] else {
+        panic!("not exactly one place for data")
+    };
+    let (data, _) = rest.split_once("</script>").unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    assert_eq!(data["scene"], serde_json::to_value(&scene).unwrap());
+    for name in ["positions-0", "faces-0", "modes-0"] {
+        let bytes = STANDARD.decode(data["arrays"][name].as_str().unwrap()).unwrap();
+        assert_eq!(Some(&bytes[..]), arrays.get(name));
+    }
+    // Nothing is loaded from anywhere: browsers are told before the first script.
+    let policy = before.find("default-src 'none'").unwrap();
+    assert!(before.find("<script").is_none_or(|script| policy < script));
+    assert!(!html.contains("connect-src") && !html.contains("onerror=alert(1)>"));
+    for outside in ["src=\"http", "src='http", "href=\"http", "href='http", "src=http", "@import", "url(http"]
+    {
+        assert!(!html.contains(outside), "{outside}");
+    }
+}

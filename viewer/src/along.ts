@@ -1,0 +1,54 @@
+/** Motions along one direction: vibration, and the way to the first self-collision. */
+import type { App } from "./app";
+import { digits } from "./dom";
+import type { SafeScale } from "./protocol";
+
+/** A vibration is slowed to one period in so many seconds at least. */
+const SLOWEST = 2.4;
+const QUICKEST = 0.7;
+
+export function vibrate(app: App, mode: number): void {
+    const name = `vibrating ${app.shape.modeName(mode)}`;
+    if (app.motion.name === name) {
+        app.motion.stop();
+        return;
+    }
+    const { center, limits, frequencies } = app.shape.model;
+    const q = app.pose.q.slice();
+    const out = q[mode] - center[mode];
+    const amplitude = Math.abs(out) > limits[mode] * 0.01 ? Math.abs(out) : limits[mode] * 0.3;
+    const known = (frequencies ?? []).filter((f): f is number => f !== null && f > 0);
+    const own = frequencies?.[mode] ?? null;
+    const ratio = own && known.length > 0 ? own / Math.min(...known) : 1;
+    const period = Math.max(QUICKEST, SLOWEST / ratio);
+    const path = (t: number): Float64Array => {
+        const at = q.slice();
+        at[mode] = center[mode] + amplitude * Math.sin((2 * Math.PI * t) / period);
+        return at;
+    };
+    app.motion.start(name, path, Number.POSITIVE_INFINITY, period);
+    if (own)
+        app.say(
+            `${app.shape.modeName(mode)}: ${app.shape.frequency(mode)}, shown ${digits(own * period, 3)} times slower`,
+        );
+}
+
+export async function toFirstCollision(app: App, direction: number[], name: string): Promise<void> {
+    app.motion.stop();
+    app.say(`looking for the first self-collision along ${name}…`);
+    const { certified, first } = await app.source.ask<SafeScale>("/api/safe_scale", { direction });
+    const proven = certified === null ? "certified free without end" : `certified free up to ${digits(certified)}`;
+    if (!first) {
+        app.say(`no self-collision found along ${name}; ${proven}`);
+        return;
+    }
+    const { center } = app.shape.model;
+    const seconds = 1.4;
+    const path = (t: number): number[] => {
+        // Slow at the end, where something happens.
+        const s = first.scale * (1 - (1 - Math.min(1, t / seconds)) ** 2);
+        return center.map((c, k) => c + s * direction[k]);
+    };
+    app.motion.start(`${name} to its first self-collision`, path, seconds);
+    app.say(`first self-collision along ${name} at ${digits(first.scale)}; ${proven}`);
+}

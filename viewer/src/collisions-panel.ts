@@ -1,0 +1,138 @@
+/** The pairs of the q shown, and what the answer cost beside the traditional method. */
+import { type App, attempt } from "./app";
+import { count, digits, duration, h } from "./dom";
+import type { Answer, Traditional } from "./protocol";
+
+const FIRST_ROWS = 100;
+/** The traditional method is asked once q has stood still for so long (ms). */
+const STILL = 350;
+
+export class CollisionsPanel {
+    readonly element: HTMLElement;
+    private readonly counters = h("table", { class: "counters" });
+    private readonly list = h("ol", { class: "pairs" });
+    private readonly heading = h("h2", {}, "Pairs");
+    private readonly compare = h("input", {
+        type: "checkbox",
+        id: "compare",
+        checked: true,
+        onchange: () => this.changed(),
+    });
+    private traditional: { serial: number; answer: Traditional } | null = null;
+    private rows = FIRST_ROWS;
+    private timer = 0;
+    private at = -1;
+
+    constructor(private readonly app: App) {
+        this.element = h(
+            "div",
+            { class: "collisions" },
+            h("h2", {}, "Cost of this answer"),
+            this.counters,
+            h("label", { class: "check" }, this.compare, "measure the traditional method beside it"),
+            this.heading,
+            this.list,
+        );
+        app.checker!.onAnswer(() => this.answered());
+        app.pose.onChange(() => this.changed());
+        this.answered();
+    }
+
+    /** Goes to the next pair of the list. */
+    next(step: number): void {
+        const pairs = this.current()?.pairs ?? [];
+        if (pairs.length === 0) return;
+        this.at = (this.at + step + pairs.length) % pairs.length;
+        this.go(pairs[this.at]);
+    }
+
+    private current(): Answer | null {
+        const { answer } = this.app.checker!;
+        return answer && answer.serial === this.app.pose.serial ? answer : null;
+    }
+
+    private changed(): void {
+        this.app.chosen = null;
+        this.at = -1;
+        this.rows = FIRST_ROWS;
+        clearTimeout(this.timer);
+        if (this.compare.checked)
+            this.timer = window.setTimeout(() => void attempt(this.app, () => this.ask()), STILL);
+        this.answered();
+    }
+
+    private async ask(): Promise<void> {
+        const { pose } = this.app;
+        const serial = pose.serial;
+        const answer = await this.app.source.ask<Traditional>("/api/traditional", { q: [...pose.q] });
+        this.traditional = { serial, answer };
+        this.answered();
+    }
+
+    private go(pair: [number, number]): void {
+        const { app } = this;
+        app.chosen = pair;
+        const { middle, reach } = app.shape.around(pair, app.pose.q);
+        app.stage?.flyTo(middle, reach);
+        app.refreshMarks();
+        this.showPairs(this.current());
+    }
+
+    private answered(): void {
+        const answer = this.current();
+        const traditional = this.traditional?.serial === this.app.pose.serial ? this.traditional.answer : null;
+        const cells = (name: string, a: string, b = ""): HTMLElement =>
+            h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, a), h("td", {}, b));
+        const number = (value: number | undefined): string =>
+            value === undefined ? "…" : value.toLocaleString("en");
+        const ratio = answer && traditional ? traditional.microseconds / answer.microseconds : null;
+        this.counters.replaceChildren(
+            h("tr", {}, h("td", {}), h("th", { scope: "col" }, "sscc"), h("th", { scope: "col" }, "traditional")),
+            cells(
+                "time",
+                answer ? duration(answer.microseconds) : "…",
+                traditional ? duration(traditional.microseconds) : this.compare.checked ? "…" : "",
+            ),
+            cells("pairs", number(answer?.count), traditional ? number(traditional.count) : ""),
+            cells("nodes opened", number(answer?.opened)),
+            cells("box tests", number(answer?.box_tests)),
+            cells("triangle tests", number(answer?.triangle_tests)),
+            cells("speed-up", ratio ? `${digits(ratio, ratio < 100 ? 2 : 3)} ×` : ""),
+        );
+        this.showPairs(answer);
+    }
+
+    private showPairs(answer: Answer | null): void {
+        this.heading.textContent = answer
+            ? answer.count
+                ? count(answer.count, "colliding pair")
+                : "No pair collides"
+            : "Pairs";
+        const pairs = answer?.pairs ?? [];
+        const rows: HTMLElement[] = pairs.slice(0, this.rows).map((pair) => {
+            const chosen = this.app.chosen?.[0] === pair[0] && this.app.chosen[1] === pair[1];
+            return h(
+                "li",
+                {},
+                h(
+                    "button",
+                    { type: "button", class: "pair", "aria-pressed": String(chosen), onclick: () => this.go(pair) },
+                    `${pair[0]} – ${pair[1]}`,
+                ),
+            );
+        });
+        const hidden = pairs.length - rows.length;
+        if (hidden > 0) {
+            const more = (): void => {
+                this.rows += 1000;
+                this.showPairs(this.current());
+            };
+            rows.push(
+                h("li", {}, h("button", { type: "button", onclick: more }, `${hidden.toLocaleString("en")} more`)),
+            );
+        }
+        if (answer && answer.count > pairs.length)
+            rows.push(h("li", { class: "hint" }, `of ${answer.count.toLocaleString("en")}, the first are listed`));
+        this.list.replaceChildren(...rows);
+    }
+}

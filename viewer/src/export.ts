@@ -1,0 +1,41 @@
+/** What can be taken away: a picture of the view, and the motion as GLB. */
+import type { App } from "./app";
+import { save } from "./dom";
+import { type Moved, writeGlb } from "./glb";
+
+function fileName(app: App, ending: string): string {
+    return `${app.shape.model.name.replace(/[^\w.-]+/g, "_") || "shape"}.${ending}`;
+}
+
+export async function exportPng(app: App): Promise<void> {
+    const blob = await app.stage?.png();
+    if (!blob) throw new Error("there is no picture to save");
+    save(fileName(app, "png"), blob);
+    app.say(`saved ${fileName(app, "png")}`);
+}
+
+/** The motion shown last; of a shape at rest, the way from the centre to it and back. */
+export function track(app: App): { q: number[][]; times: number[] } {
+    if (app.motion.track) return app.motion.track;
+    const { center } = app.shape.model;
+    const { q } = app.pose;
+    const times = Array.from({ length: 61 }, (_, i) => i / 30);
+    const rows = times.map((t) => center.map((c, k) => c + (q[k] - c) * (0.5 - 0.5 * Math.cos(Math.PI * t))));
+    return { q: rows, times };
+}
+
+/** The recording while it is shown; else the motion of the shape. A report has no server to write it. */
+export async function exportGlb(app: App, recorded: { bodies: Moved[]; times: number[] } | null): Promise<void> {
+    const { q, times } = track(app);
+    let file: Blob;
+    if (recorded) file = writeGlb(recorded.bodies, recorded.times);
+    else if (app.source.live) {
+        file = new Blob([await app.source.bytes("/api/glb", { q, times })], { type: "model/gltf-binary" });
+    } else {
+        const rows = Float32Array.from(q.flat());
+        const { shape } = app;
+        file = writeGlb([{ name: shape.model.name, shape, q: rows, rigid: null, center: [0, 0, 0] }], times);
+    }
+    save(fileName(app, "glb"), file);
+    app.say(`saved ${fileName(app, "glb")}: the motion itself, modes as morph targets`);
+}

@@ -1,0 +1,75 @@
+/** Whether the q that is shown is free, and how far the root's certificate holds. */
+import type { App } from "./app";
+import { count, digits, h } from "./dom";
+
+type Kind = "root" | "free" | "colliding" | "checking" | "unknown";
+
+interface Verdict {
+    kind: Kind;
+    text: string;
+}
+
+/** An answer counts only for the q it was asked for. */
+export function verdict(app: App): Verdict {
+    const { checker, pose, recorded } = app;
+    if (recorded) {
+        const { pairs, what } = recorded;
+        if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (${what})` };
+        return { kind: "free", text: `free (${what})` };
+    }
+    if (!checker) return { kind: "unknown", text: "not checked: this is a report" };
+    if (checker.error) return { kind: "unknown", text: "unknown: no answer" };
+    const answer = checker.answer;
+    if (!answer || answer.serial !== pose.serial) return { kind: "checking", text: "checking…" };
+    if (answer.colliding) {
+        const pairs = `${answer.complete ? "" : "at least "}${count(answer.count, "pair")}`;
+        return { kind: "colliding", text: `COLLIDING ${pairs}` };
+    }
+    if (answer.root_certified) return { kind: "root", text: "free, proven by the root's certificate" };
+    return { kind: "free", text: "free, proven" };
+}
+
+export class Gauge {
+    readonly element: HTMLElement;
+    private readonly mark = h("span", { class: "verdict-mark", "aria-hidden": "true" });
+    private readonly text = h("span", { class: "verdict-text" });
+    private readonly needle = h("div", { class: "needle" });
+    private readonly bar = h("div", { class: "bar" }, h("div", { class: "root-tick" }), this.needle);
+    private readonly detail = h("div", { class: "detail" });
+    private shown = "";
+
+    constructor(private readonly app: App) {
+        this.element = h(
+            "section",
+            { class: "gauge", "aria-label": "certificate gauge" },
+            h("div", { class: "verdict", role: "status", "aria-live": "polite" }, this.mark, this.text),
+            this.bar,
+            this.detail,
+        );
+    }
+
+    /** In each frame, with the picture of the same q. */
+    update(): void {
+        const { app } = this;
+        const { kind, text } = verdict(app);
+        const answer = app.checker?.answer;
+        const answered = answer && answer.serial === app.pose.serial ? answer : null;
+        const norm = app.recorded && !app.body ? null : (answered?.norm ?? app.shape.norm(app.pose.q));
+        const root = app.shape.model.root_radius;
+        const share = norm === null || root === null ? null : norm / root;
+        const key = `${kind} ${text} ${norm} ${answered?.microseconds}`;
+        if (key === this.shown) return;
+        this.shown = key;
+        this.element.dataset.kind = kind;
+        this.element.dataset.serial = String(app.pose.serial);
+        this.mark.textContent = { root: "●", free: "●", colliding: "▲", checking: "…", unknown: "?" }[kind];
+        this.text.textContent = text;
+        this.bar.hidden = norm === null;
+        // The root's radius stands at half of the bar; what is beyond is squeezed into the other half.
+        const at = share === null ? 0 : share <= 1 ? share / 2 : 1 - 0.5 / share;
+        this.needle.style.width = `${(100 * at).toFixed(2)}%`;
+        const of = root === null ? "root radius infinite" : `root radius ${digits(root)}`;
+        const percent = share === null ? "" : ` · ${(100 * share).toFixed(share < 10 ? 1 : 0)}%`;
+        this.detail.textContent = norm === null ? "" : `|z| ${digits(norm)} · ${of}${percent}`;
+    }
+}

@@ -1,0 +1,73 @@
+/** Motions of q: each q is shown together with its answer, so that the gauge never lags behind the picture. */
+import type { Checker } from "./checker";
+import type { Frames } from "./frames";
+import type { Pose } from "./pose";
+
+/** A q that waits longer for its answer is shown before it (ms). */
+const PATIENCE = 250;
+
+export class Motion {
+    /** What moves, for people; null at rest. */
+    name: string | null = null;
+    /** q over time, for export. */
+    track: { q: number[][]; times: number[] } | null = null;
+    private run = 0;
+    private waitingSince: number | null = null;
+    private readonly listeners: (() => void)[] = [];
+
+    constructor(
+        private readonly frames: Frames,
+        private readonly pose: Pose,
+        private readonly checker: Checker | null,
+    ) {}
+
+    onChange(listener: () => void): void {
+        this.listeners.push(listener);
+    }
+
+    stop(): void {
+        this.run++;
+        this.name = null;
+        this.waitingSince = null;
+        for (const listener of this.listeners) listener();
+    }
+
+    /**
+     * Moves q along `path`, seconds -> q, for so many seconds; for ever where they are infinite, and then `period` is
+     * what is exported.
+     */
+    start(name: string, path: (seconds: number) => ArrayLike<number>, seconds: number, period = seconds): void {
+        this.stop();
+        this.name = name;
+        const times = Array.from({ length: 61 }, (_, i) => (period * i) / 60);
+        this.track = { times, q: times.map((t) => Array.from(path(t))) };
+        const run = this.run;
+        let begin: number | null = null;
+        this.frames.run((now) => {
+            if (run !== this.run) return false;
+            begin ??= now;
+            if (this.waitingSince !== null && now - this.waitingSince < PATIENCE) return true;
+            const t = Math.min((now - begin) / 1000, seconds);
+            this.propose(path(t), now, () => run === this.run);
+            if (t < seconds) return true;
+            this.name = null;
+            for (const listener of this.listeners) listener();
+            return false;
+        });
+        for (const listener of this.listeners) listener();
+    }
+
+    /** Shows q with its answer. */
+    propose(q: ArrayLike<number>, now = performance.now(), wanted: () => boolean = () => true): void {
+        const serial = this.pose.next();
+        if (!this.checker) {
+            this.pose.show(q, serial);
+            return;
+        }
+        this.waitingSince = now;
+        void this.checker.check(Float64Array.from(q), serial).then(() => {
+            this.waitingSince = null;
+            if (wanted() && serial > this.pose.serial) this.pose.show(q, serial);
+        });
+    }
+}

@@ -1,0 +1,165 @@
+/** Puts the parts together. */
+import type { App } from "./app";
+import { attempt } from "./app";
+import { CertificatesPanel } from "./certificates-panel";
+import { Checker } from "./checker";
+import { CollisionsPanel } from "./collisions-panel";
+import { h } from "./dom";
+import { exportGlb, exportPng } from "./export";
+import { Frames } from "./frames";
+import { Gauge } from "./gauge";
+import { help } from "./help";
+import { keyboard } from "./keyboard";
+import type { Layout, Tab } from "./layout";
+import { loadQ } from "./load-q";
+import { ModesPanel } from "./modes-panel";
+import { Motion } from "./motion";
+import { Player } from "./player";
+import { PlotsPanel } from "./plots-panel";
+import { Pose } from "./pose";
+import { Shape } from "./shape";
+import type { Source } from "./source";
+import { Stage } from "./stage";
+import { Theme } from "./theme";
+
+function openStage(layout: Layout, frames: Frames): Stage | null {
+    try {
+        return new Stage(layout.canvas, frames);
+    } catch {
+        layout.noPicture();
+        return null;
+    }
+}
+
+export async function page(source: Source, layout: Layout): Promise<void> {
+    const { scene } = source;
+    let drawn = (): void => undefined;
+    const frames = new Frames(() => drawn());
+    let recolour = (): void => undefined;
+    const theme = new Theme(() => recolour());
+    const shape = scene.models.length > 0 ? await Shape.load(source, scene.models[0]) : null;
+    if (!shape) {
+        const plots = new PlotsPanel({ scene } as App);
+        layout.stage.remove();
+        layout.setTabs([{ name: "Plots", content: plots.element }, ...summary(source)]);
+        return;
+    }
+    const pose = new Pose(Float64Array.from(shape.model.default_q));
+    const checker = source.live ? new Checker(source) : null;
+    const stage = openStage(layout, frames);
+    const motion = new Motion(frames, pose, checker);
+    const shared: App = {
+        source,
+        scene,
+        frames,
+        shape,
+        pose,
+        motion,
+        checker,
+        stage,
+        body: null,
+        chosen: null,
+        recorded: null,
+        refreshMarks: () => marks(shared),
+        playRows: (rows) => player.playRows(rows),
+        say: (message, wrong) => layout.say(message, wrong),
+    };
+    const player = new Player(shared, layout);
+    const gauge = new Gauge(shared);
+    recolour = () => stage?.recolour();
+    drawn = () => {
+        gauge.update();
+        stage?.draw();
+    };
+    pose.onChange(() => {
+        if (checker && checker.asked < pose.serial) void checker.check(pose.q, pose.serial);
+        player.explore();
+        shared.body?.setQ(0, pose.q);
+        marks(shared);
+        frames.invalidate();
+    });
+    checker?.onAnswer(() => {
+        if (checker.error) shared.say(checker.error, true);
+        marks(shared);
+        frames.invalidate();
+    });
+
+    const modes = new ModesPanel(shared);
+    const collisions = checker ? new CollisionsPanel(shared) : null;
+    const certificates = new CertificatesPanel(shared);
+    const plots = new PlotsPanel(shared);
+    player.onFrame((time) => plots.setTime(time));
+    const tabs: Tab[] = [
+        { name: "Modes", content: modes.element },
+        ...(collisions ? [{ name: "Collisions", content: collisions.element }] : []),
+        { name: "Certificates", content: certificates.element },
+        { name: "Plots", content: plots.element },
+        ...summary(source),
+    ];
+    layout.below.append(gauge.element);
+    layout.setTabs(tabs);
+
+    const actions = {
+        png: () => void attempt(shared, () => exportPng(shared)),
+        glb: () => void attempt(shared, () => exportGlb(shared, player.shown)),
+        theme: () => theme.toggle(),
+    };
+    layout.button("PNG", "save a picture of the view (P)", actions.png);
+    layout.button("GLB", "save the motion as GLB (G)", actions.glb);
+    layout.button("◐", "light or dark (T)", actions.theme);
+    layout.button("?", "help (?)", help);
+    const focused = (): number => modes.focused() ?? 0;
+    keyboard({
+        " ": () => (player.timeline ? player.timeline.toggle() : modes.vibrate(focused())),
+        ",": () => player.step(-1),
+        ".": () => player.step(1),
+        "[": () => modes.focus(Math.max(0, (modes.focused() ?? 1) - 1)),
+        "]": () => modes.focus(Math.min(shape.model.rank - 1, (modes.focused() ?? -1) + 1)),
+        v: () => modes.vibrate(focused()),
+        c: checker ? () => modes.randomCollision() : undefined,
+        x: () => modes.random(),
+        r: () => modes.reset(),
+        l: () => loadQ(shared),
+        n: () => collisions?.next(1),
+        N: () => collisions?.next(-1),
+        f: () => stage?.flyHome(),
+        u: () => player.turnUp(),
+        k: () => certificates.cycle(),
+        b: () => certificates.toggleBoxes(),
+        p: actions.png,
+        g: actions.glb,
+        t: actions.theme,
+        "?": help,
+    });
+    await player.begin();
+    // For tests, and for the curious.
+    Object.assign(globalThis, { sscc: shared, player });
+}
+
+/** Colliding triangles as the last answer has them; the gauge tells whether it speaks of this very shape. */
+function marks(app: App): void {
+    const { body, checker, chosen } = app;
+    if (!body || !checker) return;
+    body.setMarks(0, checker.answer?.triangles ?? checker.answer?.pairs.flat() ?? [], chosen ?? []);
+}
+
+function summary(source: Source): Tab[] {
+    const { scene } = source;
+    const rows = scene.summary.map(([label, value]) =>
+        h("tr", {}, h("th", { scope: "row" }, label), h("td", {}, value)),
+    );
+    const text = source.live
+        ? "This page talks to the program on this machine alone; nothing leaves it."
+        : "This report is one file; it needs no other and no network.";
+    return [
+        {
+            name: "About",
+            content: h(
+                "div",
+                { class: "about" },
+                h("table", { class: "facts" }, ...rows),
+                h("p", { class: "hint" }, `${text} sscc ${scene.version}.`),
+            ),
+        },
+    ];
+}

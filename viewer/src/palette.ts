@@ -1,0 +1,56 @@
+/** Tables of 256 colours that people with any kind of colour vision tell apart. */
+
+/** Cividis (Nuñez, Anderton, Renslow 2018), from dark blue to yellow, at nine places. */
+const CIVIDIS = [
+    [0, 34, 78],
+    [18, 53, 112],
+    [59, 73, 108],
+    [87, 93, 109],
+    [112, 113, 115],
+    [138, 134, 120],
+    [165, 156, 116],
+    [195, 179, 105],
+    [254, 232, 56],
+];
+
+/** Entry 255: no value. */
+export const NONE = 255;
+const NONE_COLOUR = [128, 128, 128];
+
+function between(table: number[][], t: number): number[] {
+    const at = Math.min(Math.max(t, 0), 1) * (table.length - 1);
+    const i = Math.min(Math.floor(at), table.length - 2);
+    return table[i].map((a, c) => Math.round(a + (table[i + 1][c] - a) * (at - i)));
+}
+
+function table(colour: (i: number) => number[]): Uint8Array {
+    const bytes = new Uint8Array(4 * 256);
+    for (let i = 0; i < 256; i++) bytes.set([...(i === NONE ? NONE_COLOUR : colour(i)), 255], 4 * i);
+    return bytes;
+}
+
+/** Entries 0 to 254: from small to large. */
+export const ramp = table((i) => between(CIVIDIS, i / 254));
+
+/** Entries 0 to 127: culled, the deeper the paler; 128 to 254: opened, the deeper the brighter. */
+export const searched = table((i) =>
+    i < 128
+        ? between(
+              [
+                  [34, 62, 110],
+                  [104, 140, 185],
+                  [178, 200, 222],
+              ],
+              i / 24,
+          )
+        : between(
+              [
+                  [146, 108, 20],
+                  [240, 190, 60],
+                  [255, 226, 120],
+              ],
+              (i - 128) / 24,
+          ),
+);
+
+export const rampCss = `linear-gradient(to right, ${CIVIDIS.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;

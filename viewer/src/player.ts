@@ -1,0 +1,142 @@
+/** Goes between the shape that is explored and what was recorded. */
+import type { App } from "./app";
+import { h } from "./dom";
+import type { Moved } from "./glb";
+import type { Layout } from "./layout";
+import { Playback } from "./playback";
+import { Shape } from "./shape";
+import { Timeline, type Track } from "./timeline";
+
+/** Rows of numbers come without times. */
+const ROWS_PER_SECOND = 30;
+
+export class Player {
+    timeline: Timeline | null = null;
+    private recorded: Playback | null = null;
+    private exploring = true;
+    private showing = false;
+    private up: "y" | "z" = "y";
+    private readonly listeners: ((time: number | null) => void)[] = [];
+    private readonly modeButton: HTMLButtonElement;
+
+    constructor(
+        private readonly app: App,
+        private readonly layout: Layout,
+    ) {
+        this.modeButton = h(
+            "button",
+            { type: "button", class: "back", hidden: true, onclick: () => this.enterPlayback() },
+            "back to the recording",
+        );
+    }
+
+    onFrame(listener: (time: number | null) => void): void {
+        this.listeners.push(listener);
+    }
+
+    /** Shows the first picture; a recording if there is one. */
+    async begin(): Promise<void> {
+        const { app } = this;
+        this.standAlone();
+        app.pose.show(app.pose.q);
+        const data = app.scene.playback;
+        if (!data || data.times.length === 0 || data.bodies.length === 0) return;
+        const models = app.scene.models;
+        const shapeOf = (model: number): Promise<Shape> =>
+            model === 0 ? Promise.resolve(app.shape) : Shape.load(app.source, models[model]);
+        this.recorded = await Playback.load(app, app.source, data, shapeOf);
+        const sound =
+            data.sound === null ? null : new Blob([await app.source.array(data.sound)], { type: "audio/wav" });
+        this.open({ times: data.times, pairs: this.recorded.pairs, sound, show: (frame) => this.show(frame) });
+        this.enterPlayback();
+    }
+
+    /** Plays q that a person loaded. */
+    playRows(rows: number[][]): void {
+        const { app } = this;
+        const times = rows.map((_, i) => i / ROWS_PER_SECOND);
+        app.motion.track = { q: rows, times };
+        const show = (frame: number): void => {
+            this.showing = true;
+            app.recorded = null;
+            app.motion.propose(rows[frame]);
+            this.showing = false;
+        };
+        this.open({ times, pairs: null, sound: null, show });
+        this.timeline?.seek(0);
+        this.timeline?.start();
+    }
+
+    /** The recording, while it is on show. */
+    get shown(): { bodies: Moved[]; times: number[] } | null {
+        if (this.exploring || !this.recorded) return null;
+        return { bodies: this.recorded.moved, times: this.recorded.data.times };
+    }
+
+    step(by: number): void {
+        if (!this.timeline) return;
+        this.timeline.pause();
+        this.timeline.seek(this.timeline.frame + by);
+    }
+
+    /** A changed q ends the recording's turn, unless the recording itself changed it. */
+    explore(): void {
+        if (this.showing || this.exploring) return;
+        this.app.recorded = null;
+        if (this.recorded?.posed) {
+            if (!this.app.checker) this.app.body?.setMarks(0, []);
+            return;
+        }
+        this.timeline?.pause();
+        this.exploring = true;
+        this.modeButton.hidden = false;
+        for (const listener of this.listeners) listener(null);
+        this.standAlone();
+    }
+
+    turnUp(): void {
+        this.up = this.up === "y" ? "z" : "y";
+        const { stage, shape } = this.app;
+        if (this.exploring) stage?.frame(shape.middle, shape.radius, this.up);
+    }
+
+    private open(track: Track): void {
+        this.timeline?.close();
+        this.timeline = new Timeline(this.app.frames, track);
+        this.timeline.onFrame((_, time) => {
+            for (const listener of this.listeners) listener(time);
+        });
+        this.timeline.element.append(this.modeButton);
+        this.layout.below.append(this.timeline.element);
+    }
+
+    private standAlone(): void {
+        const { app } = this;
+        const { stage, shape } = app;
+        if (!stage) return;
+        stage.removeBodies();
+        stage.setGround(null, 1);
+        app.body = stage.addBody(shape, 1);
+        app.body.setQ(0, app.pose.q);
+        stage.frame(shape.middle, shape.radius, this.up);
+    }
+
+    private enterPlayback(): void {
+        if (!this.recorded || !this.timeline) return;
+        this.exploring = false;
+        this.modeButton.hidden = true;
+        this.app.motion.stop();
+        if (!this.recorded.posed) {
+            this.app.body = null;
+            this.recorded.enter();
+        }
+        this.show(this.timeline.frame);
+    }
+
+    private show(frame: number): void {
+        if (this.exploring) this.enterPlayback();
+        this.showing = true;
+        this.recorded?.show(frame);
+        this.showing = false;
+    }
+}

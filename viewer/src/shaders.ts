@@ -1,0 +1,95 @@
+/**
+ * Deformation on the graphics card: x = p + U q, the modes in a texture. Row i of `weights` holds the number of modes
+ * that are not zero for instance i, then (mode, weight) of each, so that any number of modes costs only what is used.
+ */
+export const vertexShader = /* glsl */ `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+in uint source;
+uniform sampler2D modes;
+uniform sampler2D weights;
+uniform uint vertices;
+uniform int modesShift;
+flat out int triangle;
+flat out int instance;
+out vec3 seen;
+
+void main() {
+    vec3 x = position;
+    int used = int(texelFetch(weights, ivec2(0, gl_InstanceID), 0).r);
+    for (int i = 1; i <= used; i++) {
+        vec2 weight = texelFetch(weights, ivec2(i, gl_InstanceID), 0).rg;
+        int at = int(uint(weight.x) * vertices + source);
+        int row = at >> modesShift;
+        x += weight.y * texelFetch(modes, ivec2(at - (row << modesShift), row), 0).xyz;
+    }
+    // Copy i of a vertex is the last corner of triangle i and of no other: see corners.ts.
+    triangle = gl_VertexID;
+    instance = gl_InstanceID;
+    vec4 view = modelViewMatrix * instanceMatrix * vec4(x, 1.0);
+    seen = view.xyz;
+    gl_Position = projectionMatrix * view;
+}`;
+
+/** Colours are told apart without hue: colliding triangles are striped as well. */
+export const fragmentShader = /* glsl */ `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+flat in int triangle;
+flat in int instance;
+in vec3 seen;
+uniform sampler2D marks;
+uniform int marksShift;
+uniform int triangles;
+uniform sampler2D tints;
+uniform sampler2D palette;
+uniform bool tinted;
+uniform vec3 base;
+uniform vec3 hit;
+uniform vec3 hitDark;
+uniform vec3 chosen;
+uniform float stripe;
+out vec4 colour;
+
+float mark() {
+    int at = instance * triangles + triangle;
+    int row = at >> marksShift;
+    return texelFetch(marks, ivec2(at - (row << marksShift), row), 0).r * 255.0;
+}
+
+void main() {
+    vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
+    float light = 0.42 + 0.46 * max(dot(normal, normalize(vec3(-0.35, 0.6, 0.75))), 0.0)
+        + 0.16 * max(dot(normal, normalize(vec3(0.8, -0.2, 0.5))), 0.0);
+    float shine = pow(max(dot(normal, normalize(vec3(-0.2, 0.35, 0.95))), 0.0), 40.0) * 0.16;
+    vec3 plain = base;
+    if (tinted) {
+        int row = triangle >> 11;
+        float tint = texelFetch(tints, ivec2(triangle - (row << 11), row), 0).r * 255.0;
+        plain = texelFetch(palette, ivec2(int(tint + 0.5), 0), 0).rgb;
+    }
+    float kind = mark();
+    if (kind > 0.5) {
+        vec3 strong = kind > 1.5 ? chosen : hit;
+        bool dark = fract((gl_FragCoord.x + gl_FragCoord.y) / stripe) < 0.33;
+        colour = vec4((dark ? hitDark : strong) * (0.55 + 0.5 * light), 1.0);
+    } else {
+        colour = vec4(plain * light + shine, 1.0);
+    }
+}`;
+
+/** Colliding triangles hidden by others: a pale shade of them shows through. */
+export const hiddenShader = /* glsl */ `
+precision highp float;
+flat in int triangle;
+flat in int instance;
+in vec3 seen;
+uniform vec3 hit;
+uniform float stripe;
+out vec4 colour;
+void main() {
+    if (fract((gl_FragCoord.x + gl_FragCoord.y) / stripe) < 0.33) discard;
+    colour = vec4(hit, 0.42);
+}`;

@@ -1,0 +1,87 @@
+/** A model's arrays, and its positions at q where the processor needs them: x = p + U q. */
+import type { Model } from "./protocol";
+import type { Source } from "./source";
+
+export class Shape {
+    private constructor(
+        readonly model: Model,
+        readonly positions: Float32Array,
+        readonly faces: Uint32Array,
+        readonly modes: Float32Array,
+    ) {}
+
+    static async load(source: Source, model: Model): Promise<Shape> {
+        const { positions, faces, modes } = model.arrays;
+        const [p, f, u] = await Promise.all([source.array(positions), source.array(faces), source.array(modes)]);
+        const shape = new Shape(model, new Float32Array(p), new Uint32Array(f), new Float32Array(u));
+        const { vertices, triangles, rank } = model;
+        const sizes = [shape.positions.length, shape.faces.length, shape.modes.length];
+        const due = [3 * vertices, 3 * triangles, 3 * vertices * rank];
+        if (sizes.some((size, i) => size !== due[i])) throw new Error(`the arrays of ${model.name} have wrong sizes`);
+        return shape;
+    }
+
+    /** Half the diagonal of the box. */
+    get radius(): number {
+        const { min, max } = this.model.box;
+        return Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2 || 1;
+    }
+
+    get middle(): [number, number, number] {
+        const { min, max } = this.model.box;
+        return [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
+    }
+
+    vertex(v: number, q: ArrayLike<number>): [number, number, number] {
+        const { positions, modes } = this;
+        let x = positions[3 * v];
+        let y = positions[3 * v + 1];
+        let z = positions[3 * v + 2];
+        for (let k = 0; k < q.length; k++) {
+            if (q[k] === 0) continue;
+            const at = 3 * (k * this.model.vertices + v);
+            x += modes[at] * q[k];
+            y += modes[at + 1] * q[k];
+            z += modes[at + 2] * q[k];
+        }
+        return [x, y, z];
+    }
+
+    deformed(q: ArrayLike<number>): Float32Array {
+        const x = this.positions.slice();
+        for (let k = 0; k < q.length; k++) {
+            const weight = q[k];
+            if (weight === 0) continue;
+            const mode = this.modes.subarray(k * x.length, (k + 1) * x.length);
+            for (let i = 0; i < x.length; i++) x[i] += mode[i] * weight;
+        }
+        return x;
+    }
+
+    /** The middle of some triangles, and how far their corners are from it. */
+    around(triangles: number[], q: ArrayLike<number>): { middle: [number, number, number]; reach: number } {
+        const corners = triangles.flatMap((t) => [0, 1, 2].map((c) => this.vertex(this.faces[3 * t + c], q)));
+        const middle: [number, number, number] = [0, 0, 0];
+        for (const corner of corners) for (let c = 0; c < 3; c++) middle[c] += corner[c] / corners.length;
+        const reach = Math.max(...corners.map((x) => Math.hypot(...x.map((v, c) => v - middle[c]))));
+        return { middle, reach };
+    }
+
+    /** |z| where the metric is diagonal. */
+    norm(q: ArrayLike<number>): number | null {
+        const { scales, center } = this.model;
+        if (!scales) return null;
+        return Math.hypot(...scales.map((s, k) => s * (q[k] - center[k])));
+    }
+
+    /** Names a mode: its own name, else its number and frequency. */
+    modeName(k: number): string {
+        return this.model.mode_names?.[k] ?? `mode ${k + 1}`;
+    }
+
+    frequency(k: number): string {
+        const hertz = this.model.frequencies?.[k];
+        if (hertz === null || hertz === undefined) return "";
+        return hertz >= 1000 ? `${(hertz / 1000).toPrecision(3)} kHz` : `${hertz.toPrecision(3)} Hz`;
+    }
+}

@@ -1,0 +1,104 @@
+/** Where the page's data come from: the local server, or a report within the page. */
+import type { Report, Scene } from "./protocol";
+
+export class Refused extends Error {}
+
+/** The server has gone. */
+export class Gone extends Error {}
+
+export interface Source {
+    readonly live: boolean;
+    readonly scene: Scene;
+    array(name: string): Promise<ArrayBuffer>;
+    /** A question to the server; a report has none. */
+    ask<T>(path: string, body?: unknown): Promise<T>;
+    bytes(path: string, body?: unknown): Promise<ArrayBuffer>;
+}
+
+export async function openSource(): Promise<Source> {
+    const text = document.getElementById("sscc-report")?.textContent ?? "null";
+    const report = JSON.parse(text) as Report | null;
+    return report ? new Within(report) : Live.open();
+}
+
+class Within implements Source {
+    readonly live = false;
+    readonly scene: Scene;
+    constructor(private readonly report: Report) {
+        this.scene = report.scene;
+    }
+    async array(name: string): Promise<ArrayBuffer> {
+        const text = this.report.arrays[name];
+        if (text === undefined) throw new Refused(`the report has no array '${name}'`);
+        return Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+    }
+    ask<T>(): Promise<T> {
+        return Promise.reject(new Refused("a report cannot answer questions"));
+    }
+    bytes(): Promise<ArrayBuffer> {
+        return this.ask();
+    }
+}
+
+class Live implements Source {
+    readonly live = true;
+    private constructor(
+        private readonly token: string,
+        public scene: Scene,
+    ) {}
+
+    static async open(): Promise<Live> {
+        const address = new URL(location.href);
+        const token = address.searchParams.get("token") ?? "";
+        // What is seen, kept in histories and sent in pictures holds no token. Reloading still finds it.
+        address.searchParams.delete("token");
+        const known = token || (history.state as { token?: string } | null)?.token || "";
+        history.replaceState({ token: known }, "", address);
+        const source = new Live(known, null as unknown as Scene);
+        source.scene = await source.ask<Scene>("/api/scene");
+        return source;
+    }
+
+    async array(name: string): Promise<ArrayBuffer> {
+        return this.bytes(`/api/array/${encodeURIComponent(name)}`);
+    }
+
+    async ask<T>(path: string, body?: unknown): Promise<T> {
+        const response = await this.fetch(path, body);
+        return (await response.json()) as T;
+    }
+
+    async bytes(path: string, body?: unknown): Promise<ArrayBuffer> {
+        return (await this.fetch(path, body)).arrayBuffer();
+    }
+
+    private async fetch(path: string, body?: unknown): Promise<Response> {
+        const headers: Record<string, string> = { "X-Sscc-Token": this.token };
+        const init: RequestInit = { headers, cache: "no-store" };
+        if (body !== undefined) {
+            headers["Content-Type"] = "application/json";
+            init.method = "POST";
+            init.body = JSON.stringify(body);
+        }
+        let response: Response;
+        try {
+            response = await fetch(path, init);
+        } catch {
+            throw new Gone(
+                "The server does not answer: is 'sscc view' still running? Start it again and open its new address.",
+            );
+        }
+        if (!response.ok) throw new Refused(await explain(response));
+        return response;
+    }
+}
+
+async function explain(response: Response): Promise<string> {
+    try {
+        const { error } = (await response.json()) as { error?: string };
+        if (error) return error;
+    } catch {
+        // Not ours: the status must do.
+    }
+    return `the server answered with ${response.status} ${response.statusText}`.trim();
+}

@@ -1,0 +1,247 @@
+/** The picture: camera, light and what stands on the stage. */
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Body } from "./body";
+import type { Frames } from "./frames";
+import type { Shape } from "./shape";
+import { colours } from "./theme";
+
+const FLIGHT = 450;
+
+export class Stage {
+    readonly scene = new THREE.Scene();
+    readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
+    readonly bodies: Body[] = [];
+    private readonly renderer: THREE.WebGLRenderer;
+    private controls: OrbitControls;
+    private home = { middle: new THREE.Vector3(), radius: 1 };
+    private ground: THREE.GridHelper | null = null;
+    private boxes: THREE.LineSegments | null = null;
+
+    /** Throws where WebGL 2 is missing. */
+    constructor(
+        readonly canvas: HTMLCanvasElement,
+        readonly frames: Frames,
+    ) {
+        const context = canvas.getContext("webgl2", {
+            antialias: true,
+            alpha: false,
+            powerPreference: "high-performance",
+        });
+        if (!context) throw new Error("no WebGL 2");
+        this.renderer = new THREE.WebGLRenderer({ canvas, context });
+        this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+        this.controls = this.newControls();
+        new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+        canvas.addEventListener("keydown", (event) => this.key(event));
+        canvas.addEventListener("webglcontextrestored", () => this.frames.invalidate());
+        this.resize();
+    }
+
+    get largestTexture(): number {
+        return this.renderer.capabilities.maxTextureSize;
+    }
+
+    addBody(shape: Shape, instances: number): Body {
+        const body = new Body(shape, instances, this.largestTexture);
+        this.bodies.push(body);
+        this.scene.add(body.group);
+        this.recolour();
+        return body;
+    }
+
+    removeBodies(): void {
+        for (const body of this.bodies.splice(0)) {
+            this.scene.remove(body.group);
+            body.dispose();
+        }
+    }
+
+    recolour(): void {
+        const now = colours();
+        this.scene.background = new THREE.Color(...now.background);
+        for (const body of this.bodies) body.setColours(now, this.renderer.getPixelRatio());
+        if (this.ground) (this.ground.material as THREE.LineBasicMaterial).color.setRGB(...now.ground);
+        if (this.boxes) (this.boxes.material as THREE.LineBasicMaterial).color.setRGB(...now.line);
+        this.frames.invalidate();
+    }
+
+    /** Looks at a ball from the front, a little from above and aside. */
+    frame(middle: number[], radius: number, up: "y" | "z"): void {
+        this.home = { middle: new THREE.Vector3(...middle), radius };
+        this.camera.up.set(0, up === "y" ? 1 : 0, up === "z" ? 1 : 0);
+        const aside = up === "y" ? new THREE.Vector3(0.45, 0.3, 1) : new THREE.Vector3(0.45, -1, 0.3);
+        this.controls.dispose();
+        this.controls = this.newControls();
+        this.controls.target.copy(this.home.middle);
+        this.camera.position.copy(this.home.middle).addScaledVector(aside.normalize(), this.distance(radius));
+        this.controls.update();
+        this.frames.invalidate();
+    }
+
+    /** Goes to a place on the shape and stays as far as suits its size. */
+    flyTo(middle: number[], reach: number): void {
+        const target = new THREE.Vector3(...middle);
+        const away = this.camera.position.clone().sub(this.controls.target).normalize();
+        const distance = Math.min(
+            Math.max(this.distance(reach * 8), this.home.radius * 0.2),
+            this.distance(this.home.radius),
+        );
+        this.fly(target, target.clone().addScaledVector(away, distance));
+    }
+
+    flyHome(): void {
+        const away = this.camera.position.clone().sub(this.controls.target).normalize();
+        const { middle, radius } = this.home;
+        this.fly(middle, middle.clone().addScaledVector(away, this.distance(radius)));
+    }
+
+    setGround(height: number | null, size: number): void {
+        if (this.ground) this.scene.remove(this.ground);
+        this.ground = null;
+        if (height !== null) {
+            this.ground = new THREE.GridHelper(size, 24, 0xffffff, 0xffffff);
+            this.ground.rotation.x = Math.PI / 2;
+            this.ground.position.z = height;
+            this.scene.add(this.ground);
+        }
+        this.recolour();
+    }
+
+    setBoxes(boxes: number[][]): void {
+        if (this.boxes) {
+            this.scene.remove(this.boxes);
+            this.boxes.geometry.dispose();
+        }
+        this.boxes = null;
+        if (boxes.length > 0) {
+            const geometry = new THREE.BufferGeometry();
+            geometry.setAttribute("position", new THREE.BufferAttribute(boxLines(boxes), 3));
+            const material = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75 });
+            this.boxes = new THREE.LineSegments(geometry, material);
+            this.boxes.frustumCulled = false;
+            this.scene.add(this.boxes);
+        }
+        this.recolour();
+    }
+
+    /** A picture of the shape alone at q. */
+    thumbnail(body: Body, draw: () => void, width: number, height: number): ImageData {
+        const target = new THREE.WebGLRenderTarget(width, height, { samples: 4 });
+        const camera = new THREE.PerspectiveCamera(32, width / height, this.camera.near, this.camera.far);
+        const { shape } = body;
+        const aside = this.camera.position.clone().sub(this.controls.target).normalize();
+        camera.up.copy(this.camera.up);
+        camera.position.set(...shape.middle).addScaledVector(aside, shape.radius * 4.6);
+        camera.lookAt(...shape.middle);
+        draw();
+        this.renderer.setRenderTarget(target);
+        this.renderer.render(this.scene, camera);
+        const bytes = new Uint8Array(4 * width * height);
+        this.renderer.readRenderTargetPixels(target, 0, 0, width, height, bytes);
+        this.renderer.setRenderTarget(null);
+        target.dispose();
+        const image = new ImageData(width, height);
+        for (let y = 0; y < height; y++) {
+            image.data.set(bytes.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
+        }
+        return image;
+    }
+
+    png(): Promise<Blob | null> {
+        this.draw();
+        return new Promise((settle) => this.canvas.toBlob(settle, "image/png"));
+    }
+
+    draw(): void {
+        this.renderer.render(this.scene, this.camera);
+    }
+
+    private newControls(): OrbitControls {
+        const controls = new OrbitControls(this.camera, this.canvas);
+        controls.addEventListener("change", () => this.frames.invalidate());
+        controls.zoomToCursor = true;
+        return controls;
+    }
+
+    private distance(radius: number): number {
+        const narrow = Math.min(1, this.camera.aspect);
+        const distance = (radius * 1.08) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+        this.camera.near = this.home.radius / 200;
+        this.camera.far = this.home.radius * 60;
+        this.camera.updateProjectionMatrix();
+        return distance;
+    }
+
+    private fly(target: THREE.Vector3, position: THREE.Vector3): void {
+        const from = { target: this.controls.target.clone(), position: this.camera.position.clone() };
+        const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+        let begin: number | null = null;
+        this.frames.run((now) => {
+            begin ??= now;
+            const t = still ? 1 : Math.min(1, (now - begin) / FLIGHT);
+            const s = t * t * (3 - 2 * t);
+            this.controls.target.lerpVectors(from.target, target, s);
+            this.camera.position.lerpVectors(from.position, position, s);
+            this.controls.update();
+            this.frames.invalidate();
+            return t < 1;
+        });
+    }
+
+    private resize(): void {
+        const { clientWidth, clientHeight } = this.canvas.parentElement!;
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setSize(Math.max(1, clientWidth), Math.max(1, clientHeight), false);
+        this.camera.aspect = Math.max(1, clientWidth) / Math.max(1, clientHeight);
+        this.camera.updateProjectionMatrix();
+        this.frames.invalidate();
+    }
+
+    /** Arrows turn, plus and minus come nearer and go away. */
+    private key(event: KeyboardEvent): void {
+        const turns: Record<string, [number, number, number]> = {
+            ArrowLeft: [-0.1, 0, 1],
+            ArrowRight: [0.1, 0, 1],
+            ArrowUp: [0, -0.1, 1],
+            ArrowDown: [0, 0.1, 1],
+            "+": [0, 0, 0.9],
+            "=": [0, 0, 0.9],
+            "-": [0, 0, 1 / 0.9],
+        };
+        const turn = turns[event.key];
+        if (!turn || event.ctrlKey || event.metaKey || event.altKey) return;
+        event.preventDefault();
+        const up = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
+        const offset = this.camera.position.clone().sub(this.controls.target).applyQuaternion(up);
+        const ball = new THREE.Spherical().setFromVector3(offset);
+        ball.theta += turn[0];
+        ball.phi += turn[1];
+        ball.radius *= turn[2];
+        ball.makeSafe();
+        offset.setFromSpherical(ball).applyQuaternion(up.invert());
+        this.camera.position.copy(this.controls.target).add(offset);
+        this.controls.update();
+        this.frames.invalidate();
+    }
+}
+
+/** The twelve edges of each box. */
+function boxLines(boxes: number[][]): Float32Array {
+    const lines = new Float32Array(boxes.length * 72);
+    let at = 0;
+    for (const box of boxes) {
+        for (let axis = 0; axis < 3; axis++) {
+            for (let side = 0; side < 4; side++) {
+                for (let end = 0; end < 2; end++) {
+                    const upper = [0, 0, 0];
+                    upper[axis] = end;
+                    upper[(axis + 1) % 3] = side & 1;
+                    upper[(axis + 2) % 3] = side >> 1;
+                    for (let c = 0; c < 3; c++) lines[at++] = box[c + 3 * upper[c]];
+                }
+            }
+        }
+    }
+    return lines;
+}

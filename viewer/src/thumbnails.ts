@@ -1,0 +1,48 @@
+/** Extremal deformations of the root's ellipsoid as small pictures (the paper's Figure 11); a click shows one. */
+import type { App } from "./app";
+import { h } from "./dom";
+
+const WIDTH = 148;
+const HEIGHT = 108;
+
+export function thumbnails(app: App): HTMLElement {
+    const { extremal } = app.shape.model;
+    const pictures = extremal.map(({ name, q }) => {
+        const canvas = h("canvas", { width: 2 * WIDTH, height: 2 * HEIGHT, "aria-hidden": "true" });
+        const show = (): void => {
+            app.motion.stop();
+            app.pose.show(q);
+        };
+        const button = h(
+            "button",
+            { type: "button", class: "thumbnail", onclick: show },
+            canvas,
+            h("span", {}, name),
+        );
+        return { button, canvas, q };
+    });
+    const element = h(
+        "section",
+        { "aria-label": "extremal deformations" },
+        h("h2", {}, "As far as the root certifies"),
+        h("p", { class: "hint" }, "Shapes on the boundary of what the root's certificate proves free."),
+        h("div", { class: "thumbnails" }, ...pictures.map((p) => p.button)),
+    );
+    const draw = (): void => {
+        const { stage, body } = app;
+        if (!stage || !body) return;
+        for (const { canvas, q } of pictures) {
+            const image = stage.thumbnail(body, () => body.setQ(0, q), canvas.width, canvas.height);
+            canvas.getContext("2d")?.putImageData(image, 0, 0);
+        }
+        body.setQ(0, app.pose.q);
+        app.frames.invalidate();
+    };
+    // Once they are seen: until then they cost nothing.
+    new IntersectionObserver((entries, observer) => {
+        if (!entries.some((e) => e.isIntersecting)) return;
+        observer.disconnect();
+        draw();
+    }).observe(element);
+    return element;
+}

@@ -1,0 +1,221 @@
+/** Plays frames against a clock, sound in sync; contact is marked on the line. */
+
+import { digits, h, svg } from "./dom";
+import type { Frames } from "./frames";
+
+const SPEEDS = [2, 1, 0.5, 0.25, 0.1, 0.02];
+/** A motion is slowed to last so long at least (s), unless it sounds. */
+const AT_LEAST = 3;
+
+export interface Track {
+    times: number[];
+    /** Colliding pairs per frame, null where not known. */
+    pairs: number[] | null;
+    show(frame: number): void;
+    sound: Blob | null;
+}
+
+export class Timeline {
+    readonly element: HTMLElement;
+    frame = 0;
+    playing = false;
+    private readonly play: HTMLButtonElement;
+    private readonly slider: HTMLInputElement;
+    private readonly clock = h("output", { class: "clock" });
+    private readonly speed: HTMLSelectElement;
+    private readonly audio: HTMLAudioElement | null;
+    private readonly listeners: ((frame: number, time: number) => void)[] = [];
+    private time: number;
+    private last: number | null = null;
+
+    constructor(
+        private readonly frames: Frames,
+        readonly track: Track,
+    ) {
+        const { times } = track;
+        this.time = times[0] ?? 0;
+        const length = (times.at(-1) ?? 0) - this.time;
+        const first = track.sound ? 1 : (SPEEDS.find((s) => s <= 1 && length / s >= AT_LEAST) ?? SPEEDS.at(-1)!);
+        this.audio = track.sound ? h("audio", { src: URL.createObjectURL(track.sound), preload: "auto" }) : null;
+        this.play = h("button", { type: "button", class: "play", onclick: () => this.toggle() }, "▶");
+        this.slider = h("input", {
+            type: "range",
+            min: 0,
+            max: Math.max(0, times.length - 1),
+            step: 1,
+            value: 0,
+            "aria-label": "frame",
+            oninput: () => this.seek(this.slider.valueAsNumber),
+        });
+        this.speed = h(
+            "select",
+            { "aria-label": "speed", onchange: () => this.respeed() },
+            ...SPEEDS.map((s) =>
+                h("option", { value: s, selected: s === first }, s >= 1 ? `${s}×` : `1/${Math.round(1 / s)}×`),
+            ),
+        );
+        const contact = track.pairs?.some((p) => p > 0) ?? false;
+        const jump = (step: number): HTMLButtonElement =>
+            h(
+                "button",
+                {
+                    type: "button",
+                    class: "small",
+                    "aria-label": `${step > 0 ? "next" : "previous"} self-contact`,
+                    title: `${step > 0 ? "next" : "previous"} self-contact`,
+                    onclick: () => this.jump(step),
+                },
+                step > 0 ? "▲›" : "‹▲",
+            );
+        const mute = h(
+            "button",
+            { type: "button", class: "small", "aria-pressed": "false", onclick: () => this.mute(mute) },
+            "sound on",
+        );
+        this.element = h(
+            "section",
+            { class: "timeline", "aria-label": "playback" },
+            this.play,
+            contact && jump(-1),
+            contact && jump(1),
+            h("div", { class: "line" }, this.marks(), this.slider),
+            this.clock,
+            this.speed,
+            this.audio && mute,
+            this.audio,
+        );
+        this.update();
+    }
+
+    onFrame(listener: (frame: number, time: number) => void): void {
+        this.listeners.push(listener);
+    }
+
+    toggle(): void {
+        if (this.playing) this.pause();
+        else this.start();
+    }
+
+    start(): void {
+        if (this.playing || this.track.times.length < 2) return;
+        if (this.frame >= this.track.times.length - 1) this.seek(0);
+        this.playing = true;
+        this.last = null;
+        if (this.audio) {
+            this.respeed();
+            this.audio.currentTime = Math.max(0, this.time - this.track.times[0]);
+            // Where sound may not begin by itself, the picture goes on without it.
+            void this.audio.play().catch(() => undefined);
+        }
+        this.frames.run((now) => this.tick(now));
+        this.update();
+    }
+
+    pause(): void {
+        this.playing = false;
+        this.audio?.pause();
+        this.update();
+    }
+
+    seek(frame: number): void {
+        this.frame = Math.min(Math.max(0, Math.round(frame)), this.track.times.length - 1);
+        this.time = this.track.times[this.frame];
+        if (this.audio) this.audio.currentTime = Math.max(0, this.time - this.track.times[0]);
+        this.show();
+    }
+
+    close(): void {
+        this.pause();
+        if (this.audio) URL.revokeObjectURL(this.audio.src);
+        this.element.remove();
+    }
+
+    /** To the next frame that collides after one that does not. */
+    private jump(step: number): void {
+        const { pairs } = this.track;
+        if (!pairs) return;
+        for (let f = this.frame + step; f >= 0 && f < pairs.length; f += step) {
+            if (pairs[f] > 0 && !(pairs[f - 1] > 0)) {
+                this.seek(f);
+                return;
+            }
+        }
+    }
+
+    private tick(now: number): boolean {
+        if (!this.playing) return false;
+        const { times } = this.track;
+        if (this.audio && !this.audio.paused) this.time = times[0] + this.audio.currentTime;
+        else if (this.last !== null) this.time += ((now - this.last) / 1000) * Number(this.speed.value);
+        this.last = now;
+        let frame = this.frame;
+        while (frame + 1 < times.length && times[frame + 1] <= this.time) frame++;
+        if (frame !== this.frame) {
+            this.frame = frame;
+            this.show();
+        }
+        const ended = this.audio
+            ? this.audio.ended || this.time >= times[times.length - 1]
+            : frame === times.length - 1;
+        if (ended && frame === times.length - 1) this.pause();
+        return this.playing;
+    }
+
+    private show(): void {
+        this.track.show(this.frame);
+        this.update();
+        for (const listener of this.listeners) listener(this.frame, this.track.times[this.frame]);
+    }
+
+    private update(): void {
+        const { times, pairs } = this.track;
+        this.play.textContent = this.playing ? "❚❚" : "▶";
+        this.play.setAttribute("aria-label", this.playing ? "pause" : "play");
+        this.slider.value = String(this.frame);
+        const touching = pairs && pairs[this.frame] > 0 ? `, ${pairs[this.frame]} colliding pairs` : "";
+        this.slider.setAttribute("aria-valuetext", `${digits(times[this.frame], 3)} seconds${touching}`);
+        this.clock.textContent = `${times[this.frame].toFixed(3)} s`;
+    }
+
+    private respeed(): void {
+        if (this.audio) this.audio.playbackRate = Number(this.speed.value);
+    }
+
+    private mute(button: HTMLButtonElement): void {
+        if (!this.audio) return;
+        this.audio.muted = !this.audio.muted;
+        button.textContent = this.audio.muted ? "sound off" : "sound on";
+        button.setAttribute("aria-pressed", String(this.audio.muted));
+    }
+
+    /** Bars where pairs collide, higher for more; at most one for each hundredth of the line's width. */
+    private marks(): SVGElement {
+        const { pairs, times } = this.track;
+        const columns = Math.min(300, times.length);
+        const root = svg("svg", {
+            class: "marks",
+            viewBox: "0 0 300 20",
+            preserveAspectRatio: "none",
+            "aria-hidden": "true",
+        });
+        if (!pairs) return root;
+        const most = Math.log1p(pairs.reduce((a, b) => Math.max(a, b), 1));
+        for (let c = 0; c < columns; c++) {
+            const from = Math.floor((c * times.length) / columns);
+            const to = Math.max(from + 1, Math.floor(((c + 1) * times.length) / columns));
+            const height = pairs.slice(from, to).reduce((a, b) => Math.max(a, b), 0);
+            if (height === 0) continue;
+            const tall = 5 + (15 * Math.log1p(height)) / most;
+            root.append(
+                svg("rect", {
+                    x: (300 * c) / columns,
+                    width: 300 / columns + 0.3,
+                    y: 20 - tall,
+                    height: tall,
+                    class: "contact",
+                }),
+            );
+        }
+        return root;
+    }
+}

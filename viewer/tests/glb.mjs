@@ -1,0 +1,28 @@
+// GLB as three.js reads and plays it.
+import { AnimationMixer } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+
+export async function parse(bytes) {
+    const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
+    return new GLTFLoader().parseAsync(buffer, "");
+}
+
+/** Positions of the first mesh, or of one by name, at a time of the first animation, in the world. */
+export function atTime(gltf, time, name) {
+    const mixer = new AnimationMixer(gltf.scene);
+    const action = mixer.clipAction(gltf.animations[0]);
+    action.play();
+    mixer.setTime(time);
+    gltf.scene.updateMatrixWorld(true);
+    let mesh = null;
+    gltf.scene.traverse((node) => {
+        if (node.isMesh && (!name || node.name === name)) mesh ??= node;
+    });
+    const positions = [];
+    const point = mesh.position.clone();
+    for (let v = 0; v < mesh.geometry.attributes.position.count; v++) {
+        mesh.getVertexPosition(v, point).applyMatrix4(mesh.matrixWorld);
+        positions.push(point.x, point.y, point.z);
+    }
+    return positions;
+}

@@ -1,0 +1,382 @@
+// The live page before the real server, on the demo's spring.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { request } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { launch, open } from "./browser.mjs";
+import { readRows, run, view } from "./command.mjs";
+import { atTime, parse } from "./glb.mjs";
+import { drawnBox, orange, pixels, settled } from "./picture.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "sscc-view-"));
+const model = join(folder, "spring.model.safetensors");
+const certificates = join(folder, "spring.sscc.safetensors");
+let browser;
+let server;
+let rows;
+/** What `sscc check --json` says of each row. */
+let answers;
+
+before(async () => {
+    await run("demo", "--out", folder);
+    rows = readRows(join(folder, "spring.npy"));
+    const trajectory = join(folder, "spring.npy");
+    const lines = await run("check", model, "--certificates", certificates, "--trajectory", trajectory, "--json");
+    answers = lines
+        .trim()
+        .split("\n")
+        .map((line) => JSON.parse(line));
+    server = await view(model, "--certificates", certificates);
+    browser = await launch();
+});
+after(async () => {
+    await browser?.close();
+    await server?.stop();
+    rmSync(folder, { recursive: true, force: true });
+});
+
+/** Opens the live page, runs the steps, and fails where the page complained or asked for anything from elsewhere. */
+async function look(steps, { allowed = [] } = {}) {
+    const { page, context, errors, requests } = await open(browser, server.address, {});
+    try {
+        await steps(page, context);
+        const unexpected = errors.filter((error) => !allowed.some((pattern) => pattern.test(error)));
+        assert.deepEqual(unexpected, []);
+        const elsewhere = requests.filter(
+            (url) => !url.startsWith(`${server.origin}/`) && !/^(blob|data):/.test(url),
+        );
+        assert.deepEqual(elsewhere, []);
+    } finally {
+        await context.close();
+    }
+}
+
+const show = (page, q) => page.evaluate((q) => globalThis.sscc.pose.show(q), q);
+const verdict = (page) => page.locator(".verdict-text").innerText();
+const answered = (page) =>
+    page.waitForFunction(() => {
+        const { checker, pose } = globalThis.sscc;
+        const gauge = document.querySelector(".gauge").dataset;
+        return (
+            checker.answer?.serial === pose.serial &&
+            gauge.kind !== "checking" &&
+            gauge.serial === String(pose.serial)
+        );
+    });
+/** A row that is as asked for. */
+const row = (wanted) => {
+    const index = answers.findIndex(wanted);
+    assert.ok(index >= 0, "the demo has such a row");
+    return { q: rows[index], answer: answers[index] };
+};
+const fewPairs = () => row((a) => a.colliding && a.count < 400);
+
+describe("live", () => {
+    test("loads, hides the token, and loads again", () =>
+        look(async (page) => {
+            assert.ok(!page.url().includes("token"));
+            await answered(page);
+            assert.ok(drawnBox(await pixels(page)).count > 2000);
+            assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
+            await page.reload();
+            await answered(page);
+            assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
+        }));
+
+    test("the gauge tells what check tells", () =>
+        look(async (page) => {
+            for (const wanted of [
+                (a) => a.root_certified,
+                (a) => !a.colliding && !a.root_certified,
+                (a) => a.colliding,
+            ]) {
+                const { q, answer } = row(wanted);
+                await show(page, q);
+                await answered(page);
+                const pairs = `COLLIDING ${answer.count.toLocaleString("en")} pair${answer.count === 1 ? "" : "s"}`;
+                const free = answer.root_certified ? "free, proven by the root's certificate" : "free, proven";
+                assert.equal(await verdict(page), answer.colliding ? pairs : free);
+                const norm = await page.evaluate(() => globalThis.sscc.checker.answer.norm);
+                assert.equal(norm, answer.norm);
+            }
+        }));
+
+    test("the colliding triangles shown are check's", () =>
+        look(async (page) => {
+            const { q, answer } = fewPairs();
+            assert.equal(orange(await pixels(page)), 0);
+            await show(page, q);
+            await answered(page);
+            const marked = await page.evaluate(() => globalThis.sscc.body.markedTriangles(0));
+            const due = [...new Set(answer.pairs.flat())].sort((a, b) => a - b);
+            assert.deepEqual(marked, due);
+            await settled(page);
+            assert.ok(orange(await pixels(page)) > 10);
+            await page.getByRole("tab", { name: "Collisions" }).click();
+            const listed = await page.locator(".pair").allInnerTexts();
+            assert.deepEqual(
+                listed,
+                answer.pairs.slice(0, 100).map(([i, j]) => `${i} – ${j}`),
+            );
+            const first = page.locator(".pair").first();
+            await first.click();
+            await page.waitForTimeout(700);
+            const off = await page.evaluate(() => {
+                const { shape, pose, checker, stage } = globalThis.sscc;
+                const { middle } = shape.around(checker.answer.pairs[0], pose.q);
+                const point = stage.camera.position
+                    .clone()
+                    .set(...middle)
+                    .project(stage.camera);
+                return Math.hypot(point.x, point.y);
+            });
+            assert.ok(off < 0.02, "the pair is in the middle of the picture");
+            await page.getByRole("button", { name: "Reset" }).waitFor({ state: "attached" });
+            await page.keyboard.press("r");
+            await answered(page);
+            assert.deepEqual(await page.evaluate(() => globalThis.sscc.body.markedTriangles(0)), []);
+        }));
+
+    test("an answer counts only for its own q; of those waiting the latest is asked", () =>
+        look(async (page) => {
+            await answered(page);
+            let release;
+            const held = new Promise((done) => {
+                release = done;
+            });
+            const asked = [];
+            await page.route("**/api/check", async (route) => {
+                asked.push(route.request().postDataJSON().serial);
+                await held;
+                await route.continue();
+            });
+            const free = row((a) => a.root_certified).q;
+            for (let i = 0; i < 6; i++)
+                await show(
+                    page,
+                    free.map((v) => v * (1 - i / 10)),
+                );
+            await show(page, fewPairs().q);
+            await settled(page);
+            assert.equal(await verdict(page), "checking…");
+            assert.equal(asked.length, 1);
+            release();
+            await answered(page);
+            assert.match(await verdict(page), /^COLLIDING/);
+            assert.equal(asked.length, 2);
+            assert.equal(asked[1], await page.evaluate(() => globalThis.sscc.pose.serial));
+        }));
+
+    test("a slider dragged by the mouse is answered on its way", () =>
+        look(async (page) => {
+            await answered(page);
+            const slider = page.locator('.mode input[type="range"]').nth(1);
+            const box = await slider.boundingBox();
+            const y = box.y + box.height / 2;
+            await page.mouse.move(box.x + box.width / 2, y);
+            await page.mouse.down();
+            const kinds = new Set();
+            for (let i = 1; i <= 12; i++) {
+                await page.mouse.move(box.x + (box.width * (12 + i)) / 24, y);
+                await answered(page);
+                kinds.add(await page.locator(".gauge").getAttribute("data-kind"));
+            }
+            await page.mouse.up();
+            const q = await page.evaluate(() => [...globalThis.sscc.pose.q]);
+            assert.ok(q[1] > 0 && q.every((v, k) => k === 1 || v === rows[0][k] || v === 0));
+            assert.ok(kinds.has("colliding"), [...kinds].join(", "));
+        }));
+
+    test("goes along a mode to the first self-collision", () =>
+        look(async (page) => {
+            await page.getByRole("button", { name: "mode 1 to the first self-collision" }).click();
+            await page.waitForFunction(() => globalThis.sscc.motion.track && !globalThis.sscc.motion.name);
+            await answered(page);
+            assert.match(await verdict(page), /^COLLIDING/);
+            assert.match(await page.locator(".message").innerText(), /first self-collision along mode 1 at/);
+            const q = await page.evaluate(() => [...globalThis.sscc.pose.q]);
+            const exact = JSON.parse(
+                await run("check", model, "--certificates", certificates, "--json", `--q=${q.join(",")}`),
+            );
+            assert.ok(exact.colliding);
+            const before = q.map((v) => v * 0.98);
+            const free = JSON.parse(
+                await run("check", model, "--certificates", certificates, "--json", `--q=${before.join(",")}`),
+            );
+            assert.ok(!free.colliding);
+        }));
+
+    test("costs stand beside the traditional method's", () =>
+        look(async (page) => {
+            const { q, answer } = fewPairs();
+            await show(page, q);
+            await page.getByRole("tab", { name: "Collisions" }).click();
+            await page.waitForFunction(() => /×/.test(document.querySelector(".counters").textContent));
+            const table = await page.locator(".counters").innerText();
+            const n = answer.count.toLocaleString("en");
+            assert.match(table, new RegExp(`pairs\\s+${n}\\s+${n}`));
+            assert.match(table, new RegExp(`nodes opened\\s+${answer.opened.toLocaleString("en")}`));
+        }));
+
+    test("nodes are coloured by radius, and as opened and culled; boxes are drawn", () =>
+        look(async (page) => {
+            await show(
+                page,
+                fewPairs().q.map(() => 0),
+            );
+            await answered(page);
+            await page.getByRole("tab", { name: "Certificates" }).click();
+            const colours = async () => {
+                await settled(page);
+                const picture = await pixels(page);
+                const seen = new Set();
+                for (let y = 0; y < picture.height; y += 2) {
+                    for (let x = 0; x < picture.width; x += 2)
+                        seen.add(
+                            picture
+                                .at(x, y)
+                                .map((c) => c >> 4)
+                                .join(),
+                        );
+                }
+                return seen.size;
+            };
+            const plain = await colours();
+            await page.getByLabel("colours").selectOption("radius");
+            await page.locator(".ramp").waitFor();
+            assert.ok((await colours()) > 1.3 * plain);
+            await show(page, fewPairs().q);
+            await page.getByLabel("colours").selectOption("searched");
+            await page.getByText(/culled by certificates/).waitFor();
+            const text = await page.locator(".ramp-legend").innerText();
+            const [culled, opened] = text.match(/[\d,]+/g).map((n) => Number(n.replaceAll(",", "")));
+            assert.ok(culled > 0 && opened > 0, text);
+            await page.getByLabel("boxes of this level").check();
+            await page.waitForFunction(() => globalThis.sscc.stage.scene.children.some((c) => c.isLineSegments));
+        }));
+
+    test("a picture and the motion can be saved; three.js reads our positions", () =>
+        look(async (page) => {
+            const { q } = fewPairs();
+            await show(page, q);
+            await answered(page);
+            const saved = async (button) => {
+                const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+                return readFileSync(await download.path());
+            };
+            const png = await saved(page.getByRole("button", { name: "save a picture" }));
+            assert.equal(png.subarray(1, 4).toString(), "PNG");
+            assert.ok(png.length > 5000);
+            const glb = await parse(await saved(page.getByRole("button", { name: "save the motion" })));
+            // The way from the centre to q and back: there at one second.
+            for (const [time, share] of [
+                [0, 0],
+                [0.5, 0.5],
+                [1, 1],
+            ]) {
+                const due = await page.evaluate(
+                    (q) => [...globalThis.sscc.shape.deformed(q)],
+                    q.map((v) => v * share),
+                );
+                const { min, max } = await page.evaluate(() => globalThis.sscc.shape.model.box);
+                const box = Math.hypot(...max.map((v, c) => v - min[c]));
+                const worst = atTime(glb, time).reduce((most, v, i) => Math.max(most, Math.abs(v - due[i])), 0);
+                assert.ok(worst < 1e-5 * box, `at ${time} s: ${worst / box} of the box`);
+            }
+        }));
+});
+
+describe("the server", () => {
+    /** A request as any program could make it. */
+    const ask = (path, { headers = {}, body } = {}) =>
+        new Promise((done, failed) => {
+            const url = new URL(path, server.origin);
+            const sent = request(url, { method: body === undefined ? "GET" : "POST", headers }, (response) => {
+                let text = "";
+                response.on("data", (part) => (text += part));
+                response.on("end", () => done({ status: response.statusCode, text }));
+            });
+            sent.on("error", failed);
+            sent.end(body);
+        });
+    const token = () => ({ "X-Sscc-Token": server.token });
+    const check = () => JSON.stringify({ q: rows[0], serial: 1 });
+
+    test("refuses a wrong token, a foreign Origin or Host", async () => {
+        assert.equal((await ask("/api/scene", { headers: token() })).status, 200);
+        assert.equal((await ask("/api/scene")).status, 403);
+        assert.equal((await ask("/api/scene", { headers: { "X-Sscc-Token": "0".repeat(64) } })).status, 403);
+        assert.equal((await ask("/?token=wrong")).status, 403);
+        const foreign = { ...token(), Origin: "http://example.com" };
+        assert.equal((await ask("/api/check", { headers: foreign, body: check() })).status, 403);
+        assert.equal((await ask("/api/scene", { headers: { ...token(), Host: "example.com" } })).status, 403);
+    });
+
+    test("refuses bodies too large, q too long, what is not there; in one line", async () => {
+        const large = await ask("/api/check", { headers: token(), body: `{"q":[${"1,".repeat(1 << 20)}1]}` }).catch(
+            () => null,
+        );
+        // The server may hang up before all is sent.
+        if (large) assert.equal(large.status, 413);
+        const long = await ask("/api/check", { headers: token(), body: '{"q":[1],"serial":1}' });
+        assert.equal(long.status, 400);
+        const { error } = JSON.parse(long.text);
+        assert.ok(error.length > 10 && !error.includes("\n"), error);
+        assert.equal((await ask("/api/nothing", { headers: token() })).status, 404);
+    });
+
+    test("a page opened with a wrong token says so", async () => {
+        const context = await browser.newContext();
+        const page = await context.newPage();
+        await page.goto(server.origin);
+        await page.getByRole("alert").waitFor();
+        assert.match(await page.getByRole("alert").innerText(), /token/);
+        await context.close();
+    });
+
+    test("another site's page gets no answer", async () => {
+        const context = await browser.newContext();
+        const page = await context.newPage();
+        await page.goto("data:text/html,<p>elsewhere");
+        const result = await page.evaluate(
+            ([url, token]) =>
+                fetch(url, { method: "POST", headers: { "X-Sscc-Token": token }, body: "{}" }).then(
+                    (response) => response.status,
+                    () => "refused",
+                ),
+            [`${server.origin}/api/check`, server.token],
+        );
+        assert.equal(result, "refused");
+        await context.close();
+    });
+
+    test("what happened is told once it has gone; nothing stays free", async () => {
+        const own = await view(model, "--certificates", certificates);
+        const { page, context } = await open(browser, own.address);
+        await answered(page);
+        await own.stop();
+        await show(
+            page,
+            rows[0].map((v) => v + 1e-9),
+        );
+        await page.getByText(/The server does not answer/).waitFor();
+        await settled(page);
+        assert.equal(await verdict(page), "unknown: no answer");
+        await context.close();
+    });
+});
+
+test("the demo's report plays", async () => {
+    const { page, context, errors } = await open(browser, `file://${join(folder, "report.html")}`);
+    await page.getByRole("tab", { name: "Plots" }).click();
+    assert.ok((await page.locator(".plot").count()) >= 1);
+    const slider = page.getByRole("slider", { name: "frame" });
+    const colliding = answers.findIndex((a) => a.colliding);
+    await slider.fill(String(colliding));
+    await settled(page);
+    assert.equal(await verdict(page), `COLLIDING ${answers[colliding].count} pairs (as recorded)`);
+    assert.deepEqual(errors, []);
+    await context.close();
+});

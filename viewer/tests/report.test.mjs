@@ -1,0 +1,350 @@
+// Reports: the page with its data in it, opened as a file.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { builtPage, launch, open } from "./browser.mjs";
+import { report, withReport } from "./fixture.mjs";
+import { atTime, parse } from "./glb.mjs";
+import { drawnBox, expectedBox, orange, pixels, settled } from "./picture.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "sscc-page-"));
+const html = readFileSync(builtPage, "utf8");
+let browser;
+
+function write(name, options) {
+    const file = join(folder, `${name}.html`);
+    writeFileSync(file, withReport(html, report(options)));
+    return pathToFileURL(file).href;
+}
+
+before(async () => {
+    browser = await launch();
+});
+after(async () => {
+    await browser?.close();
+    rmSync(folder, { recursive: true, force: true });
+});
+
+/** Opens a report, runs the steps, and fails where the page complained or asked for anything from elsewhere. */
+async function look(options, steps) {
+    const { page, context, errors, requests } = await open(browser, write("report", options), options);
+    try {
+        await steps(page, context);
+        assert.deepEqual(errors, []);
+        const elsewhere = requests.filter((url) => !/^(file|blob|data):/.test(url));
+        assert.deepEqual(elsewhere, []);
+    } finally {
+        await context.close();
+    }
+}
+
+describe("the shape", () => {
+    test("is deformed on the graphics card as by the processor", () =>
+        look({ playback: false }, async (page) => {
+            for (const q of [
+                [0, 0, 0, 0],
+                [0.9, 0, 0, 0],
+                [0.3, -0.5, 0.6, 0.8],
+                [-1, 0, 0, -1],
+            ]) {
+                await page.evaluate((q) => globalThis.sscc.pose.show(q), q);
+                await settled(page);
+                const [drawn, due] = [drawnBox(await pixels(page)), await expectedBox(page)];
+                for (const side of ["left", "right", "top", "bottom"]) {
+                    assert.ok(Math.abs(drawn[side] - due[side]) < 4, `${side} of ${q}: ${drawn[side]}, ${due[side]}`);
+                }
+            }
+        }));
+
+    test("turns when dragged, comes nearer by the wheel, and by keys", () =>
+        look({ playback: false }, async (page) => {
+            const place = () => page.evaluate(() => globalThis.sscc.stage.camera.position.toArray());
+            const moved = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
+            const first = await place();
+            await page.mouse.move(400, 300);
+            await page.mouse.down();
+            await page.mouse.move(520, 340, { steps: 4 });
+            await page.mouse.up();
+            await settled(page);
+            const turned = await place();
+            assert.ok(moved(first, turned) > 0.3);
+            await page.mouse.wheel(0, -400);
+            await settled(page);
+            assert.ok(Math.hypot(...(await place())) < 0.95 * Math.hypot(...turned));
+            await page.focus(".stage canvas");
+            const near = await place();
+            await page.keyboard.press("ArrowLeft");
+            await settled(page);
+            assert.ok(moved(near, await place()) > 0.05);
+        }));
+
+    test("follows the slider of a mode; a double click puts it back", () =>
+        look({ playback: false }, async (page) => {
+            const before = drawnBox(await pixels(page));
+            const slider = page.locator('.mode input[type="range"]').first();
+            await slider.fill("0.8");
+            assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), 0.8);
+            await settled(page);
+            const bent = drawnBox(await pixels(page));
+            assert.ok(bent.bottom - bent.top > 1.5 * (before.bottom - before.top));
+            await slider.dblclick();
+            assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), 0);
+        }));
+
+    test("vibrates until it is stopped", () =>
+        look({ playback: false }, async (page) => {
+            const button = page.getByRole("button", { name: "vibrate mode 1" });
+            await button.click();
+            assert.equal(await button.getAttribute("aria-pressed"), "true");
+            await page.waitForFunction(() => globalThis.sscc.pose.q[0] > 0.05);
+            await page.waitForFunction(() => globalThis.sscc.pose.q[0] < -0.05);
+            await button.click();
+            const still = await page.evaluate(() => globalThis.sscc.pose.q[0]);
+            await page.waitForTimeout(100);
+            assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), still);
+        }));
+
+    test("takes q pasted, or from files of text and NumPy", () =>
+        look({ playback: false }, async (page) => {
+            const q = () => page.evaluate(() => [...globalThis.sscc.pose.q]);
+            await page.getByRole("button", { name: "Load q…" }).click();
+            await page.getByRole("textbox", { name: "numbers" }).fill("[0.25, -0.5\n 0 1e-1]");
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            assert.deepEqual(await q(), [0.25, -0.5, 0, 0.1]);
+            await page.keyboard.press("l");
+            await page.getByRole("textbox", { name: "numbers" }).fill("1 2 x");
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            assert.match(await page.locator(".dialog .wrong").innerText(), /line 1: 'x' is no number/);
+            await page.getByRole("textbox", { name: "numbers" }).fill("1 2");
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            assert.match(await page.locator(".dialog .wrong").innerText(), /2 numbers, the model has 4 modes/);
+            const file = {
+                name: "q.npy",
+                mimeType: "application/octet-stream",
+                buffer: npy([0.5, 0, -0.25, 0], [4]),
+            };
+            await page.locator('.dialog input[type="file"]').setInputFiles(file);
+            await page.waitForFunction(() => globalThis.sscc.pose.q[2] === -0.25);
+            assert.deepEqual(await q(), [0.5, 0, -0.25, 0]);
+            await page.keyboard.press("l");
+            const rows = npy([0.1, 0, 0, 0, 0.2, 0, 0, 0, 0.3, 0, 0, 0], [3, 4]);
+            await page.locator('.dialog input[type="file"]').setInputFiles({ ...file, buffer: rows });
+            await page.waitForFunction(() => globalThis.sscc.pose.q[0] > 0.299);
+            await page.keyboard.press("l");
+            const cut = { ...file, buffer: rows.subarray(0, rows.length - 5) };
+            await page.locator('.dialog input[type="file"]').setInputFiles(cut);
+            await page.getByText("the .npy file is cut off or too long").waitFor();
+        }));
+});
+
+/** A .npy file of float64. */
+function npy(values, shape) {
+    const tuple = shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`;
+    const words = `{'descr': '<f8', 'fortran_order': False, 'shape': ${tuple}, }`;
+    const header = `${words.padEnd(117)}\n`;
+    const head = Buffer.from([0x93, ...Buffer.from("NUMPY"), 1, 0, header.length, 0]);
+    return Buffer.concat([head, Buffer.from(header, "latin1"), Buffer.from(new Float64Array(values).buffer)]);
+}
+
+describe("playback", () => {
+    test("plays on a clock, is marked where bodies touch themselves, and shows what was recorded", () =>
+        look({}, async (page) => {
+            const slider = page.getByRole("slider", { name: "frame" });
+            const verdict = page.locator(".verdict-text");
+            await slider.fill("5");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "free (as recorded)");
+            assert.equal(orange(await pixels(page)), 0);
+            await page.getByRole("button", { name: "next self-contact" }).click();
+            assert.equal(await slider.inputValue(), "20");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "COLLIDING 5 pairs (as recorded)");
+            const marked = await page.evaluate(() => globalThis.sscc.stage.bodies[0].markedTriangles(1));
+            assert.deepEqual(
+                marked,
+                Array.from({ length: 40 }, (_, k) => 900 + k),
+            );
+            assert.ok(orange(await pixels(page)) > 30);
+            assert.ok((await page.locator(".marks .contact").count()) >= 5);
+            await page.keyboard.press(".");
+            assert.equal(await slider.inputValue(), "21");
+            await page.getByRole("button", { name: "play", exact: true }).click();
+            await page.waitForFunction(() => globalThis.player.timeline.frame > 40);
+            await page.waitForFunction(() => !globalThis.player.timeline.playing);
+            assert.equal(await slider.inputValue(), "59");
+        }));
+
+    test("moves each body by its q and its own rigid motion", () =>
+        look({}, async (page) => {
+            await page.getByRole("slider", { name: "frame" }).fill("30");
+            await settled(page);
+            const place = await page.evaluate(() => {
+                const mesh = globalThis.sscc.stage.bodies[0].group.children[0];
+                const matrix = globalThis.sscc.stage.camera.matrix.clone();
+                mesh.getMatrixAt(2, matrix);
+                return matrix.elements;
+            });
+            // Body 3 at t = 1: turned by 0.8 about z, at (1.2, 0, 1.25).
+            const due = [
+                Math.cos(0.8),
+                Math.sin(0.8),
+                0,
+                0,
+                -Math.sin(0.8),
+                Math.cos(0.8),
+                0,
+                0,
+                0,
+                0,
+                1,
+                0,
+                1.2,
+                0,
+                1.25,
+                1,
+            ];
+            for (const [i, value] of due.entries()) assert.ok(Math.abs(place[i] - value) < 1e-6, `${i}: ${place[i]}`);
+        }));
+
+    test("is saved as GLB with the same positions, as three.js plays them", () =>
+        look({}, async (page) => {
+            const button = page.getByRole("button", { name: "save the motion" });
+            const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+            const glb = await parse(readFileSync(await download.path()));
+            const { shapes, box } = await page.evaluate(() => {
+                const { shape } = globalThis.sscc;
+                const frame = 30;
+                const q = [0, 1, 2].map((b) => [0.4 * Math.sin(6 + b), 0, 0.2 * Math.cos(5), 0]);
+                return { shapes: q.map((row) => [...shape.deformed(row)]), frame, box: 2 * shape.radius };
+            });
+            const meshes = [0, 1, 2].map((b) => atTime(glb, 1, `tube_${b + 1}`));
+            shapes.forEach((x, b) => {
+                // R (p + U q) + x at one second: a turn about z.
+                const [c, s] = [Math.cos(0.4 + 0.2 * b), Math.sin(0.4 + 0.2 * b)];
+                for (let v = 0; v < x.length; v += 3) {
+                    const due = [c * x[v] - s * x[v + 1] + 1.2 * (b - 1), s * x[v] + c * x[v + 1], x[v + 2] + 1.25];
+                    for (let i = 0; i < 3; i++) assert.ok(Math.abs(meshes[b][v + i] - due[i]) < 1e-5 * box);
+                }
+            });
+        }));
+
+    test("a slider leaves the recording, a button goes back", () =>
+        look({}, async (page) => {
+            await page.locator('.mode input[type="range"]').first().fill("0.5");
+            assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 1);
+            await settled(page);
+            assert.match(await page.locator(".verdict-text").innerText(), /not checked/);
+            await page.getByRole("button", { name: "back to the recording" }).click();
+            assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 3);
+        }));
+
+    test("sound and picture keep together", () =>
+        look({ sound: true }, async (page) => {
+            await page.evaluate(() => document.querySelector(".play").click());
+            // In one go within the page: the recording lasts two seconds only.
+            const apart = await page.evaluate(async () => {
+                const { timeline } = globalThis.player;
+                const audio = document.querySelector("audio");
+                const frame = () => new Promise((done) => requestAnimationFrame(done));
+                while (audio.currentTime < 0.7) await frame();
+                const apart = audio.currentTime - timeline.track.times[timeline.frame];
+                document.querySelector(".play").click();
+                return apart;
+            });
+            // A recorded frame lasts 0.033 s; a slow picture may be a few behind.
+            assert.ok(Math.abs(apart) < 0.25, `${apart} s apart`);
+            assert.ok(await page.evaluate(() => document.querySelector("audio").paused));
+        }));
+});
+
+describe("the page", () => {
+    test("plots with logarithmic axes, legends and a reading at the pointer", () =>
+        look({}, async (page) => {
+            await page.getByRole("tab", { name: "Plots" }).click();
+            const titles = await page.locator(".plot figcaption").allInnerTexts();
+            assert.deepEqual(titles, [
+                "Cost over time",
+                "Energy and displacement",
+                "Radius of certificates per level: tube",
+            ]);
+            const ticks = await page.locator(".plot").nth(1).locator(".tick").allTextContents();
+            for (const tick of ["0.01", "0.1", "1", "10", "1e-6", "0.001"])
+                assert.ok(ticks.includes(tick), `${tick}: ${ticks}`);
+            assert.equal(await page.locator(".plot").nth(0).locator(".span").count(), 1);
+            await page.locator(".plot").nth(1).locator("svg[role=img]").hover();
+            assert.match(
+                await page.locator(".readout").nth(1).innerText(),
+                /amplitude .*: energy metric .*, displacement metric/,
+            );
+            await page.getByRole("slider", { name: "frame" }).fill("30");
+            assert.equal(await page.locator(".plot").nth(0).locator(".cursor").getAttribute("visibility"), "visible");
+        }));
+
+    test("shows extremal deformations; a click takes one", () =>
+        look({ playback: false }, async (page) => {
+            await page.getByRole("tab", { name: "Certificates" }).click();
+            const pictures = page.locator(".thumbnail");
+            assert.equal(await pictures.count(), 4);
+            await settled(page);
+            const box = drawnBox(await pixels(page, ".thumbnail:nth-child(1) canvas"));
+            assert.ok(box.count > 200, `${box.count} pixels`);
+            await pictures.nth(2).click();
+            assert.deepEqual(await page.evaluate(() => [...globalThis.sscc.pose.q]), [0, 0, 0.8, 0]);
+        }));
+
+    test("is usable by keys: help, tabs, names for all that can be pressed", () =>
+        look({}, async (page) => {
+            await page.keyboard.press("?");
+            await page.getByRole("dialog", { name: "help" }).waitFor();
+            await page.keyboard.press("Escape");
+            assert.equal(await page.locator("dialog").count(), 0);
+            await page.getByRole("tab", { name: "Modes" }).focus();
+            await page.keyboard.press("ArrowRight");
+            assert.equal(await page.getByRole("tab", { name: "Certificates" }).getAttribute("aria-selected"), "true");
+            const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+            assert.equal(outline, "solid");
+            const nameless = await page.evaluate(() =>
+                [...document.querySelectorAll("button, input, select, textarea, canvas[tabindex]")]
+                    .filter((e) => !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length))
+                    .map((e) => e.outerHTML),
+            );
+            assert.deepEqual(nameless, []);
+        }));
+
+    test("fits the width of a phone, in light and dark", async () => {
+        for (const scheme of ["light", "dark"]) {
+            await look({ width: 390, height: 844, scheme }, async (page) => {
+                for (const tab of ["Modes", "Certificates", "Plots", "About"]) {
+                    await page.getByRole("tab", { name: tab }).click();
+                    assert.ok((await page.evaluate(() => document.scrollingElement.scrollWidth)) <= 390, tab);
+                }
+                assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
+                await page.keyboard.press("t");
+                assert.notEqual(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
+            });
+        }
+    });
+
+    test("shows text as text", () =>
+        look({ change: (scene) => (scene.title = "</script><img src=x onerror=alert(1)>") }, async (page) => {
+            assert.equal(await page.locator("h1").innerText(), "</script><img src=x onerror=alert(1)>");
+        }));
+
+    test("says so where WebGL is missing, and goes on", async () => {
+        const without = await launch(["--disable-3d-apis"]);
+        try {
+            const { page, errors } = await open(without, write("none", { playback: false }));
+            assert.match(await page.getByRole("alert").first().innerText(), /WebGL 2 is missing/);
+            await page.locator('.mode input[type="range"]').first().fill("0.5");
+            assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), 0.5);
+            await page.getByRole("tab", { name: "Plots" }).click();
+            assert.ok((await page.locator(".plot").count()) >= 2);
+            assert.deepEqual(errors, []);
+        } finally {
+            await without.close();
+        }
+    });
+});

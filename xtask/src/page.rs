@@ -1,0 +1,196 @@
+//! `cargo xtask page`: builds the page from `viewer/` and holds it against the one that is checked in.
+//! Its tests in a browser are part of `cargo xtask test`.
+
+use std::env;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+use crate::tally::{SkipLog, Tally};
+use crate::test::cargo;
+
+/// Vite needs it (see `engines` in `viewer/package.json`).
+const NODE: (u32, u32) = (20, 19);
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn checked_in() -> PathBuf {
+    root().join("crates/sscc-view/page/index.html")
+}
+
+pub fn run(arguments: &[String]) -> ExitCode {
+    let write = match arguments {
+        [] => false,
+        [flag] if flag == "--write" => true,
+        _ => {
+            eprintln!("Usage: cargo xtask page [--write]    (--write takes the page that was built)");
+            return ExitCode::from(2);
+        }
+    };
+    let result =
+        node().and_then(|()| build()).and_then(|built| if write { take(&built) } else { compare(&built) });
+    match result {
+        Ok(line) => {
+            println!("{line}");
+            ExitCode::SUCCESS
+        }
+        Err(line) => {
+            eprintln!("error: {line}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whether the page built from its sources is the one checked in, and all its tests in a browser.
+pub fn test(log: &Path) -> Tally {
+    println!("== Page");
+    if let Err(reason) = node() {
+        return SkipLog::skip(log, "the page and its tests", &reason);
+    }
+    let broken = |line: String| {
+        println!("error: {line}");
+        Tally::BROKEN
+    };
+    let mut tally = Tally { passed: 1, failed: 0 };
+    match build().and_then(|built| compare(&built)) {
+        Ok(line) => println!("{line}"),
+        Err(line) => return broken(line),
+    }
+    tally += match chromium(SkipLog::is_strict()) {
+        Ok(()) => browser_tests().unwrap_or_else(broken),
+        Err(reason) => SkipLog::skip(log, "the page's tests in a browser", &reason),
+    };
+    tally
+}
+
+/// Whether Node is there and new enough.
+fn node() -> Result<(), String> {
+    let output = Command::new("node").arg("--version").output();
+    let output = output.map_err(|_| format!("Node {}.{} or newer is not installed", NODE.0, NODE.1))?;
+    let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+    let mut numbers = text.trim_start_matches('v').split('.').map_while(|n| n.parse::<u32>().ok());
+    let version = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
+    if version < NODE {
+        return Err(format!("Node is {text}; {}.{} or newer is needed", NODE.0, NODE.1));
+    }
+    Ok(())
+}
+
+/// Runs npm in `viewer/`.
+fn npm(arguments: &[&str]) -> Result<(), String> {
+    let status =
+        Command::new("npm").args(arguments).current_dir(root().join("viewer")).stdin(Stdio::null()).status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(format!("`npm {}` failed in viewer/ (see above)", arguments.join(" "))),
+        Err(error) => Err(format!("npm cannot be run: {error}")),
+    }
+}
+
+/// Installs what the lock file names (once), checks types and style, builds; answers with the file built.
+fn build() -> Result<PathBuf, String> {
+    let viewer = root().join("viewer");
+    let lock =
+        fs::read(viewer.join("package-lock.json")).map_err(|e| format!("viewer/package-lock.json: {e}"))?;
+    let stamp = viewer.join("node_modules/.installed-lock");
+    if fs::read(&stamp).ok().as_deref() != Some(lock.as_slice()) {
+        npm(&["ci", "--no-audit", "--no-fund"])?;
+        fs::write(&stamp, &lock).map_err(|e| format!("{}: {e}", stamp.display()))?;
+    }
+    npm(&["run", "--silent", "check"])?;
+    npm(&["run", "--silent", "build"])?;
+    Ok(viewer.join("dist/index.html"))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn compare(built: &Path) -> Result<String, String> {
+    let page = read(built)?;
+    if read(&checked_in())? != page {
+        return Err(
+            "crates/sscc-view/page/index.html is not what viewer/ builds; `cargo xtask page --write` \
+                    takes the built one"
+                .into(),
+        );
+    }
+    Ok(format!("the page is what viewer/ builds: {} bytes", page.len()))
+}
+
+fn take(built: &Path) -> Result<String, String> {
+    let page = read(built)?;
+    fs::write(checked_in(), &page).map_err(|e| format!("{}: {e}", checked_in().display()))?;
+    Ok(format!("written: crates/sscc-view/page/index.html ({} bytes)", page.len()))
+}
+
+/// Whether a Chromium is there; where none may be missing, Debian's is installed if that can be done.
+fn chromium(install: bool) -> Result<(), String> {
+    let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let there =
+        || env::var_os("SSCC_CHROMIUM").is_some() || places.iter().any(|place| Path::new(place).exists());
+    if there() {
+        return Ok(());
+    }
+    let apt = |arguments: &[&str]| -> io::Result<bool> {
+        let status =
+            Command::new("apt-get").args(arguments).env("DEBIAN_FRONTEND", "noninteractive").status()?;
+        Ok(status.success())
+    };
+    if install {
+        let installed = apt(&["-qq", "update"])
+            .and_then(|_| apt(&["-qq", "install", "-y", "--no-install-recommends", "chromium"]));
+        if installed.is_ok_and(|ok| ok) && there() {
+            return Ok(());
+        }
+    }
+    Err("no Chromium found; install it, or name one in SSCC_CHROMIUM".into())
+}
+
+/// The tests in `viewer/tests`, with the command of this very build.
+fn browser_tests() -> Result<Tally, String> {
+    let built = cargo().args(["build", "--package", "sscc-cli"]).current_dir(root()).status();
+    if !built.is_ok_and(|status| status.success()) {
+        return Err("the command cannot be built for the page's tests".into());
+    }
+    // This task lies beside it.
+    let folder = env::current_exe().map_err(|e| e.to_string())?;
+    let command = folder.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX));
+    let output = Command::new("npm")
+        .args(["run", "--silent", "test", "--", "--test-reporter=tap"])
+        .current_dir(root().join("viewer"))
+        .env("SSCC_COMMAND", command)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|e| format!("npm cannot be run: {e}"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    print!("{text}");
+    let mut tally = results(&text);
+    if !output.status.success() && tally.failed == 0 {
+        tally.failed = 1;
+    }
+    Ok(tally)
+}
+
+/// Adds up the lines `# pass 3` and `# fail 0` of TAP. What was skipped or cancelled did not pass.
+fn results(text: &str) -> Tally {
+    let number = |line: &str, what: &str| line.strip_prefix(what)?.trim().parse::<u64>().ok();
+    let count = |what: &str| text.lines().filter_map(|line| number(line, what)).sum::<u64>();
+    Tally { passed: count("# pass "), failed: count("# fail ") + count("# cancelled ") + count("# skipped ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_of_the_browser_tests_are_read() {
+        let tally = results(
+            "TAP version 13\nok 1 - a\n1..1\n# tests 5\n# pass 3\n# fail 1\n# cancelled 1\n# skipped 0\n",
+        );
+        assert_eq!((tally.passed, tally.failed), (3, 2));
+    }
+}
