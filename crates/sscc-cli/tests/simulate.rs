@@ -266,6 +266,11 @@ fn refusals() {
         ("[0, 0, 0.2]", "[0, 0, 0]", "begins in the ground"),
         ("[sound]\nmodes = 30", PAIR, "body 1 (counted from 0) begins in body 0"),
         ("youngs = 3e6", "youngs = 1e15", "longer than half a period of its first mode"),
+        (
+            "[sound]\nmodes = 30",
+            "grid = [16, 16, 16]\nspacing = [1, 1, 1]",
+            "bodies: about 8192 MB for all 4096 (limit 8000 MB); take fewer, or of fewer triangles",
+        ),
     ] {
         let to = if to == PAIR { to.replace("0.4, 0", "0.01, 0") } else { to.into() };
         let message = refused(from, &to);
