@@ -123,8 +123,8 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{run:?}");
     let [summary] = &run.json()[..] else { panic!("{run:?}") };
     let known = "scene, models, objects, steps, scene_steps, step, simulated_seconds, simulation_seconds, \
-        real_time_factor, real_time_factor_processor, colliding_steps, body_steps, colliding_body_steps, self_collision_share, energy_first, \
-        energy_largest, energy_last, machine";
+        real_time_factor, real_time_factor_processor, colliding_steps, body_steps, colliding_body_steps, last_self_pairs, last_inter_pairs, \
+        self_collision_share, energy_first, energy_largest, energy_last, machine";
     assert_eq!(keys(summary), sorted(known));
     let number = |key: &str| summary[key].as_f64().unwrap();
     assert_eq!((number("steps"), number("scene_steps"), number("objects")), (800.0, 800.0, 1.0));
@@ -203,7 +203,7 @@ fn a_scene_is_simulated_and_written() {
         assert!(run.stdout.contains(part), "{run:?}");
     }
     assert_eq!(arrays(&out.join("trajectories.npz")), trajectories);
-    assert_eq!(fs::metadata(out.join("states.log")).unwrap().len(), 32 + 800 * 8 * (8 + 8 + 10));
+    assert_eq!(fs::metadata(out.join("states.log")).unwrap().len(), 32 + 800 * 8 * (9 + 8 + 10));
 }
 
 #[test]
@@ -303,6 +303,11 @@ fn refusals() {
         ("[0, 0, 0.2]", "[0, 0, 0]", "begins in the ground"),
         ("[sound]\nmodes = 30", PAIR, "body 1 (counted from 0) begins in body 0"),
         ("youngs = 3e6", "youngs = 1e15", "longer than half a period of its first mode"),
+        (
+            "[sound]\nmodes = 30",
+            "grid = [16, 16, 16]\nspacing = [1, 1, 1]",
+            "bodies: about 8192 MB for all 4096 (limit 8000 MB); take fewer, or of fewer triangles",
+        ),
     ] {
         let to = if to == PAIR { to.replace("0.4, 0", "0.01, 0") } else { to.into() };
         let message = refused(from, &to);
@@ -327,6 +332,11 @@ fn refusals() {
     fs::write(folder.path().join("other.toml"), SCENE.replace("-9.81", "-1.62")).unwrap();
     let run = simulate(folder.path(), &["other.toml", "--steps", "3", "--out", "a"]);
     assert!(run.refusal().contains("states.log: it is of another scene"), "{run:?}");
+    // Begun again, nothing of it is left.
+    let (mute, _) = SCENE.split_once("[sound]").unwrap();
+    fs::write(folder.path().join("other.toml"), mute).unwrap();
+    let sound = folder.path().join("a/sound.wav");
+    assert!(sound.exists());
     let run = simulate(folder.path(), &["other.toml", "--steps", "3", "--out", "a", "--restart"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!((run.code, sound.exists()), (Some(0), false), "{run:?}");
 }

@@ -2,14 +2,15 @@
 //!
 //! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper
 //! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
-//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005).
+//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005). A surface that is not closed has no inside: behind its faces, too,
+//! there are distances within two cells only.
 
 use std::collections::VecDeque;
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-use crate::nearest::nearest_point_triangle;
+use crate::nearest_point::nearest_point_triangle;
 use crate::normals::Normals;
 
 /// Grid points at most: 8 MB. Memory does not grow with the mesh.
@@ -24,7 +25,7 @@ const BAND: f64 = 2.0;
 /// Triangles of more cells than this are cut.
 const LARGE: f64 = 8.0;
 
-/// The signed distance from a closed surface, in and around it.
+/// The signed distance from a surface, in and around it.
 #[derive(Clone, Debug)]
 pub struct DepthField {
     origin: DVec3,
@@ -36,7 +37,7 @@ pub struct DepthField {
 }
 
 impl DepthField {
-    /// Measures the rest pose. A surface that is not closed has no inside: depths near its rims mean nothing then.
+    /// Measures the rest pose. Near the rims of a surface that is not closed signs mean nothing.
     pub fn new(mesh: &TriMesh) -> Self {
         let p = mesh.rest_positions();
         let corners = || mesh.faces().as_flattened().iter().map(|v| p[*v as usize]);
@@ -148,6 +149,9 @@ impl DepthField {
                 }
             }
         }
+        if !normals.is_closed {
+            queue.clear();
+        }
         // Inwards: what is nearest to a point is nearly what is nearest to its neighbour.
         while let Some(at) = queue.pop_front() {
             let t = nearest[self.place(at)].1;
@@ -230,6 +234,16 @@ mod tests {
             }
         }
         assert!(seen[0] > 30 && seen[1] > 500, "{seen:?}");
+    }
+
+    #[test]
+    fn an_open_surface_has_no_depths_but_close_to_it() {
+        let spring = shapes::spring();
+        let (p, faces) = (spring.rest_positions(), spring.faces());
+        let field = DepthField::new(&TriMesh::new(p.to_vec(), faces[1..].to_vec()).unwrap());
+        let known = field.distances.iter().filter(|x| x.is_finite());
+        let farthest = known.clone().fold(0.0_f32, |m, x| m.max(x.abs()));
+        assert!(known.count() > 1000 && f64::from(farthest) <= 1.01 * BAND * field.spacing, "{farthest}");
     }
 
     #[test]

@@ -67,7 +67,7 @@ mod error;
 mod ground;
 mod linear;
 mod materials;
-mod nearest;
+mod nearest_point;
 mod nonlinear;
 mod normals;
 mod options;

@@ -1,11 +1,11 @@
 //! Normals of a surface, for telling inside from outside (Baerentzen and Aanaes 2005).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-use crate::nearest::Feature;
+use crate::nearest_point::Feature;
 
 /// Of faces, edges and vertices: those of edges are sums of their faces', those of vertices weigh them by angles.
 pub(crate) struct Normals {
@@ -13,6 +13,8 @@ pub(crate) struct Normals {
     classes: Vec<[u32; 3]>,
     edges: BTreeMap<(u32, u32), DVec3>,
     vertices: Vec<DVec3>,
+    /// Whether at each edge an even number of faces meets: else there is no inside.
+    pub is_closed: bool,
 }
 
 impl Normals {
@@ -36,6 +38,7 @@ impl Normals {
             mesh.faces().iter().map(|face| face.map(|v| class[v as usize])).collect();
         let mut faces = Vec::with_capacity(classes.len());
         let (mut edges, mut vertices) = (BTreeMap::new(), vec![DVec3::ZERO; p.len()]);
+        let mut rims = BTreeSet::new();
         for face in &classes {
             let x = face.map(|v| p[v as usize]);
             let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize_or_zero();
@@ -43,11 +46,15 @@ impl Normals {
                 let [a, b, c] = [x[n], x[(n + 1) % 3], x[(n + 2) % 3]];
                 let [u, v] = [b - a, c - a];
                 vertices[face[n] as usize] += normal * libm::atan2(u.cross(v).length(), u.dot(v));
-                *edges.entry(edge(face[n], face[(n + 1) % 3])).or_insert(DVec3::ZERO) += normal;
+                let edge = edge(face[n], face[(n + 1) % 3]);
+                *edges.entry(edge).or_insert(DVec3::ZERO) += normal;
+                if !rims.remove(&edge) {
+                    rims.insert(edge);
+                }
             }
             faces.push(normal);
         }
-        Self { faces, classes, edges, vertices }
+        Self { faces, classes, edges, vertices, is_closed: rims.is_empty() }
     }
 
     /// The normal (of any length) where the point of a triangle is nearest that lies on this part of it.

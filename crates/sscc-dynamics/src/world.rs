@@ -119,16 +119,20 @@ impl<'a> World<'a> {
         self.options.contact.skin.unwrap_or_else(|| 1e-3 * smallest())
     }
 
-    /// Refuses a start at which bodies collide with themselves, with each other, or lie in the ground.
+    /// Refuses a start at which bodies collide with themselves, with each other, or lie in the ground. Who collides with
+    /// itself is refused where that has an answer only ([`Response::Contact`]): lips that are closed at rest would push
+    /// each other apart for ever.
     ///
     /// # Errors
     /// Naming the first body that does.
     pub fn check_start(&mut self) -> Result<(), DynamicsError> {
         let refused =
             |body, what, count, unit| Err(DynamicsError::Interpenetration { body, what, count, unit });
-        self.detect_within()?;
-        if let Some(body) = self.bodies.iter().position(|body| !body.pairs.is_empty()) {
-            return refused(body, Obstacle::Itself, self.bodies[body].pairs.len(), "pairs of triangles");
+        if self.options.response == Response::Contact {
+            self.detect_within()?;
+            if let Some(body) = self.bodies.iter().position(|body| !body.pairs.is_empty()) {
+                return refused(body, Obstacle::Itself, self.bodies[body].pairs.len(), "pairs of triangles");
+            }
         }
         self.neighbours.update(&mut self.bodies)?;
         if let Some(([a, b], pairs)) = self.neighbours.colliding().next() {

@@ -7,8 +7,8 @@ use common::{block, elastic, fork};
 use glam::{DQuat, DVec3};
 use sscc::{Pair, TriMesh, intersect_triangle_triangle};
 use sscc_dynamics::{
-    ContactOptions, Damping, Detection, DynamicsError, Ground, Obstacle, Phase, Shape, Start, World,
-    WorldOptions,
+    ContactOptions, Damping, Detection, DynamicsError, Ground, Obstacle, Phase, Response, Shape, Start,
+    World, WorldOptions,
 };
 use sscc_modes::Material;
 
@@ -190,7 +190,6 @@ fn bodies_that_begin_in_something_are_refused() {
     assert!(error.to_string().starts_with("body 1 (counted from 0) begins in body 0"), "{error}");
     let error = with(&[at(0.0, 0.5), at(5.0, 0.05)]).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 1, what: Obstacle::Ground, .. }));
-    let mut world = World::new(WorldOptions { ground: None, ..WorldOptions::default() }).unwrap();
     // Folded.
     let r = shapes[1].model().rank();
     let folded = (0..r).flat_map(|k| [-1.0, 1.0].map(|s| (k, s))).find_map(|(k, s)| {
@@ -199,9 +198,17 @@ fn bodies_that_begin_in_something_are_refused() {
         let mut query = sscc::Query::new(shapes[1].model(), shapes[1].certificates()).unwrap();
         query.first(&q).unwrap().map(|_| q)
     });
-    world.add(&shapes[1], &Start { q: folded.unwrap(), ..Start::default() }).unwrap();
-    let error = world.check_start().unwrap_err();
+    let start = Start { q: folded.unwrap(), ..Start::default() };
+    let begun = |response| {
+        let mut world =
+            World::new(WorldOptions { ground: None, response, ..WorldOptions::default() }).unwrap();
+        world.add(&shapes[1], &start).unwrap();
+        world.check_start()
+    };
+    let error = begun(Response::Contact).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 0, what: Obstacle::Itself, .. }));
+    // Who does not answer may begin like that.
+    assert_eq!((begun(Response::Ignore).is_ok(), begun(Response::Constrain).is_ok()), (true, true));
 }
 
 #[test]

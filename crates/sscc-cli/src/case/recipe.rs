@@ -109,6 +109,12 @@ impl Recipe {
         Self { name: name.into(), shape, kind, material: Material::default(), cells: None, size: None }
     }
 
+    /// Cubes along the longest side of the lattice; none: as many as any surface has.
+    fn cells(&self) -> Option<usize> {
+        let usual = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
+        self.cells.or(usual)
+    }
+
     /// Reads or makes the shape.
     pub fn begin(&self, models: Option<&Path>) -> Result<Begun<'_>> {
         let (mut matter, source, note) = self.shape.begin(models)?;
@@ -157,8 +163,8 @@ impl Begun<'_> {
 
     /// The hash of all that something of this solid is made from.
     pub fn key(&self, what: &str) -> Key {
-        let Recipe { material, cells, .. } = self.recipe;
-        let key = Key::new(what).text(&format!("{material:?} {cells:?}"));
+        let Recipe { material, .. } = self.recipe;
+        let key = Key::new(what).text(&format!("{material:?} {:?}", self.recipe.cells()));
         match &self.matter {
             Matter::Surface(mesh) => key.mesh(mesh),
             Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
@@ -174,9 +180,8 @@ impl Begun<'_> {
         if let Some(source) = self.around.get() {
             return Ok(source);
         }
-        let Recipe { shape, cells, material, .. } = self.recipe;
-        let usual = matches!(shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
-        let around = Source::around(mesh.clone(), cells.or(usual), *material, &Bar::new("solid"));
+        let Recipe { material, .. } = self.recipe;
+        let around = Source::around(mesh.clone(), self.recipe.cells(), *material, &Bar::new("solid"));
         let around = around.with_context(|| self.source.clone())?;
         Ok(self.around.get_or_init(|| around))
     }
@@ -216,4 +221,19 @@ fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh> {
     let scale = size / (upper - lower).max_element();
     ensure!(scale.is_finite() && scale > 0.0, "a shape of no size cannot be made {size:e} long");
     Ok(TriMesh::new(rest.iter().map(|p| p * scale).collect(), mesh.faces().to_vec())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_tells_the_cells_that_a_shape_has_by_itself() {
+        let key = |cells| {
+            let recipe = Recipe { cells, ..Recipe::new("spring", Shape::SMALL_SPRING, Kind::Linear(6)) };
+            recipe.begin(None).unwrap().key("model").to_string()
+        };
+        assert_eq!(key(None), key(Some(SPRING_CELLS)));
+        assert_ne!(key(None), key(Some(SPRING_CELLS + 1)));
+    }
 }

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 pub const PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
 
 /// Numbers of a step beside those of its bodies.
-const OF_STEP: usize = PARTS.len() + 2;
+const OF_STEP: usize = PARTS.len() + 3;
 
 /// Numbers of a body beside its q.
 const OF_BODY: usize = 8;
@@ -20,6 +20,8 @@ pub struct StepFacts {
     pub energy: f64,
     /// The sample of the sound during the step; 0 without.
     pub sound: f64,
+    /// Pairs of triangles of different bodies that collide in the state.
+    pub inter_pairs: usize,
 }
 
 impl StepFacts {
@@ -36,7 +38,8 @@ impl StepFacts {
     fn numbers(&self) -> [f64; OF_STEP] {
         let mut numbers = [self.energy; OF_STEP];
         numbers[..PARTS.len()].copy_from_slice(&self.seconds);
-        numbers[OF_STEP - 1] = self.sound;
+        numbers[PARTS.len() + 1] = self.sound;
+        numbers[PARTS.len() + 2] = self.inter_pairs as f64;
         numbers
     }
 }
@@ -145,7 +148,8 @@ impl History {
     pub fn facts(&self, state: usize) -> StepFacts {
         let of = self.of(state);
         let seconds = std::array::from_fn(|part| of[part]);
-        StepFacts { seconds, energy: of[PARTS.len()], sound: of[PARTS.len() + 1] }
+        let [energy, sound, inter_pairs] = [0, 1, 2].map(|n| of[PARTS.len() + n]);
+        StepFacts { seconds, energy, sound, inter_pairs: inter_pairs as usize }
     }
 
     pub fn body(&self, state: usize, body: usize) -> BodyFacts<'_> {
@@ -160,6 +164,11 @@ impl History {
 
     pub fn bodies(&self, state: usize) -> impl Iterator<Item = BodyFacts<'_>> {
         (0..self.layout.bodies()).map(move |body| self.body(state, body))
+    }
+
+    /// Pairs of triangles in which bodies collide with themselves.
+    pub fn self_pairs(&self, state: usize) -> usize {
+        self.bodies(state).map(|body| body.pairs).sum()
     }
 
     /// How many bodies collide with themselves.
@@ -179,6 +188,7 @@ mod tests {
             seconds: std::array::from_fn(|part| x + part as f64),
             energy: x + 0.5,
             sound: -x,
+            inter_pairs: x as usize + 2,
         };
         let q = [[0.5, -1.0], [2.0, 3.0]];
         let body = |pairs: usize, q| BodyFacts {
@@ -190,9 +200,9 @@ mod tests {
         let mut numbers = Vec::new();
         layout.push(facts(0.0), [body(0, &q[0]), body(0, &[])], &mut numbers);
         layout.push(facts(0.0), [body(0, &q[1]), body(0, &[])], &mut numbers);
-        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[26..]);
+        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[27..]);
         let history = History::new(layout, numbers);
-        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 26, 2));
+        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 27, 2));
         assert_eq!(
             (history.facts(1), history.body(1, 0)),
             (facts(10.0), BodyFacts { position: body(0, &q[1]).position, ..body(3, &q[1]) })
@@ -201,6 +211,6 @@ mod tests {
             (history.facts(0).all(), history.facts(0).own(), history.body(1, 1).pairs),
             (15.0, 0.0, 7)
         );
-        assert_eq!((history.colliding(0), history.colliding(1)), (0, 2));
+        assert_eq!((history.colliding(0), history.colliding(1), history.self_pairs(1)), (0, 2, 10));
     }
 }

@@ -1,7 +1,7 @@
 //! The file to which a simulation is written while it runs, and the checkpoint from which it goes on after being killed.
 //!
-//! States are appended, all of one size. A checkpoint tells how many there were when it was written and what the simulation
-//! needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
+//! States are appended, all of one size. A checkpoint tells how many there were when it was written, their hash, and what the
+//! simulation needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
 //! written now and then, and costs as little at the end of a long simulation as at its beginning.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -9,9 +9,11 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
+use blake3::Hasher;
 use sscc_io::{read_whole, write_whole};
 
 use super::history::{History, Layout};
+use super::outputs::remove_file;
 
 const LOG: &str = "states.log";
 const CHECKPOINT: &str = "checkpoint.bin";
@@ -19,7 +21,7 @@ const CHECKPOINT: &str = "checkpoint.bin";
 /// Both files begin with a hash of what is simulated.
 const DIGEST: usize = 32;
 
-/// A checkpoint ends with a hash of all before.
+/// A checkpoint holds a hash of the states, and ends with one of all before.
 const SEAL: usize = 32;
 
 /// The states of a simulation, on disk.
@@ -30,12 +32,16 @@ pub struct Log {
     file: File,
     /// Whole states in the file.
     len: usize,
+    /// Of these.
+    hasher: Hasher,
 }
 
 /// Where a simulation goes on.
 pub struct Checkpoint {
     /// States that were there.
     pub states: usize,
+    /// Of them.
+    hasher: Hasher,
     /// What the simulation needs beside them.
     pub memory: Vec<f64>,
 }
@@ -64,7 +70,7 @@ impl Log {
             Ok(()) => {}
         }
         if again {
-            Self::remove(&folder.join(CHECKPOINT))?;
+            remove_file(&folder.join(CHECKPOINT))?;
             file.set_len(0).with_context(in_log)?;
         }
         let mut first = Vec::new();
@@ -75,7 +81,7 @@ impl Log {
              begin again by --restart",
             path.display()
         );
-        let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0 };
+        let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0, hasher: Hasher::new() };
         let checkpoint = log.checkpoint()?;
         match &checkpoint {
             None => {
@@ -83,7 +89,10 @@ impl Log {
                 log.file.rewind().with_context(in_log)?;
                 log.file.write_all(&digest).with_context(in_log)?;
             }
-            Some(checkpoint) => log.cut(checkpoint.states)?,
+            Some(checkpoint) => {
+                log.hasher = checkpoint.hasher.clone();
+                log.cut(checkpoint.states)?;
+            }
         }
         Ok((log, checkpoint))
     }
@@ -93,18 +102,8 @@ impl Log {
         folder.join(CHECKPOINT).exists()
     }
 
-    /// Removes a file, if it is there.
-    fn remove(path: &Path) -> Result<()> {
-        match fs::remove_file(path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(error).with_context(|| path.display().to_string())
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// The checkpoint of the folder, if it is whole, of this simulation, and the log has its states.
-    fn checkpoint(&self) -> Result<Option<Checkpoint>> {
+    fn checkpoint(&mut self) -> Result<Option<Checkpoint>> {
         let path = self.folder.join(CHECKPOINT);
         if !path.exists() {
             return Ok(None);
@@ -115,15 +114,25 @@ impl Log {
         ensure!(blake3::hash(rest).as_bytes() == seal, damaged());
         let (digest, rest) = rest.split_at_checked(DIGEST).with_context(damaged)?;
         ensure!(digest == self.digest, "{}: it is of another simulation", path.display());
+        let (of_states, rest) = rest.split_at_checked(SEAL).with_context(damaged)?;
         let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { bail!(damaged()) };
         let states = usize::try_from(u64::from_le_bytes(*states)).with_context(damaged)?;
         let there = self.file.metadata().with_context(damaged)?.len();
+        let end = self.bytes(states).filter(|needed| *needed <= there).with_context(|| {
+            format!("{}: the log beside it has fewer states; begin again by --restart", path.display())
+        })?;
+        let log = self.folder.join(LOG);
+        let in_log = || log.display().to_string();
+        let mut hasher = Hasher::new();
+        self.file.seek(SeekFrom::Start(DIGEST as u64)).with_context(in_log)?;
+        hasher.update_reader((&self.file).take(end - DIGEST as u64)).with_context(in_log)?;
         ensure!(
-            self.bytes(states).is_some_and(|needed| needed <= there),
-            "{}: the log beside it has fewer states; begin again by --restart",
-            path.display()
+            hasher.finalize().as_bytes() == of_states,
+            "{}: it is damaged; begin again by --restart",
+            log.display()
         );
-        Ok(Some(Checkpoint { states, memory: memory.iter().map(|x| f64::from_le_bytes(*x)).collect() }))
+        let memory = memory.iter().map(|x| f64::from_le_bytes(*x)).collect();
+        Ok(Some(Checkpoint { states, hasher, memory }))
     }
 
     /// Bytes of the log with so many states.
@@ -151,6 +160,7 @@ impl Log {
     pub fn append(&mut self, numbers: &[f64]) -> Result<()> {
         let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
         self.file.write_all(&bytes).with_context(|| self.folder.join(LOG).display().to_string())?;
+        self.hasher.update(&bytes);
         self.len += numbers.len() / self.layout.width();
         Ok(())
     }
@@ -160,6 +170,7 @@ impl Log {
         // The states first: a checkpoint must not speak of what is not there.
         self.file.sync_data().with_context(|| self.folder.join(LOG).display().to_string())?;
         let mut bytes = self.digest.to_vec();
+        bytes.extend(self.hasher.finalize().as_bytes());
         bytes.extend((self.len as u64).to_le_bytes());
         bytes.extend(memory.iter().flat_map(|x| x.to_le_bytes()));
         let seal = blake3::hash(&bytes);
@@ -186,9 +197,9 @@ mod tests {
         Log::open(folder, [digest; DIGEST], Layout::new([1]), false)
     }
 
-    /// A state of the layout, 17 numbers.
+    /// A state of the layout, 18 numbers.
     fn state(x: f64) -> Vec<f64> {
-        (0..17).map(|i| x + f64::from(i)).collect()
+        (0..18).map(|i| x + f64::from(i)).collect()
     }
 
     #[test]
@@ -205,14 +216,14 @@ mod tests {
         drop(log);
 
         let (mut log, checkpoint) = open(path, 1).unwrap();
-        let Checkpoint { states, memory } = checkpoint.unwrap();
+        let Checkpoint { states, memory, .. } = checkpoint.unwrap();
         assert_eq!((states, log.len(), memory), (2, 2, vec![0.5, -1.0]));
         log.append(&state(300.0)).unwrap();
         let history = log.history().unwrap();
-        assert_eq!((history.len(), history.body(2, 0).q), (3, &[316.0][..]));
+        assert_eq!((history.len(), history.body(2, 0).q), (3, &[317.0][..]));
         // History leaves the log at its end.
         log.append(&state(400.0)).unwrap();
-        assert_eq!(log.history().unwrap().body(3, 0).q, [416.0]);
+        assert_eq!(log.history().unwrap().body(3, 0).q, [417.0]);
         log.write_checkpoint(&[]).unwrap();
         drop(log);
         assert_eq!(open(path, 1).unwrap().1.unwrap().states, 4);
@@ -240,6 +251,15 @@ mod tests {
             assert!(message(1).contains("it is damaged"), "{len}");
         }
         fs::write(path.join(CHECKPOINT), &good).unwrap();
+        let states = fs::read(path.join(LOG)).unwrap();
+        for at in [DIGEST, DIGEST + 70, states.len() - 1] {
+            let mut bad = states.clone();
+            bad[at] ^= 1;
+            fs::write(path.join(LOG), bad).unwrap();
+            assert!(message(1).contains("states.log: it is damaged"));
+        }
+        fs::write(path.join(LOG), &states).unwrap();
+        assert!(open(path, 1).is_ok());
         fs::write(path.join(LOG), [1; DIGEST]).unwrap();
         assert!(message(1).contains("the log beside it has fewer states"));
         // Not while somebody writes to it.

@@ -1,8 +1,10 @@
 //! The files of a simulation, made from its states.
 
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Error, Result};
+use anyhow::{Context, Error, Result};
 use sscc_io::gltf::{Track, key_frames, write_animation};
 use sscc_io::{NamedArray, WavFormat, write_npz, write_wav, write_whole};
 
@@ -13,6 +15,32 @@ use crate::scene::Scene;
 
 /// How loud the loudest sample of the 16 bit file is; the other one is as loud as it was computed.
 pub(super) const LOUDEST: f64 = 0.9;
+
+/// What [`write`] may have left in a folder.
+const FILES: [&str; 7] = [
+    "summary.json",
+    "report.html",
+    "trajectories.npz",
+    "costs.npz",
+    "animation.glb",
+    "sound.wav",
+    "sound_float.wav",
+];
+
+/// Removes the files of a simulation that begins again: what it does not write must not seem to be its own.
+pub fn remove(folder: &Path) -> Result<()> {
+    FILES.iter().try_for_each(|name| remove_file(&folder.join(name)))
+}
+
+/// Removes a file, if it is there.
+pub fn remove_file(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(error).with_context(|| path.display().to_string())
+        }
+        _ => Ok(()),
+    }
+}
 
 /// Writes all of them into a folder. Gives the names of those that were written, and why another one was not: of
 /// a motion that diverges some numbers may fit no file.
@@ -63,6 +91,7 @@ fn trajectories(path: &Path, scene: &Scene, prepared: &Prepared, history: &Histo
     let positions = each(&|s, b, to| to.extend(history.body(s, b).position.to_array()));
     let orientations = each(&|s, b, to| to.extend(history.body(s, b).orientation.to_array()));
     let pairs = each(&|s, b, to| to.push(history.body(s, b).pairs as f64));
+    let inter: Vec<f64> = (0..states).map(|state| history.facts(state).inter_pairs as f64).collect();
     let (energy_time, energy): (Vec<f64>, Vec<f64>) = (0..states)
         .map(|state| (time[state], history.facts(state).energy))
         .filter(|(_, energy)| energy.is_finite())
@@ -89,6 +118,7 @@ fn trajectories(path: &Path, scene: &Scene, prepared: &Prepared, history: &Histo
         NamedArray { name: "positions", shape: vec![states, bodies, 3], values: &positions },
         NamedArray { name: "orientations", shape: vec![states, bodies, 4], values: &orientations },
         NamedArray { name: "self_pairs", shape: vec![states, bodies], values: &pairs },
+        NamedArray { name: "inter_pairs", shape: vec![states], values: &inter },
         NamedArray { name: "energy_time", shape: vec![energy.len()], values: &energy_time },
         NamedArray { name: "energy", shape: vec![energy.len()], values: &energy },
         NamedArray { name: "model_of_body", shape: vec![bodies], values: &model_of },

@@ -15,6 +15,12 @@ use crate::scene::{ModelSpec, Scene};
 /// The most memory that the sounds of all bodies may take: 2 GB.
 const MOST_SOUND: usize = 2_000_000_000;
 
+/// Bytes that a body takes for each of its triangles: positions and boxes of queries within it and beside others.
+const OF_TRIANGLE: usize = 500;
+
+/// The most memory that all bodies may take: 8 GB.
+const MOST_BODIES: usize = 8_000_000_000;
+
 /// The models of a scene, in its order.
 pub struct Prepared {
     pub models: Vec<PreparedModel>,
@@ -35,11 +41,21 @@ impl Prepared {
     pub fn get(scene: &Scene, models: Option<&Path>, cache: &Cache) -> Result<Self> {
         let one = |model: &ModelSpec| PreparedModel::get(scene, model, models, cache);
         let models: Vec<PreparedModel> = scene.models.iter().map(one).collect::<Result<_>>()?;
-        let size = |body: &crate::scene::BodySpec| {
-            let PreparedModel { case, sound, .. } = &models[body.model];
-            sound.as_ref().map_or(0, |sound| 12 * sound.modes() * case.model.mesh().rest_positions().len())
+        let sum = |of: &dyn Fn(&PreparedModel) -> usize| -> usize {
+            scene.bodies.iter().map(|body| of(&models[body.model])).sum()
         };
-        let sounds: usize = scene.bodies.iter().map(size).sum();
+        let triangles = sum(&|model| model.case.model.mesh().faces().len());
+        let bytes = triangles * OF_TRIANGLE;
+        ensure!(
+            bytes <= MOST_BODIES,
+            "bodies: about {} MB for all {} (limit {} MB); take fewer, or of fewer triangles",
+            bytes / 1_000_000,
+            scene.bodies.len(),
+            MOST_BODIES / 1_000_000
+        );
+        let sounds = sum(&|PreparedModel { case, sound, .. }| {
+            sound.as_ref().map_or(0, |sound| 12 * sound.modes() * case.model.mesh().rest_positions().len())
+        });
         ensure!(
             sounds <= MOST_SOUND,
             "sound: {} MB for all bodies; take fewer modes, or no sound",

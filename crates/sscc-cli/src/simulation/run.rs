@@ -10,6 +10,7 @@ use sscc_dynamics::{DynamicsError, Phase, SoundBank, Start, State, World};
 use super::history::{BodyFacts, History, Layout, PARTS, StepFacts};
 use super::log::Log;
 use super::meter::Meter;
+use super::outputs;
 use super::prepared::Prepared;
 use crate::interrupt;
 use crate::scene::{BodySpec, Scene};
@@ -56,6 +57,9 @@ pub fn run(
     let bytes = 8.0 * steps as f64 * layout.width() as f64;
     ensure!(bytes <= MOST_BYTES, "{steps} steps take {:.0} GB: take fewer by --steps", bytes / 1e9);
     let (mut log, checkpoint) = Log::open(folder, prepared.digest(scene)?, layout.clone(), again)?;
+    if again {
+        outputs::remove(folder)?;
+    }
     if let Some(checkpoint) = checkpoint {
         let at = checkpoint.states;
         restore(&mut world, &mut sounds, at, &checkpoint.memory).context("the checkpoint")?;
@@ -186,7 +190,8 @@ impl Simulation<'_> {
         clock.enter(Some(SOUND));
         let sound = self.hear();
         clock.enter(None);
-        let facts = StepFacts { seconds: clock.seconds, energy, sound };
+        let inter_pairs = self.world.inter_pairs().map(|(_, pairs)| pairs.len()).sum();
+        let facts = StepFacts { seconds: clock.seconds, energy, sound, inter_pairs };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);
         // The state from which it could not go on is kept, too.

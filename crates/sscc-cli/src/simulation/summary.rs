@@ -27,6 +27,9 @@ pub struct Summary {
     pub colliding_steps: usize,
     pub body_steps: usize,
     pub colliding_body_steps: usize,
+    /// In the last state, pairs of triangles that collide within bodies, and between them.
+    pub last_self_pairs: usize,
+    pub last_inter_pairs: usize,
     /// Of the time, detection of self-collisions.
     pub self_collision_share: f64,
     pub energy_first: f64,
@@ -86,6 +89,8 @@ impl Summary {
             colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
             body_steps: steps * scene.bodies.len(),
             colliding_body_steps: colliding.iter().sum(),
+            last_self_pairs: steps.checked_sub(1).map_or(0, |last| history.self_pairs(last)),
+            last_inter_pairs: steps.checked_sub(1).map_or(0, |last| history.facts(last).inter_pairs),
             self_collision_share: own / seconds,
             energy_first: energies().next().unwrap_or_default(),
             energy_largest: energies().fold(f64::NEG_INFINITY, f64::max),
@@ -102,6 +107,7 @@ impl Summary {
         }
         lines.push(format!("{}: {}", self.scene, self.motion()));
         lines.push(format!("self-contact in {}", self.contact()));
+        lines.push(format!("at the end {}", self.end()));
         lines.push(format!("detecting self-collisions took {}", self.share()));
         lines
     }
@@ -116,6 +122,7 @@ impl Summary {
         }
         rows.push(row("motion", self.motion()));
         rows.push(row("self-contact", format!("in {}", self.contact())));
+        rows.push(row("at the end", self.end()));
         rows.push(row("detecting self-collisions", self.share()));
         rows.push(row("machine", self.machine.clone()));
         rows
@@ -142,6 +149,14 @@ impl Summary {
             grouped(self.steps as u64),
             share(self.colliding_steps, self.steps),
             share(self.colliding_body_steps, self.body_steps)
+        )
+    }
+
+    fn end(&self) -> String {
+        format!(
+            "{} of triangles within bodies and {} between them",
+            counted(self.last_self_pairs as u64, "colliding pair"),
+            self.last_inter_pairs
         )
     }
 
