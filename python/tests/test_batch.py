@@ -155,7 +155,12 @@ def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> No
 
 def test_shards_give_the_same_bytes(client: Any) -> None:
     model = sscc.Model(*torus(32, 16, 5))
-    for options in ({}, {"scheme": "paper"}, {"budget": 64, "weld": True, "neighbours": "include-one-vertex"}):
+    choices: list[dict[str, Any]] = [
+        {},
+        {"scheme": "paper"},
+        {"budget": 64, "weld": True, "neighbours": "include-one-vertex"},
+    ]
+    for options in choices:
         here = content_of(model.certify(**options))
         for shards in (None, 1, 50):
             there = within(lambda: sscc.batch.certify_in_shards(model, client, shards=shards, **options))

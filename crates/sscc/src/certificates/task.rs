@@ -97,11 +97,11 @@ pub(super) struct NodeTask {
     /// Up to here the radius is that of the pairs of small nodes given, at most `cap`.
     pub(super) known: f64,
     /// These, each with a lower bound.
-    pub(super) small: Vec<Pair2>,
+    pub(super) small: Vec<KnownPair>,
 }
 
 /// Two nodes and a lower bound of their radius.
-pub(super) type Pair2 = ((u32, u32), f64);
+pub(super) type KnownPair = ((u32, u32), f64);
 
 impl NodeTask {
     /// The radius, and the smallest upper bound of any radius that the searcher has met.

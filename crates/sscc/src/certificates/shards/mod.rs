@@ -103,6 +103,9 @@ impl Elsewhere<'_> {
         if self.progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
+        if count == 0 {
+            return Ok(Vec::new());
+        }
         let jobs = self.shards.min(count);
         let sealed: Vec<Vec<u8>> =
             (0..jobs).map(|j| self.key.seal(&job(&mut (j..count).step_by(jobs)).write())).collect();
