@@ -97,6 +97,7 @@ export class Body {
             tints: { value: tints },
             palette: { value: palette },
             tinted: { value: false },
+            plain: { value: false },
             base: { value: new THREE.Vector3() },
             hit: { value: new THREE.Vector3() },
             hitDark: { value: new THREE.Vector3() },
@@ -215,6 +216,12 @@ export class Body {
         (uniforms.palette.value.image.data as Uint8Array).set(tints.palette);
         uniforms.tints.value.needsUpdate = true;
         uniforms.palette.value.needsUpdate = true;
+    }
+
+    /** Without marks and tints, or with them again. */
+    setPlain(plain: boolean): void {
+        this.material.uniforms.plain.value = plain;
+        this.hidden.visible = !plain;
     }
 
     dispose(): void {

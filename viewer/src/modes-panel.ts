@@ -42,7 +42,7 @@ export class ModesPanel {
                         onclick: () => this.random(),
                         title: "a random direction, in which all modes take part (X)",
                     },
-                    "Random shape",
+                    "Random",
                 ),
                 app.checker &&
                     h(
@@ -53,7 +53,7 @@ export class ModesPanel {
                             onclick: () => this.randomCollision(),
                             title: "along a random direction to the first self-collision (C)",
                         },
-                        "Random collision",
+                        "To a collision",
                     ),
                 h(
                     "button",

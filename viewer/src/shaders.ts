@@ -46,6 +46,7 @@ uniform int triangles;
 uniform sampler2D tints;
 uniform sampler2D palette;
 uniform bool tinted;
+uniform bool plain;
 uniform vec3 base;
 uniform vec3 hit;
 uniform vec3 hitDark;
@@ -64,19 +65,19 @@ void main() {
     float light = 0.42 + 0.46 * max(dot(normal, normalize(vec3(-0.35, 0.6, 0.75))), 0.0)
         + 0.16 * max(dot(normal, normalize(vec3(0.8, -0.2, 0.5))), 0.0);
     float shine = pow(max(dot(normal, normalize(vec3(-0.2, 0.35, 0.95))), 0.0), 40.0) * 0.16;
-    vec3 plain = base;
-    if (tinted) {
+    vec3 own = base;
+    if (tinted && !plain) {
         int row = triangle >> 11;
         float tint = texelFetch(tints, ivec2(triangle - (row << 11), row), 0).r * 255.0;
-        plain = texelFetch(palette, ivec2(int(tint + 0.5), 0), 0).rgb;
+        own = texelFetch(palette, ivec2(int(tint + 0.5), 0), 0).rgb;
     }
-    float kind = mark();
+    float kind = plain ? 0.0 : mark();
     if (kind > 0.5) {
         vec3 strong = kind > 1.5 ? chosen : hit;
         bool dark = fract((gl_FragCoord.x + gl_FragCoord.y) / stripe) < 0.33;
         colour = vec4((dark ? hitDark : strong) * (0.55 + 0.5 * light), 1.0);
     } else {
-        colour = vec4(plain * light + shine, 1.0);
+        colour = vec4(own * light + shine, 1.0);
     }
 }`;
 

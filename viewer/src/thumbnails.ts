@@ -31,10 +31,12 @@ export function thumbnails(app: App): HTMLElement {
     const draw = (): void => {
         const { stage, body } = app;
         if (!stage || !body) return;
+        body.setPlain(true);
         for (const { canvas, q } of pictures) {
             const image = stage.thumbnail(body, () => body.setQ(0, q), canvas.width, canvas.height);
             canvas.getContext("2d")?.putImageData(image, 0, 0);
         }
+        body.setPlain(false);
         body.setQ(0, app.pose.q);
         app.frames.invalidate();
     };

@@ -4,7 +4,7 @@
 //! simulation needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
 //! written now and then, and costs as little at the end of a long simulation as at its beginning.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -191,6 +191,8 @@ impl Log {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn open(folder: &Path, digest: u8) -> Result<(Log, Option<Checkpoint>)> {
