@@ -2,8 +2,8 @@
 //!
 //! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper
 //! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
-//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005). A surface that is not closed has no inside: behind its faces, too,
-//! there are distances within two cells only.
+//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005). A surface that is not closed has no inside: behind its
+//! faces, too, there are distances within two cells only.
 
 use std::collections::VecDeque;
 

@@ -119,9 +119,9 @@ impl<'a> World<'a> {
         self.options.contact.skin.unwrap_or_else(|| 1e-3 * smallest())
     }
 
-    /// Refuses a start at which bodies collide with themselves, with each other, or lie in the ground. Who collides with
-    /// itself is refused where that has an answer only ([`Response::Contact`]): lips that are closed at rest would push
-    /// each other apart for ever.
+    /// Refuses a start at which bodies collide with themselves, with each other, or lie in the ground. Who collides
+    /// with itself is refused only where contacts answer that ([`Response::Contact`]): lips that are closed at rest
+    /// would push each other apart for ever.
     ///
     /// # Errors
     /// Naming the first body that does.
