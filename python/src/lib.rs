@@ -38,7 +38,7 @@ mod _sscc {
     #[pymodule_export]
     use super::model::{_model, Model};
     #[pymodule_export]
-    use super::shards::{ShardWorker, _build, _certify_in_shards, _check_options, _configurations, _joined};
+    use super::shards::{_build, _certify_in_shards, _check_options, _configurations, _joined, ShardWorker};
 
     #[pymodule_export]
     use super::modes::{_elastic, _pca, _polynomial};
