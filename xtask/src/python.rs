@@ -66,7 +66,10 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
     maturin.arg("--out").arg(&wheels).current_dir(&package);
     succeed(&mut maturin, "the wheel cannot be built")?;
     install(&python, &wheels)?;
-    succeed(cargo().args(["build", "--package", "sscc-cli"]), "the command cannot be built")?;
+    // With the features that the package was built with: nothing is compiled twice.
+    let mut build = cargo();
+    build.args(["build", "--package", "sscc-cli", "--package", "sscc-python", "--bin", "sscc"]);
+    succeed(&mut build, "the command cannot be built")?;
     let command =
         env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
 
