@@ -71,9 +71,9 @@ class Killed:
 
     def __init__(self, client: Any, folder: Path, name: str, call: int) -> None:
         self.client, self.started, self.over = client, folder / "started", threading.Event()
-        self.pids: dict[str, int] = client.run(os.getpid)
-        address = min(self.pids)
-        self.pid, started = self.pids[address], str(self.started)
+        pids: dict[str, int] = client.run(os.getpid)
+        self.address, started = min(pids), str(self.started)
+        self.pid = pids[self.address]
 
         def wait_at_call() -> None:
             worker: Any = importlib.import_module("sscc._worker")
@@ -87,7 +87,7 @@ class Killed:
 
             setattr(worker, name, waiting)
 
-        client.run(wait_at_call, workers=[address])
+        client.run(wait_at_call, workers=[self.address])
         self.thread = threading.Thread(target=self.watch, daemon=True)
 
     def watch(self) -> None:
@@ -106,8 +106,8 @@ class Killed:
         # The next test finds two workers again, one of them new.
         end = time.monotonic() + LONG
         while time.monotonic() < end:
-            found = self.client.run(os.getpid, on_error="ignore").values()
-            if len(found) == 2 and self.pid not in found:
+            workers = self.client.nthreads()
+            if len(workers) == 2 and self.address not in workers:
                 return
             time.sleep(0.1)
         raise AssertionError("the killed worker did not come back")
