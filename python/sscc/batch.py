@@ -145,7 +145,8 @@ def certify_in_shards(
             shown[0](share)
         futures = [_submit(client, do_job, held, job) for job in jobs]
         try:
-            return client.gather(futures)
+            results: list[bytes] = client.gather(futures)
+            return results
         finally:
             _drop(client, futures)
 
@@ -216,7 +217,8 @@ def _drop(client: Client, futures: Iterable[Future]) -> None:
 
 
 def _threads(client: Client) -> int:
-    return max(1, sum(client.nthreads().values()))
+    threads: dict[str, int] = client.nthreads()
+    return max(1, sum(threads.values()))
 
 
 def _model(given: Model | str | os.PathLike[str]) -> Model:

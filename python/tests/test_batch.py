@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import os
 import pickle
 import signal
@@ -65,39 +66,51 @@ def within(work: Callable[[], T], seconds: float = LONG) -> T:
     return found[0]
 
 
-class Killer:
-    """Kills, once, a worker that is doing one of these tasks."""
+class Killed:
+    """Kills one of the two workers while it is at its n-th call of a function of `sscc._worker`."""
 
-    def __init__(self, client: Any, task: str) -> None:
-        self.client, self.task = client, task
-        self.killed: list[int] = []
-        self.pids: dict[str, int] = client.run(os.getpid)
+    def __init__(self, client: Any, folder: Path, name: str, call: int) -> None:
+        self.client, self.started, self.over = client, folder / "started", threading.Event()
+        pids: dict[str, int] = client.run(os.getpid)
+        self.address, started = min(pids), str(self.started)
+        self.pid = pids[self.address]
+
+        def wait_at_call() -> None:
+            worker: Any = importlib.import_module("sscc._worker")
+            given, calls = getattr(worker, name), itertools.count(1)
+
+            def waiting(*arguments: Any) -> Any:
+                if next(calls) == call:
+                    Path(started).touch()
+                    time.sleep(LONG)
+                return given(*arguments)
+
+            setattr(worker, name, waiting)
+
+        client.run(wait_at_call, workers=[self.address])
         self.thread = threading.Thread(target=self.watch, daemon=True)
 
     def watch(self) -> None:
-        end = time.monotonic() + LONG
-        while not self.killed and time.monotonic() < end:
-            for address, keys in self.client.processing().items():
-                if any(str(key).startswith(self.task) for key in keys) and address in self.pids:
-                    os.kill(self.pids[address], signal.SIGKILL)
-                    self.killed.append(self.pids[address])
-                    return
-            time.sleep(0.002)
+        while not self.started.exists():
+            if self.over.wait(0.01):
+                return
+        os.kill(self.pid, signal.SIGKILL)
 
-    def __enter__(self) -> Killer:
+    def __enter__(self) -> None:
         self.thread.start()
-        return self
 
     def __exit__(self, *_: object) -> None:
+        self.over.set()
         self.thread.join()
-        # The next test finds two workers again.
-        self.client.wait_for_workers(2, timeout=LONG)
-        assert self.killed and self.killed[0] not in self.client.run(os.getpid).values()
-
-
-def large() -> sscc.Model:
-    """Takes a few seconds."""
-    return sscc.Model(*torus(64, 32, 8))
+        assert self.started.exists(), "the worker was given nothing to do"
+        # The next test finds two workers again, one of them new.
+        end = time.monotonic() + LONG
+        while time.monotonic() < end:
+            workers = self.client.nthreads()
+            if len(workers) == 2 and self.address not in workers:
+                return
+            time.sleep(0.1)
+        raise AssertionError("the killed worker did not come back")
 
 
 def test_a_library_is_certified_as_here(client: Any, tmp_path: Path) -> None:
@@ -129,14 +142,15 @@ def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> No
         def key_of_model(model: sscc.Model, options: dict[str, Any]) -> bytes:
             if len(model.faces) == 2 * 16 * 9:
                 raise MemoryError("out of memory")
-            return given(model, options)
+            found: bytes = given(model, options)
+            return found
 
         worker.key_of_model = key_of_model
 
     def with_much_memory() -> None:
         importlib.reload(importlib.import_module("sscc._worker"))
 
-    models = [missing, good, damaged, too_large, other_rank, 3]
+    models: list[Any] = [missing, good, damaged, too_large, other_rank, 3]
     client.run(with_little_memory)
     try:
         library = within(lambda: sscc.batch.certify(models, client, center=[0.0, 0.0, 0.0]))
@@ -179,26 +193,26 @@ def test_queries_in_chunks_give_the_same_answers(client: Any, certs: sscc.Certif
     assert len(within(lambda: sscc.batch.check(certs, np.empty((0, 6)), client))) == 0
 
 
-def test_a_killed_worker_loses_no_shard(client: Any) -> None:
-    model = large()
-    with Killer(client, "do_job"):
+def test_a_killed_worker_loses_no_shard(client: Any, tmp_path: Path) -> None:
+    model = sscc.Model(*torus(32, 16, 6))
+    with Killed(client, tmp_path, "_prepared", 3):
         there = within(lambda: sscc.batch.certify_in_shards(model, client))
     assert content_of(there) == content_of(model.certify())
 
 
-def test_a_killed_worker_loses_no_model(client: Any) -> None:
-    models = {f"torus {n}": sscc.Model(*torus(32, n, 5)) for n in (12, 13, 14, 15)}
-    with Killer(client, "certify_whole"):
+def test_a_killed_worker_loses_no_model(client: Any, tmp_path: Path) -> None:
+    models = {f"torus {n}": sscc.Model(*torus(16, n, 3)) for n in (8, 9, 10, 11, 12)}
+    with Killed(client, tmp_path, "content_of", 1):
         library = within(lambda: sscc.batch.certify(models, client))
     assert library.failures == {}
     for name, certificates in library.certificates.items():
         assert content_of(certificates) == content_of(models[name].certify()), name
 
 
-def test_a_killed_worker_loses_no_query(client: Any, certs: sscc.Certificates) -> None:
-    Q = samples(20_000, 6, 3.0)
-    with Killer(client, "check_chunk"):
-        there = within(lambda: sscc.batch.check(certs, Q, client, chunk=500))
+def test_a_killed_worker_loses_no_query(client: Any, certs: sscc.Certificates, tmp_path: Path) -> None:
+    Q = samples(2000, 6, 1.0)
+    with Killed(client, tmp_path, "_prepared", 3):
+        there = within(lambda: sscc.batch.check(certs, Q, client, chunk=50))
     assert there == certs.check_many(Q)
 
 
@@ -248,7 +262,7 @@ def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -
     with pytest.raises(ValueError, match=r"^Q\[7\]\[2\] is NaN"):
         check(certs, Q, client)
     with pytest.raises(TypeError, match="masked"):
-        check(certs, np.ma.masked_invalid(Q), client)
+        check(certs, np.ma.MaskedArray(Q, np.isnan(Q)), client)
     with pytest.raises(ValueError, match=r"Q has shape \[10, 5\]"):
         check(certs, Q[:, :5], client)
     with pytest.raises(ValueError, match="chunk is 0"):
