@@ -237,10 +237,7 @@ impl Certificates {
         Hierarchy::of(Arc::clone(&self.pool))
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, Py<Model>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let bytes = certificates_to_bytes(self.core()).map_err(|error| value(error.to_string()))?;
         let make = py.import("sscc._sscc")?.getattr("_certificates")?;
         Ok((make, (PyBytes::new(py, &bytes), self.model.clone_ref(py))))
@@ -256,6 +253,9 @@ impl Certificates {
         )
     }
 }
+
+/// What makes them anew, and from what.
+type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, Py<Model>));
 
 /// One configuration that others may write to meanwhile.
 fn copied(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {

@@ -93,7 +93,7 @@ impl Impacts {
         self.found == other.found && self.times == other.times
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Pickled<'py>, Vec<f64>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         Ok((py.import("sscc._sscc")?.getattr("_impacts")?, (pickled(py, &self.found), self.times.clone())))
     }
 
@@ -114,3 +114,6 @@ pub fn _impacts(found: Pickled<'_>, times: Vec<f64>) -> PyResult<Impacts> {
     }
     Ok(Impacts::from_parts(found, times))
 }
+
+/// What makes them anew, and from what.
+type Reduced<'py> = (Bound<'py, PyAny>, (Pickled<'py>, Vec<f64>));

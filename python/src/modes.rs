@@ -69,7 +69,7 @@ pub fn _elastic(
     rank: Option<&Bound<'_, PyAny>>,
     fix: Option<&Bound<'_, PyAny>>,
     fix_box: Option<&Bound<'_, PyAny>>,
-    material: (Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>),
+    material: MaterialGiven<'_>,
     resolution: Option<&Bound<'_, PyAny>>,
     threads_typed: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -123,13 +123,10 @@ fn loaded(made: make::Model) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-fn read_material(
-    (youngs, poisson, density): &(
-        Option<Bound<'_, PyAny>>,
-        Option<Bound<'_, PyAny>>,
-        Option<Bound<'_, PyAny>>,
-    ),
-) -> PyResult<Material> {
+/// Young's modulus, Poisson's ratio, density.
+type MaterialGiven<'py> = (Option<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>);
+
+fn read_material((youngs, poisson, density): &MaterialGiven<'_>) -> PyResult<Material> {
     let default = Material::default();
     Ok(Material {
         youngs_modulus: number(youngs.as_ref(), "youngs")?.unwrap_or(default.youngs_modulus),
