@@ -24,20 +24,20 @@ pub struct DirectionAnswer {
 /// The first collision.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct First {
-    /// The way from the certified scale to it is free, but for a millionth of it.
+    /// The way to it is free.
     scale: f64,
-    /// What collides there.
+    /// What collides there. Where nothing does, because sheets pass each other between two numbers: what meets.
     pairs: Vec<Pair>,
 }
 
 /// The way is searched in so many pieces at the most.
 const PIECES: f64 = 64.0;
 
-/// Continuous queries list what comes within a tolerance before it meets: looked for so much farther, in steps of 10.
+/// Continuous queries tell a time a little before the triangles meet. They are looked for so much farther, as shares of the whole way.
 const NUDGES: [f64; 8] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
 
-/// After as many near misses nothing is found.
-const MOST_MISSES: usize = 256;
+/// What meets so soon after the first, as a share of a piece, meets with it.
+const TOGETHER: f64 = 1e-9;
 
 pub(super) fn along(
     query: &mut Query<'_>,
@@ -46,41 +46,42 @@ pub(super) fn along(
     DirectionRequest { direction }: &DirectionRequest,
 ) -> Result<DirectionAnswer, ViewError> {
     let center = certificates.center();
-    let at = |scale: f64| -> Vec<f64> { center.iter().zip(direction).map(|(c, d)| c + scale * d).collect() };
     model.check_coordinates(direction)?;
+    let at = |scale: f64| -> Vec<f64> { center.iter().zip(direction).map(|(c, d)| c + scale * d).collect() };
     let certified = query.safe_scale(&at(1.0))?;
     let end = end(model, direction);
-    if !certified.is_finite() || !end.is_finite() {
-        return Ok(DirectionAnswer { certified, first: None });
-    }
-    let (mut from, mut misses) = (certified.min(end), 0);
-    if from == 0.0 && !query.discrete(center)?.is_empty() {
-        return Ok(DirectionAnswer { certified, first: Some(First::of(0.0, query)) });
-    }
-    while from < end && misses < MOST_MISSES {
-        let to = (from + end / PIECES).min(end);
-        let Some(time) = query.time_of_impact(&at(from), &at(to))? else {
+    let mut first = None;
+    if certified.is_finite() && end.is_finite() {
+        let mut from = certified.min(end);
+        while first.is_none() && from < end {
+            let to = (from + end / PIECES).min(end);
+            first = meet(query, &at, [from, to], end)?;
             from = to;
-            continue;
-        };
-        let met = from + time * (to - from);
-        for nudge in NUDGES {
-            let scale = met + nudge * end;
-            if !query.discrete(&at(scale))?.is_empty() {
-                return Ok(DirectionAnswer { certified, first: Some(First::of(scale, query)) });
-            }
         }
-        // They came near and did not meet.
-        (from, misses) = (met + 1e-6 * end, misses + 1);
     }
-    Ok(DirectionAnswer { certified, first: None })
+    Ok(DirectionAnswer { certified, first })
 }
 
-impl First {
-    fn of(scale: f64, query: &Query<'_>) -> Self {
-        let pairs = query.pairs();
-        Self { scale, pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec() }
+/// The first collision between two scales.
+fn meet(
+    query: &mut Query<'_>,
+    at: &impl Fn(f64) -> Vec<f64>,
+    [from, to]: [f64; 2],
+    end: f64,
+) -> Result<Option<First>, ViewError> {
+    let impacts = query.continuous(&at(from), &at(to))?;
+    let Some(time) = impacts.iter().map(|impact| impact.time).min_by(f64::total_cmp) else { return Ok(None) };
+    let together = impacts.iter().filter(|impact| impact.time <= time + TOGETHER);
+    let meeting = together.map(|impact| impact.pair).take(MOST_LISTED).collect();
+    let met = from + time * (to - from);
+    for nudge in NUDGES {
+        let scale = met + nudge * end;
+        let pairs = query.discrete(&at(scale))?;
+        if !pairs.is_empty() {
+            return Ok(Some(First { scale, pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec() }));
+        }
     }
+    Ok(Some(First { scale: met, pairs: meeting }))
 }
 
 /// Where the vertex that moves fastest has moved by half the box's diagonal.

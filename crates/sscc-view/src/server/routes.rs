@@ -24,8 +24,11 @@ pub(super) enum Site<'a, 'm> {
 struct Route<'a> {
     method: &'static str,
     most: usize,
-    answer: Box<dyn Fn(&[u8]) -> Response<'a> + 'a>,
+    answer: Answer<'a>,
 }
+
+/// From the body.
+type Answer<'a> = Box<dyn Fn(&[u8]) -> Response<'a> + 'a>;
 
 impl<'a> Site<'a, '_> {
     /// Whether that is for everybody on this machine: the live page itself, which holds no data, so that it can be

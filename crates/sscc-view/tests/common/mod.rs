@@ -137,19 +137,24 @@ impl Client {
 }
 
 pub fn read_reply(stream: &mut TcpStream) -> io::Result<Reply> {
-    let mut bytes = Vec::new();
+    next_reply(stream, &mut Vec::new())
+}
+
+/// The next of several replies; `bytes` are those that were read beyond the one before.
+pub fn next_reply(stream: &mut TcpStream, bytes: &mut Vec<u8>) -> io::Result<Reply> {
     let head = loop {
         if let Some(end) = bytes.windows(4).position(|window| window == b"\r\n\r\n") {
             break String::from_utf8(bytes.drain(..end + 4).collect()).unwrap();
         }
-        read_some(stream, &mut bytes)?;
+        read_some(stream, bytes)?;
     };
     let length = head.lines().find_map(|line| line.strip_prefix("Content-Length: ")).unwrap();
-    while bytes.len() < length.parse().unwrap() {
-        read_some(stream, &mut bytes)?;
+    let length = length.parse().unwrap();
+    while bytes.len() < length {
+        read_some(stream, bytes)?;
     }
     let status = head.split(' ').nth(1).unwrap().parse().unwrap();
-    Ok(Reply { status, head, body: bytes })
+    Ok(Reply { status, head, body: bytes.drain(..length).collect() })
 }
 
 fn read_some(stream: &mut TcpStream, into: &mut Vec<u8>) -> io::Result<()> {

@@ -78,7 +78,8 @@ impl Row {
 /// A line for each method.
 fn plot(title: &str, x: Axis, rows: &[Row], at: impl Fn(&Row) -> f64) -> Plot {
     let keys = rows[0].milliseconds.iter().map(|(key, _)| *key);
-    let line = |key| Series::new(key, rows.iter().filter_map(|row| Some([at(row), row.get(key)?])));
+    let line =
+        |key: &'static str| Series::new(key, rows.iter().filter_map(|row| Some([at(row), row.get(key)?])));
     Plot {
         title: title.to_owned(),
         x,
