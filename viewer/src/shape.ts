@@ -76,7 +76,7 @@ export class Shape {
 
     /** Names a mode: its own name, else its number and frequency. */
     modeName(k: number): string {
-        return this.model.mode_names?.[k] ?? `mode ${k + 1}`;
+        return this.model.mode_names?.[k] || `mode ${k + 1}`;
     }
 
     frequency(k: number): string {

@@ -81,6 +81,7 @@ describe("live", () => {
             assert.ok(drawnBox(await pixels(page)).count > 2000);
             assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
             await page.reload();
+            await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
             await answered(page);
             assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
         }));
@@ -122,18 +123,16 @@ describe("live", () => {
             );
             const first = page.locator(".pair").first();
             await first.click();
-            await page.waitForTimeout(700);
-            const off = await page.evaluate(() => {
+            // It flies until the pair is in the middle of the picture.
+            await page.waitForFunction(() => {
                 const { shape, pose, checker, stage } = globalThis.sscc;
                 const { middle } = shape.around(checker.answer.pairs[0], pose.q);
                 const point = stage.camera.position
                     .clone()
                     .set(...middle)
                     .project(stage.camera);
-                return Math.hypot(point.x, point.y);
+                return Math.hypot(point.x, point.y) < 0.02;
             });
-            assert.ok(off < 0.02, "the pair is in the middle of the picture");
-            await page.getByRole("button", { name: "Reset" }).waitFor({ state: "attached" });
             await page.keyboard.press("r");
             await answered(page);
             assert.deepEqual(await page.evaluate(() => globalThis.sscc.body.markedTriangles(0)), []);
