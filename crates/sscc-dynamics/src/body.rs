@@ -84,6 +84,8 @@ pub struct Body<'a> {
     pub(crate) pairs: Vec<Pair>,
     pub(crate) root_failed: bool,
     pub(crate) is_pushed: bool,
+    /// Energy that contacts have taken from the motion so far, less what they gave back: its share.
+    pub(crate) ledger: f64,
 }
 
 #[derive(Clone)]
@@ -91,6 +93,9 @@ enum Oscillator<'a> {
     Linear(LinearOscillator),
     Nonlinear(NonlinearOscillator<'a>),
 }
+
+/// The middle of a step's turn is found by iterating, which is safe up to here.
+const MOST_TURN: f64 = 1.0;
 
 enum Detector<'a> {
     Off,
@@ -118,6 +123,15 @@ impl<'a> Body<'a> {
         let turn = start.orientation.normalize();
         if !(sound(place) && sound(start.velocity) && sound(start.spin) && turn.is_finite()) {
             return Err(DynamicsError::Start);
+        }
+        let turned = start.spin.length() * step;
+        if turned > MOST_TURN {
+            let what = "the angle by which a body's spin turns it in a step (rad)";
+            return Err(DynamicsError::Option {
+                what,
+                value: turned,
+                range: "at most 1: take a smaller step",
+            });
         }
         (rigid.position, rigid.orientation) = (place, turn);
         if start.is_free {
@@ -173,6 +187,7 @@ impl<'a> Body<'a> {
             pairs: Vec::new(),
             root_failed: false,
             is_pushed: false,
+            ledger: 0.0,
         })
     }
 

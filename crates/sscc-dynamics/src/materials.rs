@@ -24,8 +24,8 @@ const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64)
     }
 }
 
-/// Materials of everyday things: usual values of handbooks; Rayleigh damping in the range that recordings of struck
-/// objects suggest (Ren et al. 2013).
+/// Materials of everyday things. Round values of the order found in handbooks, and Rayleigh damping chosen to sound
+/// right: none of them was measured.
 pub const MATERIALS: [SoundMaterial; 8] = [
     row("steel", 7850.0, 2.0e11, 0.29, 5.0, 3e-8),
     row("aluminium", 2700.0, 7.0e10, 0.33, 4.0, 5e-8),

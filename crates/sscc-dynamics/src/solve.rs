@@ -2,9 +2,9 @@
 //!
 //! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one
 //! contact after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v +
-//! v') / 2`, where v and v' are the relative velocities before and after it. A ledger holds what contacts have taken
-//! so far, and none of them may give more than that: whatever stiffness and step are, contacts never add energy to
-//! that of the start, up to rounding.
+//! v') / 2`, where v and v' are the relative velocities before and after it. Each body has a ledger of what its contacts
+//! have taken so far, and none of them may give more than the ledgers of its bodies hold: whatever stiffness and step
+//! are, contacts never add energy to that of the start, up to rounding, and what is far away gives none.
 
 use glam::{DMat3, DVec3};
 
@@ -40,6 +40,16 @@ pub(crate) struct Touch {
     pub drag: DVec3,
 }
 
+/// A body in a touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side {
+    /// The first or the second.
+    pub n: usize,
+    pub body: usize,
+    /// Of the impulse on it.
+    pub sign: f64,
+}
+
 /// A touch and what makes it a spring.
 #[derive(Clone, Copy, Debug)]
 struct Row {
@@ -70,9 +80,6 @@ pub(crate) struct Spring {
     pub damping: f64,
     /// Step (s).
     pub step: f64,
-    /// The share of the spring's force that is that of the step's end. 0 keeps the energy but is unstable for long
-    /// steps, 1 is always stable and damps.
-    pub implicit: f64,
     /// Rounds at most.
     pub rounds: usize,
 }
@@ -88,34 +95,34 @@ pub(crate) struct Solver {
     pub touches: Vec<Touch>,
     rows: Vec<Row>,
     movers: Vec<Mover>,
+    /// Touches of each body.
+    counts: Vec<usize>,
 }
 
 impl Solver {
-    /// Finds all impulses and lets them act; `ledger` is what contacts have taken so far.
-    pub fn solve(
-        &mut self,
-        bodies: &mut [Body<'_>],
-        contacts: &[Contact],
-        spring: &Spring,
-        ledger: &mut f64,
-    ) {
+    /// Finds all impulses and lets them act.
+    pub fn solve(&mut self, bodies: &mut [Body<'_>], contacts: &[Contact], spring: &Spring) {
         if self.touches.is_empty() {
             return;
         }
         self.movers.clear();
         self.movers.extend(bodies.iter().map(Mover::of));
+        self.counts.clear();
+        self.counts.resize(bodies.len(), 0);
+        for side in self.touches.iter().flat_map(Touch::sides) {
+            self.counts[side.body] += 1;
+        }
         self.rows.clear();
         for touch in &self.touches {
-            let (mut quick, mut slow) = (DMat3::ZERO, DMat3::ZERO);
-            for n in 0..2 {
-                if touch.bodies[n] != GROUND && (n == 0 || !touch.is_within()) {
-                    let mover = &self.movers[touch.bodies[n] as usize];
-                    let [a, b] = mover.responses(touch.arms[n], &touch.mobility[n], touch.is_within());
-                    quick += a;
-                    slow += b;
-                }
+            let (mut quick, mut slow, mut count) = (DMat3::ZERO, DMat3::ZERO, 1);
+            for Side { n, body, .. } in touch.sides() {
+                let [a, b] =
+                    self.movers[body].responses(touch.arms[n], &touch.mobility[n], touch.is_within());
+                quick += a;
+                slow += b;
+                count = self.counts[body].max(count);
             }
-            let mut row = Row::new(touch, quick, slow, spring);
+            let mut row = Row::new(touch, quick, slow, spring, spring.implicit(count));
             if touch.is_within() {
                 // Where hardly any mode moves the two apart, the impulse that would do so has no bound.
                 row.softness += LEAST_MOBILITY / bodies[touch.bodies[0] as usize].shape().mass().mass;
@@ -128,7 +135,7 @@ impl Solver {
             for n in 0..self.touches.len() {
                 // To and fro.
                 let n = if round % 2 == 0 { n } else { self.touches.len() - 1 - n };
-                largest = largest.max(self.visit(n, bodies, contacts, ledger));
+                largest = largest.max(self.visit(n, bodies, contacts));
             }
             if round == 0 {
                 first = largest;
@@ -140,16 +147,17 @@ impl Solver {
     }
 
     /// One contact; gives the change of velocity along its normal.
-    fn visit(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact], ledger: &mut f64) -> f64 {
+    fn visit(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact]) -> f64 {
         let (row, touch) = (self.rows[n], self.touches[n]);
+        let ledger: f64 = touch.sides().map(|side| bodies[side.body].ledger).sum();
         let v = self.velocity(&touch, bodies, contacts);
         let normal = touch.normal;
         let approach = v.dot(normal);
         let mut push = (row.target - approach - row.softness * touch.pressure) / (row.along + row.softness);
         push = push.max(-touch.pressure);
         // Work of the push: push (approach + along push / 2).
-        if push * (approach + row.along * push / 2.0) > *ledger {
-            let most = ((approach * approach + 2.0 * row.along * *ledger).sqrt() - approach) / row.along;
+        if push * (approach + row.along * push / 2.0) > ledger {
+            let most = ((approach * approach + 2.0 * row.along * ledger).sqrt() - approach) / row.along;
             push = if push > 0.0 { push.min(most) } else { 0.0 };
         }
         let mut impulse = normal * push;
@@ -167,14 +175,20 @@ impl Solver {
             let change = drag - touch.drag;
             let slid = after + row.response * change;
             let friction_work = change.dot(after + slid) / 2.0;
-            if friction_work <= 0.0 || work + friction_work <= *ledger {
+            if friction_work <= 0.0 || work + friction_work <= ledger {
                 impulse += change;
                 work += friction_work;
             } else {
                 drag = touch.drag;
             }
         }
-        *ledger -= work;
+        // What is given comes from both as they have it, what is taken goes to both alike.
+        let count = touch.sides().count() as f64;
+        for Side { body, .. } in touch.sides() {
+            let own = &mut bodies[body].ledger;
+            let share = if work > 0.0 { *own / ledger } else { 1.0 / count };
+            *own = (*own - work * share).max(0.0);
+        }
         (self.touches[n].pressure, self.touches[n].drag) = (pressure, drag);
         self.act(&touch, impulse, bodies, contacts);
         push.abs() * row.along
@@ -183,16 +197,13 @@ impl Solver {
     /// The velocity of the first body at the touch, less that of the second.
     fn velocity(&self, touch: &Touch, bodies: &[Body<'_>], contacts: &[Contact]) -> DVec3 {
         let mut sum = DVec3::ZERO;
-        for (n, sign) in [(0, 1.0), (1, -1.0)] {
-            if touch.bodies[n] == GROUND || n == 1 && touch.is_within() {
-                continue;
-            }
-            let body = &bodies[touch.bodies[n] as usize];
+        for Side { n, body, sign } in touch.sides() {
+            let mover = &self.movers[body];
+            let body = &bodies[body];
             let deforming = moved(touch.modes(n, body, contacts), &body.v);
             sum += if touch.is_within() {
                 deforming
             } else {
-                let mover = &self.movers[touch.bodies[n] as usize];
                 (mover.velocity + mover.spin.cross(touch.arms[n]) + mover.rotation * deforming) * sign
             };
         }
@@ -200,14 +211,11 @@ impl Solver {
     }
 
     fn act(&mut self, touch: &Touch, impulse: DVec3, bodies: &mut [Body<'_>], contacts: &[Contact]) {
-        for (n, sign) in [(0, 1.0), (1, -1.0)] {
-            if touch.bodies[n] == GROUND || n == 1 && touch.is_within() {
-                continue;
-            }
-            let body = &mut bodies[touch.bodies[n] as usize];
+        for Side { n, body, sign } in touch.sides() {
+            let mover = &mut self.movers[body];
+            let body = &mut bodies[body];
             let mut local = impulse;
             if !touch.is_within() {
-                let mover = &mut self.movers[touch.bodies[n] as usize];
                 let impulse = impulse * sign;
                 if body.is_free() {
                     let turn = touch.arms[n].cross(impulse);
@@ -225,10 +233,27 @@ impl Solver {
     }
 }
 
+impl Spring {
+    /// The share of a spring's force that is that of the step's end, where so many act on one body: together they are
+    /// as fast as the root of their number. 0 keeps the energy but is unstable for long steps, 1 is always stable and
+    /// damps.
+    fn implicit(&self, count: usize) -> f64 {
+        let angle = self.rate * self.step;
+        (angle * angle * count as f64).clamp(f64::EPSILON, 1.0)
+    }
+}
+
 impl Touch {
     /// Whether both sides are of one body.
     pub fn is_within(&self) -> bool {
         self.bodies[0] == self.bodies[1]
+    }
+
+    /// Its bodies, each once, without the ground.
+    pub fn sides(&self) -> impl Iterator<Item = Side> + use<> {
+        let (bodies, within) = (self.bodies, self.is_within());
+        let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || !within);
+        (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
     }
 
     fn modes<'s>(&self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
@@ -240,10 +265,10 @@ impl Touch {
 }
 
 impl Row {
-    fn new(touch: &Touch, quick: DMat3, slow: DMat3, spring: &Spring) -> Self {
+    fn new(touch: &Touch, quick: DMat3, slow: DMat3, spring: &Spring, implicit: f64) -> Self {
         let normal = touch.normal;
         // Per mass: stiffness w^2, damping 2 zeta w.
-        let Spring { rate, damping, step, implicit, .. } = *spring;
+        let Spring { rate, damping, step, .. } = *spring;
         let divisor = 2.0 * damping + implicit * rate * step;
         Self {
             response: quick,

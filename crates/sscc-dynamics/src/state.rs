@@ -12,12 +12,12 @@ use crate::{DynamicsError, World};
 pub struct State {
     /// Steps so far.
     pub step: u64,
-    /// Motions, contacts and the energy they have taken, in an order of their own.
+    /// Motions, the energy that contacts have taken, and contacts, in an order of their own.
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground, whether it was pushed.
-const RIGID: usize = 13 + 2;
+/// Position, orientation, momentum, angular momentum, preload of the ground, whether it was pushed, ledger.
+const RIGID: usize = 13 + 3;
 
 /// Bodies, triangles, weights, normal, offset, slack, preload and age of a contact.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
@@ -25,7 +25,7 @@ const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
 impl World<'_> {
     /// The present state.
     pub fn state(&self) -> State {
-        let mut numbers = vec![self.ledger];
+        let mut numbers = Vec::new();
         for (body, near) in self.bodies.iter().zip(&self.near) {
             let rigid = &body.rigid;
             numbers.extend([&body.q, &body.v, &body.a].into_iter().flatten());
@@ -33,7 +33,7 @@ impl World<'_> {
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
-            numbers.extend([near.preload, f64::from(u8::from(body.is_pushed))]);
+            numbers.extend([near.preload, f64::from(u8::from(body.is_pushed)), body.ledger]);
         }
         for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
@@ -51,7 +51,7 @@ impl World<'_> {
     /// When it is of other bodies, or a number in it cannot be; then nothing has changed.
     pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
         let own = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
-        let expected = 1 + self.bodies.iter().map(own).sum::<usize>();
+        let expected = self.bodies.iter().map(own).sum::<usize>();
         let found = state.numbers.len();
         let (motion, contacts) = state.numbers.split_at(expected.min(found));
         let (contacts, rest) = contacts.as_chunks::<CONTACT>();
@@ -60,10 +60,14 @@ impl World<'_> {
         }
         let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
         let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
+        // Contacts are looked up by their keys.
+        let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key());
+        if !in_order || !self.can_be(motion) {
+            return Err(DynamicsError::State { found, expected });
+        }
         self.step = state.step;
         let mut numbers = motion.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
-        self.ledger = next();
         for (body, near) in self.bodies.iter_mut().zip(&mut self.near) {
             body.q.iter_mut().chain(&mut body.v).chain(&mut body.a).for_each(|x| *x = next());
             let rigid = &mut body.rigid;
@@ -74,6 +78,7 @@ impl World<'_> {
             near.forget();
             near.preload = next();
             body.is_pushed = next() != 0.0;
+            body.ledger = next();
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
@@ -81,6 +86,17 @@ impl World<'_> {
         self.contacts.list = contacts;
         self.impulses.clear();
         Ok(())
+    }
+
+    /// Whether orientations have the length 1, and ledgers are not negative.
+    fn can_be(&self, motion: &[f64]) -> bool {
+        let mut at = 0;
+        self.bodies.iter().all(|body| {
+            let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
+            at += body.q.len() + body.v.len() + body.a.len() + RIGID;
+            let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
+            (length - 1.0).abs() < 1e-9 && rigid[RIGID - 1] >= 0.0
+        })
     }
 
     /// A contact from its numbers; none where it names what does not exist.

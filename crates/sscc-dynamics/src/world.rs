@@ -20,8 +20,6 @@ pub struct World<'a> {
     neighbours: Neighbours,
     pub(crate) contacts: Contacts,
     solver: Solver,
-    /// Energy that contacts have taken from the motion so far, less what they gave back.
-    pub(crate) ledger: f64,
     start: Reference,
     pub(crate) step: u64,
     pub(crate) impulses: Vec<Impulse>,
@@ -55,7 +53,6 @@ impl<'a> World<'a> {
             neighbours: Neighbours::default(),
             contacts: Contacts::default(),
             solver: Solver::default(),
-            ledger: 0.0,
             start: Reference::default(),
             step: 0,
             impulses: Vec::new(),
@@ -103,7 +100,7 @@ impl<'a> World<'a> {
 
     /// The energy that contacts have taken so far (heat), less what they gave back: never negative.
     pub fn dissipated(&self) -> f64 {
-        self.ledger
+        self.bodies.iter().map(|body| body.ledger).sum()
     }
 
     /// The impulses of the last step, in the order of contacts.
@@ -220,18 +217,16 @@ impl<'a> World<'a> {
             return;
         }
         let contact = &self.options.contact;
-        // So many springs on one body are as fast as the root of their number.
-        let angle = contact.rate() * self.options.step;
-        let implicit = (angle * angle * self.solver.touches.len() as f64).clamp(f64::EPSILON, 1.0);
         let (rate, damping, rounds) = (contact.rate(), contact.damping, contact.rounds);
-        let spring = Spring { rate, damping, step: self.options.step, implicit, rounds };
-        self.solver.solve(&mut self.bodies, &self.contacts.list, &spring, &mut self.ledger);
+        let spring = Spring { rate, damping, step: self.options.step, rounds };
+        self.solver.solve(&mut self.bodies, &self.contacts.list, &spring);
         for touch in &self.solver.touches {
             let impulse = touch.normal * touch.pressure + touch.drag;
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
                 if touch.bodies[n] == GROUND {
                     continue;
                 }
+                // Within one body both points are told.
                 let body = &self.bodies[touch.bodies[n] as usize];
                 let turn =
                     if touch.is_within() { glam::DQuat::IDENTITY } else { body.rigid.orientation.inverse() };

@@ -178,6 +178,32 @@ fn a_ball_bounces_as_its_spring_and_damper_say() {
 }
 
 #[test]
+fn what_rests_far_away_changes_no_bounce() {
+    let ball = rigid(octahedron(0.5), 2.0);
+    let block = rigid(block([8, 1, 8], 0.1, Material::default()).boundary().unwrap().mesh, 3.0);
+    let contact = ContactOptions { damping: 0.1, skin: Some(1e-3), ..ContactOptions::default() };
+    let heights = |blocks: usize| {
+        let mut world = World::new(WorldOptions { step: 2e-4, contact, ..WorldOptions::default() }).unwrap();
+        world.add(&ball, &Start { position: Some(DVec3::Y), ..Start::default() }).unwrap();
+        for n in 0..blocks {
+            let position = Some(DVec3::new(100.0, 0.0501, 10.0 * n as f64));
+            world.add(&block, &Start { position, ..Start::default() }).unwrap();
+        }
+        let mut touched = 0;
+        let mut height = || {
+            touched += world.advance(&mut ()).unwrap().ground;
+            world.bodies()[0].rigid().position.y
+        };
+        let heights: Vec<f64> = (0..5000).map(|_| height()).collect();
+        assert!(touched > 10 + 1000 * blocks, "{touched}");
+        heights
+    };
+    let (alone, beside) = (heights(0), heights(3));
+    let off = alone.iter().zip(beside).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-3, "{off}");
+}
+
+#[test]
 fn a_block_slides_as_far_as_friction_lets_it() {
     let shape = rigid(block([1, 1, 1], 0.4, Material::default()).boundary().unwrap().mesh, 3.0);
     let (speed, friction) = (2.0, 0.4);

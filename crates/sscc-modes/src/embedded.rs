@@ -60,8 +60,9 @@ impl Embedded {
     /// When the modes are of another number of vertices.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, ModesError> {
         let r = modes.rank();
-        if modes.vertices() != self.solid.vertices().len() {
-            return Err(ModesError::ElementIndex { index: 0, vertices: self.solid.vertices().len() });
+        let (found, vertices) = (modes.vertices(), self.solid.vertices().len());
+        if found != vertices {
+            return Err(sscc::Error::VertexCount { modes: found, mesh: vertices }.into());
         }
         let field =
             |k: usize| -> Vec<DVec3> { modes.displacements().iter().skip(k).step_by(r).copied().collect() };

@@ -55,7 +55,7 @@ impl Solid {
     pub fn mode_moments(&self, modes: &Modes) -> Result<Vec<DVec3>, ModesError> {
         let vertices = self.vertices().len();
         if modes.vertices() != vertices {
-            return Err(ModesError::ElementIndex { index: 0, vertices });
+            return Err(sscc::Error::VertexCount { modes: modes.vertices(), mesh: vertices }.into());
         }
         let mut moments = vec![DVec3::ZERO; modes.rank()];
         for index in 0..self.element_count() {

@@ -150,7 +150,8 @@ impl Scene {
         let contact = contact(&scene)?;
         if rate < LEAST_CONTACT_STEPS * contact.frequency {
             let cause = format!(
-                "contacts of {} Hz last less than {LEAST_CONTACT_STEPS} of these steps: take more, or softer contacts",
+                "the period of contacts of {} Hz is less than {LEAST_CONTACT_STEPS} of these steps: take more, or \
+                 softer contacts",
                 contact.frequency
             );
             return Err(scene.refused("steps_per_second", cause));

@@ -67,7 +67,11 @@ fn what_cannot_be_is_named_with_its_line() {
         ("= 1000", "= 0", "line 3: steps_per_second: a positive number"),
         ("= 1000", "= -1000", "line 3: steps_per_second: a positive number"),
         ("= 1000", "= nan", "line 3: steps_per_second: a number was expected"),
-        ("= 1000", "= 300", "line 3: steps_per_second: contacts of 100 Hz last less than 4 of these steps"),
+        (
+            "= 1000",
+            "= 300",
+            "line 3: steps_per_second: the period of contacts of 100 Hz is less than 4 of these steps",
+        ),
         ("= 0.25", "= 1e9", "line 4: duration: 1e12 steps"),
         ("= 0.25", "= 1e-9", "line 4: duration: 0e0 steps"),
         ("steps_per_second = 1000", "", "line 1: steps_per_second: it is missing"),

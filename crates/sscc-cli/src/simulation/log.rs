@@ -4,7 +4,7 @@
 //! needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
 //! written now and then, and costs as little at the end of a long simulation as at its beginning.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -58,8 +58,10 @@ impl Log {
         let mut file =
             options.read(true).write(true).create(true).truncate(false).open(&path).with_context(in_log)?;
         // Two at once would write into each other's states.
-        if file.try_lock().is_err() {
-            bail!("{}: another simulation is writing to it", path.display());
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => bail!("{}: another simulation is writing to it", path.display()),
+            Err(TryLockError::Error(error)) => return Err(error).with_context(in_log),
+            Ok(()) => {}
         }
         if again {
             Self::remove(&folder.join(CHECKPOINT))?;

@@ -1,11 +1,16 @@
 //! The BD-tree (James and Pai 2004): boxes that follow q at a cost of O(r) each, without touching vertices.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
 use super::aabb::Aabb;
+use super::motion::{Motion, Units};
+use super::pack::Box32;
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, Node, bounding_box};
+
+/// Components of a mean and a growth.
+const SHARES: usize = 6;
 
 /// For the nodes that have one, how their box moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
@@ -18,6 +23,8 @@ pub(super) struct BdTree {
     rest: Vec<(DVec3, DVec3)>,
     /// `[place * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
+    /// The same in single precision, `[(place * (rank + 1) + mode) * 6 + component]` as [`Units`] tells, and one more.
+    shares: Vec<i16>,
 }
 
 impl BdTree {
@@ -25,6 +32,7 @@ impl BdTree {
     pub(super) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,
+        units: &Units,
         is_wanted: impl Fn(u32) -> bool + Sync,
     ) -> Self {
         let (mesh, modes) = (model.mesh(), model.modes());
@@ -53,9 +61,16 @@ impl BdTree {
         let mut next = 0..;
         let place = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let places = (0..hierarchy.nodes().len()).map(place).collect();
+        let mut shares: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * SHARES + 1);
+        for ((centre, half), rates) in &all {
+            let means = units.shares(*centre, rates.iter().map(|rate| rate.0));
+            let growths = units.shares_of_growth(*half, rates.iter().map(|rate| rate.1));
+            means.zip(growths).for_each(|(m, g)| shares.extend([m, g].as_flattened()));
+        }
+        shares.push(0);
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
-        Self { rank, places, rest, rates }
+        Self { rank, places, rest, rates, shares }
     }
 
     /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none where the
@@ -63,6 +78,35 @@ impl BdTree {
     pub(super) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
         let place = self.places[node as usize] as usize;
         (place < self.rest.len()).then(|| self.at_place(place, q, margin))
+    }
+
+    /// The same in single precision, mapped to the frame of the motion.
+    pub(super) fn rough<const E: usize>(&self, node: u32, motion: &Motion<E>) -> Option<Box32> {
+        let place = self.places[node as usize] as usize;
+        if place >= self.rest.len() {
+            return None;
+        }
+        let (mut centre, mut half) = (motion.shift, [Vec4::ZERO; E]);
+        let start = place * (self.rank + 1) * SHARES;
+        let shares = &self.shares[start..][..(self.rank + 1) * SHARES + 1];
+        for (k, factors) in motion.factors.iter().enumerate() {
+            // The fourth components are of what follows.
+            let of_mode = &shares[k * SHARES..][..SHARES + 1];
+            let vector =
+                |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
+            let (mean, growth) = (vector(0), vector(3));
+            for end in 0..E {
+                centre[end] += mean * factors[end];
+                half[end] += growth * factors[end].abs();
+            }
+        }
+        // The error of the centre, and that of the half.
+        let margin = Vec4::splat(2.0 * motion.margin);
+        let ends = std::array::from_fn::<_, E, _>(|end| {
+            let half = half[end] + margin;
+            Box32 { lower: centre[end] - half, upper: centre[end] + half }
+        });
+        ends.into_iter().reduce(|a, b| a.union(&b))
     }
 
     /// The same for the whole shape.
@@ -88,6 +132,9 @@ impl BdTree {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::query::boxes::margin;
+    use crate::query::frame::Frame;
+    use crate::query::vertices::Vertices;
     use crate::{Modes, TriMesh};
 
     /// Fixed pseudo-random numbers in [-1, 1).
@@ -116,27 +163,43 @@ mod tests {
         for rank in [1, 2, 7, 30] {
             let model = model(rank, &mut state);
             let hierarchy = Hierarchy::build(&model, model.metric());
-            let tree = BdTree::new(&model, &hierarchy, |n| !hierarchy.nodes()[n as usize].is_leaf());
-            let mut checked = 0;
+            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
+            let units = Units::new(&model, &vertices);
+            let tree = BdTree::new(&model, &hierarchy, &units, |n| !hierarchy.nodes()[n as usize].is_leaf());
+            let (mut checked, mut rough, mut wide) = (0, 0, 0.0_f32);
             for case in 0..200 {
                 let size = 10.0_f64.powi(case % 25 - 12);
                 let q: Vec<f64> = (0..rank).map(|_| random(&mut state) * size).collect();
                 let reach = model.check_coordinates(&q).unwrap();
+                let rounding = margin(reach, rank);
+                let frame = Frame::of(tree.root([&q], DVec3::splat(rounding)));
+                let mut motion = Motion::default();
+                let is_rough = units.begin(&mut motion, [&q], &frame, rounding);
+                rough += usize::from(is_rough);
                 for (n, node) in hierarchy.nodes().iter().enumerate() {
-                    let Some((lower, upper)) =
-                        tree.at(n as u32, [&q], DVec3::splat(super::super::boxes::margin(reach, rank)))
-                    else {
-                        assert!(n != 0 && node.is_leaf());
+                    let Some((lower, upper)) = tree.at(n as u32, [&q], DVec3::splat(rounding)) else {
+                        assert!(n != 0 && node.is_leaf() && tree.rough(n as u32, &motion).is_none());
                         continue;
                     };
+                    let mapped = tree.rough(n as u32, &motion).filter(|_| is_rough);
                     for v in hierarchy.vertices(node, model.mesh().faces()) {
                         let x = model.position(v, &q);
                         assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "rank {rank}, case {case}");
                         checked += 1;
+                        if let Some(mapped) = &mapped {
+                            let x = frame.map(x);
+                            let inside = x.cmpge(mapped.lower) & x.cmple(mapped.upper);
+                            assert_eq!(inside.bitmask() & 0b111, 0b111, "rank {rank}, case {case}");
+                        }
+                    }
+                    // Hardly larger than in double precision.
+                    if let Some(mapped) = mapped {
+                        let larger = (frame.map(lower) - mapped.lower).max(mapped.upper - frame.map(upper));
+                        wide = wide.max(larger.truncate().max_element() / motion.margin);
                     }
                 }
             }
-            assert!(checked > 10_000);
+            assert!(checked > 10_000 && rough > 50 && wide < 4.0, "{checked} {rough} {wide}");
         }
     }
 }

@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
+use super::apart::are_apart;
 use super::asked::{Asked, Ends};
+use super::motion::Motion;
 use super::pack::{Box32, Pack};
 use super::positions::Positions;
 use super::tables::Tables;
 use crate::hierarchy::Hierarchy;
 
-/// Vertex positions, exact, and boxes in the single precision of a [`Frame`](super::frame::Frame). Where there are two ends, a box goes
-/// around both, hence around the straight way between them.
+/// Boxes in the single precision of a [`Frame`](super::frame::Frame), and exact positions of vertices where they are asked for.
+/// Where there are two ends, a box goes around both, hence around the straight way between them.
 ///
 /// Each entry carries the number of the query it was computed for. Lazily, nodes down to clusters have BD-tree boxes; a
 /// cluster gets tight ones, from its vertices, when it is opened. BD boxes of still smaller nodes cost as much as moving
@@ -24,6 +26,12 @@ pub(super) struct Boxes<const E: usize> {
     query: u32,
     margin: f64,
     positions: Positions<E>,
+    /// Whether boxes of triangles are made from positions in single precision, and how vertices move then.
+    is_rough: bool,
+    motion: Motion<E>,
+    rough: Vec<[Vec4; E]>,
+    /// How far along an axis corners in the frame may be from the exact ones; infinite where that is not known.
+    wrong_by: f32,
     /// The box of each node that is a cluster or larger.
     nodes: Vec<Box32>,
     node_query: Vec<u32>,
@@ -46,6 +54,10 @@ impl<const E: usize> Boxes<E> {
             query: 0,
             margin: 0.0,
             positions: Positions::new(tables.vertices.count()),
+            is_rough: false,
+            motion: Motion::default(),
+            rough: tables.rough.memory(),
+            wrong_by: f32::INFINITY,
             nodes: vec![Box32::EMPTY; nodes],
             node_query: vec![0; nodes],
             packs: vec![Pack::EMPTY; nodes],
@@ -70,12 +82,26 @@ impl<const E: usize> Boxes<E> {
         }
         let whole = tables.bd_tree.root(ends.q, DVec3::splat(self.margin));
         self.positions.update(self.query, ends.pose.map_or(whole, |pose| pose.around));
+        let frame = self.positions.frame();
+        // In the world coordinates have no bound.
+        self.is_rough = ends.pose.is_none()
+            && !tables.rough.is_empty()
+            && tables.units.begin(&mut self.motion, ends.q, frame, self.margin);
+        self.wrong_by = if ends.pose.is_some() || ends.ball.is_some() {
+            f32::INFINITY
+        } else if self.is_rough {
+            self.motion.margin
+        } else {
+            frame.wrong_by(self.margin)
+        };
         if self.is_lazy {
             return;
         }
-        self.positions.move_all(&tables.vertices, ends);
+        if !self.is_rough {
+            self.positions.move_all(&tables.vertices, ends);
+        }
         for cluster in 0..tables.clusters.count() as u32 {
-            self.refit_cluster(cluster);
+            self.refit_cluster(cluster, ends);
         }
         for n in (0..hierarchy.nodes().len() as u32).rev() {
             if tables.clusters.of_node(n).is_none() {
@@ -129,9 +155,11 @@ impl<const E: usize> Boxes<E> {
     #[inline]
     pub(super) fn open_cluster(&mut self, cluster: u32, ends: &Ends<'_, E>) {
         if !self.is_open(cluster) {
-            let Tables { clusters, vertices, .. } = &*self.tables;
-            clusters.vertices(cluster).iter().for_each(|&v| self.positions.move_one(vertices, v, ends));
-            self.refit_cluster(cluster);
+            if !self.is_rough {
+                let Tables { clusters, vertices, .. } = &*self.tables;
+                clusters.vertices(cluster).iter().for_each(|&v| self.positions.move_one(vertices, v, ends));
+            }
+            self.refit_cluster(cluster, ends);
         }
     }
 
@@ -139,6 +167,10 @@ impl<const E: usize> Boxes<E> {
     #[inline]
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
         if self.node_query[n as usize] != self.query {
+            if let Some(aabb) = self.tables.bd_tree.rough(n, &self.motion).filter(|_| self.is_rough) {
+                self.set_node(n, aabb.widened(self.reach(n, ends)));
+                return;
+            }
             let frame = self.positions.frame();
             let margin = ends.ball.map_or(DVec3::ZERO, |ball| ball.of_node(n)) + self.margin;
             let aabb = self.tables.bd_tree.at(n, ends.q, margin);
@@ -155,15 +187,20 @@ impl<const E: usize> Boxes<E> {
         }
     }
 
-    /// All boxes of a cluster whose vertices have been moved.
-    fn refit_cluster(&mut self, cluster: u32) {
-        let clusters = &self.tables.clusters;
+    /// All boxes of a cluster; where exact positions are needed, its vertices have been moved.
+    fn refit_cluster(&mut self, cluster: u32, ends: &Ends<'_, E>) {
+        let Tables { clusters, rough, .. } = &*self.tables;
         let n = clusters.node(cluster);
+        let mut by = Vec4::ZERO;
+        if self.is_rough {
+            rough.move_cluster(cluster, &self.motion, &mut self.rough);
+            by = self.reach(n, ends) + self.motion.margin;
+        }
         let mut whole = Box32::EMPTY;
         for (lane, block) in clusters.blocks(cluster).enumerate() {
             let mut union = Box32::EMPTY;
-            for (i, corners) in clusters.corners()[clusters.places(block)].iter().enumerate() {
-                let triangle = Box32::around(self.positions.mapped(*corners));
+            for (i, place) in clusters.places(block).enumerate() {
+                let triangle = Box32::around(self.mapped(cluster, place)).widened(by);
                 self.blocks[block].set(i, &triangle);
                 union = union.union(&triangle);
             }
@@ -172,6 +209,15 @@ impl<const E: usize> Boxes<E> {
         }
         self.cluster_query[cluster as usize] = self.query;
         self.set_node(n, whole);
+    }
+
+    /// How far the vertices of a node may be from where they are in the ball asked about, in the frame, rounded up.
+    #[inline]
+    fn reach(&self, n: u32, ends: &Ends<'_, E>) -> Vec4 {
+        ends.ball.map_or(Vec4::ZERO, |ball| {
+            let reach = ball.of_node(n) * (self.positions.frame().scale() * (1.0 + 1e-5));
+            reach.as_vec3().extend(0.0)
+        })
     }
 
     #[inline]
@@ -192,12 +238,36 @@ impl<const E: usize> Boxes<E> {
         union
     }
 
+    /// Whether two triangles, each given by an open cluster and its place there, certainly have no point in common, as far
+    /// as that is seen without exact positions.
+    #[inline]
+    pub(super) fn are_apart(&self, x: (u32, usize), y: (u32, usize)) -> bool {
+        are_apart(&self.mapped(x.0, x.1), &self.mapped(y.0, y.1), self.wrong_by)
+    }
+
+    /// The corners of the triangle at a place of a cluster, in the frame.
+    #[inline]
+    fn mapped(&self, cluster: u32, place: usize) -> [[Vec4; E]; 3] {
+        let Tables { clusters, rough, .. } = &*self.tables;
+        if self.is_rough {
+            rough.corners(cluster, place, &self.rough)
+        } else {
+            self.positions.mapped(clusters.corners()[place])
+        }
+    }
+
     /// Moves the corners of any triangle, and gives their places.
     pub(super) fn moved(&mut self, asked: &Asked<'_>, triangle: u32, ends: &Ends<'_, E>) -> [u32; 3] {
-        let Tables { vertices, .. } = &*self.tables;
-        let places = asked.model.mesh().faces()[triangle as usize].map(|v| vertices.place(v));
-        places.iter().for_each(|&v| self.positions.move_one(vertices, v, ends));
+        let faces = asked.model.mesh().faces();
+        let places = faces[triangle as usize].map(|v| self.tables.vertices.place(v));
+        self.move_corners(places, ends);
         places
+    }
+
+    /// Moves three vertices.
+    #[inline]
+    pub(super) fn move_corners(&mut self, places: [u32; 3], ends: &Ends<'_, E>) {
+        places.iter().for_each(|&v| self.positions.move_one(&self.tables.vertices, v, ends));
     }
 
     /// The positions of three moved vertices, at each end.

@@ -102,7 +102,13 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
 
     /// Two triangles whose boxes overlap, each with the places of its corners.
     #[inline]
-    pub(super) fn test(&mut self, asked: &Asked<'_>, x: (u32, [u32; 3]), y: (u32, [u32; 3])) {
+    pub(super) fn test(
+        &mut self,
+        asked: &Asked<'_>,
+        x: (u32, [u32; 3]),
+        y: (u32, [u32; 3]),
+        ends: &Ends<'_, E>,
+    ) {
         let (x, y) = if x.0 < y.0 { (x, y) } else { (y, x) };
         let pair = (x.0, y.0);
         let relation = asked.filter.relation(pair.0, pair.1);
@@ -110,6 +116,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             return;
         }
         self.statistics.triangle_tests += 1;
+        [x, y].iter().for_each(|(_, corners)| self.boxes.move_corners(*corners, ends));
         let [x, y] = [x, y].map(|(_, corners)| self.boxes.corners(corners));
         if let Some(found) = F::of(&asked.filter, relation, pair, &x, &y)
             && !asked.filter.leaves_out(pair.0, pair.1)

@@ -25,10 +25,27 @@ impl Frame {
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).min(f64::MAX) }
     }
 
+    /// The positive number that coordinates are multiplied by.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// How far along an axis mapped points may be from those of real numbers, where the box of the frame contains all
+    /// points; `rounding` is how far these are from them. At least 14 units of 2^-24.
+    pub(super) fn wrong_by(&self, rounding: f64) -> f32 {
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        (16.0 * unit + 4.1 * rounding * self.scale) as f32
+    }
+
+    /// The mapped point before it is rounded to single precision.
+    pub(super) fn linear(&self, x: DVec3) -> DVec3 {
+        (x - self.center) * self.scale
+    }
+
     /// The mapped point; its fourth component means nothing. All of them are finite.
     #[inline]
     pub(super) fn map(&self, x: DVec3) -> Vec4 {
-        let y = ((x - self.center) * self.scale).as_vec3();
+        let y = self.linear(x).as_vec3();
         y.extend(0.0).clamp(Vec4::MIN, Vec4::MAX)
     }
 }

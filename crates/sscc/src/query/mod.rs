@@ -1,6 +1,7 @@
 //! Queries: which pairs of triangles collide at q (paper, Algorithm 1).
 
 mod aabb;
+mod apart;
 mod asked;
 mod batch;
 mod bd_tree;
@@ -15,6 +16,7 @@ mod finder;
 mod found;
 mod frame;
 mod kinetic;
+mod motion;
 mod near;
 mod never;
 mod normal_cones;
@@ -22,6 +24,7 @@ mod pack;
 mod pair_walk;
 mod posed;
 mod positions;
+mod rough;
 mod safe_scale;
 mod tables;
 mod traversal;

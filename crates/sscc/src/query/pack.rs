@@ -33,6 +33,12 @@ impl Box32 {
         a.union(&b).union(&c)
     }
 
+    /// A box larger by this much on both sides of each axis, up to a rounding.
+    #[inline]
+    pub(super) fn widened(&self, by: Vec4) -> Self {
+        Self { lower: self.lower - by, upper: self.upper + by }
+    }
+
     /// Whether the boxes have a point in common.
     #[inline]
     pub(super) fn overlaps(&self, other: &Self) -> bool {

@@ -5,11 +5,15 @@ use super::asked::Asked;
 use super::bd_tree::BdTree;
 use super::clusters::Clusters;
 use super::contour::Contours;
+use super::motion::Units;
+use super::rough::Rough;
 use super::vertices::Vertices;
 
 #[derive(Default)]
 pub(super) struct Tables {
     pub(super) vertices: Vertices,
+    pub(super) units: Units,
+    pub(super) rough: Rough,
     pub(super) clusters: Clusters,
     pub(super) bd_tree: BdTree,
     /// For exact normal cones only.
@@ -28,12 +32,20 @@ impl Tables {
         let vertices = Vertices::new(model, clusters.all_vertices());
         clusters.renumber(|v| vertices.place(v));
         let is_met = |n| clusters.of_node(n).is_none_or(|cluster| clusters.node(cluster) == n);
-        let bd_tree = BdTree::new(model, hierarchy, |n| is_lazy && is_met(n));
+        let units = Units::new(model, &vertices);
+        let bd_tree = BdTree::new(model, hierarchy, &units, |n| is_lazy && is_met(n));
         let contours = if asked.method == Method::NormalCones {
             Contours::new(model.mesh(), hierarchy, &asked.filter, &vertices, is_met)
         } else {
             Contours::default()
         };
-        Self { vertices, clusters, bd_tree, contours }
+        let rough = match asked.method {
+            Method::Certified | Method::BdTree | Method::Traditional => {
+                Rough::new(&units, &clusters, &vertices)
+            }
+            // Where all vertices move anyway, exact positions take no longer.
+            _ => Rough::default(),
+        };
+        Self { vertices, units, rough, clusters, bd_tree, contours }
     }
 }

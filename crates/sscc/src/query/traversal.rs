@@ -101,7 +101,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             let pack = self.boxes.cluster(cluster);
             let later = pack.overlapping_lane(pack, i).0 >> i << i;
             for j in Lanes(later) {
-                self.blocks(asked, (cluster, i), (cluster, j as usize));
+                self.blocks(asked, (cluster, i), (cluster, j as usize), ends);
             }
         }
     }
@@ -121,7 +121,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         for i in self.boxes.cluster(a).overlapping(&y) {
             self.statistics.box_tests += LANES as u64;
             for j in self.boxes.cluster(b).overlapping_lane(self.boxes.cluster(a), i as usize) {
-                self.blocks(asked, (a, i as usize), (b, j as usize));
+                self.blocks(asked, (a, i as usize), (b, j as usize), ends);
             }
         }
     }
@@ -129,7 +129,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Two blocks whose boxes overlap, the second not before the first (or the same); each is given by its cluster and its lane
     /// there.
     #[inline]
-    fn blocks(&mut self, asked: &Asked<'_>, x: (u32, usize), y: (u32, usize)) {
+    fn blocks(&mut self, asked: &Asked<'_>, x: (u32, usize), y: (u32, usize), ends: &Ends<'_, E>) {
         let clusters = &self.boxes.tables.clusters;
         let [a, b] = [x, y].map(|(cluster, lane)| clusters.blocks(cluster).start + lane);
         // Most triangles of a block stay clear of the whole other block.
@@ -146,10 +146,13 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             self.statistics.box_tests += LANES as u64;
             let met = self.boxes.block(b).overlapping_lane(self.boxes.block(a), row as usize).0 & open;
             for column in Lanes(met) {
+                let places = [first_a + row as usize, first_b + column as usize];
+                if self.boxes.are_apart((x.0, places[0]), (y.0, places[1])) {
+                    continue;
+                }
                 let clusters = &self.boxes.tables.clusters;
-                let [x, y] = [first_a + row as usize, first_b + column as usize]
-                    .map(|place| (clusters.triangle(place), clusters.corners()[place]));
-                self.test(asked, x, y);
+                let [x, y] = places.map(|place| (clusters.triangle(place), clusters.corners()[place]));
+                self.test(asked, x, y, ends);
             }
         }
     }

@@ -53,12 +53,21 @@ impl Vertices {
         self.order[place as usize]
     }
 
+    /// Where the vertex at a place is at rest.
+    pub(super) fn rest(&self, place: u32) -> DVec3 {
+        self.rest[place as usize]
+    }
+
+    /// Its displacements.
+    pub(super) fn modes(&self, place: u32) -> &[DVec3] {
+        &self.modes[place as usize * self.rank..][..self.rank]
+    }
+
     /// The position of the vertex at a place: to the bit that of [`deformed_position`](crate::deformed_position), at each q.
     #[inline]
     pub(super) fn position<const E: usize>(&self, place: u32, q: [&[f64]; E]) -> [DVec3; E] {
-        let place = place as usize;
-        let mut x = [self.rest[place]; E];
-        let modes = &self.modes[place * self.rank..][..self.rank];
+        let mut x = [self.rest(place); E];
+        let modes = self.modes(place);
         let q = q.map(|q| &q[..modes.len()]);
         // One pass over the modes for both ends.
         for (k, u) in modes.iter().enumerate() {

@@ -216,7 +216,7 @@ impl<'a> KineticQuery<'a> {
         self.pace.cost = self.pace.cost.saturating_add(cost + TEST * front.hot.len() as u64);
         for &(a, b) in &front.hot {
             let [x, y] = [a, b].map(|t| finder.boxes.moved(asked, t, ends));
-            finder.test(asked, (a, x), (b, y));
+            finder.test(asked, (a, x), (b, y), ends);
         }
         finder.found.sort_unstable();
         finder.statistics.complete = true;
