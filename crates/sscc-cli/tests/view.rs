@@ -144,8 +144,11 @@ fn a_folder_is_shown_by_its_report() {
 fn what_is_refused() {
     let folder = strips();
     let folder = folder.path();
+    // With a port that is taken: what is not refused ends there, too, rather than showing a page for ever.
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
     let refused = |args: &[&str], parts: &[&str]| {
-        let run = sscc(folder, &[&["view", "--no-open"], args].concat());
+        let run = sscc(folder, &[&["view", "--no-open", "--port", &port], args].concat());
         let message = run.refusal();
         for part in parts {
             assert!(message.contains(part), "{part}: {message}");
@@ -154,7 +157,7 @@ fn what_is_refused() {
     // What contradicts the certificates.
     let with = |more: &[&'static str]| [&MODEL[..], more].concat();
     refused(&with(&["--epsilon", "0.5"]), &["certified with --epsilon 0.1, not 0.5"]);
-    refused(&with(&["--metric", "identity"]), &["certified with another metric"]);
+    refused(&with(&["--metric", "mass"]), &["certified with another metric"]);
     refused(&with(&["--center=1,0"]), &["certified about another centre"]);
     refused(&with(&["--neighbours", "include-one-vertex"]), &["neighbour rule exclude"]);
     refused(&with(&["--weld=on"]), &["without welding"]);
@@ -164,9 +167,7 @@ fn what_is_refused() {
     let other = ["other.obj", "--modes", "modes.npy", "--certificates", "strips.sscc.safetensors"];
     refused(&other, &["strips.sscc.safetensors"]);
     // Ports and files.
-    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
-    let port = taken.local_addr().unwrap().port().to_string();
-    refused(&with(&["--port"]).into_iter().chain([port.as_str()]).collect::<Vec<_>>(), &["--port", &port]);
+    refused(&MODEL, &["--port", &port]);
     refused(&["missing.model.safetensors"], &["missing.model.safetensors: not found"]);
     refused(&["mesh.obj"], &["a mesh has no modes"]);
     refused(&["."], &["report.html: not found"]);

@@ -26,7 +26,7 @@ pub fn run(args: &View) -> Result<Outcome> {
         Some(path) => load::certificates(path, model, &args.options)?,
         None => load::certificates_now(model, &args.model, &args.options)?,
     };
-    // Taken before the page is made, so that a port in use is told at once.
+    let comparison = if args.compare_metrics { Some(metrics::compare(&loaded, path)?) } else { None };
     let server = bind(args)?;
     let details = ModelDetails {
         frequencies: loaded.info.elasticity.as_ref().and_then(frequencies::of_modes),
@@ -40,9 +40,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     scene
         .models
         .push(ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?);
-    if args.compare_metrics {
-        scene.plots.push(metrics::compare(&loaded, path)?);
-    }
+    scene.plots.extend(comparison);
     let live = Live::new(model, &certificates, scene, arrays, &Interrupt).with_context(in_model)?;
     announce(args, &server)?;
     server.serve(&live, &interrupt::happened)?;
