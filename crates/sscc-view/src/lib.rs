@@ -1,8 +1,8 @@
 //! The page of sscc: what it shows ([`Scene`], [`Arrays`]), reports in one file ([`Report`]), and the server on this
 //! machine ([`Server`]) that answers a live page by the native queries ([`Live`]).
 //!
-//! The page is one HTML file without any other, built from the folder `viewer/` and kept in `page/`. In a report its data
-//! stands in the file; live it is asked for. Both are the same JSON and the same arrays.
+//! The page is one HTML file without any other, built from the folder `viewer/` and kept in `page/`. In a report its
+//! data stands in the file; live it is asked for. Both are the same JSON and the same arrays.
 
 mod arrays;
 mod error;

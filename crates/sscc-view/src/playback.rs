@@ -34,8 +34,8 @@ pub struct Body {
     pub rigid: Option<String>,
     /// The point about which it turns.
     pub center: [f64; 3],
-    /// For each frame the pairs of triangles in which it collides with itself, then or before the next; none where they are
-    /// not known.
+    /// For each frame the pairs of triangles in which it collides with itself, then or before the next; none where
+    /// they are not known.
     pub pairs: Option<Vec<u64>>,
 }
 

@@ -67,9 +67,9 @@ impl Page<'_> {
         (0..self.history.len()).map(|state| [self.time(state), of(state)]).collect()
     }
 
-    /// What each step took to find the triangles in which bodies collide with themselves, in the manner of the paper's Figure
-    /// 12. The certified method is timed within the simulation (the slowest of each stretch of steps), the traditional one,
-    /// without certificates, at some of its states.
+    /// What each step took to find the triangles in which bodies collide with themselves, in the manner of the
+    /// paper's Figure 12. The certified method is timed within the simulation (the slowest of each stretch of
+    /// steps), the traditional one, without certificates, at some of its states.
     pub(super) fn costs(&self) -> Plot {
         let own = self.line(|state| 1e3 * self.history.facts(state).own());
         let of = |(state, seconds): &(usize, f64)| [self.time(*state), 1e3 * seconds];

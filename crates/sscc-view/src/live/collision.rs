@@ -33,7 +33,8 @@ struct First {
 /// The way is searched in so many pieces at the most.
 const PIECES: f64 = 64.0;
 
-/// Continuous queries tell a time a little before the triangles meet. They are looked for so much farther, as shares of the whole way.
+/// Continuous queries tell a time a little before the triangles meet. They are looked for so much farther, as shares
+/// of the whole way.
 const NUDGES: [f64; 8] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
 
 /// What meets so soon after the first, as a share of a piece, meets with it.

@@ -1,8 +1,8 @@
 //! The server of the page, for this machine alone.
 //!
-//! Anybody can knock: other programs of this machine, and any page that is open in a browser. So only those are answered who
-//! know the token of the address, came by a name of this machine (`Host`, against names that are made to point here) and from
-//! the page itself (`Origin`). Heads, bodies, times and the number of connections are bounded.
+//! Anybody can knock: other programs of this machine, and any page that is open in a browser. So only those are
+//! answered who know the token of the address, came by a name of this machine (`Host`, against names that are made
+//! to point here) and from the page itself (`Origin`). Heads, bodies, times and the number of connections are bounded.
 //!
 //! Made on `httparse` rather than taken whole: tiny_http (0.12) has no limits of time or connections, and what has them
 //! (hyper) brings an asynchronous runtime for one page.

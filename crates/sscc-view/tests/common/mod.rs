@@ -16,8 +16,8 @@ use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
 /// Vertices of a strip.
 const STRIP: usize = 40;
 
-/// Two strips of triangles, one above the other: mode 0 lowers the upper one, which is 1 above, mode 1 shifts it along, mode
-/// 2 bends it down at its end.
+/// Two strips of triangles, one above the other: mode 0 lowers the upper one, which is 1 above, mode 1 shifts it
+/// along, mode 2 bends it down at its end.
 pub fn strips() -> (ReducedModel, Certificates) {
     let vertex = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
     let positions = [0.0, 1.0].map(|z| (0..STRIP).map(|i| vertex(i, z)).collect::<Vec<_>>()).concat();
@@ -121,7 +121,8 @@ impl Client {
         let Self { port, token } = self;
         let length = body.len();
         format!(
-            "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nX-Sscc-Token: {token}\r\nContent-Length: {length}\r\n\
+            "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nX-Sscc-Token: {token}\r\n\
+             Content-Length: {length}\r\n\
              {more}\r\n{body}"
         )
         .into_bytes()

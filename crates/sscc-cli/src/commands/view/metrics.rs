@@ -1,4 +1,5 @@
-//! Energy against displacement: how the root's certificate shrinks as modes are added, under both metrics (paper, Figure 9).
+//! Energy against displacement: how the root's certificate shrinks as modes are added, under both metrics (paper,
+//! Figure 9).
 
 use std::path::Path;
 
@@ -12,8 +13,8 @@ use crate::load;
 /// The numbers of modes: these, as far as there are, and all.
 const RANKS: [usize; 6] = [1, 5, 10, 20, 40, 80];
 
-/// For each number of modes and both metrics the largest deformation along the first mode alone that the root proves free: the
-/// displacement of the vertex that moves farthest.
+/// For each number of modes and both metrics the largest deformation along the first mode alone that the root proves
+/// free: the displacement of the vertex that moves farthest.
 pub fn compare(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
     let model = &loaded.model;
     let energy = model.metric();
