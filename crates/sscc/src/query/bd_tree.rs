@@ -24,7 +24,7 @@ pub(super) struct BdTree {
     /// `[place * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
     /// The same in single precision, `[(place * (rank + 1) + mode) * 6 + component]` as [`Units`] tells, and one more.
-    shares: Vec<f32>,
+    shares: Vec<i16>,
 }
 
 impl BdTree {
@@ -61,13 +61,13 @@ impl BdTree {
         let mut next = 0..;
         let place = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let places = (0..hierarchy.nodes().len()).map(place).collect();
-        let mut shares: Vec<f32> = Vec::with_capacity(all.len() * (rank + 1) * SHARES + 1);
+        let mut shares: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * SHARES + 1);
         for ((centre, half), rates) in &all {
             let means = units.shares(*centre, rates.iter().map(|rate| rate.0));
             let growths = units.shares_of_growth(*half, rates.iter().map(|rate| rate.1));
-            means.zip(growths).for_each(|(m, g)| shares.extend([m.x, m.y, m.z, g.x, g.y, g.z]));
+            means.zip(growths).for_each(|(m, g)| shares.extend([m, g].as_flattened()));
         }
-        shares.push(0.0);
+        shares.push(0);
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
         Self { rank, places, rest, rates, shares }
@@ -92,7 +92,9 @@ impl BdTree {
         for (k, factors) in motion.factors.iter().enumerate() {
             // The fourth components are of what follows.
             let of_mode = &shares[k * SHARES..][..SHARES + 1];
-            let (mean, growth) = (Vec4::from_slice(&of_mode[..4]), Vec4::from_slice(&of_mode[3..]));
+            let vector =
+                |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
+            let (mean, growth) = (vector(0), vector(3));
             for end in 0..E {
                 centre[end] += mean * factors[end];
                 half[end] += growth * factors[end].abs();

@@ -83,15 +83,16 @@ impl<const E: usize> Boxes<E> {
         let whole = tables.bd_tree.root(ends.q, DVec3::splat(self.margin));
         self.positions.update(self.query, ends.pose.map_or(whole, |pose| pose.around));
         let frame = self.positions.frame();
-        // In the world coordinates have no bound; a ball's ends are corners of boxes.
-        let is_plain = ends.pose.is_none() && ends.ball.is_none();
-        self.is_rough = is_plain
+        // In the world coordinates have no bound.
+        self.is_rough = ends.pose.is_none()
             && !tables.rough.is_empty()
             && tables.units.begin(&mut self.motion, ends.q, frame, self.margin);
-        self.wrong_by = match (is_plain, self.is_rough) {
-            (false, _) => f32::INFINITY,
-            (true, true) => self.motion.margin,
-            (true, false) => frame.wrong_by(self.margin),
+        self.wrong_by = if ends.pose.is_some() || ends.ball.is_some() {
+            f32::INFINITY
+        } else if self.is_rough {
+            self.motion.margin
+        } else {
+            frame.wrong_by(self.margin)
         };
         if self.is_lazy {
             return;
@@ -100,7 +101,7 @@ impl<const E: usize> Boxes<E> {
             self.positions.move_all(&tables.vertices, ends);
         }
         for cluster in 0..tables.clusters.count() as u32 {
-            self.refit_cluster(cluster);
+            self.refit_cluster(cluster, ends);
         }
         for n in (0..hierarchy.nodes().len() as u32).rev() {
             if tables.clusters.of_node(n).is_none() {
@@ -158,7 +159,7 @@ impl<const E: usize> Boxes<E> {
                 let Tables { clusters, vertices, .. } = &*self.tables;
                 clusters.vertices(cluster).iter().for_each(|&v| self.positions.move_one(vertices, v, ends));
             }
-            self.refit_cluster(cluster);
+            self.refit_cluster(cluster, ends);
         }
     }
 
@@ -167,7 +168,7 @@ impl<const E: usize> Boxes<E> {
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
         if self.node_query[n as usize] != self.query {
             if let Some(aabb) = self.tables.bd_tree.rough(n, &self.motion).filter(|_| self.is_rough) {
-                self.set_node(n, aabb);
+                self.set_node(n, aabb.widened(self.reach(n, ends)));
                 return;
             }
             let frame = self.positions.frame();
@@ -187,14 +188,14 @@ impl<const E: usize> Boxes<E> {
     }
 
     /// All boxes of a cluster; where exact positions are needed, its vertices have been moved.
-    fn refit_cluster(&mut self, cluster: u32) {
+    fn refit_cluster(&mut self, cluster: u32, ends: &Ends<'_, E>) {
         let Tables { clusters, rough, .. } = &*self.tables;
-        let mut by = 0.0;
+        let n = clusters.node(cluster);
+        let mut by = Vec4::ZERO;
         if self.is_rough {
             rough.move_cluster(cluster, &self.motion, &mut self.rough);
-            by = self.wrong_by;
+            by = self.reach(n, ends) + self.motion.margin;
         }
-        let n = clusters.node(cluster);
         let mut whole = Box32::EMPTY;
         for (lane, block) in clusters.blocks(cluster).enumerate() {
             let mut union = Box32::EMPTY;
@@ -208,6 +209,15 @@ impl<const E: usize> Boxes<E> {
         }
         self.cluster_query[cluster as usize] = self.query;
         self.set_node(n, whole);
+    }
+
+    /// How far the vertices of a node may be from where they are in the ball asked about, in the frame, rounded up.
+    #[inline]
+    fn reach(&self, n: u32, ends: &Ends<'_, E>) -> Vec4 {
+        ends.ball.map_or(Vec4::ZERO, |ball| {
+            let reach = ball.of_node(n) * (self.positions.frame().scale() * (1.0 + 1e-5));
+            reach.as_vec3().extend(0.0)
+        })
     }
 
     #[inline]

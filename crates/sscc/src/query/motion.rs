@@ -2,7 +2,7 @@
 //!
 //! Half the bytes of double precision: moving vertices and boxes is what queries take longest for, and it waits for memory.
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec4};
 
 use super::frame::Frame;
 use super::vertices::Vertices;
@@ -10,7 +10,7 @@ use crate::ReducedModel;
 use crate::hierarchy::bounding_box;
 
 /// The rest pose is one more mode, the first, whose coordinate is 1. Displacements are given as shares of the largest one
-/// by the same mode.
+/// by the same mode, in 16 bits: a quarter of what double precision takes.
 #[derive(Default)]
 pub(super) struct Units {
     /// The middle of the rest pose, and the largest distance from it along an axis.
@@ -19,6 +19,9 @@ pub(super) struct Units {
     /// The largest displacement by each mode.
     sizes: Vec<f64>,
 }
+
+/// A share of 1.
+const WHOLE: f64 = 32767.0;
 
 /// A larger error, in the coordinates of the frame, is not worth the time that it saves.
 const WORST_MARGIN: f64 = 1.0 / 2048.0;
@@ -54,7 +57,7 @@ impl Units {
         &'t self,
         rest: DVec3,
         modes: impl Iterator<Item = DVec3> + 't,
-    ) -> impl Iterator<Item = Vec3> + 't {
+    ) -> impl Iterator<Item = [i16; 3]> + 't {
         self.shares_of_growth(rest - self.center, modes)
     }
 
@@ -63,8 +66,11 @@ impl Units {
         &'t self,
         rest: DVec3,
         modes: impl Iterator<Item = DVec3> + 't,
-    ) -> impl Iterator<Item = Vec3> + 't {
-        let share = |(u, size): (DVec3, f64)| if size > 0.0 { (u / size).as_vec3() } else { Vec3::ZERO };
+    ) -> impl Iterator<Item = [i16; 3]> + 't {
+        let share = |(u, size): (DVec3, f64)| {
+            let u = if size > 0.0 { u / size * WHOLE } else { DVec3::ZERO };
+            u.to_array().map(|x| x.round() as i16)
+        };
         std::iter::once((rest, self.half)).chain(modes.zip(self.sizes.iter().copied())).map(share)
     }
 
@@ -73,7 +79,8 @@ impl Units {
     ///
     /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
     /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
-    /// u of that; shares, factors and products add 3 u d, the shift, the mapped position and the box's widening u (3 + d).
+    /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d). Shares are
+    /// off by half a unit, all of them by d / (2 WHOLE).
     pub(super) fn begin<const E: usize>(
         &self,
         motion: &mut Motion<E>,
@@ -84,18 +91,19 @@ impl Units {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let scale = frame.scale();
         let rest = self.half * scale;
+        let factor = |x: f64| Vec4::splat((x / WHOLE) as f32);
         motion.factors.clear();
-        motion.factors.push([Vec4::splat(rest as f32); E]);
+        motion.factors.push([factor(rest); E]);
         let mut sums = [rest; E];
         for (k, size) in self.sizes.iter().enumerate() {
             let factors = q.map(|q| q[k] * size * scale);
             (0..E).for_each(|end| sums[end] += factors[end].abs());
-            motion.factors.push(factors.map(|x| Vec4::splat(x as f32)));
+            motion.factors.push(factors.map(factor));
         }
         // What is no number is the largest, too.
         let most = sums.into_iter().fold(0.0, |most, sum| if sum <= most { most } else { sum });
-        let margin =
-            unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) * 1.1 + 4.0 * rounding * scale;
+        let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + most / (2.0 * WHOLE);
+        let margin = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];
         motion.margin = (margin * (1.0 + 1e-6)) as f32;
         margin <= WORST_MARGIN

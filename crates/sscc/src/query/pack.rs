@@ -33,9 +33,9 @@ impl Box32 {
         a.union(&b).union(&c)
     }
 
-    /// A box larger by this much on all sides, up to a rounding.
+    /// A box larger by this much on both sides of each axis, up to a rounding.
     #[inline]
-    pub(super) fn widened(&self, by: f32) -> Self {
+    pub(super) fn widened(&self, by: Vec4) -> Self {
         Self { lower: self.lower - by, upper: self.upper + by }
     }
 

@@ -16,7 +16,7 @@ pub(super) struct Rough {
     /// For each cluster where its groups of four vertices begin, and the end.
     starts: Vec<u32>,
     /// `[group * (rank + 1) + mode][axis]`, as [`Units`] tells: one lane for each vertex.
-    shares: Vec<[Vec4; 3]>,
+    shares: Vec<[[i16; GROUP]; 3]>,
     /// The corners of the triangle at each place, among the vertices of its cluster.
     corners: Vec<[u8; 3]>,
 }
@@ -42,7 +42,7 @@ impl Rough {
                         units.shares(vertices.rest(v), vertices.modes(v).iter().copied()).enumerate()
                     {
                         if lane == 0 {
-                            shares.push([Vec4::ZERO; 3]);
+                            shares.push([[0; GROUP]; 3]);
                         }
                         (0..3).for_each(|axis| shares[first + k][axis][lane] = x[axis]);
                     }
@@ -84,7 +84,7 @@ impl Rough {
             for (share, factors) in group.iter().zip(&motion.factors) {
                 for end in 0..E {
                     for axis in 0..3 {
-                        sums[end][axis] += share[axis] * factors[end];
+                        sums[end][axis] += Vec4::from_array(share[axis].map(f32::from)) * factors[end];
                     }
                 }
             }

@@ -40,9 +40,11 @@ impl Tables {
             Contours::default()
         };
         let rough = match asked.method {
-            // Normals need all exact positions.
-            Method::NormalCones | Method::NormalConesApprox => Rough::default(),
-            _ => Rough::new(&units, &clusters, &vertices),
+            Method::Certified | Method::BdTree | Method::Traditional => {
+                Rough::new(&units, &clusters, &vertices)
+            }
+            // Where all vertices move anyway, exact positions take no longer.
+            _ => Rough::default(),
         };
         Self { vertices, units, rough, clusters, bd_tree, contours }
     }
