@@ -167,7 +167,7 @@ def test_rows_are_named(certs: sscc.Certificates) -> None:
         with pytest.raises(TypeError, match="masked"):
             certs.check_many(many)
     with pytest.raises(TypeError, match="modes is a masked array: fill it first"):
-        sscc.Model(V, F, [[[masked[:1]] * 3] * len(V)][0])
+        sscc.Model(V, F, [[masked[:1]] * 3] * len(V))
     with pytest.raises(ValueError, match="threads is -1"):
         certs.check_many(rows, threads=-1)
 
