@@ -8,7 +8,7 @@ use numpy::{
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyTuple};
 use sscc::Pair;
 
 use crate::errors::{kind, value};
@@ -78,9 +78,8 @@ pub fn vector<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyAr
 fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = any.py();
     let numpy = py.import("numpy")?;
-    if any.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
-        return Err(kind(format!("{name} is a masked array: fill it first, as by {name}.filled(0)")));
-    }
+    let masked = numpy.getattr("ma")?.getattr("MaskedArray")?;
+    check_unmasked(any, name, &masked, 0)?;
     let refused = |error: PyErr| {
         if error.is_instance_of::<PyMemoryError>(py)
             || !error.is_instance_of::<pyo3::exceptions::PyException>(py)
@@ -92,12 +91,51 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
     };
     let array = numpy.call_method1("asarray", (any,)).map_err(refused)?;
     let letter: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if letter == 'O' && has_long_integer(&array)? {
+        let message = format!("{name} has an integer of more than 64 bits: integers are exact up to 2^53");
+        return Err(value(message));
+    }
     if matches!(letter, 'O' | 'U' | 'S' | 'M' | 'm' | 'V') {
         let found = any.get_type().name()?;
         return Err(kind(format!("{name} is a {found} that is no array of numbers")));
     }
+    // Only now: lists that are an array are no deeper than its axes, and end.
+    check_unmasked(any, name, &masked, array.getattr("ndim")?.extract()?)?;
     // What is empty has no numbers that could be of the wrong type: a list [] is float64 to NumPy.
     Ok(array)
+}
+
+/// Refuses what has a mask, which NumPy would leave out, also in lists and tuples down to this depth.
+fn check_unmasked(
+    any: &Bound<'_, PyAny>,
+    name: &str,
+    masked: &Bound<'_, PyAny>,
+    depth: usize,
+) -> PyResult<()> {
+    if any.is_exact_instance_of::<PyFloat>() || any.is_exact_instance_of::<PyInt>() {
+        return Ok(());
+    }
+    if any.is_instance(masked)? {
+        return Err(kind(format!("{name} is a masked array: fill it first, as by {name}.filled(0)")));
+    }
+    if depth > 0 && (any.is_instance_of::<PyList>() || any.is_instance_of::<PyTuple>()) {
+        for item in any.try_iter()? {
+            check_unmasked(&item?, name, masked, depth - 1)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether an array of objects is one because of an integer that NumPy has no type for.
+fn has_long_integer(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    for item in array.getattr("flat")?.try_iter()? {
+        let item = item?;
+        if item.is_instance_of::<PyInt>() && item.extract::<i64>().is_err() && item.extract::<u64>().is_err()
+        {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 fn is_empty(array: &Bound<'_, PyAny>) -> PyResult<bool> {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use sscc::Error;
 
@@ -32,6 +33,8 @@ impl KineticQuery {
                 Ok(Answer::of(pairs, query.norm(), query.statistics()))
             })
         })?;
+        let found =
+            found.ok_or_else(|| PyRuntimeError::new_err("this query is being asked: take another one"))?;
         found.map_err(|error: Error| refused(&error, "q"))
     }
 }

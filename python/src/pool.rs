@@ -1,6 +1,7 @@
 //! Certificates with their model and the queries by them, one for each thread that asks at the same time.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread::{self, ThreadId};
 
 use pyo3::prelude::*;
 use self_cell::self_cell;
@@ -69,19 +70,37 @@ self_cell!(
     }
 );
 
-pub struct Steps<'a>(Mutex<KineticQuery<'a>>);
+pub struct Steps<'a> {
+    query: Mutex<KineticQuery<'a>>,
+    /// The thread that asks it now.
+    asker: Mutex<Option<ThreadId>>,
+}
 
 impl Kinetic {
     pub fn of(pool: Arc<Pool>) -> Result<Self, Error> {
         Self::try_new(pool, |pool| {
             let Certified { loaded, certificates } = pool.borrow_owner();
-            Ok(Steps(Mutex::new(KineticQuery::new(&loaded.model, certificates)?.cancelled_by(&Signals))))
+            let query = KineticQuery::new(&loaded.model, certificates)?.cancelled_by(&Signals);
+            Ok(Steps { query: Mutex::new(query), asker: Mutex::default() })
         })
     }
 
-    /// Asks it; who comes meanwhile waits. Not to be called with the GIL: who holds the query may wait for that.
-    pub fn ask<T>(&self, ask: impl FnOnce(&mut KineticQuery<'_>) -> T) -> T {
-        self.with_dependent(|_, steps| ask(&mut lock(&steps.0)))
+    /// Asks it; who comes meanwhile waits. Not to be called with the GIL: who holds the query may wait for that. None
+    /// if this thread is asking it already: what handles a signal would wait for itself.
+    pub fn ask<T>(&self, ask: impl FnOnce(&mut KineticQuery<'_>) -> T) -> Option<T> {
+        let here = Some(thread::current().id());
+        self.with_dependent(|_, steps| {
+            let mut query = match steps.query.try_lock() {
+                Err(TryLockError::WouldBlock) if *lock(&steps.asker) == here => return None,
+                Err(TryLockError::WouldBlock) => lock(&steps.query),
+                Ok(query) => query,
+                Err(TryLockError::Poisoned(query)) => query.into_inner(),
+            };
+            *lock(&steps.asker) = here;
+            let answer = ask(&mut query);
+            *lock(&steps.asker) = None;
+            Some(answer)
+        })
     }
 }
 

@@ -38,7 +38,9 @@ def options_bytes(options: Mapping[str, object]) -> bytes:
             array = np.ascontiguousarray(value)
             text = f"{name}: {array.dtype} {array.shape} ".encode() + array.tobytes()
         else:
-            text = f"{name}: {value!r}".encode()
+            # Numbers of NumPy are written differently by its versions.
+            plain = value.item() if isinstance(value, np.generic) else value
+            text = f"{name}: {plain!r}".encode()
         written += len(text).to_bytes(8, "little") + text
     return written
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import operator
 import pickle
 import threading
 from collections.abc import Callable
@@ -57,7 +58,8 @@ def key_of_model(model: Model, options: dict[str, Any]) -> bytes:
 
 
 def key_of_chunk(content: bytes, rows: NDArray[np.float64], limit: int | None) -> bytes:
-    return key("check", content, repr(limit).encode(), np.ascontiguousarray(rows).tobytes())
+    plain = None if limit is None else operator.index(limit)
+    return key("check", content, repr(plain).encode(), np.ascontiguousarray(rows).tobytes())
 
 
 #: What this process has prepared last, and for what.

@@ -2,7 +2,7 @@
 
 Every function takes a ``distributed.Client`` and gives what this process alone would have given, byte for byte. Workers
 need this package and nothing else: models travel to them. What a worker did when it was lost is done again by another
-one. Needs ``pip install sscc[dask]``.
+one. Needs ``pip install './python[dask]'``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ try:
     import dask
     from distributed import Client, Future, as_completed
 except ImportError as error:
-    raise ImportError("sscc.batch needs dask.distributed, which is not installed: pip install 'sscc[dask]'") from error
+    message = "sscc.batch needs dask.distributed, which is not installed: pip install './python[dask]'"
+    raise ImportError(message) from error
 
 __all__ = ["Library", "certify", "certify_in_shards", "check"]
 
@@ -232,9 +233,14 @@ def _model(given: Model | str | os.PathLike[str]) -> Model:
 def _named(models: Any) -> dict[str, Any]:
     if isinstance(models, (Model, str, os.PathLike)):
         raise TypeError("models is a single one: give a list or a mapping, or take certify_in_shards for a large one")
-    if isinstance(models, Mapping):
-        return {str(name): model for name, model in models.items()}
     named: dict[str, Any] = {}
+    if isinstance(models, Mapping):
+        for given, model in models.items():
+            name = str(given)
+            if name in named:
+                raise ValueError(f"models: {given!r} is {name} again: each name may stand for one model")
+            named[name] = model
+        return named
     for place, model in enumerate(models):
         name = os.fspath(model) if isinstance(model, (str, os.PathLike)) else f"models[{place}]"
         if name in named:

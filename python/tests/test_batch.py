@@ -9,6 +9,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -252,6 +253,18 @@ def test_damaged_and_foreign_results_are_refused() -> None:
         unseal(mine, sealed + b"0")
 
 
+def test_numbers_of_numpy_make_the_keys_of_plain_ones() -> None:
+    from sscc._seal import options_bytes
+    from sscc._worker import key_of_chunk
+
+    plain = options_bytes({"epsilon": 0.5, "budget": 8, "weld": True})
+    assert options_bytes({"epsilon": np.float64(0.5), "budget": np.int32(8), "weld": np.True_}) == plain
+    assert options_bytes({"epsilon": 0.5, "budget": 9, "weld": True}) != plain
+    limit: Any = np.int64(2)
+    rows = np.zeros((1, 3))
+    assert key_of_chunk(b"", rows, limit) == key_of_chunk(b"", rows, 2) != key_of_chunk(b"", rows, None)
+
+
 def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -> None:
     model = certs.model
     Q = samples(10, 6, 1.0)
@@ -280,6 +293,8 @@ def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -
         certify(model, client)
     with pytest.raises(ValueError, match=r"models\[1\] is a.obj again"):
         certify(["a.obj", "a.obj"], client)
+    with pytest.raises(ValueError, match="^models: '1' is 1 again"):
+        certify({1: model, "1": model}, client)
     with pytest.raises(ValueError, match="epsilon is 2"):
         in_shards(model, client, epsilon=2)
     with pytest.raises(ValueError, match="shards is 0"):
@@ -298,20 +313,25 @@ def test_workers_show_no_bars_and_this_process_does(client: Any, model: sscc.Mod
     assert "certifying" not in capfd.readouterr().err
 
 
-def test_without_dask_the_message_says_what_to_install() -> None:
+def test_without_dask_the_message_says_what_to_install(tmp_path: Path) -> None:
     code = "import sys; sys.modules['distributed'] = None; import sscc; import sscc.batch"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    # Elsewhere, as python -c prefers what is in the current folder: here that is the source, which is not built.
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].endswith("pip install 'sscc[dask]'")
+    assert done.stderr.splitlines()[-1].endswith("pip install './python[dask]'")
 
 
-def test_the_document_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    for block in blocks("docs/batch.md"):
-        exec(compile(block, "docs/batch.md", "exec"), names)
-    library = names["library"]
-    assert 0.9 <= library.certificates["plates"].root_radius <= 1
-    assert isinstance(library.failures["lost"], FileNotFoundError)
+def test_the_document_runs_as_a_script(tmp_path: Path) -> None:
+    first, *others = blocks("docs/batch.md")
+    shown = """
+    print(library.certificates["plates"].root_radius, type(library.failures["lost"]).__name__)
+    print(answers.colliding.sum(), len(answers))
+"""
+    script = tmp_path / "script.py"
+    script.write_text(first + "".join(textwrap.indent(block, "    ") for block in others) + shown)
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True, timeout=LONG)
+    assert done.returncode == 0, done.stderr
+    radius, lost, colliding, rows = done.stdout.split()
+    assert 0.8 <= float(radius) <= 1 and lost == "FileNotFoundError"
     # Between -2 and 2 the triangles touch at -1 alone, which is none of the rows.
-    assert names["answers"].colliding.sum() == 0 and len(names["answers"]) == 10_000
+    assert colliding == "0" and rows == "10000"

@@ -52,7 +52,7 @@ def test_certificates_and_answers_are_the_same(
         (["--scheme", "paper"], {"scheme": "paper"}),
         (["--center", "0.1,0,0,0,0,0", "--budget", "64"], {"center": [0.1, 0, 0, 0, 0, 0], "budget": 64}),
         (
-            ["--neighbours", "include-one-vertex", "--weld", "on"],
+            ["--neighbours", "include-one-vertex", "--weld=on"],
             {"neighbours": "include-one-vertex", "weld": True},
         ),
         (["--ignore-rest", "--max-exceptions", "7"], {"ignore_rest": True, "max_exceptions": 7}),

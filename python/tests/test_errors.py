@@ -118,6 +118,8 @@ QS: list[tuple[Any, type[Exception], str]] = [
     (None, TypeError, "{} is a NoneType that is no array of numbers"),
     (["a"] * 6, TypeError, "{} is a list that is no array of numbers"),
     (np.ma.masked_array(np.zeros(6), mask=np.arange(6) == 0), TypeError, "{} is a masked array: fill it first"),
+    ([2**64, 0, 0, 0, 0, 0], ValueError, "{} has an integer of more than 64 bits: integers are exact up to 2^53"),
+    ([-(10**5000), 0, 0, 0, 0, 0], ValueError, "{} has an integer of more than 64 bits"),
     (np.zeros(6, "M8[s]"), TypeError, "{} is a ndarray that is no array of numbers"),
     ([2**53 + 1, 0, 0, 0, 0, 0], ValueError, "{}: the integer 9007199254740993 is beyond 2^53"),
     ([-(2**63), 0, 0, 0, 0, 0], ValueError, "{}: the integer -9223372036854775808 is beyond 2^53"),
@@ -159,6 +161,13 @@ def test_rows_are_named(certs: sscc.Certificates) -> None:
         certs.check_many(rows[0])
     with pytest.raises(TypeError, match="Q is a masked array"):
         certs.check_many(np.ma.masked_array(rows))
+    masked = np.ma.masked_array(rows[0], mask=np.arange(6) == 2)
+    nested: list[Any] = [[rows[0], masked], (masked,), [tuple(rows[0]), masked], [[*rows[0][:5], masked[2]]]]
+    for many in nested:
+        with pytest.raises(TypeError, match="masked"):
+            certs.check_many(many)
+    with pytest.raises(TypeError, match="modes is a masked array: fill it first"):
+        sscc.Model(V, F, [[masked[:1]] * 3] * len(V))
     with pytest.raises(ValueError, match="threads is -1"):
         certs.check_many(rows, threads=-1)
 

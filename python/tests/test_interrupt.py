@@ -69,6 +69,28 @@ def test_single_queries_stop_on_ctrl_c(large_certs: sscc.Certificates) -> None:
     assert certs.check([0.0]).count == 0
 
 
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers that signal")
+def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked() -> None:
+    # Everything ends in one point: each pair of triangles collides.
+    vertices, faces, _ = torus(240, 120, 1)
+    certs = sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
+    kinetic, other = certs.kinetic(), certs.kinetic()
+
+    def handle(_signal: int, _frame: object) -> None:
+        assert not other.check([0.0]).colliding
+        kinetic.check([0.0])
+
+    before = signal.signal(signal.SIGALRM, handle)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with pytest.raises(RuntimeError, match="^this query is being asked"):
+            kinetic.check([1.0])
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert not kinetic.check([0.0]).colliding
+
+
 def test_builders_of_modes_stop_on_ctrl_c() -> None:
     vertices, faces, _ = torus(30, 20, 1)
     shapes = vertices + np.random.default_rng(3).normal(size=(2500, 600, 3))
