@@ -167,7 +167,9 @@ impl<const E: usize> Boxes<E> {
     #[inline]
     pub(super) fn enclose(&mut self, n: u32, ends: &Ends<'_, E>) {
         if self.node_query[n as usize] != self.query {
-            if let Some(aabb) = self.tables.bd_tree.rough(n, &self.motion).filter(|_| self.is_rough) {
+            if self.is_rough
+                && let Some(aabb) = self.tables.bd_tree.rough(n, &self.motion)
+            {
                 self.set_node(n, aabb.widened(self.reach(n, ends)));
                 return;
             }
@@ -216,7 +218,8 @@ impl<const E: usize> Boxes<E> {
     fn reach(&self, n: u32, ends: &Ends<'_, E>) -> Vec4 {
         ends.ball.map_or(Vec4::ZERO, |ball| {
             let reach = ball.of_node(n) * (self.positions.frame().scale() * (1.0 + 1e-5));
-            reach.as_vec3().extend(0.0)
+            // Finite, as all corners of boxes are that hold something.
+            reach.as_vec3().extend(0.0).min(Vec4::MAX)
         })
     }
 

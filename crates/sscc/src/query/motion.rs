@@ -100,8 +100,11 @@ impl Units {
             (0..E).for_each(|end| sums[end] += factors[end].abs());
             motion.factors.push(factors.map(factor));
         }
-        // What is no number is the largest, too.
-        let most = sums.into_iter().fold(0.0, |most, sum| if sum <= most { most } else { sum });
+        let most = if sums.iter().all(|sum| sum.is_finite()) {
+            sums.into_iter().fold(0.0, f64::max)
+        } else {
+            f64::INFINITY
+        };
         let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + most / (2.0 * WHOLE);
         let margin = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];
