@@ -131,11 +131,13 @@ fn certificates_are_computed_where_none_are_given() {
 #[cfg(unix)]
 fn a_folder_is_shown_by_its_report() {
     let folder = tempfile::tempdir().unwrap();
-    let html = "<html><script type=\"application/json\" id=\"sscc-report\">{}</script></html>";
+    let data = r#"<script type="application/json" id="sscc-report">{"scene":{},"arrays":{}}</script>"#;
+    let html = format!("<html><script>steal()</script>{data}<script>steal()</script></html>");
     fs::write(folder.path().join("report.html"), html).unwrap();
     let shown = Shown::of(folder.path(), &["."]);
     let (status, body) = shown.ask("GET", &format!("/?token={}", shown.token), "");
-    assert_eq!((status, body.as_str()), (200, html));
+    // Its data in the page of the program, and nothing else of the file.
+    assert!(status == 200 && body.contains(data) && !body.contains("steal()"));
     assert_eq!(shown.ask("GET", "/api/scene", "").0, 404);
     assert_eq!(shown.interrupted().0, Some(0));
 }
@@ -172,6 +174,19 @@ fn what_is_refused() {
     refused(&["mesh.obj"], &["a mesh has no modes"]);
     refused(&["."], &["report.html: not found"]);
     fs::write(folder.join("report.html"), "<html></html>").unwrap();
-    refused(&["."], &["report.html: it is no report of sscc"]);
+    refused(&["."], &["report.html: it is no report of sscc: it has no data"]);
+    fs::write(folder.join("report.html"), "<script type=\"application/json\" id=\"sscc-report\">1</script>")
+        .unwrap();
+    refused(&["."], &["report.html: it is no report of sscc: "]);
+    // Sparse: it takes no room.
+    fs::File::create(folder.join("report.html")).unwrap().set_len((256 << 20) + 1).unwrap();
+    refused(&["."], &["report.html: larger than a report may be (256 MiB)"]);
+    // What says nothing about a folder.
+    for option in
+        ["--certificates=a", "--modes=a", "--compare-metrics", "--epsilon=0.5", "--weld=on", "--threads=1"]
+    {
+        let name = option.split('=').next().unwrap();
+        refused(&[".", option], &[name, "is for models"]);
+    }
     refused(&with(&["--compare-metrics"]), &["the model has no stiffness"]);
 }

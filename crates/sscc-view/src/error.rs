@@ -13,6 +13,9 @@ pub enum ViewError {
     /// What was asked for does not exist or does not fit.
     #[error("{0}")]
     Request(String),
+    /// A file that is shown as a report is none.
+    #[error("it is no report of sscc: {0}")]
+    NoReport(String),
     /// The system refused.
     #[error(transparent)]
     System(#[from] std::io::Error),

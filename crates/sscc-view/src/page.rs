@@ -13,13 +13,24 @@ const AFTER: &str = "</script>";
 const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; \
      script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; media-src data: blob:\">";
 
-/// The page with data put in. `<` is written as its number, so that no text of the data can end the element.
+/// The page with data put in.
 pub(crate) fn with_data(data: &impl Serialize) -> serde_json::Result<String> {
-    let json = serde_json::to_string(data)?.replace('<', "\\u003c");
+    Ok(with_json(&serde_json::to_string(data)?))
+}
+
+/// The text of the data in a page.
+pub(crate) fn json_in(page: &str) -> Option<&str> {
+    let (_head, rest) = page.split_once(BEFORE)?;
+    Some(rest.split_once(AFTER)?.0)
+}
+
+/// The page with JSON put in. `<` is written as its number, so that no text of the data can end the element.
+pub(crate) fn with_json(json: &str) -> String {
+    let json = json.replace('<', "\\u003c");
     let (head, rest) = PAGE.split_once(BEFORE).unwrap_or((PAGE, ""));
     let (_null, tail) = rest.split_once(AFTER).unwrap_or(("", rest));
     let head = head.replacen("<head>", &format!("<head>{POLICY}"), 1);
-    Ok([&head, BEFORE, &json, AFTER, tail].concat())
+    [&head, BEFORE, &json, AFTER, tail].concat()
 }
 
 #[cfg(test)]

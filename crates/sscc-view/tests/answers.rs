@@ -56,21 +56,6 @@ fn answers_are_those_of_the_query() {
 }
 
 #[test]
-fn ways_are_looked_at() {
-    let (model, certificates) = strips();
-    let mut query = Query::new(&model, &certificates).unwrap();
-    with_server(|client| {
-        let (from, to) = ([0.0, 0.0, 0.0], [2.0, 0.1, 0.0]);
-        let answer = check(client, &json!({"q": to, "continuous_from": from}));
-        let impacts = query.continuous(&from, &to).unwrap();
-        assert!(!impacts.is_empty());
-        assert_eq!(answer["times"], json!(impacts.iter().map(|i| i.time).collect::<Vec<_>>()));
-        assert_eq!(answer["pairs"], json!(impacts.iter().map(|i| i.pair).collect::<Vec<_>>()));
-        assert_eq!(check(client, &json!({"q": to}))["pairs"], json!([]));
-    });
-}
-
-#[test]
 fn the_first_collision_is_found() {
     let (model, certificates) = strips();
     let mut query = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
@@ -176,7 +161,6 @@ fn a_q_that_is_none_is_refused() {
             ("/api/check", r#"{"q":[0,0,1e999]}"#),
             ("/api/check", r#"{"q":[0,0,1e300]}"#),
             ("/api/check", r#"{"q":[0,0,null]}"#),
-            ("/api/check", r#"{"q":[0,0,0],"continuous_from":[0]}"#),
             ("/api/check", "{}"),
             ("/api/check", ""),
             ("/api/check", "[[[[["),
@@ -194,6 +178,17 @@ fn a_q_that_is_none_is_refused() {
             let reply = client.post(path, body);
             assert_eq!(reply.status, 400, "{path} {body}");
             reply.error();
+        }
+        // More frames than a motion may have, told before they are all there.
+        let frames =
+            |count: usize, frame: &str| format!("[{}{frame}]", format!("{frame},").repeat(count - 1));
+        for body in [
+            format!("{{\"q\":{},\"times\":[0]}}", frames(100_001, "[]")),
+            format!("{{\"q\":[[0,0,0]],\"times\":{}}}", frames(100_001, "0")),
+        ] {
+            let reply = client.post("/api/glb", &body);
+            assert_eq!(reply.status, 400);
+            assert!(reply.error().contains("more than 100000 key frames"));
         }
         let nested = format!("{{\"q\":{}", "[".repeat(100_000));
         assert_eq!(client.post("/api/check", &nested).status, 400);

@@ -38,3 +38,25 @@ fn a_report_has_all_its_data_in_it() {
         assert!(!html.contains(outside), "{outside}");
     }
 }
+
+#[test]
+fn a_report_is_shown_without_what_stands_beside_it() {
+    let (model, certificates) = strips();
+    let (mut scene, arrays) = scene(&model, &certificates);
+    scene.title = "</script><img src=x onerror=alert(1)>".into();
+    let html = Report { scene, arrays }.html().unwrap();
+    let hostile = html.replacen("<head>", "<head><script>steal()</script>", 1) + "<script>steal()</script>";
+    assert_eq!(Report::shown_anew(&hostile).unwrap(), html);
+    // Another program's page: none of it but the data.
+    let start = "<script type=\"application/json\" id=\"sscc-report\">";
+    let foreign = format!("<script>steal()</script>{start}{{\"scene\":\"<b>\",\"arrays\":{{}}}}</script>");
+    let shown = Report::shown_anew(&foreign).unwrap();
+    assert!(!shown.contains("steal") && shown.contains(r#"{"scene":"\u003cb>","arrays":{}}"#));
+    for data in ["", "null", "{}", "{\"scene\":{}}", "alert(1)", "{\"scene\":{},\"arrays\":{}};alert(1)"] {
+        let error = Report::shown_anew(&format!("{start}{data}</script>")).unwrap_err().to_string();
+        assert!(error.starts_with("it is no report of sscc: ") && !error.contains('\n'), "{data}: {error}");
+    }
+    for html in [String::new(), "<script>steal()</script>".into(), format!("{start}{{}}")] {
+        assert!(Report::shown_anew(&html).is_err(), "{html}");
+    }
+}

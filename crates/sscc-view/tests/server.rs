@@ -192,6 +192,26 @@ fn requests_follow_each_other_on_one_connection() {
 }
 
 #[test]
+fn connections_are_kept_only_for_those_who_know_the_token() {
+    with_server(|client| {
+        let here = format!("Host: 127.0.0.1:{}\r\n", client.port);
+        let wrong = format!("{here}X-Sscc-Token: {}\r\n", "0".repeat(64));
+        for (first, lines, status) in
+            [("GET /", &here, 200), ("GET /api/scene", &here, 403), ("GET /", &wrong, 403)]
+        {
+            let mut stream = client.connect();
+            stream.write_all(format!("{first} HTTP/1.1\r\n{lines}\r\n").as_bytes()).unwrap();
+            let reply = read_reply(&mut stream).unwrap();
+            assert_eq!(reply.status, status, "{first} {lines}");
+            assert!(reply.head.contains("Connection: close"), "{first} {lines}");
+            assert_eq!(stream.read(&mut [0; 1]).unwrap(), 0);
+        }
+        let known = client.get("/");
+        assert!(known.head.contains("Connection: keep-alive"));
+    });
+}
+
+#[test]
 fn slow_clients_are_hung_up_on_and_hold_up_nobody() {
     with_server(|client| {
         thread::scope(|scope| {

@@ -25,9 +25,6 @@ pub struct CheckRequest {
     /// Whether to tell which nodes had to be opened.
     #[serde(default)]
     pub nodes: bool,
-    /// To look at the way from there to q as well.
-    #[serde(default)]
-    pub continuous_from: Option<Vec<f64>>,
 }
 
 /// What was found.
@@ -47,9 +44,6 @@ pub struct CheckAnswer {
     pub pairs: Vec<Pair>,
     /// Every triangle of any pair found, sorted.
     pub triangles: Vec<u32>,
-    /// On the way to q: when each pair listed meets.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub times: Option<Vec<f64>>,
     /// What the query took.
     pub microseconds: f64,
     /// Whether the root's certificate alone proved it, exceptions apart.
@@ -72,19 +66,9 @@ pub(super) fn check(
     certificates: &Certificates,
     request: &CheckRequest,
 ) -> Result<CheckAnswer, ViewError> {
-    let CheckRequest { q, serial, nodes, continuous_from } = request;
-    let (times, microseconds) = match continuous_from {
-        Some(from) => {
-            let (found, microseconds) = timed(|| query.continuous(from, q));
-            let times = found?.iter().take(MOST_LISTED).map(|impact| impact.time).collect();
-            (Some(times), microseconds)
-        }
-        None => {
-            let (found, microseconds) = timed(|| query.discrete_at_most(q, MOST_FOUND).map(|_| ()));
-            found?;
-            (None, microseconds)
-        }
-    };
+    let CheckRequest { q, serial, nodes } = request;
+    let (found, microseconds) = timed(|| query.discrete_at_most(q, MOST_FOUND).map(|_| ()));
+    found?;
     let (pairs, statistics, norm) = (query.pairs(), query.statistics(), query.norm());
     let mut triangles: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
     triangles.sort_unstable();
@@ -98,7 +82,6 @@ pub(super) fn check(
         complete: statistics.complete,
         pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec(),
         triangles,
-        times,
         microseconds,
         root_certified: statistics.root_certified,
         opened: statistics.opened,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sscc::{Certificates, Pair, Query, ReducedModel};
 
-use super::check::MOST_LISTED;
+use super::check::{MOST_FOUND, MOST_LISTED};
 use crate::ViewError;
 
 /// A direction from the centre.
@@ -77,7 +77,7 @@ fn meet(
     let met = from + time * (to - from);
     for nudge in NUDGES {
         let scale = met + nudge * end;
-        let pairs = query.discrete(&at(scale))?;
+        let pairs = query.discrete_at_most(&at(scale), MOST_FOUND)?;
         if !pairs.is_empty() {
             return Ok(Some(First { scale, pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec() }));
         }

@@ -78,7 +78,7 @@ impl<'a> Live<'a> {
         self.arrays.get(name)
     }
 
-    /// Collisions at q, or on the way to it.
+    /// Collisions at q.
     ///
     /// # Errors
     /// When q is no configuration of the model.
@@ -132,8 +132,10 @@ impl<'a> Live<'a> {
     /// A motion as a binary glTF file.
     ///
     /// # Errors
-    /// When times do not ascend, or a q has not one finite number for each mode.
+    /// When there are too many frames, times do not ascend, or a q has not one finite number for each mode.
     pub fn animation(&self, request: &AnimationRequest) -> Result<Vec<u8>, ViewError> {
+        // One at a time: it may take hundreds of megabytes.
+        let _turn = locked(&self.long);
         let name = self.scene.models.first().map_or("model", |model| model.name());
         animation::glb(name, self.model, request)
     }

@@ -13,7 +13,8 @@ use super::routes::Site;
 /// A connection may be quiet so long between requests.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// The first head may take so long to come, and each that has begun.
+/// A whole head may take so long to come: the first from the beginning of the connection, others from their first byte.
+/// Who does not know the token has so long to take the answer, too.
 const HEAD: Duration = Duration::from_secs(5);
 
 /// The body.
@@ -37,21 +38,28 @@ pub(super) fn talk(
     let within = |time| Timed::new(&stream, time, is_stopped);
     let mut buffer = Buffer::default();
     for number in 0.. {
-        if buffer.is_empty() {
-            buffer.read(&mut within(if number == 0 { HEAD } else { QUIET }))?;
+        if number > 0 && buffer.is_empty() {
+            buffer.read(&mut within(QUIET))?;
         }
-        let (response, close) = match buffer.head(&mut within(HEAD)) {
-            Ok(head) => match refusal(&head, access, site) {
-                Some(refusal) => (refusal, head.length > 0 || head.close),
-                None => {
-                    let body = buffer.body(head.length, &mut within(BODY))?;
-                    (site.answer(&head, &body), head.close)
+        let (mut close, mut is_known) = (true, false);
+        let response = match buffer.head(&mut within(HEAD)) {
+            Ok(head) => {
+                // Connections are kept for those who know the token: others could hold all that there may be.
+                is_known = access.is_known(&head);
+                let refusal = refusal(&head, access, site);
+                close = head.close || !is_known || refusal.is_some() && head.length > 0;
+                match refusal {
+                    Some(refusal) => refusal,
+                    None => {
+                        let body = buffer.body(head.length, &mut within(BODY))?;
+                        site.answer(&head, &body)
+                    }
                 }
-            },
-            Err(BadHead::Refused(status, message)) => (Response::error(status, message), true),
+            }
+            Err(BadHead::Refused(status, message)) => Response::error(status, message),
             Err(BadHead::Nothing(error)) => return Err(error),
         };
-        response.write(&mut within(ANSWER), close)?;
+        response.write(&mut within(if is_known { ANSWER } else { HEAD }), close)?;
         if close {
             stream.shutdown(Shutdown::Write)?;
             let mut rest = within(FAREWELL);

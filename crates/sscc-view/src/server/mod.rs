@@ -30,6 +30,24 @@ const MOST_CONNECTIONS: usize = 64;
 /// Between two looks at whether to stop.
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// One of the connections that there may be at once, however it ends.
+struct Slot<'a>(&'a AtomicUsize);
+
+impl<'a> Slot<'a> {
+    /// None when all are taken.
+    fn take(taken: &'a AtomicUsize) -> Option<Self> {
+        let before = taken.fetch_add(1, Ordering::Relaxed);
+        let slot = Self(taken);
+        (before < MOST_CONNECTIONS).then_some(slot)
+    }
+}
+
+impl Drop for Slot<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
 /// Listens on 127.0.0.1.
 pub struct Server {
     listener: TcpListener,
@@ -87,20 +105,38 @@ impl Server {
                     thread::sleep(PAUSE);
                     continue;
                 };
-                if connections.fetch_add(1, Ordering::Relaxed) >= MOST_CONNECTIONS {
-                    connections.fetch_sub(1, Ordering::Relaxed);
-                    continue;
-                }
+                let Some(slot) = Slot::take(connections) else { continue };
                 let talk = move || {
+                    let _slot = slot;
                     // Who hangs up has left; there is nobody to tell.
                     let _ = connection::talk(stream, access, site, is_stopped);
-                    connections.fetch_sub(1, Ordering::Relaxed);
                 };
-                if thread::Builder::new().spawn_scoped(scope, talk).is_err() {
-                    connections.fetch_sub(1, Ordering::Relaxed);
-                }
+                // Without a thread, the slot is free again and the connection closed.
+                let _ = thread::Builder::new().spawn_scoped(scope, talk);
             }
             Ok(())
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slots_come_back_even_from_a_panic() {
+        let taken = AtomicUsize::new(0);
+        let all: Vec<_> = (0..MOST_CONNECTIONS).map(|_| Slot::take(&taken).unwrap()).collect();
+        assert!(Slot::take(&taken).is_none());
+        drop(all);
+        let ended = thread::scope(|scope| {
+            let talk = || {
+                let _slot = Slot::take(&taken);
+                panic!("on purpose");
+            };
+            scope.spawn(talk).join().map(|()| ())
+        });
+        assert!(ended.is_err());
+        assert_eq!(taken.into_inner(), 0);
     }
 }

@@ -2,18 +2,22 @@
 
 mod metrics;
 
+use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result};
-use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
+use anyhow::{Context, Result, bail, ensure};
+use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Report, Scene, Server};
 
-use crate::args::View;
+use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
 use crate::output::{Output, file_name};
 use crate::{Outcome, frequencies, load};
 
 /// The report in a folder of `simulate` or `demo`.
 const REPORT: &str = "report.html";
+
+/// Bytes of a report at the most; those of `simulate` hold far less.
+const MOST_REPORT: u64 = 256 << 20;
 
 pub fn run(args: &View) -> Result<Outcome> {
     let path = &args.model.path;
@@ -47,16 +51,60 @@ pub fn run(args: &View) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// A report through the same door.
+/// A report through the same door: its data, in the page of this program.
 fn show_report(args: &View, report: &Path) -> Result<Outcome> {
+    if let Some(option) = of_models(args) {
+        bail!("{option} is for models, and {} is a folder: leave it out", args.model.path.display());
+    }
+    ensure!(
+        fs::metadata(report).map_or(0, |file| file.len()) <= MOST_REPORT,
+        "{}: larger than a report may be ({} MiB)",
+        report.display(),
+        MOST_REPORT >> 20
+    );
     let bytes = sscc_io::read_whole(report)
         .context("a folder is shown by the report in it, as sscc simulate writes it")?;
-    let html = String::from_utf8(bytes).ok().filter(|html| html.contains("id=\"sscc-report\""));
-    let html = html.with_context(|| format!("{}: it is no report of sscc", report.display()))?;
+    let html = Report::shown_anew(&String::from_utf8_lossy(&bytes));
+    let html = html.with_context(|| report.display().to_string())?;
     let server = bind(args)?;
     announce(args, &server)?;
     server.serve_report(&html, &interrupt::happened)?;
     Ok(Outcome::Done)
+}
+
+/// The first option typed that says nothing about a folder.
+fn of_models(args: &View) -> Option<&'static str> {
+    let View { model, certificates, port: _, no_open: _, compare_metrics, options } = args;
+    let Model { path: _, modes, mesh_name } = model;
+    let Options {
+        epsilon,
+        metric,
+        center,
+        neighbours,
+        ignore_rest,
+        weld,
+        max_exceptions,
+        scheme,
+        budget,
+        threads,
+    } = options;
+    let typed = [
+        (modes.is_some(), "--modes"),
+        (mesh_name.is_some(), "--mesh-name"),
+        (certificates.is_some(), "--certificates"),
+        (*compare_metrics, "--compare-metrics"),
+        (epsilon.is_some(), "--epsilon"),
+        (metric.is_some(), "--metric"),
+        (center.is_some(), "--center"),
+        (neighbours.is_some(), "--neighbours"),
+        (*ignore_rest, "--ignore-rest"),
+        (weld.is_some(), "--weld"),
+        (max_exceptions.is_some(), "--max-exceptions"),
+        (scheme.is_some(), "--scheme"),
+        (budget.is_some(), "--budget"),
+        (threads.threads.is_some(), "--threads"),
+    ];
+    typed.into_iter().find_map(|(is_typed, option)| is_typed.then_some(option))
 }
 
 /// Listens at the port that is wanted.
