@@ -1,5 +1,5 @@
-//! Tasks of the project: `cargo xtask test` runs every test and says what it skipped, `cargo xtask python` those of the
-//! Python package, `cargo xtask page` builds the page.
+//! Tasks of the project: `cargo xtask test` runs every test of the crates and says what it skipped, `cargo xtask python` those of the
+//! Python package, `cargo xtask page` builds the page and runs its own.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod page;
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         }
         None => {
             eprintln!(
-                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write]"
+                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]"
             );
             ExitCode::from(2)
         }

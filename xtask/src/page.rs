@@ -1,5 +1,5 @@
 //! `cargo xtask page`: builds the page from `viewer/` and holds it against the one that is checked in.
-//! Its tests in a browser are part of `cargo xtask test`.
+//! `cargo xtask page --test` also runs its tests in a browser.
 
 use std::env;
 use std::fs;
@@ -25,8 +25,15 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let write = match arguments {
         [] => false,
         [flag] if flag == "--write" => true,
+        [flag] if flag == "--test" => {
+            let log = SkipLog::new();
+            let tally = test(log.path());
+            return log.conclude(tally);
+        }
         _ => {
-            eprintln!("Usage: cargo xtask page [--write]    (--write takes the page that was built)");
+            eprintln!(
+                "Usage: cargo xtask page [--write | --test]    (--write takes the page that was built)"
+            );
             return ExitCode::from(2);
         }
     };
@@ -45,7 +52,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
 }
 
 /// Whether the page built from its sources is the one checked in, and all its tests in a browser.
-pub fn test(log: &Path) -> Tally {
+fn test(log: &Path) -> Tally {
     println!("== Page");
     if let Err(reason) = node() {
         return SkipLog::skip(log, "the page and its tests", &reason);

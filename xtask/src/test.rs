@@ -1,5 +1,4 @@
-//! `cargo xtask test`: all tests of all crates, examples in the documentation included, and those of the Python
-//! package and of the page.
+//! `cargo xtask test`: all tests of all crates, examples in the documentation included.
 //!
 //! Output is passed on as it comes. Then follow the tests that found their data missing, and as the last line
 //! `N passed, N failed`. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
@@ -9,18 +8,12 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
-use crate::page;
-use crate::python;
 use crate::tally::{SkipLog, Tally};
 
-/// Runs all tests. With arguments, which are passed on to `cargo test`, those of Rust alone.
+/// Runs all tests; arguments are passed on to `cargo test`.
 pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
-    let mut tally = cargo_test(&arguments, log.path());
-    if arguments.is_empty() {
-        tally += python::test(&[], log.path());
-        tally += page::test(log.path());
-    }
+    let tally = cargo_test(&arguments, log.path());
     log.conclude(tally)
 }
 

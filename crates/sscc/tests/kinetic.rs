@@ -198,3 +198,31 @@ fn errors_leave_no_trace() {
         }
     }
 }
+
+/// A mode that moves nothing makes norms, and balls, as large as one likes.
+#[test]
+fn balls_of_any_size_are_searched() {
+    for triangles in [3_u32, 40, 700] {
+        let random = &mut Random::new(u64::from(triangles));
+        let positions: Vec<DVec3> = (0..3 * triangles)
+            .map(|v| {
+                let place = f64::from(v / 3) * 0.3;
+                DVec3::new(place + random.signed(), random.signed(), random.signed())
+            })
+            .collect();
+        let faces = (0..triangles).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let displacements = positions.iter().flat_map(|p| [*p * 0.1, DVec3::ZERO]).collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let metric = Metric::from_scales(MetricKind::Given, vec![1.0; 2]).unwrap();
+        let model = ReducedModel::with_metric(mesh, Modes::new(2, displacements).unwrap(), metric).unwrap();
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let mut plain = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
+        for far in [1.0, 1e38, 1e39, 1e41, 1e45, 1e100] {
+            let mut query = KineticQuery::new(&model, &certificates).unwrap();
+            for step in 0..6 {
+                let q = [0.5 + 1e-6 * f64::from(step), far];
+                assert_eq!(query.discrete(&q).unwrap(), plain.discrete(&q).unwrap(), "{triangles}, {far}");
+            }
+        }
+    }
+}

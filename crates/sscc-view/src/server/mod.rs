@@ -134,7 +134,7 @@ mod tests {
                 let _slot = Slot::take(&taken);
                 panic!("on purpose");
             };
-            scope.spawn(talk).join().map(|()| ())
+            scope.spawn(talk).join()
         });
         assert!(ended.is_err());
         assert_eq!(taken.into_inner(), 0);
