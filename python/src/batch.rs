@@ -7,7 +7,7 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::answer::{Answer, Pickled, pickled, unpickled};
+use crate::answer::{Answer, Pickled, Reduced, pickled, unpickled};
 use crate::arguments::count;
 use crate::arrays::{Cached, cached, floats, line, table};
 use crate::certificates::Certificates;
@@ -124,7 +124,7 @@ impl Batch {
         self.answers == other.answers
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyList>,))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyList>,)>> {
         let answers: PyResult<Vec<Pickled<'py>>> =
             self.answers.iter().map(|answer| Ok(pickled(py, answer))).collect();
         Ok((py.import("sscc._sscc")?.getattr("_batch")?, (PyList::new(py, answers?)?,)))

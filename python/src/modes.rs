@@ -69,7 +69,7 @@ pub fn _elastic(
     rank: Option<&Bound<'_, PyAny>>,
     fix: Option<&Bound<'_, PyAny>>,
     fix_box: Option<&Bound<'_, PyAny>>,
-    material: (Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>),
+    material: [Option<Bound<'_, PyAny>>; 3],
     resolution: Option<&Bound<'_, PyAny>>,
     threads_typed: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -123,13 +123,7 @@ fn loaded(made: make::Model) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-fn read_material(
-    (youngs, poisson, density): &(
-        Option<Bound<'_, PyAny>>,
-        Option<Bound<'_, PyAny>>,
-        Option<Bound<'_, PyAny>>,
-    ),
-) -> PyResult<Material> {
+fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<Material> {
     let default = Material::default();
     Ok(Material {
         youngs_modulus: number(youngs.as_ref(), "youngs")?.unwrap_or(default.youngs_modulus),
