@@ -12,7 +12,7 @@ use crate::arguments::count;
 use crate::arrays::{Cached, cached, floats, line, table};
 use crate::certificates::Certificates;
 use crate::errors::{refused, room, value};
-use crate::interrupt::run;
+use crate::interrupt::run_borrowing;
 use crate::pool::{Pool, threads};
 
 #[pyclass(frozen, module = "sscc", name = "Batch")]
@@ -167,7 +167,7 @@ pub fn check_many(
     let threads = threads(threads_typed)?;
     let array = floats(Q, "Q")?;
     let rows = rows(&array, model.rank())?;
-    let answers = run(py, progress, "checking", |progress| {
+    let answers = run_borrowing(py, progress, "checking", |progress| {
         pool.with_first(|query| {
             query.clone().cancelled_by(progress).batch_at_most(&rows, limit, threads, progress)
         })
