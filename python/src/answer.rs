@@ -7,6 +7,9 @@ use sscc::{Pair, Statistics};
 use crate::arrays::{Cached, cached, pairs};
 use crate::errors::{kind, value};
 
+/// What `__reduce__` gives: a function and its arguments.
+pub type Reduced<'py, A> = (Bound<'py, PyAny>, A);
+
 /// Pairs (little-endian numbers), norm and cost, in the order in which they are pickled.
 pub type Pickled<'py> = (Bound<'py, PyBytes>, f64, (bool, bool, u64, u64, u64));
 
@@ -78,7 +81,7 @@ impl Answer {
         self.found == other.found
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Pickled<'py>,))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Pickled<'py>,)>> {
         Ok((py.import("sscc._sscc")?.getattr("_answer")?, (pickled(py, &self.found),)))
     }
 

@@ -7,12 +7,12 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::answer::{Answer, Pickled, pickled, unpickled};
+use crate::answer::{Answer, Pickled, Reduced, pickled, unpickled};
 use crate::arguments::count;
 use crate::arrays::{Cached, cached, floats, line, table};
 use crate::certificates::Certificates;
 use crate::errors::{refused, room, value};
-use crate::interrupt::run;
+use crate::interrupt::run_borrowing;
 use crate::pool::{Pool, threads};
 
 #[pyclass(frozen, module = "sscc", name = "Batch")]
@@ -124,7 +124,7 @@ impl Batch {
         self.answers == other.answers
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyList>,))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyList>,)>> {
         let answers: PyResult<Vec<Pickled<'py>>> =
             self.answers.iter().map(|answer| Ok(pickled(py, answer))).collect();
         Ok((py.import("sscc._sscc")?.getattr("_batch")?, (PyList::new(py, answers?)?,)))
@@ -177,7 +177,7 @@ pub fn check_many(
     let threads = threads(threads_typed)?;
     let array = floats(Q, "Q")?;
     let rows = rows(&array, model.rank())?;
-    let answers = run(py, progress, "checking", |progress| {
+    let answers = run_borrowing(py, progress, "checking", |progress| {
         pool.with_first(|query| {
             query.clone().cancelled_by(progress).batch_at_most(&rows, limit, threads, progress)
         })

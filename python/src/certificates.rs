@@ -7,7 +7,7 @@ use pyo3::types::{PyBytes, PyType};
 use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
 use sscc_io::{read_certificates, write_certificates};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Reduced};
 use crate::arguments::{check_ending, count, path};
 use crate::arrays::{line, pairs, vector};
 use crate::batch::{self, Batch};
@@ -237,7 +237,7 @@ impl Certificates {
         Hierarchy::of(Arc::clone(&self.pool))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<Model>)>> {
         let bytes = certificates_to_bytes(self.core()).map_err(|error| value(error.to_string()))?;
         let make = py.import("sscc._sscc")?.getattr("_certificates")?;
         Ok((make, (PyBytes::new(py, &bytes), self.model.clone_ref(py))))
@@ -253,9 +253,6 @@ impl Certificates {
         )
     }
 }
-
-/// What makes them anew, and from what.
-type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, Py<Model>));
 
 /// One configuration that others may write to meanwhile.
 fn copied(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use sscc::{Impact, Pair, Statistics};
 
-use crate::answer::{Pickled, pickled, unpickled};
+use crate::answer::{Pickled, Reduced, pickled, unpickled};
 use crate::arrays::{Cached, cached, line, pairs};
 use crate::errors::{kind, value};
 
@@ -93,7 +93,7 @@ impl Impacts {
         self.found == other.found && self.times == other.times
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Pickled<'py>, Vec<f64>)>> {
         Ok((py.import("sscc._sscc")?.getattr("_impacts")?, (pickled(py, &self.found), self.times.clone())))
     }
 
@@ -114,6 +114,3 @@ pub fn _impacts(found: Pickled<'_>, times: Vec<f64>) -> PyResult<Impacts> {
     }
     Ok(Impacts::from_parts(found, times))
 }
-
-/// What makes them anew, and from what.
-type Reduced<'py> = (Bound<'py, PyAny>, (Pickled<'py>, Vec<f64>));

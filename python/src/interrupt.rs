@@ -2,16 +2,22 @@
 //! work; short queries, which it answers itself, look up now and then.
 
 use std::cell::RefCell;
+use std::panic::resume_unwind;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use sscc::Progress;
 
 /// How often Python is asked.
 const PERIOD: Duration = Duration::from_millis(50);
+
+/// How long what is to stop is waited for.
+const PATIENCE: Duration = Duration::from_millis(400);
 
 thread_local! {
     /// Of the query that this thread is answering: when Python was asked last, and what it said.
@@ -81,57 +87,107 @@ impl Progress for Monitor {
     }
 }
 
+/// What is told how far work has come, and what is called at its end: what the argument `progress` means.
+struct Shown(Option<(Py<PyAny>, Py<PyAny>)>);
+
+impl Shown {
+    fn of(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, label: &str) -> PyResult<Self> {
+        Ok(Self(py.import("sscc._progress")?.call_method1("start", (progress, label))?.extract()?))
+    }
+
+    fn tell(&self, py: Python<'_>, share: f64) -> PyResult<()> {
+        self.0.as_ref().map_or(Ok(()), |(tell, _)| tell.call1(py, (share,)).map(drop))
+    }
+
+    /// The end of the work: all is done, or something was raised.
+    fn close<T>(&self, py: Python<'_>, result: PyResult<T>) -> PyResult<T> {
+        let result = result.and_then(|result| self.tell(py, 1.0).map(|()| result));
+        if let Some((_, close)) = &self.0 {
+            close.call0(py)?;
+        }
+        result
+    }
+
+    /// Waits for work on another thread, and stops it when a signal or what is told raises something. None if that was raised,
+    /// and the work has not come to its end `patience` later.
+    fn wait<T>(&self, waiting: &Receiver<T>, monitor: &Monitor, patience: Duration) -> PyResult<Option<T>> {
+        let (mut raised, mut told, mut left) = (None, 0.0, patience);
+        loop {
+            let outcome = waiting.recv_timeout(PERIOD);
+            match (outcome, &raised) {
+                (Err(RecvTimeoutError::Timeout), Some(_)) if left > PERIOD => left -= PERIOD,
+                (_, Some(_)) => return raised.map_or(Ok(None), Err),
+                (Ok(result), None) => return Ok(Some(result)),
+                (Err(RecvTimeoutError::Disconnected), None) => return Ok(None),
+                (Err(RecvTimeoutError::Timeout), None) => {
+                    let share = monitor.share().filter(|share| *share > told);
+                    let outcome = Python::attach(|py| {
+                        py.check_signals()?;
+                        share.map_or(Ok(()), |share| self.tell(py, share))
+                    });
+                    told = share.unwrap_or(told);
+                    raised = outcome.err();
+                    monitor.cancelled.store(raised.is_some(), Ordering::Relaxed);
+                }
+            }
+        }
+    }
+}
+
 /// Does long work on another thread, without the GIL. Meanwhile this one tells `progress` (the argument of that name)
-/// what share of it is done, and stops it when that or a signal raises something, which is the error then.
-pub fn run<T: Send>(
+/// what share of it is done, and stops it when that or a signal raises something, which is the error then. Work that does not
+/// stop soon is left to itself.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    label: &str,
+    work: impl FnOnce(&dyn Progress) -> T + Send + 'static,
+) -> PyResult<T> {
+    let shown = Shown::of(py, progress, label)?;
+    let result = py.detach(|| {
+        let monitor = Arc::new(Monitor::default());
+        let (finished, waiting) = channel();
+        let of_worker = Arc::clone(&monitor);
+        let worker = thread::spawn(move || {
+            let result = work(&*of_worker);
+            // Nobody waits any longer where it was left to itself.
+            let _ = finished.send(result);
+        });
+        match shown.wait(&waiting, &monitor, PATIENCE)? {
+            Some(result) => Ok(result),
+            None => match worker.join() {
+                Err(panic) => resume_unwind(panic),
+                Ok(()) => Err(PyRuntimeError::new_err("the work ended without a result")),
+            },
+        }
+    });
+    shown.close(py, result)
+}
+
+/// As [`run`], for work on what is borrowed: it must stop soon, and is waited for.
+pub fn run_borrowing<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     label: &str,
     work: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> PyResult<T> {
-    let shown = py.import("sscc._progress")?.call_method1("start", (progress, label))?;
-    let shown: Option<(Py<PyAny>, Py<PyAny>)> = shown.extract()?;
-    let monitor = Monitor::default();
-    let tell = |py: Python<'_>, share: f64| match &shown {
-        Some((tell, _)) => tell.call1(py, (share,)).map(drop),
-        None => Ok(()),
-    };
+    let shown = Shown::of(py, progress, label)?;
     let result = py.detach(|| {
+        let monitor = Monitor::default();
         thread::scope(|scope| {
-            let (finished, waiting) = channel::<()>();
+            let (finished, waiting) = channel();
             let monitor = &monitor;
             let worker = scope.spawn(move || {
-                // Tells that the work has ended when it is dropped, however that comes about.
-                let _finished = finished;
-                work(monitor)
+                let _ = finished.send(work(monitor));
             });
-            let (mut raised, mut told) = (None, 0.0);
-            while waiting.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
-                if raised.is_some() {
-                    continue;
-                }
-                let share = monitor.share().filter(|share| *share > told);
-                let outcome = Python::attach(|py| {
-                    py.check_signals()?;
-                    share.map_or(Ok(()), |share| tell(py, share))
-                });
-                told = share.unwrap_or(told);
-                raised = outcome.err();
-                monitor.cancelled.store(raised.is_some(), Ordering::Relaxed);
-            }
-            match (worker.join(), raised) {
-                (_, Some(error)) => Err(error),
-                (Ok(result), None) => Ok(result),
-                (Err(panic), None) => std::panic::resume_unwind(panic),
+            match shown.wait(&waiting, monitor, PATIENCE)? {
+                Some(result) => Ok(result),
+                None => match worker.join() {
+                    Err(panic) => resume_unwind(panic),
+                    Ok(()) => Err(PyRuntimeError::new_err("the work ended without a result")),
+                },
             }
         })
     });
-    let result = match result {
-        Ok(result) => tell(py, 1.0).map(|()| result),
-        Err(error) => Err(error),
-    };
-    if let Some((_, close)) = &shown {
-        close.call0(py)?;
-    }
-    result
+    shown.close(py, result)
 }

@@ -11,6 +11,7 @@ use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
 
+use crate::answer::Reduced;
 use crate::arguments::{check_ending, path};
 use crate::arrays::{floats, integers, line, table, vector};
 use crate::certify;
@@ -204,7 +205,7 @@ impl Model {
         table(py, self.core().rank(), stiffness.clone()).map(Some)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
         let py = slf.py();
         let loaded = &slf.get().loaded;
         let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;

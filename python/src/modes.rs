@@ -1,6 +1,7 @@
 //! `sscc.modes`: models of bodies and of samples, with modes that are made for them.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
@@ -69,7 +70,7 @@ pub fn _elastic(
     rank: Option<&Bound<'_, PyAny>>,
     fix: Option<&Bound<'_, PyAny>>,
     fix_box: Option<&Bound<'_, PyAny>>,
-    material: MaterialGiven<'_>,
+    material: [Option<Bound<'_, PyAny>>; 3],
     resolution: Option<&Bound<'_, PyAny>>,
     threads_typed: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -92,8 +93,10 @@ pub fn _elastic(
         wanted.fixed_box = Some([a, b]);
     }
     let threads = threads(threads_typed)?;
-    let made = run(py, progress, "modes", |progress| {
-        on_threads(threads, || make::elastic(source.body(), kind, wanted, progress))
+    let source = Arc::new(source);
+    let of_worker = Arc::clone(&source);
+    let made = run(py, progress, "modes", move |progress| {
+        on_threads(threads, || make::elastic(of_worker.body(), kind, wanted, progress))
     })?;
     made.map(loaded).map_err(|error| source.refused(&error))
 }
@@ -108,12 +111,14 @@ pub fn _polynomial(
 ) -> PyResult<Model> {
     let source = Source::of(source)?;
     let threads = threads(threads_typed)?;
-    let made = run(py, progress, "modes", |progress| {
-        on_threads(threads, || match &source {
+    let source = Arc::new(source);
+    let of_worker = Arc::clone(&source);
+    let made = run(py, progress, "modes", move |progress| {
+        on_threads(threads, || match &*of_worker {
             Source::File(path) if make::is_volumetric(path) => {
-                make::elastic(source.body(), Kind::Polynomial, Wanted::default(), progress)
+                make::elastic(of_worker.body(), Kind::Polynomial, Wanted::default(), progress)
             }
-            _ => make::polynomial(source.body()),
+            _ => make::polynomial(of_worker.body()),
         })
     })?;
     made.map(loaded).map_err(|error| source.refused(&error))
@@ -123,10 +128,7 @@ fn loaded(made: make::Model) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-/// Young's modulus, Poisson's ratio, density.
-type MaterialGiven<'py> = (Option<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>);
-
-fn read_material((youngs, poisson, density): &MaterialGiven<'_>) -> PyResult<Material> {
+fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<Material> {
     let default = Material::default();
     Ok(Material {
         youngs_modulus: number(youngs.as_ref(), "youngs")?.unwrap_or(default.youngs_modulus),
@@ -177,7 +179,7 @@ pub fn _pca(
         (mesh_of(first.clone(), faces)?, frames, "shapes in memory".into(), false)
     };
     let count = frames.len();
-    let found = run(py, progress, "principal components", |progress| {
+    let found = run(py, progress, "principal components", move |progress| {
         on_threads(threads, || pca_modes(&mesh, &frames, rank, progress))
     })?;
     let found = found.map_err(|error: ModesError| value(format!("shapes: {error}")))?;

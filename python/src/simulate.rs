@@ -11,7 +11,7 @@ use sscc_io::IoError;
 
 use crate::arguments::{count, path, switch};
 use crate::errors::{file, value};
-use crate::interrupt::run;
+use crate::interrupt::run_borrowing;
 use crate::pool::threads;
 
 /// Stopping one stops all.
@@ -45,7 +45,7 @@ pub fn _simulate(
     };
     stop(false);
     let no = PyBool::new(py, false);
-    let written = run(py, Some(no.as_any()), "simulating", |progress| {
+    let written = run_borrowing(py, Some(no.as_any()), "simulating", |progress| {
         std::thread::scope(|scope| {
             let work = scope.spawn(|| simulate(request));
             while !work.is_finished() {

@@ -1,9 +1,5 @@
 //! Modes of an animation: the principal components of its frames.
 
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread;
-use std::time::Duration;
-
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use glam::DVec3;
@@ -21,12 +17,6 @@ const ZERO_SHARE: f64 = 1e-12;
 
 /// So many rows of frames, or vertices, are worked on at once.
 const CHUNK: usize = 1 << 12;
-
-/// So many frames are decomposed in a fraction of a second.
-const QUICK: usize = 200;
-
-/// How often to look whether to go on while others work.
-const PERIOD: Duration = Duration::from_millis(20);
 
 /// The mean of an animation, and the principal components about it: see [`pca_modes`].
 #[derive(Clone, Debug, PartialEq)]
@@ -155,32 +145,12 @@ fn components(
         .map(|at| (at / count, at % count))
         .map(|(i, j)| gram[(i.max(j), i.min(j))])
         .collect();
-    let (values, vectors) = eigen_or_leave(count, whole, progress)?;
+    check_cancelled(progress)?;
+    let (values, vectors) = eigen(count, &whole)?;
     // A position is rounded by half a unit in the last place; so is the mean.
     let reach = used.iter().fold(0.0_f64, |m, v| m.max(mean[*v as usize].abs().max_element()));
     let rounding = f64::EPSILON * reach;
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
-}
-
-/// [`eigen`], which cannot be stopped: on a thread of its own, which is left to itself where `progress` cancels.
-fn eigen_or_leave(
-    count: usize,
-    matrix: Vec<f64>,
-    progress: &dyn Progress,
-) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
-    if count <= QUICK {
-        return eigen(count, &matrix);
-    }
-    let (found, waiting) = channel();
-    let work = move || found.send(eigen(count, &matrix));
-    thread::spawn(work);
-    loop {
-        match waiting.recv_timeout(PERIOD) {
-            Ok(found) => return found,
-            Err(RecvTimeoutError::Timeout) => check_cancelled(progress)?,
-            Err(RecvTimeoutError::Disconnected) => return Err(ModesError::NoEigenvalues),
-        }
-    }
 }
 
 fn check_cancelled(progress: &dyn Progress) -> Result<(), ModesError> {
