@@ -108,8 +108,8 @@ impl Shown {
         result
     }
 
-    /// Waits for work on another thread, and stops it when a signal or what is told raises something. None if that was raised,
-    /// and the work has not come to its end `patience` later.
+    /// Waits for work on another thread, and stops it when a signal or what is told raises something. None if that was
+    /// raised, and the work has not come to its end `patience` later.
     fn wait<T>(&self, waiting: &Receiver<T>, monitor: &Monitor, patience: Duration) -> PyResult<Option<T>> {
         let (mut raised, mut told, mut left) = (None, 0.0, patience);
         loop {
@@ -135,8 +135,8 @@ impl Shown {
 }
 
 /// Does long work on another thread, without the GIL. Meanwhile this one tells `progress` (the argument of that name)
-/// what share of it is done, and stops it when that or a signal raises something, which is the error then. Work that does not
-/// stop soon is left to itself.
+/// what share of it is done, and stops it when that or a signal raises something, which is the error then. Work that
+/// does not stop soon is left to itself.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

@@ -1,8 +1,9 @@
 //! What modes of solids cost: `cargo bench -p sscc-cli --bench solids`.
 //!
-//! Runs the command itself. Time and peak memory from a surface to 30 nonlinear modes, at the default resolution and over
-//! degrees of freedom, and the bunny's first ten frequencies in the default lattice against those in one twice as fine
-//! (that needs 20 GB; with `--quick` it is left out). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! Runs the command itself. Time and peak memory from a surface to 30 nonlinear modes, at the default resolution and
+//! over degrees of freedom, and the bunny's first ten frequencies in the default lattice against those in one twice as
+//! fine (that needs 20 GB; with `--quick` it is left out). Real models are taken from `SSCC_MODELS`, else from
+//! `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;

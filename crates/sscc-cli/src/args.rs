@@ -91,8 +91,8 @@ pub struct Modes {
     /// [default: none, a free body without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
-    /// The material, where the file names none: any of youngs=E,poisson=NU,density=RHO [default: youngs=1e6,poisson=0.4,
-    /// density=1000]
+    /// The material, where the file names none: any of youngs=E,poisson=NU,density=RHO [default:
+    /// youngs=1e6,poisson=0.4, density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,
     /// Cubes along the longest side of the lattice around a surface [default: for about 20,000 cubes in all]
@@ -150,8 +150,9 @@ pub struct Options {
     /// Relative error allowed for the root's radius and others not much larger, between 0 and 1 [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
-    /// The metric: energy (of models that know their stiffness), displacement, mass, identity, or a file with M: its diagonal, one weight for each mode (.npy or
-    /// text), or a dense symmetric one (.npy of shape r x r) [default: the model's]
+    /// The metric: energy (of models that know their stiffness), displacement, mass, identity, or a file with M: its
+    /// diagonal, one weight for each mode (.npy or text), or a dense symmetric one (.npy of shape r x r) [default: the
+    /// model's]
     #[arg(long, value_name = "METRIC")]
     pub metric: Option<PathBuf>,
     /// The q from which radii are measured: r numbers, or a file (.npy or text) [default: 0, the rest pose]
@@ -173,7 +174,8 @@ pub struct Options {
     /// Which certificates are stored [default: full; paper where check computes them for itself]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
-    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default: 16]
+    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default:
+    /// 16]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
     #[command(flatten)]
@@ -261,8 +263,9 @@ pub struct Check {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
-    /// Ask about the way from each q of the trajectory to the next, every vertex on a straight line: which pairs meet, and
-    /// when (0: at the first q, 1: at the next). None is missed; one listed without need has come within 1e-12 of its size
+    /// Ask about the way from each q of the trajectory to the next, every vertex on a straight line: which pairs meet,
+    /// and when (0: at the first q, 1: at the next). None is missed; one listed without need has come within 1e-12 of
+    /// its size
     #[arg(long, conflicts_with_all = ["q", "pose"])]
     pub continuous: bool,
     /// How to look for collisions; the answer is the same
@@ -271,7 +274,8 @@ pub struct Check {
     /// List just one colliding pair of each q (with --continuous: the first to meet)
     #[arg(long, conflicts_with = "limit")]
     pub first: bool,
-    /// List at most so many colliding pairs of each q (with --continuous: the first to meet); then count is a lower bound
+    /// List at most so many colliding pairs of each q (with --continuous: the first to meet); then count is a lower
+    /// bound
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
     /// Also write the shape at --q, with its colliding triangles marked: .ply (red) or .obj (in groups)
@@ -374,8 +378,8 @@ pub struct Simulate {
     /// Begin again, whatever the folder holds
     #[arg(long)]
     pub restart: bool,
-    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded shapes
-    /// stand in]
+    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded
+    /// shapes stand in]
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
     /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
@@ -405,8 +409,8 @@ pub struct Bench {
     /// List the scenarios
     #[arg(long)]
     pub list: bool,
-    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded shapes
-    /// stand in]
+    /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded
+    /// shapes stand in]
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
     /// Of scenes and kinetic: steps to measure, in 10 blocks spread evenly [default: 100, kinetic 20,000]

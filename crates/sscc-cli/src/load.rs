@@ -141,8 +141,8 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
     computed.with_context(|| path.display().to_string())
 }
 
-/// Certificates for one run of a command that was given none: says so, and leaves out the pairs of nodes unless they were
-/// asked for, because a few queries do not make up for the time that they take.
+/// Certificates for one run of a command that was given none: says so, and leaves out the pairs of nodes unless they
+/// were asked for, because a few queries do not make up for the time that they take.
 pub fn certificates_now(
     model: &ReducedModel,
     files: &args::Model,

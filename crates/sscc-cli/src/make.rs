@@ -62,8 +62,8 @@ pub struct Model {
 /// A model of an elastic body.
 ///
 /// # Errors
-/// When the file cannot be read, the surface is open or meets itself, a fixed vertex does not exist, the material is out
-/// of range, or `progress` cancels.
+/// When the file cannot be read, the surface is open or meets itself, a fixed vertex does not exist, the material is
+/// out of range, or `progress` cancels.
 pub fn elastic(body: Body<'_>, kind: Kind, wanted: Wanted, progress: &dyn Progress) -> Result<Model> {
     let Wanted { rank, material, fixed, fixed_box, resolution } = wanted;
     let (source, name) = match body {

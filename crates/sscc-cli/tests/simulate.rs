@@ -238,7 +238,8 @@ fn a_killed_simulation_goes_on_to_the_same_bits() {
     for times in 1..=2 {
         let mut child =
             prepared(CACHE.path(), killed.path(), &["scene.toml"]).stderr(Stdio::null()).spawn().unwrap();
-        // Killed with states in the log that no checkpoint knows of: it cut off those of the run before, and wrote its own.
+        // Killed with states in the log that no checkpoint knows of: it cut off those of the run before, and wrote its
+        // own.
         let length = || fs::metadata(&log).unwrap().len();
         let (before, mut was_cut) = (length(), false);
         while !(was_cut && length() >= checkpointed + 1000) {

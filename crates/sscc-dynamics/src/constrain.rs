@@ -6,8 +6,8 @@ use sscc::Certificates;
 use crate::DynamicsError;
 use crate::body::Body;
 
-/// Takes q back to the ellipsoid, and from v what leads out of it. Where the ellipsoid is centred at the rest pose, both lose
-/// energy.
+/// Takes q back to the ellipsoid, and from v what leads out of it. Where the ellipsoid is centred at the rest pose,
+/// both lose energy.
 ///
 /// # Errors
 /// When q is no configuration.

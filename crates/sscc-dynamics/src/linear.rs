@@ -89,8 +89,8 @@ impl Step {
     fn new(lambda: f64, damping: f64, h: f64) -> Self {
         let a = damping / 2.0;
         let (c, s) = decaying(lambda, a, h);
-        // (1 - e^(-a h) (C + a S)) / lambda cancels where little happens in a step; then the integrand is smooth, or, of
-        // strong damping, the difference of two that decay.
+        // (1 - e^(-a h) (C + a S)) / lambda cancels where little happens in a step; then the integrand is smooth, or,
+        // of strong damping, the difference of two that decay.
         let qf = if a * h > 1.0 && a * a > 2.0 * lambda {
             let root = (a * a - lambda).sqrt();
             let integral = |x: f64| if x > 0.0 { -libm::expm1(-x * h) / x } else { h };

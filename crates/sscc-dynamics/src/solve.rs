@@ -2,9 +2,9 @@
 //!
 //! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one
 //! contact after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v +
-//! v') / 2`, where v and v' are the relative velocities before and after it. Each body has a ledger of what its contacts
-//! have taken so far, and none of them may give more than the ledgers of its bodies hold: whatever stiffness and step
-//! are, contacts never add energy to that of the start, up to rounding, and what is far away gives none.
+//! v') / 2`, where v and v' are the relative velocities before and after it. Each body has a ledger of what its
+//! contacts have taken so far, and none of them may give more than the ledgers of its bodies hold: whatever stiffness
+//! and step are, contacts never add energy to that of the start, up to rounding, and what is far away gives none.
 
 use glam::{DMat3, DVec3};
 

@@ -19,7 +19,8 @@ pub enum WavFormat {
 /// The largest size that the format's 32 bits can tell, less its header.
 const MOST_BYTES: usize = u32::MAX as usize - 4096;
 
-/// Writes a sound of one channel; `rate` is samples in a second, and samples between -1 and 1 are what loudspeakers play.
+/// Writes a sound of one channel; `rate` is samples in a second, and samples between -1 and 1 are what loudspeakers
+/// play.
 ///
 /// # Errors
 /// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.

@@ -18,12 +18,12 @@ pub struct Embedded {
 }
 
 impl Embedded {
-    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all. A surface that is open
-    /// is tried again with vertices of equal position as one.
+    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all. A surface that is
+    /// open is tried again with vertices of equal position as one.
     ///
     /// # Errors
-    /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there would be too
-    /// many cubes, or the material is outside physical limits.
+    /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there
+    /// would be too many cubes, or the material is outside physical limits.
     pub fn new(
         surface: &TriMesh,
         cells: Option<usize>,
@@ -47,14 +47,14 @@ impl Embedded {
         self.spacing
     }
 
-    /// Whether the surface is closed only when vertices of equal position count as one (a file split them along seams). Then
-    /// certificates need the same: [`PairRule::weld`](sscc::PairRule::weld).
+    /// Whether the surface is closed only when vertices of equal position count as one (a file split them along seams).
+    /// Then certificates need the same: [`PairRule::weld`](sscc::PairRule::weld).
     pub fn is_split(&self) -> bool {
         self.is_split
     }
 
-    /// Modes of the solid's vertices as modes of the surface: a vertex moves with its cube (trilinear). Vertices that no
-    /// triangle uses do not move.
+    /// Modes of the solid's vertices as modes of the surface: a vertex moves with its cube (trilinear). Vertices that
+    /// no triangle uses do not move.
     ///
     /// # Errors
     /// When the modes are of another number of vertices.

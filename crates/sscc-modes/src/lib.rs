@@ -27,7 +27,8 @@
 //!
 //! Everything here gives the same bits on every machine: sums have a fixed order, and sines and
 //! cosines come from `libm`, not from the platform. The exceptions are [`diagonalize`],
-//! [`pca_modes`] and the modes of solids: their linear algebra is rounded as the vector instructions of the processor do.
+//! [`pca_modes`] and the modes of solids: their linear algebra is rounded as the vector instructions of the processor
+//! do.
 
 mod body;
 mod boundary;

@@ -1,10 +1,10 @@
 //! Modal derivatives, and the basis that they and the linear modes give (Barbic and James 2005).
 //!
 //! A linear mode cannot bend far: what a large bend needs beside it is, to second order, its derivative. `K d_ij =
-//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much of them is likely to occur,
-//! modes by `q_i = a lambda_1 / lambda_i`, derivatives by `q_i q_j`; then the directions of the most mass are taken. With the
-//! amplitude a, which the original does not have, the basis does not depend on units: a first mode of that amplitude moves
-//! some vertex by a fifth of the body's diagonal.
+//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much of them is likely to
+//! occur, modes by `q_i = a lambda_1 / lambda_i`, derivatives by `q_i q_j`; then the directions of the most mass are
+//! taken. With the amplitude a, which the original does not have, the basis does not depend on units: a first mode of
+//! that amplitude moves some vertex by a fifth of the body's diagonal.
 
 use faer::Mat;
 use sscc::{Error, Progress};
@@ -24,8 +24,8 @@ const AMPLITUDE: f64 = 0.2;
 /// Right-hand sides solved at once.
 const BATCH: usize = 32;
 
-/// The residual of a derivative, as a share of its right-hand side. A derivative is only a direction that a basis should
-/// have: the principal components that are left out are larger by far.
+/// The residual of a derivative, as a share of its right-hand side. A derivative is only a direction that a basis
+/// should have: the principal components that are left out are larger by far.
 const SOLVED: f64 = 1e-4;
 
 /// Refinements at most. One is usual: each gains a factor of 1,000 and more.
@@ -89,8 +89,8 @@ fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<
     Ok(all)
 }
 
-/// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest by
-/// refinement, which gains a factor of `s / (lambda + s)` each time.
+/// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest
+/// by refinement, which gains a factor of `s / (lambda + s)` each time.
 fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
     // Rigid motions carry no elastic force: f - M R R'f.
     if body.rigid.ncols() > 0 {

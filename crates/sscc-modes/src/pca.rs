@@ -36,8 +36,8 @@ pub struct Pca {
 /// frames where `rank` is the number of independent directions.
 ///
 /// The inner product is the plain sum over the vertices that some face uses, as usual for animations: where the mesh
-/// is finer, motion counts more. `mesh` gives the faces; its positions are not used. Frames hold one position for each of
-/// its vertices. `rank`: how many components; none: as many as explain 99.9% of the variance. There are fewer than
+/// is finer, motion counts more. `mesh` gives the faces; its positions are not used. Frames hold one position for each
+/// of its vertices. `rank`: how many components; none: as many as explain 99.9% of the variance. There are fewer than
 /// frames.
 ///
 /// By the eigenvectors of the Gram matrix (frames x frames). The same input gives the same bits again, but other

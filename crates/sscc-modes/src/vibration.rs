@@ -53,8 +53,8 @@ pub fn linear_modes(
 }
 
 /// A basis of rank `rank` for large deformations, with its reduced St. Venant-Kirchhoff forces (Barbic and James 2005;
-/// the paper's nonlinear models): linear modes and their modal derivatives, of which a mass-weighted principal component
-/// analysis takes the strongest directions. In the end rotated such that the stiffness at rest is diagonal.
+/// the paper's nonlinear models): linear modes and their modal derivatives, of which a mass-weighted principal
+/// component analysis takes the strongest directions. In the end rotated such that the stiffness at rest is diagonal.
 ///
 /// # Errors
 /// As [`linear_modes`].
@@ -85,8 +85,8 @@ pub fn nonlinear_modes(
 }
 
 /// The quadratic polynomial modes of a free solid (paper, section 7), rotated such that mass is the identity and the
-/// stiffness diagonal (section 6): those of the solid's vertices, with their forces, and those of the vertices of a surface that
-/// moves with it. Rigid motions are left out: 24 modes remain, fewer for small solids.
+/// stiffness diagonal (section 6): those of the solid's vertices, with their forces, and those of the vertices of a
+/// surface that moves with it. Rigid motions are left out: 24 modes remain, fewer for small solids.
 ///
 /// # Errors
 /// As [`linear_modes`].

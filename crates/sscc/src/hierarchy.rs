@@ -228,8 +228,8 @@ impl Hierarchy {
         }
     }
 
-    /// Whether a node is searched and queried as a whole, so that nothing is known of the pairs within it: it is small, and not
-    /// the root, whose pairs of children have radii of their own.
+    /// Whether a node is searched and queried as a whole, so that nothing is known of the pairs within it: it is small,
+    /// and not the root, whose pairs of children have radii of their own.
     pub(crate) fn is_whole(&self, n: u32) -> bool {
         n != 0 && self.nodes[n as usize].is_small()
     }

@@ -44,8 +44,9 @@
 //! - Both speak of one shape: the f64 positions given by [`deformed_position`].
 //!
 //! Continuous queries are about the straight way of every vertex from one q to another: none that meets is missed, and
-//! what is listed without need has come within a stated tolerance ([`Query::continuous`]). Certificates hold for the mesh, the modes and the metric they were computed for, to the last bit, and
-//! say so: [`Query::new`] refuses any other model.
+//! what is listed without need has come within a stated tolerance ([`Query::continuous`]). Certificates hold for the
+//! mesh, the modes and the metric they were computed for, to the last bit, and say so: [`Query::new`] refuses any other
+//! model.
 //!
 //! # Which question, which method
 //!
@@ -81,7 +82,8 @@
 //!   collide.
 //! - *Ignored* pairs never count.
 //!
-//! [`CertifyOptions`] asks for a rule, the certificates keep it ([`Certificates::rule`]), and their queries answer by it.
+//! [`CertifyOptions`] asks for a rule, the certificates keep it ([`Certificates::rule`]), and their queries answer by
+//! it.
 //!
 //! ```
 //! use glam::DVec3;

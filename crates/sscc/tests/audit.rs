@@ -78,8 +78,8 @@ fn forged_exceptions_are_refused_or_found() {
     assert!(found > 1, "{found}");
 }
 
-/// Radii of pairs of nodes three times as large, and trees that lack the pair of leaves that collides first; nodes and the
-/// pairs of the root's children stay honest.
+/// Radii of pairs of nodes three times as large, and trees that lack the pair of leaves that collides first; nodes and
+/// the pairs of the root's children stay honest.
 #[test]
 fn lies_of_the_pair_tree_are_found() {
     let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);

@@ -10,8 +10,8 @@ use sscc::{
     Query, ReducedModel, TriMesh,
 };
 
-/// What was compared: steps, steps with collisions, steps where fewer triangles were tested than a query by certificates
-/// tests, and pairs found at them.
+/// What was compared: steps, steps with collisions, steps where fewer triangles were tested than a query by
+/// certificates tests, and pairs found at them.
 #[derive(Debug, Default)]
 struct Counts {
     steps: usize,

@@ -232,8 +232,8 @@ fn tube(radius: impl FnMut(u32) -> f64) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-/// The paper's Figure 4: noise of about an edge leaves the root's radius nearly as it was (0.373 for 0.387), and takes most cones
-/// away (they save 92 of the nodes to be opened instead of 210).
+/// The paper's Figure 4: noise of about an edge leaves the root's radius nearly as it was (0.373 for 0.387), and takes
+/// most cones away (they save 92 of the nodes to be opened instead of 210).
 #[test]
 fn noise_takes_cones_away_and_leaves_radii() {
     let mut random = Random::new(4);

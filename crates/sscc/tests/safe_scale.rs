@@ -63,8 +63,8 @@ fn the_way_to_a_safe_scale_is_free() {
     assert!(tried > 600 && larger > 200 && tight > 200 && stopped > 30, "{tried} {larger} {tight} {stopped}");
 }
 
-/// Radii of pairs of nodes are further proofs; the way itself is followed from another start, which moves its end by less
-/// than a step that is no longer worth taking.
+/// Radii of pairs of nodes are further proofs; the way itself is followed from another start, which moves its end by
+/// less than a step that is no longer worth taking.
 #[test]
 fn the_pair_tree_shortens_no_scale() {
     let (mut compared, mut opened) = (0, [0, 0]);

@@ -14,8 +14,8 @@ impl<T: Copy> Raster<T> {
         Self { width, pixels: vec![(f64::NEG_INFINITY, background); width * height] }
     }
 
-    /// Fills the pixels whose centres are in a triangle (x right, y down, z towards the viewer), where nothing is nearer.
-    /// `color` is given the weights of the corners.
+    /// Fills the pixels whose centres are in a triangle (x right, y down, z towards the viewer), where nothing is
+    /// nearer. `color` is given the weights of the corners.
     pub fn fill(&mut self, [a, b, c]: [DVec3; 3], color: impl Fn([f64; 3]) -> T) {
         let height = self.pixels.len() / self.width;
         // Of points beyond the picture, `as` takes the nearest pixel; of NaN, the first one.

@@ -104,7 +104,8 @@ impl Scene {
         WorldOptions { step, gravity, ground, contact, response }
     }
 
-    /// For a quick look: a small spring in place of any model, for half a second, shaken harder so that it touches itself.
+    /// For a quick look: a small spring in place of any model, for half a second, shaken harder so that it touches
+    /// itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();

@@ -1,8 +1,10 @@
-//! The file to which a simulation is written while it runs, and the checkpoint from which it goes on after being killed.
+//! The file to which a simulation is written while it runs, and the checkpoint from which it goes on after being
+//! killed.
 //!
 //! States are appended, all of one size. A checkpoint tells how many there were when it was written, their hash, and
-//! what the simulation needs to go on from there; what was appended after it is cut off and simulated again, to the same bits. So the checkpoint may be
-//! written now and then, and costs as little at the end of a long simulation as at its beginning.
+//! what the simulation needs to go on from there; what was appended after it is cut off and simulated again, to the
+//! same bits. So the checkpoint may be written now and then, and costs as little at the end of a long simulation as at
+//! its beginning.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -47,8 +49,8 @@ pub struct Checkpoint {
 }
 
 impl Log {
-    /// Opens the log of a folder, and gives the checkpoint that is there; to begin again, what is there is removed. `digest` is
-    /// the hash of what is simulated.
+    /// Opens the log of a folder, and gives the checkpoint that is there; to begin again, what is there is removed.
+    /// `digest` is the hash of what is simulated.
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.

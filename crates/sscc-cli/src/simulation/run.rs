@@ -36,8 +36,8 @@ pub struct Ran {
     pub failure: Option<Error>,
 }
 
-/// Lets a scene move for so many steps, or goes on with what is in the folder (unless it is to begin `again`). Checks first that
-/// it can begin.
+/// Lets a scene move for so many steps, or goes on with what is in the folder (unless it is to begin `again`). Checks
+/// first that it can begin.
 ///
 /// # Errors
 /// When bodies begin in each other, in themselves or in the ground; when the folder cannot be written to. Of a

@@ -22,14 +22,15 @@
 //! | `pair_radii` | F32 | t | the radius of each pair of nodes, rounded down, below the limit |
 //! | `pair_links` | U32 | t | bits 0 to 27: where its children start (0: none, both nodes are small); 28 to 30: which child of its parent it is; 31: no sibling follows |
 //!
-//! A pair of nodes is split into the pairs of the children of the one of more triangles (the first of equals; never a leaf) with the
-//! other one. Lists of siblings stand breadth first, those of the nodes' children before all others.
+//! A pair of nodes is split into the pairs of the children of the one of more triangles (the first of equals; never a
+//! leaf) with the other one. Lists of siblings stand breadth first, those of the nodes' children before all others.
 //!
-//! Text: `metric` (the kind), `scheme` ("full" where there is a pair tree, else "paper"), `neighbours` ("exclude": triangles that share a vertex are no pair; "include-one-vertex": those that share just one
-//! count where they meet beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for
-//! adjacency). Nothing is inferred from the scheme's name. A small node has at most 64 triangles, and is not the root: the tree
-//! says nothing of the pairs within it. Version 3 has a tree that does, which is not read; versions 1 and 2 have none, and a
-//! text `pairs` ("root-children") instead.
+//! Text: `metric` (the kind), `scheme` ("full" where there is a pair tree, else "paper"), `neighbours` ("exclude":
+//! triangles that share a vertex are no pair; "include-one-vertex": those that share just one count where they meet
+//! beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). Nothing is
+//! inferred from the scheme's name. A small node has at most 64 triangles, and is not the root: the tree says nothing
+//! of the pairs within it. Version 3 has a tree that does, which is not read; versions 1 and 2 have none, and a text
+//! `pairs` ("root-children") instead.
 
 use std::path::Path;
 

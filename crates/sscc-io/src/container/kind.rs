@@ -18,8 +18,8 @@ pub struct Kind {
 pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 1 };
 
 /// Certificates of a model: `*.sscc.safetensors`.
-/// Version 1 knew no pairs to be ignored, and no other centre, rule or exceptions than none; version 2 no pair tree; that of
-/// version 3 went into small nodes, and is not read.
+/// Version 1 knew no pairs to be ignored, and no other centre, rule or exceptions than none; version 2 no pair tree;
+/// that of version 3 went into small nodes, and is not read.
 pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 4 };
 
 impl Kind {

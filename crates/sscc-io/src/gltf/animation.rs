@@ -1,8 +1,9 @@
 //! Bodies that move, as a binary glTF file: modes as morph targets, q(t) as their weights, rigid motion on nodes.
 //!
-//! That is the reduced motion itself, so a player shows `R (p + U q - c) + x` for a body at x, turned by R about its centre c. Numbers
-//! are rounded to single precision (2^-24 of each), which is all that the format has; between key frames weights and places are
-//! interpolated linearly, turns on the shortest arc. Bodies of one model share its numbers in the file.
+//! That is the reduced motion itself, so a player shows `R (p + U q - c) + x` for a body at x, turned by R about its
+//! centre c. Numbers are rounded to single precision (2^-24 of each), which is all that the format has; between key
+//! frames weights and places are interpolated linearly, turns on the shortest arc. Bodies of one model share its
+//! numbers in the file.
 
 use std::path::Path;
 
@@ -32,8 +33,8 @@ pub struct Track {
 /// Writes an animation (`.glb`). `times` are those of the key frames (s), ascending; models have names.
 ///
 /// # Errors
-/// When a track has not one entry for each time, or names no model; when a number is not finite in single precision; when the
-/// file would have more than 4 GiB, or cannot be written.
+/// When a track has not one entry for each time, or names no model; when a number is not finite in single precision;
+/// when the file would have more than 4 GiB, or cannot be written.
 pub fn write_animation(
     path: &Path,
     models: &[(&str, &ReducedModel)],
@@ -45,8 +46,8 @@ pub fn write_animation(
     write_whole(path, &bytes)
 }
 
-/// Indices of the steps that are key frames at about `rate` frames in a second: the step nearest to each frame's time, the
-/// first and the last of `steps`, each once. `step` is the time between two (s).
+/// Indices of the steps that are key frames at about `rate` frames in a second: the step nearest to each frame's time,
+/// the first and the last of `steps`, each once. `step` is the time between two (s).
 pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     let Some(last) = steps.checked_sub(1) else { return Vec::new() };
     let stride = (1.0 / (rate * step)).max(1.0);

@@ -1,4 +1,5 @@
-//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`; and bodies that move, written as `.glb` ([`write_animation`]).
+//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`; and bodies that move, written as `.glb`
+//! ([`write_animation`]).
 //!
 //! A mesh with its morph targets is a reduced model as it is: rest positions are the base mesh, and mode k is
 //! what target k adds to them. What else a file has (nodes and their transforms, skins, materials,

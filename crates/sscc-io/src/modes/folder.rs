@@ -42,7 +42,8 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<(Mo
     Ok((modes, paths.iter().map(name).collect()))
 }
 
-/// The mesh files of a folder but for the neutral one (its canonical path), sorted; at least one. They are called `what`.
+/// The mesh files of a folder but for the neutral one (its canonical path), sorted; at least one. They are called
+/// `what`.
 pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
     let refused = |cause: std::io::Error| match cause.kind() {
         ErrorKind::NotFound => IoError::NotFound { path: folder.to_owned() },

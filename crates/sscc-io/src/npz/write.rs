@@ -23,8 +23,8 @@ pub struct NamedArray<'a> {
 /// Writes arrays of f64 as `.npz`, not compressed, in this order; equal arrays make equal bytes.
 ///
 /// # Errors
-/// When values are not as many as a shape has entries, a name is there twice or is none (letters, digits and `_`), or the
-/// file cannot be written.
+/// When values are not as many as a shape has entries, a name is there twice or is none (letters, digits and `_`), or
+/// the file cannot be written.
 pub fn write_npz(path: &Path, arrays: &[NamedArray<'_>]) -> Result<(), IoError> {
     let bytes = to_bytes(arrays).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
     write_whole(path, &bytes)

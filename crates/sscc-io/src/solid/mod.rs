@@ -2,8 +2,8 @@
 //!
 //! Every vertex of the file is kept, in the file's order, used by an element or not. Elements keep the file's
 //! order among their kind, and the order of their corners. What is read is checked as far as it can be without
-//! geometry: numbers, indices, corners named twice, elements listed twice. Whether elements are inverted, flat or overlap is *not*
-//! looked at: that is a question for whoever gives them a stiffness.
+//! geometry: numbers, indices, corners named twice, elements listed twice. Whether elements are inverted, flat or
+//! overlap is *not* looked at: that is a question for whoever gives them a stiffness.
 //!
 //! Second-order elements, prisms and pyramids are refused, never left out: a body would have holes.
 

@@ -1,7 +1,7 @@
 //! Lines along an axis through the solid: where they are inside.
 //!
-//! [`SAMPLES`]^2 lines go through the cross-section of each cell, and lines of different axes meet in samples, 64 in a cell. A
-//! line that would hit an edge or a vertex is moved aside by an infinitesimal (e, e^2), e > 0, the same for all
+//! [`SAMPLES`]^2 lines go through the cross-section of each cell, and lines of different axes meet in samples, 64 in a
+//! cell. A line that would hit an edge or a vertex is moved aside by an infinitesimal (e, e^2), e > 0, the same for all
 //! triangles, and signs are exact: so a line through a closed surface enters as often as it leaves.
 
 use glam::DVec3;
@@ -29,8 +29,8 @@ pub(super) struct Interval {
     pub leave: End,
 }
 
-/// A line along an axis that passes a triangle: the coordinate along the axis, and whether the triangle's normal points forward
-/// along it. `u`, `v` are coordinates along the next axis and the one after it.
+/// A line along an axis that passes a triangle: the coordinate along the axis, and whether the triangle's normal points
+/// forward along it. `u`, `v` are coordinates along the next axis and the one after it.
 pub(super) fn cross(axis: usize, [u, v]: [f64; 2], corners: [DVec3; 3]) -> Option<(f64, bool)> {
     let flat = corners.map(|p| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] });
     if flat[0] == flat[1] && flat[1] == flat[2] {

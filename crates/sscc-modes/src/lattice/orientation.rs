@@ -5,8 +5,8 @@ use super::disjoint_sets::DisjointSets;
 use super::surface::Surface;
 use crate::ModesError;
 
-/// Looks at the parts of the surface that are connected by edges: at most of a part's crossings with lines, the line must
-/// pass from outside to inside or back. Not at all of them, as triangles that share a vertex may be folded.
+/// Looks at the parts of the surface that are connected by edges: at most of a part's crossings with lines, the line
+/// must pass from outside to inside or back. Not at all of them, as triangles that share a vertex may be folded.
 ///
 /// # Errors
 /// For a body within a body, or one that is inside out beside others.

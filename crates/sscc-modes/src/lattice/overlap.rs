@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Boxes are enlarged by this much, so that rounding (1e-10 cells in the largest grids) loses nothing. What is found too
-/// much does no harm: pieces are joined along edges of the surface, never because they are near each other.
+/// Boxes are enlarged by this much, so that rounding (1e-10 cells in the largest grids) loses nothing. What is found
+/// too much does no harm: pieces are joined along edges of the surface, never because they are near each other.
 pub(super) const SLACK: f64 = 1e-9;
 
 /// A box.

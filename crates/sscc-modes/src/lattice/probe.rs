@@ -1,7 +1,7 @@
 //! Pieces of a cell that the lines have not found to be connected.
 //!
-//! Where a flat side cuts the corner off a cell, or the corner of a cell cuts a little off a thin wall, no line may meet the
-//! patch there, though it belongs to the same piece as the rest of the cell. So from each patch
+//! Where a flat side cuts the corner off a cell, or the corner of a cell cuts a little off a thin wall, no line may
+//! meet the patch there, though it belongs to the same piece as the rest of the cell. So from each patch
 //! - segments go to samples of the other pieces: one that meets no triangle joins them;
 //! - if no line has met it, a line goes inward to the other side.
 

@@ -9,8 +9,8 @@ use crate::{
     filter_eigenvalues, linear_modes, nonlinear_modes,
 };
 
-/// Cubes along the spring. A wire is about two thick, which makes it a little stiff: in a lattice more than twice as fine its
-/// lowest frequency is 8% lower.
+/// Cubes along the spring. A wire is about two thick, which makes it a little stiff: in a lattice more than twice as
+/// fine its lowest frequency is 8% lower.
 const SPRING_CELLS: usize = 30;
 
 /// A shape with modes and forces.

@@ -12,7 +12,8 @@ use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};
 /// a traditional query of the whole model.
 const WHOLE: usize = 25;
 
-/// One in this many goes at a pair of nodes, where there is a pair tree: by turns one that it holds and one that it does not.
+/// One in this many goes at a pair of nodes, where there is a pair tree: by turns one that it holds and one that it
+/// does not.
 const PAIRS: usize = 3;
 
 /// Nodes of more triangles than this are attacked only as often as the root.
@@ -126,8 +127,8 @@ impl Attack<'_> {
         self.claims.node(n as u32)
     }
 
-    /// A q with `|z|` just below the radius: in a known hot direction, near one, or in a random one; for two nodes mostly
-    /// where two of their triangles approach.
+    /// A q with `|z|` just below the radius: in a known hot direction, near one, or in a random one; for two nodes
+    /// mostly where two of their triangles approach.
     fn just_inside(&self, claim: Claim, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
         let Claim { nodes: (n, m), radius } = claim;
         let scope = &self.certificates.parts().scope;

@@ -2,10 +2,10 @@
 //!
 //! Three attacks, none of which uses the code that it attacks to decide: q just inside radii, in random
 //! directions and in the directions of the closest collisions known ([`attack`]); the true minimum searched
-//! near the hottest pairs ([`minimum`]), which also says how tight radii are ([`tightness`]); and the answers of certified
-//! queries, continuous ones too, compared with the traditional method, itself compared with brute force
-//! ([`compare`]). Whatever is found to collide is held against all radii that speak of it ([`claims`]): those of nodes, of
-//! pairs of nodes, and the limit of the pair tree where that lacks a pair.
+//! near the hottest pairs ([`minimum`]), which also says how tight radii are ([`tightness`]); and the answers of
+//! certified queries, continuous ones too, compared with the traditional method, itself compared with brute force
+//! ([`compare`]). Whatever is found to collide is held against all radii that speak of it ([`claims`]): those of nodes,
+//! of pairs of nodes, and the limit of the pair tree where that lacks a pair.
 
 mod attack;
 mod claims;

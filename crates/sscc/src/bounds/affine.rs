@@ -163,9 +163,9 @@ pub(crate) fn affine_bound(
     affine.bound(differences, delta, largest, enough, error)
 }
 
-/// A regularised least-squares fit of a gradient to values at points, `G = sum_v value_v weights_v'`. Gives the unit normal
-/// of the plane in which the points (nearly) lie, and how much they leave the gradient across it open: 1 in a plane, 0
-/// where they fill space. None where all coincide.
+/// A regularised least-squares fit of a gradient to values at points, `G = sum_v value_v weights_v'`. Gives the unit
+/// normal of the plane in which the points (nearly) lie, and how much they leave the gradient across it open: 1 in a
+/// plane, 0 where they fill space. None where all coincide.
 fn fit(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<(DVec3, f64)> {
     let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
     let mut moment = DMat3::ZERO;
@@ -194,8 +194,8 @@ fn fit(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<(DVec3, f64)> {
 }
 
 /// Gives the open part of the gradient, across the plane of the corners, the value that makes the whole as much
-/// of a rotation as it can be: `t' G n = -n' G t` for all t in the plane. Left at zero, every rotation of the plane would
-/// look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
+/// of a rotation as it can be: `t' G n = -n' G t` for all t in the plane. Left at zero, every rotation of the plane
+/// would look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
 fn complete_as_rotation(gradient: &mut [f64], row: usize, n: DVec3, free: f64) {
     for k in 0..row {
         let entry = |c: usize, j: usize| gradient[(3 * c + j) * row + k];

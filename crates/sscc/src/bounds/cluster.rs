@@ -115,7 +115,8 @@ impl Cluster {
     }
 }
 
-/// Below this share of what would be enough no other direction is tried. With half of it certificates of the dragon take 1.1 times as long.
+/// Below this share of what would be enough no other direction is tried. With half of it certificates of the dragon
+/// take 1.1 times as long.
 const HOPELESS: f64 = 0.8;
 
 /// Corners of a box.
@@ -229,8 +230,8 @@ fn corner_bound(
         }
     }
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
-    // The terms of a square add up to at most (the sum of all |row|)^2; the products are wrong by row eps of that, and at most 16
-    // sums follow one another: 2,000 leaves room.
+    // The terms of a square add up to at most (the sum of all |row|)^2; the products are wrong by row eps of that, and
+    // at most 16 sums follow one another: 2,000 leaves room.
     let lost = (row as f64 + 2_000.0) * f64::EPSILON * size * size;
     let slack = n.abs().dot(x.residual + y.residual) + 2.0 * model.error.rate(n);
     let rest_error = 2.0 * model.error.rest(n);

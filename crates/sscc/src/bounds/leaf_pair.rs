@@ -1,5 +1,6 @@
-//! Bounds for all triangle pairs between two leaves at once: their vertices share one direction, or one affine map. What
-//! costs a sum over the modes is done once for two vertices, not for each of the triangle pairs that they are corners of.
+//! Bounds for all triangle pairs between two leaves at once: their vertices share one direction, or one affine map.
+//! What costs a sum over the modes is done once for two vertices, not for each of the triangle pairs that they are
+//! corners of.
 
 use glam::DVec3;
 

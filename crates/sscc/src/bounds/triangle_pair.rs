@@ -123,8 +123,8 @@ impl<'a> PairRefiner<'a> {
         }
     }
 
-    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` asks; upper bounds met on
-    /// the way lower `target.upper`.
+    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` asks; upper
+    /// bounds met on the way lower `target.upper`.
     pub(crate) fn refine(&mut self, x: [u32; 3], y: [u32; 3], target: &mut Target) -> f64 {
         let pair = self.pair(x, y);
         let lower = self.bound(&pair, target);

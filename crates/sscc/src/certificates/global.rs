@@ -5,8 +5,8 @@ use crate::hierarchy::bounding_box;
 use crate::{Metric, ReducedModel};
 
 /// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the
-/// box at the centre; infinite when no mode moves anything. Only vertices of faces count. Rounded down to single precision,
-/// as the pair tree stores its radii, where that has its range: so that the tree holds them all.
+/// box at the centre; infinite when no mode moves anything. Only vertices of faces count. Rounded down to single
+/// precision, as the pair tree stores its radii, where that has its range: so that the tree holds them all.
 pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {
     let used = model.mesh().used_vertices();
     let (lower, upper) = bounding_box(used.iter().map(|&v| model.position(v, center)));

@@ -1,9 +1,9 @@
 //! Which pairs of nodes the certified pair tree holds, and their radii.
 //!
-//! The tree is grown from the pairs of the children of all nodes that are not small, in rounds of ever higher limits: a pair whose lower bound is
-//! below the limit is split, two small nodes get a radius, searched without subdivision. What each pair becomes
-//! depends on the model alone, so that any number of threads gives the same tree. The budget ends it: then the limit is what
-//! the pairs stored are complete for.
+//! The tree is grown from the pairs of the children of all nodes that are not small, in rounds of ever higher limits: a
+//! pair whose lower bound is below the limit is split, two small nodes get a radius, searched without subdivision. What
+//! each pair becomes depends on the model alone, so that any number of threads gives the same tree. The budget ends it:
+//! then the limit is what the pairs stored are complete for.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,13 +19,15 @@ const FIRST: f64 = 1.0 / 16.0;
 /// Where not even the first limit fits, this share of the global radius is the last one tried.
 const LAST: f64 = FIRST / 32.0;
 
-/// The next limit is at most this many times the one before: farther away it is not known how the number of pairs grows.
+/// The next limit is at most this many times the one before: farther away it is not known how the number of pairs
+/// grows.
 const LARGEST_STEP: f64 = 2.0;
 
 /// And at least this many times, else the budget is left as it is.
 const SMALLEST_STEP: f64 = 1.2;
 
-/// Two small nodes are bounded up to this many times the limit, so that most need not be looked at again in the next round.
+/// Two small nodes are bounded up to this many times the limit, so that most need not be looked at again in the next
+/// round.
 const AHEAD: f64 = 2.0;
 
 /// Pairs in the making, for each that the budget allows: most turn out not to be needed.
@@ -70,8 +72,8 @@ pub(super) struct Round {
     pub(super) room: usize,
 }
 
-/// A pair anew, and behind it all pairs below it that are split off, numbered in this list. `used` counts these in all lists of the
-/// round; once there is no room for them the list is left unfinished.
+/// A pair anew, and behind it all pairs below it that are split off, numbered in this list. `used` counts these in all
+/// lists of the round; once there is no room for them the list is left unfinished.
 pub(super) fn expand(
     pair: Grown,
     Round { limit, most, room }: Round,
@@ -223,8 +225,8 @@ impl Grove {
         self.reached
     }
 
-    /// The pairs of small nodes between two children of a node whose radius may be below `cap`, each with a lower bound.
-    /// `which`: the place among the pairs of children.
+    /// The pairs of small nodes between two children of a node whose radius may be below `cap`, each with a lower
+    /// bound. `which`: the place among the pairs of children.
     pub(super) fn small(
         &self,
         hierarchy: &Hierarchy,

@@ -25,10 +25,10 @@ pub use shards::{BUILD, RunJobs, ShardWorker};
 /// How certificates are computed.
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
-    /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one. So is each other radius outside
-    /// the pair tree that may be as small; larger ones are searched with an error of at least 0.4 and few subdivisions, because queries
-    /// so far out open many nodes anyway. Unless a radius is capped or a limit of the search (subdivisions, candidates waiting)
-    /// is reached. Paper, section 5.1: 0.1.
+    /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one. So is each
+    /// other radius outside the pair tree that may be as small; larger ones are searched with an error of at least 0.4
+    /// and few subdivisions, because queries so far out open many nodes anyway. Unless a radius is capped or a limit of
+    /// the search (subdivisions, candidates waiting) is reached. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,
@@ -42,11 +42,11 @@ pub struct CertifyOptions {
     /// in every query. Where more pairs collide there are none, and radii of parts that contain such
     /// a pair are 0. None: [`CertifyOptions::default_exceptions`].
     pub max_exceptions: Option<usize>,
-    /// Memory for the pair tree ([`PairTree`]), in bytes for each triangle of the mesh; a pair takes 8. The pairs of the
-    /// smallest radii are stored, so a budget is a choice of the tree's limit ([`PairTree::limit`]): queries with `|z|` below it
-    /// never open what only touches. 0: no tree, which is the paper's scheme of one radius for each node and each pair of
-    /// the root's children; right where certificates serve a few queries only, since the tree takes most of the
-    /// time of computing them.
+    /// Memory for the pair tree ([`PairTree`]), in bytes for each triangle of the mesh; a pair takes 8. The pairs of
+    /// the smallest radii are stored, so a budget is a choice of the tree's limit ([`PairTree::limit`]): queries with
+    /// `|z|` below it never open what only touches. 0: no tree, which is the paper's scheme of one radius for each node
+    /// and each pair of the root's children; right where certificates serve a few queries only, since the tree takes
+    /// most of the time of computing them.
     pub budget: usize,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
@@ -101,8 +101,8 @@ pub struct CertificateParts {
     pub epsilon: f64,
     /// `R_global`: radii are resolved up to here (paper, section 5.2); infinite when no mode moves anything.
     pub global_radius: f64,
-    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child. What lies in a small node
-    /// ([`Node::is_small`](crate::hierarchy::Node::is_small)) has its radius.
+    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child. What lies in a
+    /// small node ([`Node::is_small`](crate::hierarchy::Node::is_small)) has its radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,

@@ -2,8 +2,9 @@
 //!
 //! With radii of nodes alone a query walks along every common border of siblings that are not certified together: their
 //! boxes always overlap. The tree stores the radius of every pair of nodes below a limit. It is built by the splitting
-//! rule alone ([`Hierarchy::split`]), never by boxes: boxes that are apart at rest may meet later. So below the limit a pair
-//! that is missing is certified; from the limit on, absence means nothing. Of pairs within small nodes it says nothing.
+//! rule alone ([`Hierarchy::split`]), never by boxes: boxes that are apart at rest may meet later. So below the limit a
+//! pair that is missing is certified; from the limit on, absence means nothing. Of pairs within small nodes it says
+//! nothing.
 
 use crate::Pair;
 use crate::hierarchy::Hierarchy;
@@ -26,7 +27,8 @@ pub(super) const MOST_ENTRIES: usize = START as usize;
 pub(crate) struct Entry {
     /// The radius, rounded down ([`round_down`]).
     pub(crate) radius: f32,
-    /// Where its children start (0: none, both nodes are small), which child of its parent it is, and whether it is the last one.
+    /// Where its children start (0: none, both nodes are small), which child of its parent it is, and whether it is the
+    /// last one.
     pub(crate) link: u32,
 }
 
@@ -59,7 +61,8 @@ pub(super) fn round_down(radius: f64) -> f32 {
     rounded.clamp(0.0, f32::MAX)
 }
 
-/// The pairs of a node's children, from which the tree is grown: none within small nodes, which queries look at as a whole.
+/// The pairs of a node's children, from which the tree is grown: none within small nodes, which queries look at as a
+/// whole.
 pub(crate) fn roots_of(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
     let node = (!hierarchy.is_whole(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(super::child_pairs)

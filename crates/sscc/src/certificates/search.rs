@@ -27,15 +27,16 @@ pub(crate) enum Precision {
 /// The relative error of rough searches.
 const ROUGH: f64 = 0.4;
 
-/// Subdivisions of one triangle pair in rough searches. With none at all the dragon's certificates take 0.8 of the time, and queries by
-/// node certificates open 1.2 times as many nodes.
+/// Subdivisions of one triangle pair in rough searches. With none at all the dragon's certificates take 0.8 of the
+/// time, and queries by node certificates open 1.2 times as many nodes.
 const FEW: usize = 4;
 
 /// Subdivisions of one triangle pair at the most. When they are used up the best lower bound so far
 /// stands: still certified, only less tight. Hit in practice only by modes of rank 1 and 2.
 const SUBDIVISIONS: usize = 500;
 
-/// The relative error of pairs in the pair tree, as far as it needs no subdivision: there are many, each of little weight.
+/// The relative error of pairs in the pair tree, as far as it needs no subdivision: there are many, each of little
+/// weight.
 const ROUGH_PAIR: f64 = 0.25;
 
 /// Directions that all triangle pairs of two leaves are looked at along, beside the first one.

@@ -10,16 +10,17 @@
 //! # The method
 //!
 //! Two convex shapes are apart when some direction separates them. While the corners move linearly, the gap of two
-//! corners along a fixed direction is linear in t; along a direction that turns linearly, too, it is quadratic. A linear
-//! or quadratic polynomial is positive on an interval where its Bernstein coefficients there are. So a single
-//! direction, or the two between which it turns, proves a whole interval of time free, for all pairs of corners,
-//! hence for the hulls: faces, edges and vertices at once ([`separation`]).
-//! What remains is to walk from t = 0 to 1 in as few such intervals as possible ([`impact`]).
+//! corners along a fixed direction is linear in t; along a direction that turns linearly, too, it is quadratic. A
+//! linear or quadratic polynomial is positive on an interval where its Bernstein coefficients there are. So a single
+//! direction, or the two between which it turns, proves a whole interval of time free, for all pairs of corners, hence
+//! for the hulls: faces, edges and vertices at once ([`separation`]). What remains is to walk from t = 0 to 1 in as few
+//! such intervals as possible ([`impact`]).
 //!
 //! The usual tests, 6 of a vertex and a face and 9 of two edges, each by subdivision of (t, u, v) (Wang et al. 2021,
 //! *A Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*), share the idea:
 //! inclusion, in Bernstein form, on parts of the domain. Here only t is subdivided, because directions do what u and v
-//! do there; and a pair that is pierced all the way, which has no event of a vertex or of two edges, is no special case.
+//! do there; and a pair that is pierced all the way, which has no event of a vertex or of two edges, is no special
+//! case.
 
 mod closest;
 mod impact;

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// A triangle whose corners move linearly, from `t0` at time 0 to `t1` at time 1. Degenerate ones are segments and points.
+/// A triangle whose corners move linearly, from `t0` at time 0 to `t1` at time 1. Degenerate ones are segments and
+/// points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingTriangle {
     /// The corners at time 0.

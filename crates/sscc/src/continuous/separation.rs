@@ -2,13 +2,14 @@
 //!
 //! Directions come from any heuristic; whether they separate is evaluated with all rounding accounted for. With
 //! `u = 2^-53`: at each end all corners are taken relative to one of them, `p - o`, which errs by `u |p - o|` in each
-//! component (a common motion of both triangles, however large, does no harm); with `M` the largest magnitudes of these (over all corners and both ends) and `m = sum_c |n_c| M_c`, a projection
-//! `n.(p - o)` errs by at most `4 u m` (that rounding, a product, two sums), the gap of two projections by `10 u m`.
-//! Interpolating it to a time t, `g0 + t (g1 - g0)`, rounds three more times, magnitudes of at most `4 m`: `10 u m`.
-//! The root of a linear function is rounded three times relative to itself, where the function changes by at
-//! most `4 m`: `12 u m`. A gap counts when it exceeds `40 u m`, more than all of them together. Underflow: each of
-//! these few dozen operations errs by at most 2^-1074, for which 2^-1022 is added. The coordinates are at most 2^200
-//! and the largest component of a direction is 1, so nothing overflows.
+//! component (a common motion of both triangles, however large, does no harm); with `M` the largest magnitudes of these
+//! (over all corners and both ends) and `m = sum_c |n_c| M_c`, a projection `n.(p - o)` errs by at most `4 u m` (that
+//! rounding, a product, two sums), the gap of two projections by `10 u m`. Interpolating it to a time t, `g0 + t (g1 -
+//! g0)`, rounds three more times, magnitudes of at most `4 m`: `10 u m`. The root of a linear function is rounded three
+//! times relative to itself, where the function changes by at most `4 m`: `12 u m`. A gap counts when it exceeds `40 u
+//! m`, more than all of them together. Underflow: each of these few dozen operations errs by at most 2^-1074, for which
+//! 2^-1022 is added. The coordinates are at most 2^200 and the largest component of a direction is 1, so nothing
+//! overflows.
 
 use glam::DVec3;
 
@@ -95,7 +96,8 @@ impl Direction {
         (0..2).all(|end| least(self.y[end]) - greatest(self.x[end]) > self.error)
     }
 
-    /// The time until which x stays below y along this direction, from `t` on: infinite when to the end, `t` when not even then.
+    /// The time until which x stays below y along this direction, from `t` on: infinite when to the end, `t` when not
+    /// even then.
     #[inline]
     pub(super) fn separates_until(&self, t: f64) -> f64 {
         let mut until = f64::INFINITY;
@@ -116,10 +118,10 @@ impl Direction {
         until.max(t)
     }
 
-    /// Whether x stays below y from `t` to `s` along the direction that turns linearly from this one to the other: along
-    /// `(1 - w) n + w m` at the time `(1 - w) t + w s`. The gap of two corners is a quadratic polynomial of w
-    /// whose Bernstein coefficients are the gap along n at t, the mean of those along n at s and along m at t,
-    /// and that along m at s.
+    /// Whether x stays below y from `t` to `s` along the direction that turns linearly from this one to the other:
+    /// along `(1 - w) n + w m` at the time `(1 - w) t + w s`. The gap of two corners is a quadratic polynomial of w
+    /// whose Bernstein coefficients are the gap along n at t, the mean of those along n at s and along m at t, and that
+    /// along m at s.
     #[inline]
     pub(super) fn separates_turning(&self, t: f64, to: &Self, s: f64) -> bool {
         let both = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| a[i] + b[i]) };

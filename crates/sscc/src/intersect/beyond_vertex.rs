@@ -13,7 +13,8 @@ use super::triangle_triangle::intersect_triangle_triangle;
 /// Let neither opposite edge contain v. From v follow the ray through a common point until it leaves the first of
 /// the two triangles: that point is on the edge opposite to v of that triangle, and in the other one. So
 /// they meet elsewhere exactly if one's opposite edge meets the other triangle. A triangle whose opposite edge
-/// contains v is degenerate: the union of the segments from v to its other corners, each of which is looked at as a triangle of its own.
+/// contains v is degenerate: the union of the segments from v to its other corners, each of which is looked at as a
+/// triangle of its own.
 pub fn intersect_beyond_vertex(v: DVec3, x: [DVec3; 2], y: [DVec3; 2]) -> bool {
     let triangle = |[a, b]: [DVec3; 2]| [v, a, b];
     // A triangle that only touches the other's plane, with v, ends there. (A degenerate one has no
@@ -32,7 +33,8 @@ pub fn intersect_beyond_vertex(v: DVec3, x: [DVec3; 2], y: [DVec3; 2]) -> bool {
     parts(v, x).any(|e| parts(v, y).any(|f| meet(e, f)))
 }
 
-/// Triangles with the corner v whose opposite edges do not contain it, together the triangle `v, a, b` (v alone where there is none).
+/// Triangles with the corner v whose opposite edges do not contain it, together the triangle `v, a, b` (v alone where
+/// there is none).
 fn parts(v: DVec3, [a, b]: [DVec3; 2]) -> impl Iterator<Item = [DVec3; 2]> {
     let contains_v = intersect_edge_triangle([a, b], &[v; 3]);
     let parts = if contains_v { [[a, a], [b, b]] } else { [[a, b], [v, v]] };

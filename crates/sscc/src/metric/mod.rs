@@ -184,7 +184,8 @@ impl Metric {
         }
     }
 
-    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within `gamma_r |A||S||S^-1|`.
+    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within
+    /// `gamma_r |A||S||S^-1|`.
     pub(crate) fn scaled_modes(&self, modes: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(scales) => {

@@ -78,8 +78,8 @@ mod tests {
         }
     }
 
-    /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a few
-    /// margins apart or within each other, or farther.
+    /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a
+    /// few margins apart or within each other, or farther.
     #[test]
     fn only_what_is_apart_is_said_to_be() {
         let random = &mut Random(5);

@@ -63,8 +63,8 @@ pub(super) struct Ends<'t, const E: usize> {
     pub(super) norm: f64,
     /// The larger one of the reaches.
     pub(super) reach: f64,
-    /// With two ends that are the same: instead of the way between them, all z in a ball around it count. Then `norm` and
-    /// `reach` are the largest ones there.
+    /// With two ends that are the same: instead of the way between them, all z in a ball around it count. Then `norm`
+    /// and `reach` are the largest ones there.
     pub(super) ball: Option<&'t Ball>,
     /// Where the shape is in the world; its own axes if there is none. The reach is that in the world then.
     pub(super) pose: Option<&'t Placement>,

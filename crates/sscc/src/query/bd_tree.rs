@@ -73,8 +73,9 @@ impl BdTree {
         Self { rank, places, rest, rates, shares }
     }
 
-    /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none where the
-    /// node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last place of the shape's reach.
+    /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
+    /// where the node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last
+    /// place of the shape's reach.
     pub(super) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
         let place = self.places[node as usize] as usize;
         (place < self.rest.len()).then(|| self.at_place(place, q, margin))

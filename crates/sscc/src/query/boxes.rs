@@ -12,13 +12,14 @@ use super::positions::Positions;
 use super::tables::Tables;
 use crate::hierarchy::Hierarchy;
 
-/// Boxes in the single precision of a [`Frame`](super::frame::Frame), and exact positions of vertices where they are asked for.
-/// Where there are two ends, a box goes around both, hence around the straight way between them.
+/// Boxes in the single precision of a [`Frame`](super::frame::Frame), and exact positions of vertices where they are
+/// asked for. Where there are two ends, a box goes around both, hence around the straight way between them.
 ///
 /// Each entry carries the number of the query it was computed for. Lazily, nodes down to clusters have BD-tree boxes; a
-/// cluster gets tight ones, from its vertices, when it is opened. BD boxes of still smaller nodes cost as much as moving
-/// their vertices, and grow with every mode whether modes cancel or not: with them alone, queries of the spring at large q
-/// (30% of its half diagonal) made more than twice as many box tests. The traditional method computes everything first.
+/// cluster gets tight ones, from its vertices, when it is opened. BD boxes of still smaller nodes cost as much as
+/// moving their vertices, and grow with every mode whether modes cancel or not: with them alone, queries of the spring
+/// at large q (30% of its half diagonal) made more than twice as many box tests. The traditional method computes
+/// everything first.
 #[derive(Clone)]
 pub(super) struct Boxes<const E: usize> {
     pub(super) tables: Arc<Tables>,
@@ -241,8 +242,8 @@ impl<const E: usize> Boxes<E> {
         union
     }
 
-    /// Whether two triangles, each given by an open cluster and its place there, certainly have no point in common, as far
-    /// as that is seen without exact positions.
+    /// Whether two triangles, each given by an open cluster and its place there, certainly have no point in common, as
+    /// far as that is seen without exact positions.
     #[inline]
     pub(super) fn are_apart(&self, x: (u32, usize), y: (u32, usize)) -> bool {
         are_apart(&self.mapped(x.0, x.1), &self.mapped(y.0, y.1), self.wrong_by)

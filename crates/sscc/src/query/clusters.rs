@@ -1,4 +1,5 @@
-//! The lowest levels of the hierarchy, made for comparing boxes: clusters of up to eight blocks of up to eight triangles.
+//! The lowest levels of the hierarchy, made for comparing boxes: clusters of up to eight blocks of up to eight
+//! triangles.
 
 use std::ops::Range;
 

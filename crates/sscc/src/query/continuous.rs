@@ -14,20 +14,22 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// How close two triangles must come to be listed though they do not touch: this share (2^-40, about 1e-12) of their
-    /// size, see [`impact_triangle_triangle`](crate::impact_triangle_triangle). Well above what rounding can tell.
+    /// How close two triangles must come to be listed though they do not touch: this share (2^-40, about 1e-12) of
+    /// their size, see [`impact_triangle_triangle`](crate::impact_triangle_triangle). Well above what rounding can
+    /// tell.
     pub const TOLERANCE: f64 = 1.0 / (1_u64 << 40) as f64;
 }
 
 impl Query<'_> {
     /// All pairs that meet while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1`
-    /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, with the time of impact of each.
+    /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, with the time of
+    /// impact of each.
     ///
     /// None is missed: whatever has a point in common at any time from 0 to 1, both ends included, is listed,
     /// with a time that is never later than the true one. A pair listed without need has come as near as
-    /// [`Impact::TOLERANCE`], and nothing but such pairs can differ between methods. Triangles that share exactly one vertex, where
-    /// the rule includes them, are listed when the edge opposite to it of one of them meets the other, which is what they
-    /// must do to have another point in common.
+    /// [`Impact::TOLERANCE`], and nothing but such pairs can differ between methods. Triangles that share exactly one
+    /// vertex, where the rule includes them, are listed when the edge opposite to it of one of them meets the other,
+    /// which is what they must do to have another point in common.
     ///
     /// A certificate holds for the way when it holds for both ends: its region is convex, and what a
     /// radius grants to rounding (see `bounds/scaled.rs`) is granted at the radius itself, which covers

@@ -6,11 +6,11 @@ use super::aabb::Aabb;
 
 /// A map from each coordinate to single precision.
 ///
-/// No rounding error has to be bounded here, because the map never turns round the order of two coordinates of one axis: it
-/// subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and every
-/// one of these steps is monotone. So where one mapped box ends strictly before another one begins, the exact boxes
-/// do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to
-/// overlap, far from the centre (a shape of size 1 at 1e8) or below the smallest numbers.
+/// No rounding error has to be bounded here, because the map never turns round the order of two coordinates of one
+/// axis: it subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and
+/// every one of these steps is monotone. So where one mapped box ends strictly before another one begins, the exact
+/// boxes do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap,
+/// far from the centre (a shape of size 1 at 1e8) or below the smallest numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
     center: DVec3,

@@ -58,8 +58,8 @@ pub enum Method {
     /// All boxes refitted, no certificates: the paper's "traditional" method.
     Traditional,
     /// The traditional method that does not look into a node whose normals and boundary prove that it is free (normal
-    /// cones with the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends prove nothing about the way
-    /// between them: continuous queries are traditional.
+    /// cones with the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends prove nothing about the
+    /// way between them: continuous queries are traditional.
     NormalCones,
     /// Normal cones as the paper's section 7 compares with them, without the contour test: **may miss collisions**. For
     /// measurements only.

@@ -1,6 +1,7 @@
 //! How a shape moves in single precision, with a bound of the error.
 //!
-//! Half the bytes of double precision: moving vertices and boxes is what queries take longest for, and it waits for memory.
+//! Half the bytes of double precision: moving vertices and boxes is what queries take longest for, and it waits for
+//! memory.
 
 use glam::{DVec3, Vec4};
 
@@ -9,8 +10,8 @@ use super::vertices::Vertices;
 use crate::ReducedModel;
 use crate::hierarchy::bounding_box;
 
-/// The rest pose is one more mode, the first, whose coordinate is 1. Displacements are given as shares of the largest one
-/// by the same mode, in 16 bits: a quarter of what double precision takes.
+/// The rest pose is one more mode, the first, whose coordinate is 1. Displacements are given as shares of the largest
+/// one by the same mode, in 16 bits: a quarter of what double precision takes.
 #[derive(Default)]
 pub(super) struct Units {
     /// The middle of the rest pose, and the largest distance from it along an axis.
@@ -79,8 +80,8 @@ impl Units {
     ///
     /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
     /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
-    /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d). Shares are
-    /// off by half a unit, all of them by d / (2 WHOLE).
+    /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d).
+    /// Shares are off by half a unit, all of them by d / (2 WHOLE).
     pub(super) fn begin<const E: usize>(
         &self,
         motion: &mut Motion<E>,

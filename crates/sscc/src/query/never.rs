@@ -8,13 +8,14 @@ use crate::pairs::{PairFilter, Relation};
 const MOST_AROUND: usize = 24;
 
 /// For each two blocks with adjacent triangles, which of their pairs never count. Of the triangles whose
-/// boxes overlap, nearly all share a vertex (at rest, at least 19 of 20 on spring, bunny and dragon): they are never met.
+/// boxes overlap, nearly all share a vertex (at rest, at least 19 of 20 on spring, bunny and dragon): they are never
+/// met.
 #[derive(Default)]
 pub(super) struct Never {
     /// For each block where its part of the list begins, and the end.
     starts: Vec<u32>,
-    /// For each block: blocks not before it, ascending, itself first, and the pairs: bit `8 i + j` for triangle i of the first
-    /// and j of the second block.
+    /// For each block: blocks not before it, ascending, itself first, and the pairs: bit `8 i + j` for triangle i of
+    /// the first and j of the second block.
     pairs: Vec<(u32, u64)>,
 }
 

@@ -16,9 +16,10 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds all that is found, exceptions apart. On the stack, `(n, n, NODE)` stands for a node against itself, `(n, m,
     /// place)` for two nodes without common triangles; their radii have been passed.
     ///
-    /// Every way down comes through one pair of clusters, or one cluster, because the larger node is split first. There the walk
-    /// ends. Following it down to leaves, and moving only their vertices, was tried: where more than a few pairs of leaves
-    /// are open, it takes longer than all blocks of the clusters, and where there are few, not noticeably less.
+    /// Every way down comes through one pair of clusters, or one cluster, because the larger node is split first. There
+    /// the walk ends. Following it down to leaves, and moving only their vertices, was tried: where more than a few
+    /// pairs of leaves are open, it takes longer than all blocks of the clusters, and where there are few, not
+    /// noticeably less.
     pub(super) fn walk_pairs(
         &mut self,
         asked: &Asked<'_>,

@@ -29,8 +29,8 @@ impl<const E: usize> Positions<E> {
         }
     }
 
-    /// Starts a query, of a number that is not 0 and, unless it is 1, the one after the last; `around` is about where the
-    /// shape is.
+    /// Starts a query, of a number that is not 0 and, unless it is 1, the one after the last; `around` is about where
+    /// the shape is.
     pub(super) fn update(&mut self, query: u32, around: Aabb) {
         if query == 1 {
             self.queries.fill(0);

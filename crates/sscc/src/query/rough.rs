@@ -1,5 +1,5 @@
-//! Positions in single precision: boxes are made from them, so that exact ones are computed for the few triangles only that
-//! may meet.
+//! Positions in single precision: boxes are made from them, so that exact ones are computed for the few triangles only
+//! that may meet.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use super::clusters::Clusters;
 use super::motion::{Motion, Units};
 use super::vertices::Vertices;
 
-/// Rest positions and modes of the vertices of each cluster. Vertices of several clusters are there several times (of the
-/// dragon, 1.7): what is read together lies together.
+/// Rest positions and modes of the vertices of each cluster. Vertices of several clusters are there several times (of
+/// the dragon, 1.7): what is read together lies together.
 #[derive(Default)]
 pub(super) struct Rough {
     /// For each cluster where its groups of four vertices begin, and the end.
@@ -130,8 +130,8 @@ mod tests {
         }
     }
 
-    /// Also where modes have very different sizes, cancel each other, or move nothing, and far from the origin. That the
-    /// bound is not wasted is asserted, too.
+    /// Also where modes have very different sizes, cancel each other, or move nothing, and far from the origin. That
+    /// the bound is not wasted is asserted, too.
     #[test]
     fn positions_are_as_near_as_they_say() {
         let random = &mut Random(3);

@@ -16,8 +16,9 @@ impl Query<'_> {
     /// A scale s such that the shape is proven free on the whole way `center + t (q - center)`, t in [0, s]: for
     /// certificates about q = 0, at every `t q`. It is at least what the root's radius gives, and about as
     /// large as the way is free: where that fails, nodes and pairs of nodes are bounded by their own radii, and what
-    /// these leave open by the way itself. Beyond `R_global` ([`Certificates::global_radius`]) nothing is looked at: s ends
-    /// there. 0 where the shape collides at the centre (pairs that are ignored apart); infinite where nothing moves.
+    /// these leave open by the way itself. Beyond `R_global` ([`Certificates::global_radius`]) nothing is looked at: s
+    /// ends there. 0 where the shape collides at the centre (pairs that are ignored apart); infinite where nothing
+    /// moves.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///

@@ -14,7 +14,8 @@ const STEPS: u32 = 1024;
 
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds all that is found between two nodes, or within one; of nodes within a cluster, all of the
-    /// cluster. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for two nodes without common triangles.
+    /// cluster. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for two nodes without common
+    /// triangles.
     pub(super) fn traverse(
         &mut self,
         asked: &Asked<'_>,
@@ -126,8 +127,8 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
     }
 
-    /// Two blocks whose boxes overlap, the second not before the first (or the same); each is given by its cluster and its lane
-    /// there.
+    /// Two blocks whose boxes overlap, the second not before the first (or the same); each is given by its cluster and
+    /// its lane there.
     #[inline]
     fn blocks(&mut self, asked: &Asked<'_>, x: (u32, usize), y: (u32, usize), ends: &Ends<'_, E>) {
         let clusters = &self.boxes.tables.clusters;

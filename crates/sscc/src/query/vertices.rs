@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::ReducedModel;
 
-/// Rest positions and modes of the vertices of triangles. In the order of the mesh, the vertices of a cluster lie far apart.
+/// Rest positions and modes of the vertices of triangles. In the order of the mesh, the vertices of a cluster lie far
+/// apart.
 #[derive(Default)]
 pub(super) struct Vertices {
     rank: usize,
@@ -63,7 +64,8 @@ impl Vertices {
         &self.modes[place as usize * self.rank..][..self.rank]
     }
 
-    /// The position of the vertex at a place: to the bit that of [`deformed_position`](crate::deformed_position), at each q.
+    /// The position of the vertex at a place: to the bit that of [`deformed_position`](crate::deformed_position), at
+    /// each q.
     #[inline]
     pub(super) fn position<const E: usize>(&self, place: u32, q: [&[f64]; E]) -> [DVec3; E] {
         let mut x = [self.rest(place); E];

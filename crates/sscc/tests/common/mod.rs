@@ -331,8 +331,8 @@ fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
     Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
 }
 
-/// A strip of several clusters along a curve that comes near itself, or crosses itself; some of its corners on vertices of
-/// their own. Modes are functions of position.
+/// A strip of several clusters along a curve that comes near itself, or crosses itself; some of its corners on vertices
+/// of their own. Modes are functions of position.
 pub fn winding_strip(random: &mut Random, seed: u64) -> ReducedModel {
     let steps = 60 + random.below(60);
     let (turns, flat, noise) = (random.power(0.0, 0.7), random.power(-1.5, 0.0), random.power(-3.0, -1.0));

@@ -12,8 +12,8 @@ use crate::interrupt;
 /// Times that all blocks are gone through; the median counts for each step.
 const ROUNDS: usize = 3;
 
-/// Times kinetic queries, of each body its own, brought up to date by one untimed query before each block of steps. Gives
-/// the number of steps at which their answers are not those of plain queries.
+/// Times kinetic queries, of each body its own, brought up to date by one untimed query before each block of steps.
+/// Gives the number of steps at which their answers are not those of plain queries.
 pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
     let bodies = steps.first().map_or(0, |step| step.q_t0.len());
     let certificates = &case.full.certificates;
@@ -31,8 +31,8 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
             for (follower, q) in followers.iter_mut().zip(steps[at].before.iter().flatten()) {
                 follower.discrete(q)?;
             }
-            // Steps that the root's certificate answers for all bodies take less time than a look at the clock: stretches of
-            // them share one.
+            // Steps that the root's certificate answers for all bodies take less time than a look at the clock:
+            // stretches of them share one.
             let is_quick = |step: &Step| step.q_t0.iter().all(|q| case.is_root_certified(q));
             let first = at;
             let goes_on = |n: usize| n < steps.len() && steps[n].before.is_none() && is_quick(&steps[n]);

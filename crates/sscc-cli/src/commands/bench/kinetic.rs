@@ -108,8 +108,8 @@ fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> 
             hits.push(!expected.is_empty());
         }
         colliding += hits.iter().filter(|hit| **hit).count();
-        // Each method by itself, as in a simulation; stretches of steps that all collide or are all free share a look at
-        // the clock.
+        // Each method by itself, as in a simulation; stretches of steps that all collide or are all free share a look
+        // at the clock.
         let mut at = 0;
         while at < count {
             let end = (at..count).find(|i| hits[*i] != hits[at]).unwrap_or(count);

@@ -1,7 +1,7 @@
 //! `sscc bench`: what queries cost, by every method and beside parry3d.
 //!
-//! One process, one thread, the same questions in the same order, the methods by turns; each with its own cost of moving
-//! vertices and refitting; all must list the same pairs.
+//! One process, one thread, the same questions in the same order, the methods by turns; each with its own cost of
+//! moving vertices and refitting; all must list the same pairs.
 
 mod amplitudes;
 mod clock;

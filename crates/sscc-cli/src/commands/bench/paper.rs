@@ -4,8 +4,8 @@ use super::report::Report;
 use super::scenario::PaperTable;
 use crate::output::grouped;
 
-/// A row of the paper's Table 1: seconds of precomputation, milliseconds of a step for collisions between objects, within
-/// them by the traditional method and by its own, and the speed-ups of detection and simulation.
+/// A row of the paper's Table 1: seconds of precomputation, milliseconds of a step for collisions between objects,
+/// within them by the traditional method and by its own, and the speed-ups of detection and simulation.
 struct Row {
     name: &'static str,
     precomputation: f64,
@@ -33,7 +33,8 @@ const TABLE_1: [Row; 5] = [
 const TABLE_2: [(&str, [f64; 3]); 2] =
     [("discrete", [640.0, 22.0, 29.1]), ("continuous", [2559.0, 81.0, 31.6])];
 
-/// The paper's Table 3: the share (percent) of the time for self-collisions, dynamics with sound, the ground, penalty forces.
+/// The paper's Table 3: the share (percent) of the time for self-collisions, dynamics with sound, the ground, penalty
+/// forces.
 const TABLE_3: [(&str, [&str; 4]); 2] =
     [("traditional", ["98", "1", "<1", "<0.01"]), ("certified", ["42", "51", "6", "1"])];
 

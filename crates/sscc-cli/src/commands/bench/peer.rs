@@ -2,7 +2,8 @@
 //!
 //! It moves the vertices, refits its tree as its own `TriMesh` does (each leaf, then `refit_without_opt`, by its
 //! documentation the faster one), traverses it against itself, leaves out triangles that share a vertex, and asks our
-//! exact test about the rest. Continuous queries: the same with the boxes of both ends and our test of moving triangles.
+//! exact test about the rest. Continuous queries: the same with the boxes of both ends and our test of moving
+//! triangles.
 
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;

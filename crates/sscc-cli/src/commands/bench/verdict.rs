@@ -4,8 +4,8 @@ use glam::DVec3;
 use sscc::{Impact, MovingTriangle, ReducedModel};
 use sscc_exact::first_contact;
 
-/// Whether a pair that some methods list for a motion and others do not proves one of them wrong: if the two triangles truly
-/// meet on the way (exact arithmetic on the positions at both ends), or if they are further apart than
+/// Whether a pair that some methods list for a motion and others do not proves one of them wrong: if the two triangles
+/// truly meet on the way (exact arithmetic on the positions at both ends), or if they are further apart than
 /// [`Impact::TOLERANCE`] at the time for which they are listed. Else it may be listed or not.
 pub fn is_wrong(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Impact) -> bool {
     let faces = model.mesh().faces();

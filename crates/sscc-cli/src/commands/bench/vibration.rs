@@ -27,7 +27,8 @@ const COLLIDING: usize = LOOKED_AT / 8;
 const SHARES: [f64; 2] = [0.1, 100.0];
 const BISECTIONS: usize = 10;
 
-/// One body: `z_k(t) = a_k cos(omega_k t + phase)`, the amplitudes in proportion to the first of the random [`directions`].
+/// One body: `z_k(t) = a_k cos(omega_k t + phase)`, the amplitudes in proportion to the first of the random
+/// [`directions`].
 pub struct Swing {
     amplitudes: Vec<f64>,
     frequencies: Vec<f64>,
@@ -61,8 +62,8 @@ impl Swing {
     }
 }
 
-/// What swings, and how far: the largest displacement of a vertex of the first body in percent of half the diagonal of the
-/// box, in the states that are looked at.
+/// What swings, and how far: the largest displacement of a vertex of the first body in percent of half the diagonal of
+/// the box, in the states that are looked at.
 pub struct Vibration {
     pub bodies: Vec<Swing>,
     pub share: f64,

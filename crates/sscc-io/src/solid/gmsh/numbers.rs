@@ -4,7 +4,8 @@ use super::Words;
 use crate::error::quoted;
 use crate::{FormatError, Place};
 
-/// Numbers of a text or a binary file, which `words` knows. Nothing is ever allocated by a count: each item is read before the next.
+/// Numbers of a text or a binary file, which `words` knows. Nothing is ever allocated by a count: each item is read
+/// before the next.
 pub(super) struct Numbers<'a> {
     pub words: Words<'a>,
     pub big_endian: bool,

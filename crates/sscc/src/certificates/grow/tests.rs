@@ -33,8 +33,8 @@ fn certify(model: &ReducedModel, budget: usize) -> Certificates {
     Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
 }
 
-/// All pairs of triangles that the tree does not certify at this norm: within a small node, or between two with an entry that has
-/// been passed, as have all above it.
+/// All pairs of triangles that the tree does not certify at this norm: within a small node, or between two with an
+/// entry that has been passed, as have all above it.
 fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     let mut open = Vec::new();
     let mut add = |n: u32, m: u32| {

@@ -7,8 +7,8 @@ use crate::hierarchy::Hierarchy;
 use crate::query::boxes;
 use crate::query::tables::Tables;
 
-/// A ball around the z of a query. By Cauchy and Schwarz, a vertex moves along an axis by at most `|A| |dz|`, where A is its
-/// scaled row of that axis; what both computed positions are rounded by comes on top.
+/// A ball around the z of a query. By Cauchy and Schwarz, a vertex moves along an axis by at most `|A| |dz|`, where A
+/// is its scaled row of that axis; what both computed positions are rounded by comes on top.
 pub(in crate::query) struct Ball {
     /// The norms of the three rows of each vertex, by its place, rounded up.
     rates: Vec<DVec3>,

@@ -57,8 +57,8 @@ mod tests {
     use super::*;
     use crate::{Neighbours, PairRule, Scope};
 
-    /// Nothing meets within a margin: looked for at random, and towards where corners come closer fastest. And margins are
-    /// not much too small: many are reached up to a tenth.
+    /// Nothing meets within a margin: looked for at random, and towards where corners come closer fastest. And margins
+    /// are not much too small: many are reached up to a tenth.
     #[test]
     fn nothing_meets_within_a_margin() {
         let (mut measured, mut reached) = (0, 0);

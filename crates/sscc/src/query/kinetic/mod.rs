@@ -1,9 +1,9 @@
 //! Kinetic queries: what one query decided stands for the next ones, as long as q stays near.
 //!
-//! A search at one z, with the boxes and radii of all z in a ball around it, finds every pair that can meet anywhere in the
-//! ball. Each of them then stands by a margin of its own: two triangles that are apart stay so until z has moved by
-//! the gap over the rate at which it can close. While z stays in the ball a query looks only at the pairs whose margin is used up,
-//! and at those that collide or nearly do.
+//! A search at one z, with the boxes and radii of all z in a ball around it, finds every pair that can meet anywhere in
+//! the ball. Each of them then stands by a margin of its own: two triangles that are apart stay so until z has moved by
+//! the gap over the rate at which it can close. While z stays in the ball a query looks only at the pairs whose margin
+//! is used up, and at those that collide or nearly do.
 
 mod ball;
 mod front;

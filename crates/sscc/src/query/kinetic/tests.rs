@@ -105,8 +105,8 @@ struct Seen {
     balls: usize,
     known: usize,
     expired: usize,
-    /// Pairs that began to collide in a step without a search; and those of them that no certificate at the ball's centre
-    /// would have let through.
+    /// Pairs that began to collide in a step without a search; and those of them that no certificate at the ball's
+    /// centre would have let through.
     begun: usize,
     begun_beyond: usize,
     root_certified_within: usize,
