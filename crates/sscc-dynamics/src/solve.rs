@@ -186,7 +186,7 @@ impl Solver {
         let count = touch.sides().count() as f64;
         for Side { body, .. } in touch.sides() {
             let own = &mut bodies[body].ledger;
-            let share = if work > 0.0 { *own / ledger } else { 1.0 / count };
+            let share = if work > 0.0 && ledger > 0.0 { *own / ledger } else { 1.0 / count };
             *own = (*own - work * share).max(0.0);
         }
         (self.touches[n].pressure, self.touches[n].drag) = (pressure, drag);

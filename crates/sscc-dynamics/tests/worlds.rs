@@ -116,7 +116,7 @@ fn a_world_goes_on_from_its_state_and_threads_do_not_matter() {
                 world.advance(&mut ()).unwrap();
                 pushes += world.impulses().len();
             }
-            (world.state(), world.energy().to_bits(), pushes)
+            (world.state(), world.energy().to_bits(), pushes, world.impulses().to_vec())
         })
     };
     let expected = run(1, Detection::Certified, None);

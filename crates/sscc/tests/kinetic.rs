@@ -1,4 +1,4 @@
-//! Kinetic queries against the traditional method, at every step of every kind of motion.
+//! Kinetic queries against brute force, which shares no box and no test in single precision with them, at every step of every kind of motion.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -59,7 +59,7 @@ fn motion(random: &mut Random, rank: usize, kind: usize, steps: usize, size: f64
 }
 
 fn compare(model: &ReducedModel, certificates: &Certificates, path: &[Vec<f64>], counts: &mut Counts) {
-    let mut oracle = Query::with_method(model, certificates, Method::Traditional).unwrap();
+    let mut oracle = Query::with_method(model, certificates, Method::BruteForce).unwrap();
     let mut full = Query::new(model, certificates).unwrap();
     let mut kinetic = KineticQuery::new(model, certificates).unwrap();
     for (step, z) in path.iter().enumerate() {
@@ -183,7 +183,7 @@ fn coils_of_several_clusters() {
 fn errors_leave_no_trace() {
     let model = coil(&mut Random::new(1), 1);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-    let mut oracle = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
     for step in 0..60 {
         let t = -0.9 + f64::from(step) * 1e-4;
@@ -216,7 +216,7 @@ fn balls_of_any_size_are_searched() {
         let metric = Metric::from_scales(MetricKind::Given, vec![1.0; 2]).unwrap();
         let model = ReducedModel::with_metric(mesh, Modes::new(2, displacements).unwrap(), metric).unwrap();
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-        let mut plain = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
+        let mut plain = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
         for far in [1.0, 1e38, 1e39, 1e41, 1e45, 1e100] {
             let mut query = KineticQuery::new(&model, &certificates).unwrap();
             for step in 0..6 {

@@ -153,7 +153,7 @@ fn a_cancelled_walk_stops_or_is_right() {
     let (model, mut random) = (sheets(), Random::new(3));
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(&Stopped);
-    let mut oracle = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     for _ in 0..20 {
         let q = [random.uniform() * 2.0];
         match query.discrete(&q) {

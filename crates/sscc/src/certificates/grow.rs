@@ -324,4 +324,4 @@ fn children(hierarchy: &Hierarchy, pair: &Grown) -> std::ops::Range<usize> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

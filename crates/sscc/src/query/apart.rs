@@ -61,22 +61,8 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::intersect_triangle_triangle;
-    use crate::{MovingTriangle, impact_triangle_triangle};
-
-    struct Random(u64);
-
-    impl Random {
-        /// In [-1, 1).
-        fn number(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.number(), self.number(), self.number())
-        }
-    }
+    use crate::query::kinetic::tests::Random;
+    use crate::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
 
     /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a
     /// few margins apart or within each other, or farther.
@@ -97,7 +83,7 @@ mod tests {
                 // In one plane, side by side.
                 2 => b = [a[1], a[2], a[1] + a[2] - a[0]],
                 // Needles and points.
-                3 => a[2] = a[0] + (a[1] - a[0]) * random.number(),
+                3 => a[2] = a[0] + (a[1] - a[0]) * random.signed(),
                 _ => {}
             }
             let gap = random.vector() * margin * [0.0, 3.0, 10.0, 1e3][case as usize / 3 % 4];

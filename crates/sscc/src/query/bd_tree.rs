@@ -23,7 +23,7 @@ pub(super) struct BdTree {
     rest: Vec<(DVec3, DVec3)>,
     /// `[place * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
-    /// The same in single precision, `[(place * (rank + 1) + mode) * 6 + component]` as [`Units`] tells, and one more.
+    /// The same in shares, `[(place * (rank + 1) + mode) * 6 + component]`, as [`Units`] tells; and one more entry.
     shares: Vec<i16>,
 }
 

@@ -114,21 +114,8 @@ mod tests {
     use super::*;
     use crate::query::boxes::margin;
     use crate::query::frame::Frame;
+    use crate::query::kinetic::tests::Random;
     use crate::{Method, Modes, Query, ReducedModel, Scope, TriMesh};
-
-    struct Random(u64);
-
-    impl Random {
-        /// In [-1, 1).
-        fn number(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.number(), self.number(), self.number())
-        }
-    }
 
     /// Also where modes have very different sizes, cancel each other, or move nothing, and far from the origin. That
     /// the bound is not wasted is asserted, too.
@@ -154,7 +141,7 @@ mod tests {
                 }
             }
             let mut q: Vec<f64> =
-                (0..rank).map(|k| random.number() / [1.0, 1e-30, 1.0, 1e5, 1e-3][(k + case) % 5]).collect();
+                (0..rank).map(|k| random.signed() / [1.0, 1e-30, 1.0, 1e5, 1e-3][(k + case) % 5]).collect();
             q.iter_mut().for_each(|q| *q *= [1.0, 0.01, 0.0, 100.0][case / 4 % 4] / rank as f64);
             (5..rank).step_by(6).for_each(|k| q[k] = -q[k - 1]);
             let faces = (0..88).map(|i| [i, i + 1, i + 2]).collect();

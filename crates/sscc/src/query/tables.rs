@@ -40,11 +40,9 @@ impl Tables {
             Contours::default()
         };
         let rough = match asked.method {
-            Method::Certified | Method::BdTree | Method::Traditional => {
-                Rough::new(&units, &clusters, &vertices)
-            }
-            // Where all vertices move anyway, exact positions take no longer.
-            _ => Rough::default(),
+            // Normals are made from exact positions, and then boxes are, too.
+            Method::NormalCones | Method::NormalConesApprox => Rough::default(),
+            _ => Rough::new(&units, &clusters, &vertices),
         };
         Self { vertices, units, rough, clusters, bd_tree, contours }
     }

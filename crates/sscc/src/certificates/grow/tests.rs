@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// A strip of 2 x `quads` triangles bent to an open ring, with smooth modes: its ends meet, and its middle.
-fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
+pub(in crate::certificates) fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
     let angle = |i: usize| 5.6 * i as f64 / quads as f64;
     let positions: Vec<DVec3> = (0..=quads)
         .flat_map(|i| [0.0, 0.4].map(|y| DVec3::new(angle(i).cos(), y + 0.1 * angle(i), angle(i).sin())))

@@ -35,7 +35,7 @@ const MOST_FOUND: usize = 8;
 const WORTH: u64 = 64;
 
 /// What it costs to open a node, to measure the margin of two triangles, to test them, and to find them in a ball: in
-/// boxes compared, which take about 8 ns.
+/// boxes compared.
 const OPEN: u64 = 50;
 const MARGIN: u64 = 150;
 const TEST: u64 = 20;
@@ -239,4 +239,4 @@ fn up(sum: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -1,20 +1,20 @@
-//! Kinetic queries whose balls are of all sizes against traditional ones, and models to try their parts on.
+//! Kinetic queries whose balls are of all sizes against brute force, and models to try their parts on.
 
 use glam::DVec3;
 
 use super::*;
 use crate::{CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, TriMesh};
 
-pub(super) struct Random(pub(super) u64);
+pub(in crate::query) struct Random(pub(in crate::query) u64);
 
 impl Random {
     /// In [-1, 1).
-    pub(super) fn signed(&mut self) -> f64 {
+    pub(in crate::query) fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
     }
 
-    pub(super) fn vector(&mut self) -> DVec3 {
+    pub(in crate::query) fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
 }
@@ -177,7 +177,7 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut pairing = Pairing {
             kinetic: KineticQuery::new(&model, &certificates).unwrap(),
-            oracle: Query::with_method(&model, &certificates, Method::Traditional).unwrap(),
+            oracle: Query::with_method(&model, &certificates, Method::BruteForce).unwrap(),
             certificates: &certificates,
             colliding: false,
             plain: false,
