@@ -69,7 +69,9 @@ impl<'a> LeafPair<'a> {
 
     /// The bound of two triangles (or hulls of three of the vertices) along the last direction.
     pub(crate) fn along(&self, x: [u32; 3], y: [u32; 3]) -> f64 {
-        self.corners(x, y).map(|at| self.along[at]).into_iter().fold(f64::INFINITY, f64::min)
+        // No bound is NaN.
+        let least = |a: f64, b: f64| if b < a { b } else { a };
+        self.corners(x, y).map(|at| self.along[at]).into_iter().fold(f64::INFINITY, least)
     }
 
     /// The bound of two triangles by one affine map of all vertices. That of a cone of directions, which costs more,

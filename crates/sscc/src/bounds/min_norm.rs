@@ -12,16 +12,16 @@ pub(crate) struct Nearest<const N: usize> {
 
 /// Minimises `|sum w_i d_i|` over convex weights w.
 pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
-    let start =
-        (0..N).fold(0, |best, i| if d[i].length_squared() < d[best].length_squared() { i } else { best });
+    let start = place_of_least(&d.map(|d| d.length_squared()));
     let mut corners = [start, 0, 0, 0];
     let mut weights = [1.0, 0.0, 0.0, 0.0];
     let mut count = 1;
     let mut point = d[start];
     for _ in 0..3 * N {
-        let entering = (0..N).fold(0, |best, i| if d[i].dot(point) < d[best].dot(point) { i } else { best });
+        let along = d.map(|d| d.dot(point));
+        let entering = place_of_least(&along);
         let norm = point.length_squared();
-        let done = norm - d[entering].dot(point) <= 1e-10 * norm;
+        let done = norm - along[entering] <= 1e-10 * norm;
         if done || count == 4 || corners[..count].contains(&entering) {
             break;
         }
@@ -62,6 +62,10 @@ pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
         all[corners[i]] += weights[i];
     }
     Nearest { weights: all, point }
+}
+
+fn place_of_least<const N: usize>(values: &[f64; N]) -> usize {
+    (0..N).fold(0, |best, i| if values[i] < values[best] { i } else { best })
 }
 
 /// The weights (they sum to 1) of the smallest point in the affine hull of the corners, or none when the

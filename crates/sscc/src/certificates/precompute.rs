@@ -47,6 +47,7 @@ impl Radii {
         let grove = Grove::grow(hierarchy, prepared.global_radius, budget, solver)?;
         let mut work = Work::new(prepared, &grove, progress);
         let upper = work.pass(Precision::Rough, f64::INFINITY, solver)?;
+        let upper = upper.min(work.upper_of_root(solver)?);
         // Then precisely those that may be below what was learnt of the root's.
         work.pass(Precision::Full, upper, solver)?;
         work.tally.finish()?;
@@ -106,8 +107,17 @@ impl<'a> Work<'a> {
             if level.start == 0 && !nodes[0].is_leaf() {
                 continue;
             }
-            let wanted = |n: &usize| self.nodes[*n] < below && !within_small[*n];
-            let wanted: Vec<usize> = level.clone().filter(wanted).collect();
+            let mut wanted: Vec<usize> =
+                level.clone().filter(|n| self.nodes[*n] < below && !within_small[*n]).collect();
+            if precision == Precision::Rough {
+                wanted.retain(|n| {
+                    let least = self.grown(*n, 0..child_pairs(&nodes[*n]).count());
+                    if let Some(least) = least {
+                        self.nodes[*n] = least.min(self.least_child(&nodes[*n]));
+                    }
+                    least.is_none()
+                });
+            }
             self.tally.add(level.len() - wanted.len());
             let task = |at: usize| {
                 let node = &nodes[wanted[at]];
@@ -119,8 +129,15 @@ impl<'a> Work<'a> {
         }
         if !nodes[0].is_leaf() {
             // Between the children of the root each pair has a radius of its own.
-            let wanted = |at: &usize| self.root_pairs[*at] < below;
-            let wanted: Vec<usize> = (0..self.root_pairs.len()).filter(wanted).collect();
+            let mut wanted: Vec<usize> =
+                (0..self.root_pairs.len()).filter(|at| self.root_pairs[*at] < below).collect();
+            if precision == Precision::Rough {
+                wanted.retain(|at| {
+                    let least = self.grown(0, *at..*at + 1);
+                    self.root_pairs[*at] = least.unwrap_or(self.root_pairs[*at]);
+                    least.is_none()
+                });
+            }
             self.tally.add(self.root_pairs.len() - wanted.len() + 1);
             let task = |at: usize| self.task(0, wanted[at]..wanted[at] + 1, self.prepared.global_radius);
             let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
@@ -134,6 +151,35 @@ impl<'a> Work<'a> {
             }
         }
         Ok(upper)
+    }
+
+    /// What is known of some pairs of a node's children from growing the pair tree, below the limit that it has reached.
+    fn grown(&self, node: usize, which: Range<usize>) -> Option<f64> {
+        if self.prepared.hierarchy.is_whole(node as u32) {
+            None
+        } else {
+            self.grove.least(node as u32, which)
+        }
+    }
+
+    /// An upper bound of the root's radius where that is known from growing alone: one is met by searching the pairs of
+    /// children that it comes from.
+    fn upper_of_root(&self, solver: &mut dyn Solver) -> Result<f64, Error> {
+        let nodes = self.prepared.hierarchy.nodes();
+        let mut at = 0;
+        while let Some(child) = nodes[at].children().find(|n| self.nodes[*n as usize] == self.nodes[0]) {
+            at = child as usize;
+        }
+        let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {
+            Some(pair) if at == 0 => pair..pair + 1,
+            _ => 0..child_pairs(&nodes[at]).count(),
+        };
+        if self.grown(at, which.clone()).is_none() {
+            return Ok(f64::INFINITY);
+        }
+        let task = |_| self.task(at, which.clone(), self.prepared.global_radius);
+        let found = solver.radii(Precision::Rough, 1, &task, &Tally::new(&(), 1))?;
+        Ok(found.into_iter().map(|(_, upper)| upper).fold(f64::INFINITY, f64::min))
     }
 
     fn least_child(&self, node: &Node) -> f64 {

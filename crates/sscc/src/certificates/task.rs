@@ -48,9 +48,15 @@ impl Prepared {
         let rest = vec![0.0; model.rank()];
         let center = options.center.clone().unwrap_or_else(|| rest.clone());
         model.check_coordinates(&center)?;
-        let hierarchy = Hierarchy::build(model, &metric);
         let mut rule = options.rule.clone();
-        let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress)?;
+        let found_at_rest = || {
+            let hierarchy = Hierarchy::build(model, &metric);
+            let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress);
+            (hierarchy, at_rest)
+        };
+        let ((hierarchy, at_rest), scaled) =
+            rayon::join(found_at_rest, || ScaledModel::new(model, &metric, &center));
+        let at_rest = at_rest?;
         let rest_collisions = at_rest.len() as u64;
         let at_center = if center == rest {
             at_rest.clone()
@@ -68,11 +74,12 @@ impl Prepared {
             exceptions.clear();
         }
         let scope = Scope { metric, center, rule, exceptions };
-        let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
+        let (digest, clusters) =
+            rayon::join(|| Digest::of(model, &scope), || ClusterBounds::new(&scaled, &hierarchy));
         Ok(Self {
-            digest: Digest::of(model, &scope),
+            digest,
             filter: PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions),
-            clusters: ClusterBounds::new(&scaled, &hierarchy),
+            clusters,
             global_radius: global_radius(model, &scope.metric, &scope.center),
             rest_collisions,
             epsilon: options.epsilon,
@@ -137,6 +144,9 @@ pub(super) trait Solver {
     ) -> Result<Vec<(f64, f64)>, Error>;
 }
 
+/// Pairs that a thread takes at once.
+const TOGETHER: usize = 8;
+
 /// The threads of the current pool.
 pub(super) struct Here<'a> {
     pub(super) prepared: &'a Prepared,
@@ -150,7 +160,9 @@ impl Solver for Here<'_> {
         let one = |search: &mut Search<'_>, pair: &Grown| {
             expand(*pair, round, &prepared.hierarchy, search, &used, progress)
         };
-        let lists = open.par_iter().map_init(|| prepared.search(progress), one).collect();
+        // Parts are unequal, so that each takes few: what was begun cannot be shared any more.
+        let open = open.par_iter().with_max_len(TOGETHER);
+        let lists = open.map_init(|| prepared.search(progress), one).collect();
         if progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
@@ -171,6 +183,6 @@ impl Solver for Here<'_> {
             search
         };
         let one = |search: &mut Search<'_>, at| tally.step(|| task(at).solve(prepared, search));
-        Ok((0..count).into_par_iter().map_init(search, one).collect())
+        Ok((0..count).into_par_iter().with_max_len(1).map_init(search, one).collect())
     }
 }
