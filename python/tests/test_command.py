@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sscc
-from shapes import samples, torus
+from shapes import samples, torus, write_obj
 
 
 def lines(command: Path, *arguments: object) -> list[dict[str, Any]]:
@@ -70,9 +70,7 @@ def test_options_mean_the_same(
 
 def test_modes_in_files_and_in_memory_are_the_same(tmp_path: Path, command: Path) -> None:
     vertices, faces, modes = torus(16, 8, 3)
-    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
-    (tmp_path / "a.obj").write_text("\n".join(rows))
+    write_obj(tmp_path / "a.obj", vertices, faces)
     for number, shape in enumerate((modes, modes.reshape(-1, 3), np.moveaxis(modes, 2, 0))):
         path = tmp_path / f"{number}.npy"
         np.save(path, shape)

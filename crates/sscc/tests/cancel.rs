@@ -88,15 +88,18 @@ fn cancelled_kinetic_queries_are_whole() {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let after = After::new();
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
-    let path: Vec<[f64; 2]> = (0..60).map(|i| [0.1, 0.05 + 1e-4 * f64::from(i)]).collect();
+    let path: Vec<[f64; 2]> = (0..60).map(|i| [0.1, 0.5 + 1e-4 * f64::from(i)]).collect();
     let expected: Vec<Vec<_>> = path.iter().map(|q| oracle.discrete(q).unwrap().to_vec()).collect();
-    let mut cancelled = 0;
+    let (mut cancelled, mut steps) = (0, 0);
     for stride in 2..12 {
         let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(&after);
         for (i, (q, expected)) in path.iter().zip(&expected).enumerate() {
-            after.allow(if i % stride == 1 { i / stride } else { usize::MAX });
+            after.allow(if i % stride == 1 { i / stride % 8 } else { usize::MAX });
             match kinetic.discrete(q) {
-                Ok(pairs) => assert_eq!(pairs, expected),
+                Ok(pairs) => {
+                    assert_eq!(pairs, expected);
+                    steps += u64::from(kinetic.statistics().opened == 0);
+                }
                 Err(error) => {
                     assert_eq!(error, Error::Cancelled);
                     cancelled += 1;
@@ -104,5 +107,5 @@ fn cancelled_kinetic_queries_are_whole() {
             }
         }
     }
-    assert!(cancelled > 30, "{cancelled}");
+    assert!(cancelled > 60 && steps > 60, "{cancelled} {steps}");
 }

@@ -137,6 +137,9 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         y: (u32, [u32; 3]),
         ends: &Ends<'_, E>,
     ) {
+        if self.cancelled {
+            return;
+        }
         let (x, y) = if x.0 < y.0 { (x, y) } else { (y, x) };
         let pair = (x.0, y.0);
         let relation = asked.filter.relation(pair.0, pair.1);
@@ -144,9 +147,6 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             return;
         }
         self.count_test(asked);
-        if self.cancelled {
-            return;
-        }
         [x, y].iter().for_each(|(_, corners)| self.boxes.move_corners(*corners, ends));
         let [x, y] = [x, y].map(|(_, corners)| self.boxes.corners(corners));
         if let Some(found) = F::of(&asked.filter, relation, pair, &x, &y)

@@ -3,8 +3,8 @@
 use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
-use crate::certificates::child_pairs;
 use crate::PairTree;
+use crate::certificates::child_pairs;
 
 /// Between two looks at whether the query was cancelled.
 const STEPS: u32 = 1024;

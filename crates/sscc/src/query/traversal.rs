@@ -6,8 +6,8 @@ use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
 use super::pack::{LANES, Lanes};
-use crate::certificates::child_pairs;
 use crate::Pair;
+use crate::certificates::child_pairs;
 
 /// Between two looks at whether the query was cancelled. A step takes at most about 10 microseconds, tests of triangles
 /// apart, between which it looks, too.
