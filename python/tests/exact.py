@@ -16,8 +16,8 @@ import sscc
 F64 = NDArray[np.float64]
 U32 = NDArray[np.uint32]
 
-#: Models without vertices of equal position (libigl leaves pairs out that touch at such), and how far configurations move
-#: them at most, in half diagonals of their box: so that many of them collide.
+#: Models without vertices of equal position (libigl leaves pairs out that touch at such), and how far configurations
+#: move them at most, in half diagonals of their box: so that many of them collide.
 MODELS = {"vega_A": 8.0, "bunny": 4.0, "face": 0.2}
 #: Configurations of each.
 COUNT = 500

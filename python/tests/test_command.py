@@ -23,7 +23,8 @@ def lines(command: Path, *arguments: object) -> list[dict[str, Any]]:
 def test_certificates_and_answers_are_the_same(
     tmp_path: Path, command: Path, model: sscc.Model, certs: sscc.Certificates
 ) -> None:
-    file, ours, theirs = tmp_path / "a.model.safetensors", tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
+    file = tmp_path / "a.model.safetensors"
+    ours, theirs = tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
     model.save(file)
     certs.save(ours)
     (told,) = lines(command, "certify", file, "-o", theirs)
@@ -61,7 +62,8 @@ def test_certificates_and_answers_are_the_same(
 def test_options_mean_the_same(
     tmp_path: Path, command: Path, model: sscc.Model, flags: list[str], options: dict[str, Any]
 ) -> None:
-    file, ours, theirs = tmp_path / "a.model.safetensors", tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
+    file = tmp_path / "a.model.safetensors"
+    ours, theirs = tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
     model.save(file)
     model.certify(**options).save(ours)
     lines(command, "certify", file, "-o", theirs, *flags)
