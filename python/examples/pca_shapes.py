@@ -15,7 +15,7 @@ SUBJECTS, COMPONENTS, SAMPLES = 60, 4, 500
 def population(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Scans of so many people, vertex by vertex the same: (n, V, 3), and the faces."""
     vertices, faces, modes = mouth()
-    habits = random.normal(size=(SUBJECTS, modes.shape[2])) * [0.35, 0.25, 0.5, 0.5]
+    habits = random.normal(size=(SUBJECTS, modes.shape[2])) * [0.5, 0.35, 0.5, 0.5]
     return vertices + np.einsum("nk,vck->nvc", habits, modes), faces
 
 

@@ -13,7 +13,7 @@ use crate::arrays::{Cached, cached, floats, line, table};
 use crate::certificates::Certificates;
 use crate::errors::{refused, room, value};
 use crate::interrupt::run_borrowing;
-use crate::pool::{Pool, threads};
+use crate::pool::{self, Pool};
 
 #[pyclass(frozen, module = "sscc", name = "Batch")]
 pub struct Batch {
@@ -169,12 +169,12 @@ pub fn check_many(
     pool: &Pool,
     #[allow(non_snake_case)] Q: &Bound<'_, PyAny>,
     limit: Option<&Bound<'_, PyAny>>,
-    threads_typed: Option<&Bound<'_, PyAny>>,
+    threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Batch> {
     let model = &pool.borrow_owner().loaded.model;
     let limit = count(limit, "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX);
-    let threads = threads(threads_typed)?;
+    let threads = pool::threads(threads)?;
     let array = floats(Q, "Q")?;
     let rows = rows(&array, model.rank())?;
     let answers = run_borrowing(py, progress, "checking", |progress| {

@@ -239,11 +239,11 @@ pub fn _model(
 
 /// A mesh from arrays: (V, 3) numbers and (F, 3) integers.
 pub fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
-    mesh_of(points(&floats(vertices, "vertices")?, "vertices")?, faces)
+    mesh_of(points(&floats(vertices, "vertices")?, "vertices")?, "vertices", faces)
 }
 
-/// A mesh of these vertices, from faces (F, 3).
-pub fn mesh_of(positions: Vec<DVec3>, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
+/// A mesh of these vertices, which come from the argument `name`, and faces (F, 3).
+pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
     let corners = integers(faces, "faces")?;
     if corners.ndim() != 2 || corners.shape()[1] != 3 {
         return Err(value(format!("faces has shape {:?}: (F, 3) was expected", corners.shape())));
@@ -253,13 +253,13 @@ pub fn mesh_of(positions: Vec<DVec3>, faces: &Bound<'_, PyAny>) -> PyResult<TriM
     for (face, corners) in corners.as_slice()?.as_chunks::<3>().0.iter().enumerate() {
         let vertex = |v: i64| match u32::try_from(v) {
             Ok(vertex) if v < count as i64 => Ok(vertex),
-            _ => Err(value(format!("faces[{face}] names vertex {v}: vertices has {count}, counted from 0"))),
+            _ => Err(value(format!("faces[{face}] names vertex {v}: {name} has {count}, counted from 0"))),
         };
         faces.push([vertex(corners[0])?, vertex(corners[1])?, vertex(corners[2])?]);
     }
     TriMesh::new(positions, faces).map_err(|error| match error {
         sscc::Error::NoFaces => refused(&error, "faces"),
-        error => refused(&error, "vertices"),
+        error => refused(&error, name),
     })
 }
 

@@ -17,7 +17,7 @@ use crate::arrays::{floats, integers};
 use crate::errors::{file, kind, room, value};
 use crate::interrupt::run;
 use crate::model::{Loaded, Model, mesh, mesh_of, points};
-use crate::pool::{on_threads, threads};
+use crate::pool::{self, on_threads};
 
 /// A mesh or solid in a file, or a surface as `(vertices, faces)`.
 enum Source {
@@ -72,7 +72,7 @@ pub fn _elastic(
     fix_box: Option<&Bound<'_, PyAny>>,
     material: [Option<Bound<'_, PyAny>>; 3],
     resolution: Option<&Bound<'_, PyAny>>,
-    threads_typed: Option<&Bound<'_, PyAny>>,
+    threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
     let kinds = [("linear", Kind::Linear), ("nonlinear", Kind::Nonlinear), ("polynomial", Kind::Polynomial)];
@@ -92,7 +92,7 @@ pub fn _elastic(
         };
         wanted.fixed_box = Some([a, b]);
     }
-    let threads = threads(threads_typed)?;
+    let threads = pool::threads(threads)?;
     let source = Arc::new(source);
     let of_worker = Arc::clone(&source);
     let made = run(py, progress, "modes", move |progress| {
@@ -106,11 +106,11 @@ pub fn _elastic(
 pub fn _polynomial(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
-    threads_typed: Option<&Bound<'_, PyAny>>,
+    threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
     let source = Source::of(source)?;
-    let threads = threads(threads_typed)?;
+    let threads = pool::threads(threads)?;
     let source = Arc::new(source);
     let of_worker = Arc::clone(&source);
     let made = run(py, progress, "modes", move |progress| {
@@ -158,11 +158,11 @@ pub fn _pca(
     shapes: &Bound<'_, PyAny>,
     faces: Option<&Bound<'_, PyAny>>,
     rank: Option<&Bound<'_, PyAny>>,
-    threads_typed: Option<&Bound<'_, PyAny>>,
+    threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
     let rank = count(rank, "rank", 1..=usize::MAX)?;
-    let threads = threads(threads_typed)?;
+    let threads = pool::threads(threads)?;
     let (mesh, frames, name, is_split) = if let Ok(folder) = shapes.extract::<PathBuf>() {
         if faces.is_some() {
             return Err(value("faces: the meshes of a folder have their own"));
@@ -176,7 +176,7 @@ pub fn _pca(
         };
         let frames = read_shapes(shapes)?;
         let Some(first) = frames.first() else { return Err(value("shapes is empty")) };
-        (mesh_of(first.clone(), faces)?, frames, "shapes in memory".into(), false)
+        (mesh_of(first.clone(), "shapes", faces)?, frames, "shapes in memory".into(), false)
     };
     let count = frames.len();
     let found = run(py, progress, "principal components", move |progress| {
@@ -194,7 +194,8 @@ fn read_shapes(any: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<DVec3>>> {
     let array = floats(any, "shapes")?;
     let entries = match *array.shape() {
         [_, _, 3] => array.shape()[1] * 3,
-        [_, entries] if entries % 3 == 0 => entries,
+        // One shape (V, 3) is none of one vertex each.
+        [_, entries] if entries % 3 == 0 && entries != 3 => entries,
         _ => {
             return Err(value(format!(
                 "shapes has shape {:?}: (n, V, 3) or (n, 3V) was expected",

@@ -12,7 +12,7 @@ use sscc_io::IoError;
 use crate::arguments::{count, path, switch};
 use crate::errors::{file, value};
 use crate::interrupt::run_borrowing;
-use crate::pool::threads;
+use crate::pool;
 
 /// Stopping one stops all.
 static ONLY: Mutex<()> = Mutex::new(());
@@ -28,7 +28,7 @@ pub fn _simulate(
     restart: Option<&Bound<'_, PyAny>>,
     models: Option<&Bound<'_, PyAny>>,
     cache: Option<&Bound<'_, PyAny>>,
-    threads_typed: Option<&Bound<'_, PyAny>>,
+    threads: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, PathBuf, Vec<PathBuf>)> {
     let folder = |any: Option<&Bound<'_, PyAny>>, name: &str| any.map(|any| path(any, name)).transpose();
     let request = Request {
@@ -38,7 +38,7 @@ pub fn _simulate(
         restart: switch(restart, "restart")?.unwrap_or(false),
         models: folder(models, "models")?,
         cache: folder(cache, "cache")?,
-        threads: threads(threads_typed)?.map(|threads| threads as u32),
+        threads: pool::threads(threads)?.map(|threads| threads as u32),
     };
     let Ok(_only) = ONLY.try_lock() else {
         return Err(PyRuntimeError::new_err("another simulation goes on in this process; wait for its end"));

@@ -30,9 +30,9 @@ from sscc._worker import as_given, certify_whole, check_chunk, content_of, do_jo
 try:
     import dask
     from distributed import Client, Future, as_completed
-except ImportError as error:
-    message = "sscc.batch needs dask.distributed, which is not installed: pip install './python[dask]'"
-    raise ImportError(message) from error
+except ImportError as _missing:
+    _MESSAGE = "sscc.batch needs dask.distributed, which is not installed: pip install './python[dask]'"
+    raise ImportError(_MESSAGE) from _missing
 
 __all__ = ["Library", "certify", "certify_in_shards", "check"]
 

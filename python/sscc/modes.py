@@ -80,7 +80,8 @@ def polynomial(
     """The 24 quadratic polynomials of the rest position, rigid motions taken out.
 
     A surface needs no volume for them, and its metric is displacement. With ``solid=True``, a ``resolution`` or a
-    material, and for solids in files, they get the stiffness and the forces of the body, and the metric is its strain energy.
+    material, and for solids in files, they get the stiffness and the forces of the body, and the metric is its strain
+    energy.
     """
     material = (youngs, poisson, density)
     options = (*material, resolution)

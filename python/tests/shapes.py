@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,3 +39,10 @@ def two_triangles() -> tuple[F64, I64, F64]:
 def samples(count: int, rank: int, scale: float, seed: int = 7) -> F64:
     """Random q, (count, rank)."""
     return np.random.default_rng(seed).normal(size=(count, rank)) * scale
+
+
+def write_obj(path: Path, vertices: F64, faces: I64) -> None:
+    """Writes a mesh, every digit of it."""
+    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
+    path.write_text("\n".join(rows))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sscc
-from shapes import samples, torus
+from shapes import samples, torus, write_obj
 
 
 def lines(command: Path, *arguments: object) -> list[dict[str, Any]]:
@@ -23,7 +23,8 @@ def lines(command: Path, *arguments: object) -> list[dict[str, Any]]:
 def test_certificates_and_answers_are_the_same(
     tmp_path: Path, command: Path, model: sscc.Model, certs: sscc.Certificates
 ) -> None:
-    file, ours, theirs = tmp_path / "a.model.safetensors", tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
+    file = tmp_path / "a.model.safetensors"
+    ours, theirs = tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
     model.save(file)
     certs.save(ours)
     (told,) = lines(command, "certify", file, "-o", theirs)
@@ -61,7 +62,8 @@ def test_certificates_and_answers_are_the_same(
 def test_options_mean_the_same(
     tmp_path: Path, command: Path, model: sscc.Model, flags: list[str], options: dict[str, Any]
 ) -> None:
-    file, ours, theirs = tmp_path / "a.model.safetensors", tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
+    file = tmp_path / "a.model.safetensors"
+    ours, theirs = tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
     model.save(file)
     model.certify(**options).save(ours)
     lines(command, "certify", file, "-o", theirs, *flags)
@@ -70,9 +72,7 @@ def test_options_mean_the_same(
 
 def test_modes_in_files_and_in_memory_are_the_same(tmp_path: Path, command: Path) -> None:
     vertices, faces, modes = torus(16, 8, 3)
-    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
-    (tmp_path / "a.obj").write_text("\n".join(rows))
+    write_obj(tmp_path / "a.obj", vertices, faces)
     for number, shape in enumerate((modes, modes.reshape(-1, 3), np.moveaxis(modes, 2, 0))):
         path = tmp_path / f"{number}.npy"
         np.save(path, shape)

@@ -15,20 +15,21 @@ import pytest
 import sscc
 from shapes import samples, torus
 
-# A second is the promise; machines that do other work beside the tests are granted more.
-SOON = 5.0
+# Work stops within a second. It is counted in processor time, of all cores: other work on the machine does not count.
+SOON = 1.0 * (os.cpu_count() or 1)
 
 
 @pytest.fixture(scope="module")
 def large() -> sscc.Model:
-    """A torus of 160,000 triangles: certificates take minutes."""
-    return sscc.Model(*torus(400, 200, 12))
+    """A torus of 57,600 triangles: certificates take long."""
+    return sscc.Model(*torus(240, 120, 12))
 
 
 @pytest.fixture(scope="module")
-def large_certs() -> sscc.Certificates:
-    """Of a torus where a query in which everything collides takes long."""
-    return sscc.Model(*torus(240, 120, 3)).certify(scheme="paper", epsilon=0.9)
+def one_point() -> sscc.Certificates:
+    """Of a torus that is in one point at q = 1, where each pair of triangles collides: exact tests take minutes."""
+    vertices, faces, _ = torus(90, 45, 1)
+    return sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
 
 
 def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> float:
@@ -36,7 +37,7 @@ def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> flo
     pressed = []
 
     def press() -> None:
-        pressed.append(time.monotonic())
+        pressed.append(time.process_time())
         os.kill(os.getpid(), signal.SIGINT)
 
     timer = threading.Timer(after, press)
@@ -47,34 +48,29 @@ def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> flo
     finally:
         timer.cancel()
         timer.join()
-    return time.monotonic() - pressed[0]
+    return time.process_time() - pressed[0]
 
 
 def test_certify_stops_on_ctrl_c(large: sscc.Model) -> None:
     assert seconds_until_stopped(large.certify) < SOON
 
 
-def test_check_many_stops_on_ctrl_c(large_certs: sscc.Certificates) -> None:
-    qs = samples(100_000, 3, 0.5)
-    assert seconds_until_stopped(lambda: large_certs.check_many(qs)) < SOON
+def test_check_many_stops_on_ctrl_c(certs: sscc.Certificates, one_point: sscc.Certificates) -> None:
+    many, long = samples(1_000_000, 6, 0.5), np.ones((4, 1))
+    assert seconds_until_stopped(lambda: certs.check_many(many)) < SOON
+    assert seconds_until_stopped(lambda: one_point.check_many(long)) < SOON
 
 
-def test_single_queries_stop_on_ctrl_c(large_certs: sscc.Certificates) -> None:
-    # Everything ends in one point: each pair of triangles collides.
-    vertices, faces, _ = torus(240, 120, 1)
-    certs = sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
-    assert seconds_until_stopped(lambda: certs.check([1.0])) < SOON
-    assert seconds_until_stopped(lambda: certs.continuous([0.9], [1.0])) < SOON
-    assert seconds_until_stopped(lambda: certs.kinetic().check([1.0])) < SOON
-    assert certs.check([0.0]).count == 0
+def test_single_queries_stop_on_ctrl_c(one_point: sscc.Certificates) -> None:
+    assert seconds_until_stopped(lambda: one_point.check([1.0])) < SOON
+    assert seconds_until_stopped(lambda: one_point.continuous([0.9], [1.0])) < SOON
+    assert seconds_until_stopped(lambda: one_point.kinetic().check([1.0])) < SOON
+    assert one_point.check([0.0]).count == 0
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers that signal")
-def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked() -> None:
-    # Everything ends in one point: each pair of triangles collides.
-    vertices, faces, _ = torus(240, 120, 1)
-    certs = sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
-    kinetic, other = certs.kinetic(), certs.kinetic()
+def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked(one_point: sscc.Certificates) -> None:
+    kinetic, other = one_point.kinetic(), one_point.kinetic()
 
     def handle(_signal: int, _frame: object) -> None:
         assert not other.check([0.0]).colliding
@@ -93,11 +89,11 @@ def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked() -> No
 
 def test_builders_of_modes_stop_on_ctrl_c() -> None:
     vertices, faces, _ = torus(30, 20, 1)
-    shapes = vertices + np.random.default_rng(3).normal(size=(2500, 600, 3))
+    shapes = vertices + np.random.default_rng(3).normal(size=(1000, 600, 3))
     assert seconds_until_stopped(lambda: sscc.modes.pca(shapes, faces)) < SOON
     assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < SOON
     with pytest.raises(ZeroDivisionError):
-        sscc.modes.pca(shapes, faces, progress=lambda share: 1 / 0)
+        sscc.modes.linear((vertices, faces), 8, resolution=20, progress=lambda share: 1 / 0)
 
 
 def test_what_was_stopped_leaves_queries_whole(certs: sscc.Certificates) -> None:
@@ -128,12 +124,10 @@ def test_progress_is_told_while_work_goes_on(large: sscc.Model) -> None:
         if len(told) == 3:
             raise Enough("three are enough")
 
-    start = time.monotonic()
     with pytest.raises(Enough, match="three are enough"):
         large.certify(progress=tell)
     assert 0 < told[0][0] < told[-1][0] < 1
-    assert {thread for _, thread in told} == {threading.current_thread()}
-    assert time.monotonic() - start < 60
+    assert len(told) == 3 and {thread for _, thread in told} == {threading.current_thread()}
 
 
 def test_bars_are_for_people(model: sscc.Model, capfd: pytest.CaptureFixture[str]) -> None:

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import sscc
-from shapes import torus
+from shapes import torus, write_obj
 
 
 Surface = tuple[NDArray[np.float64], NDArray[np.int64]]
@@ -58,10 +58,8 @@ def test_nonlinear_and_polynomial_modes(surface: Surface) -> None:
 
 def test_files_give_what_the_command_gives(tmp_path: Path, command: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(24, 12, 1)
-    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
     mesh, theirs, ours = (tmp_path / name for name in ("a.obj", "t.model.safetensors", "o.model.safetensors"))
-    mesh.write_text("\n".join(rows))
+    write_obj(mesh, vertices, faces)
     for kind in ("linear", "nonlinear", "polynomial"):
         options = [] if kind == "polynomial" else ["--rank", "6", "--resolution", "10"]
         arguments = ["modes", mesh, "-o", theirs, "--kind", kind, "--json", *options]
@@ -93,9 +91,7 @@ def test_a_folder_of_meshes_is_an_animation(tmp_path: Path) -> None:
     vertices, faces, modes = torus(8, 5, 2)
     shapes = [vertices + modes @ q for q in np.random.default_rng(5).normal(size=(6, 2))]
     for number, shape in enumerate(shapes):
-        rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in shape.tolist()]
-        rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
-        (tmp_path / f"{number}.obj").write_text("\n".join(rows))
+        write_obj(tmp_path / f"{number}.obj", shape, faces)
     files, memory = sscc.modes.pca(tmp_path, rank=2), sscc.modes.pca(np.array(shapes), faces, 2)
     assert np.array_equal(files.modes, memory.modes) and np.array_equal(files.vertices, memory.vertices)
 
@@ -117,11 +113,11 @@ def test_what_is_wrong_is_named(tmp_path: Path, surface: Surface) -> None:
         (lambda: sscc.modes.linear((vertices, faces), 3, poisson=text), TypeError, "^poisson is a str"),
         (lambda: sscc.modes.nonlinear((vertices, faces), 3, threads=-1), ValueError, "^threads is -1"),
         (lambda: sscc.modes.polynomial((vertices, faces), resolution=0), ValueError, "^resolution is 0"),
-        (lambda: sscc.modes.pca(vertices, faces), ValueError, "^shapes: "),
+        (lambda: sscc.modes.pca(vertices, faces), ValueError, r"^shapes has shape \[96, 3\]: \(n, V, 3\)"),
         (lambda: sscc.modes.pca(vertices[None], faces), ValueError, "^shapes: "),
         (lambda: sscc.modes.pca(vertices[None]), TypeError, "^faces is missing"),
         (lambda: sscc.modes.pca(np.zeros((0, 4, 3)), faces), ValueError, "^shapes is empty"),
-        (lambda: sscc.modes.pca(np.full((3, 96, 3), np.nan), faces), ValueError, "^vertices: |^shapes: "),
+        (lambda: sscc.modes.pca(np.full((3, 96, 3), np.nan), faces), ValueError, "^shapes: "),
         (lambda: sscc.modes.pca(tmp_path / "none"), FileNotFoundError, "not found$"),
         (lambda: sscc.modes.pca(tmp_path, faces), ValueError, "^faces: the meshes of a folder have their own"),
     ]

@@ -10,16 +10,36 @@ import numpy as np
 import pytest
 
 import sscc
+from shapes import torus, write_obj
+
+#: A small ring falls on the ground.
+SCENE = """
+steps_per_second = 1000
+duration = 1.0
+gravity = [0, 0, -9.81]
+[ground]
+[models.ring]
+file = "ring.obj"
+resolution = 12
+kind = "linear"
+rank = 4
+[[bodies]]
+model = "ring"
+position = [0, 0, 0.5]
+"""
 
 
 def test_simulations_equal_the_commands(tmp_path: Path, command: Path) -> None:
-    cache = tmp_path / "cache"
+    vertices, faces, _ = torus(24, 12, 1)
+    write_obj(tmp_path / "ring.obj", vertices, faces)
+    scene, cache = tmp_path / "scene.toml", tmp_path / "cache"
+    scene.write_text(SCENE)
     theirs = subprocess.run(
-        [command, "simulate", "spring", "--out", tmp_path / "t", "--steps", "10", "--cache", cache, "--json"],
+        [command, "simulate", scene, "--out", tmp_path / "t", "--steps", "10", "--cache", cache, "--json"],
         capture_output=True,
     )
     assert theirs.returncode == 0, theirs.stderr
-    ours = sscc.simulate("spring", tmp_path / "o", steps=10, cache=cache)
+    ours = sscc.simulate(scene, tmp_path / "o", steps=10, cache=cache)
     told = json.loads(theirs.stdout)
     for key in ("scene", "objects", "steps", "scene_steps", "colliding_steps", "energy_last"):
         assert ours.summary[key] == told[key]

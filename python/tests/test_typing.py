@@ -19,5 +19,5 @@ def test_package_and_tests_are_typed_strictly() -> None:
 
 
 def test_stubs_say_what_is_there() -> None:
-    options = ("--ignore-disjoint-bases", "--ignore-missing-stub", "--allowlist", "tests/stubtest.txt")
-    run("mypy.stubtest", "sscc", *options)
+    # Of private things nothing is promised, such as of functions that unpickle.
+    run("mypy.stubtest", "sscc", "--ignore-disjoint-bases", "--ignore-missing-stub")

@@ -13,7 +13,8 @@ impl Query<'_> {
         let ends = self.begin([q], usize::MAX)?;
         let (asked, finder) = (&self.asked, &mut self.discrete);
         finder.boxes.update(&asked.hierarchy, &ends);
-        finder.traverse(asked, (n, m), &ends)?;
+        finder.traverse(asked, (n, m), &ends);
+        finder.outcome()?;
         let exceptions = asked.certificates.map_or(&[][..], Certificates::exceptions);
         let [x, y] = [n, m].map(|n| &asked.hierarchy.nodes()[n as usize]);
         let has = |node: &Node, t| {

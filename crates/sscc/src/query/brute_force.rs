@@ -6,23 +6,20 @@ use super::aabb::{Aabb, around, disjoint};
 use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
-use crate::Error;
 
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds all that counts among all pairs of triangles. No hierarchy, no certificates;
     /// only boxes of single triangles, compared exactly.
-    pub(super) fn brute_force(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+    pub(super) fn brute_force(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
         let faces = asked.model.mesh().faces();
         let corners: Vec<[[DVec3; 3]; E]> =
             faces.iter().map(|face| ends.q.map(|q| face.map(|v| asked.model.position(v, q)))).collect();
         let boxes: Vec<Aabb> = corners.iter().map(around).collect();
         for i in 0..corners.len() {
-            if asked.progress.is_cancelled() {
-                return Err(Error::Cancelled);
-            }
+            self.look(asked);
             for j in i + 1..corners.len() {
                 if self.is_full() {
-                    return Ok(());
+                    return;
                 }
                 self.statistics.box_tests += 1;
                 let pair = (i as u32, j as u32);
@@ -34,6 +31,5 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
                 self.found.extend(F::of(&asked.filter, relation, pair, &corners[i], &corners[j]));
             }
         }
-        Ok(())
     }
 }

@@ -20,7 +20,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             if disjoint(&around(&x), &around(&y)) {
                 continue;
             }
-            self.statistics.triangle_tests += 1;
+            self.count_test(asked);
             let relation = asked.filter.relation(pair.0, pair.1);
             self.found.extend(F::of(&asked.filter, relation, pair, &x, &y));
         }

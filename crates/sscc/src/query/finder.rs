@@ -11,6 +11,9 @@ use super::{Method, Statistics};
 use crate::pairs::Relation;
 use crate::{Error, Pair};
 
+/// Triangles tested between two looks at whether the query was cancelled: one test may take a millisecond.
+const TESTS: u64 = 64;
+
 /// Finds what counts, and owns the memory for it. `E` is the number of configurations: 1, or the 2 ends of a motion.
 #[derive(Clone)]
 pub(super) struct Finder<F, const E: usize> {
@@ -26,6 +29,8 @@ pub(super) struct Finder<F, const E: usize> {
     limit: usize,
     /// Whether it did, with something left to look at.
     full: bool,
+    /// Whether the query was cancelled when it last looked.
+    cancelled: bool,
     pub(super) statistics: Statistics,
 }
 
@@ -39,6 +44,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             found: Vec::new(),
             limit: usize::MAX,
             full: false,
+            cancelled: false,
             statistics: Statistics::default(),
         }
     }
@@ -48,7 +54,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     pub(super) fn begin(&mut self, limit: usize) {
         self.found.clear();
         self.limit = limit;
-        self.full = false;
+        (self.full, self.cancelled) = (false, false);
         self.statistics = Statistics::default();
     }
 
@@ -65,7 +71,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
 
     fn search(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
         if asked.method == Method::BruteForce {
-            self.brute_force(asked, ends)?;
+            self.brute_force(asked, ends);
         } else {
             self.boxes.update(&asked.hierarchy, ends);
             if let Some(cones) = &mut self.cones {
@@ -73,15 +79,16 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             }
             self.test_exceptions(asked, ends);
             if !self.statistics.root_certified {
-                self.search_by_boxes(asked, ends)?;
+                self.search_by_boxes(asked, ends);
             }
         }
+        self.outcome()?;
         self.found.sort_unstable_by_key(Found::pair);
         Ok(())
     }
 
     /// Adds all that is found, exceptions apart, by the boxes of this query.
-    pub(super) fn search_by_boxes(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) -> Result<(), Error> {
+    pub(super) fn search_by_boxes(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
         match asked.complete_pair_tree(ends.norm) {
             Some(tree) => self.walk_pairs(asked, tree, ends),
             None => self.traverse(asked, (0, 0), ends),
@@ -100,6 +107,27 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         self.full
     }
 
+    /// Looks whether the query was cancelled: then the search is full at once.
+    pub(super) fn look(&mut self, asked: &Asked<'_>) {
+        if asked.progress.is_cancelled() {
+            (self.cancelled, self.limit) = (true, 0);
+        }
+    }
+
+    /// Counts a test of two triangles, and looks now and then.
+    #[inline]
+    pub(super) fn count_test(&mut self, asked: &Asked<'_>) {
+        self.statistics.triangle_tests += 1;
+        if self.statistics.triangle_tests.is_multiple_of(TESTS) {
+            self.look(asked);
+        }
+    }
+
+    /// An error if the search was cancelled.
+    pub(super) fn outcome(&self) -> Result<(), Error> {
+        if self.cancelled { Err(Error::Cancelled) } else { Ok(()) }
+    }
+
     /// Two triangles whose boxes overlap, each with the places of its corners.
     #[inline]
     pub(super) fn test(
@@ -109,13 +137,16 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         y: (u32, [u32; 3]),
         ends: &Ends<'_, E>,
     ) {
+        if self.cancelled {
+            return;
+        }
         let (x, y) = if x.0 < y.0 { (x, y) } else { (y, x) };
         let pair = (x.0, y.0);
         let relation = asked.filter.relation(pair.0, pair.1);
         if relation == Relation::Adjacent {
             return;
         }
-        self.statistics.triangle_tests += 1;
+        self.count_test(asked);
         [x, y].iter().for_each(|(_, corners)| self.boxes.move_corners(*corners, ends));
         let [x, y] = [x, y].map(|(_, corners)| self.boxes.corners(corners));
         if let Some(found) = F::of(&asked.filter, relation, pair, &x, &y)

@@ -3,8 +3,8 @@
 use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
+use crate::PairTree;
 use crate::certificates::child_pairs;
-use crate::{Error, PairTree};
 
 /// Between two looks at whether the query was cancelled.
 const STEPS: u32 = 1024;
@@ -20,22 +20,17 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// the walk ends. Following it down to leaves, and moving only their vertices, was tried: where more than a few
     /// pairs of leaves are open, it takes longer than all blocks of the clusters, and where there are few, not
     /// noticeably less.
-    pub(super) fn walk_pairs(
-        &mut self,
-        asked: &Asked<'_>,
-        tree: &PairTree,
-        ends: &Ends<'_, E>,
-    ) -> Result<(), Error> {
+    pub(super) fn walk_pairs(&mut self, asked: &Asked<'_>, tree: &PairTree, ends: &Ends<'_, E>) {
         self.walk.clear();
         self.walk.push((0, 0, NODE));
         let mut steps = 0_u32;
         while let Some((n, m, place)) = self.walk.pop() {
+            steps = steps.wrapping_add(1);
+            if steps.is_multiple_of(STEPS) {
+                self.look(asked);
+            }
             if self.is_full() {
                 break;
-            }
-            steps = steps.wrapping_add(1);
-            if steps.is_multiple_of(STEPS) && asked.progress.is_cancelled() {
-                return Err(Error::Cancelled);
             }
             if place == NODE {
                 self.walk_within(asked, tree, n, ends);
@@ -43,7 +38,6 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
                 self.walk_between(asked, tree, (n, m, place), ends);
             }
         }
-        Ok(())
     }
 
     /// A node against itself, whose own radius has been passed.

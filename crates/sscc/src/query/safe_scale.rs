@@ -34,6 +34,9 @@ impl Query<'_> {
         }
         let boxes = PathBoxes::new(&path, &self.asked.hierarchy, self.asked.model.mesh().faces());
         for &(x, y) in self.asked.certificates.map_or(&[][..], Certificates::exceptions) {
+            if self.asked.progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
             best = best.min(self.follow(&path, (x, y), 0.0, best));
         }
         let tree = self.asked.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);

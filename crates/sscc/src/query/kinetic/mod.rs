@@ -30,6 +30,9 @@ const LASTING: f64 = 8.0;
 /// Steps between two looks at whether hot pairs have cooled down.
 const COOLING: u64 = 16;
 
+/// Margins measured between two looks at whether the query was cancelled.
+const MARGINS: u64 = 1024;
+
 /// Pairs that a search may find: so many for each triangle, and as many as are worth so many plain queries.
 const MOST_FOUND: usize = 8;
 const WORTH: u64 = 64;
@@ -144,8 +147,8 @@ impl<'a> KineticQuery<'a> {
             self.pace.plain = plain_cost(&self.query.statistics());
             return Ok(());
         }
-        self.step(ends, step);
-        Ok(())
+        // What was not measured is forgotten with all the rest.
+        self.step(ends, step).inspect_err(|_| self.front.jump())
     }
 
     /// Finds what can meet in a ball around this z; false where no ball would pay.
@@ -175,7 +178,8 @@ impl<'a> KineticQuery<'a> {
         self.near.begin(most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024));
         let around = Ends { q: [q, q], norm, reach, ball: Some(&self.ball), pose: None };
         self.near.boxes.update(&asked.hierarchy, &around);
-        self.near.search_by_boxes(asked, &around)?;
+        self.near.search_by_boxes(asked, &around);
+        self.near.outcome()?;
         if self.near.is_full() {
             self.pace.too_much(search_cost(&self.near), radius / ends.norm);
             return Ok(false);
@@ -193,7 +197,7 @@ impl<'a> KineticQuery<'a> {
     }
 
     /// Answers by the front.
-    fn step(&mut self, ends: &Ends<'_, 1>, step: f64) {
+    fn step(&mut self, ends: &Ends<'_, 1>, step: f64) -> Result<(), Error> {
         let (asked, finder, front) = (&self.query.asked, &mut self.query.discrete, &mut self.front);
         let mut cost = 0;
         finder.boxes.update(&asked.hierarchy, ends);
@@ -208,6 +212,10 @@ impl<'a> KineticQuery<'a> {
             });
             let margin = self.margins.triangles(&asked.filter, pair, at);
             cost += MARGIN;
+            if cost.is_multiple_of(MARGINS * MARGIN) {
+                finder.look(asked);
+                finder.outcome()?;
+            }
             if margin < LASTING * step || !front.keep(pair, margin) {
                 front.hot.push(pair);
             }
@@ -218,8 +226,10 @@ impl<'a> KineticQuery<'a> {
             let [x, y] = [a, b].map(|t| finder.boxes.moved(asked, t, ends));
             finder.test(asked, (a, x), (b, y), ends);
         }
+        finder.outcome()?;
         finder.found.sort_unstable();
         finder.statistics.complete = true;
+        Ok(())
     }
 }
 
