@@ -104,6 +104,47 @@ describe("live", () => {
             }
         }));
 
+    test("what the root certifies is told in the frame that draws it, as the program tells it", () =>
+        look(async (page) => {
+            await show(page, fewPairs().q);
+            await answered(page);
+            // q of one length in the metric along several directions, just inside the root's radius and just outside.
+            const ball = await page.evaluate(() => {
+                const { root_radius, scales, rank } = globalThis.sscc.shape.model;
+                const directions = [0, 1, 2, 3].map((d) => scales.map((_, k) => Math.sin(1 + d + k * (d + 1))));
+                directions.push(...[0, rank - 1].map((only) => scales.map((_, k) => Number(k === only))));
+                return directions.flatMap((z) =>
+                    [0.5, 1 - 1e-9, 1 + 1e-9].map((share) => ({
+                        share,
+                        q: z.map((v, k) => (v * share * root_radius) / Math.hypot(...z) / scales[k]),
+                    })),
+                );
+            });
+            for (const { q, share } of ball) {
+                await show(page, q);
+                await answered(page);
+                const told = await page.evaluate(() => globalThis.sscc.checker.answer.root_certified);
+                assert.equal(told, share < 1);
+                assert.equal(await page.locator(".gauge").getAttribute("data-kind"), share < 1 ? "root" : "free");
+            }
+            await show(page, fewPairs().q);
+            await answered(page);
+            await page.route("**/api/check", () => undefined);
+            // Within one frame, and without any answer.
+            const seen = await page.evaluate(async (q) => {
+                const { pose, body } = globalThis.sscc;
+                pose.show(q);
+                await new Promise((done) => requestAnimationFrame(done));
+                const gauge = document.querySelector(".gauge").dataset;
+                return {
+                    kind: gauge.kind,
+                    isOf: gauge.serial === String(pose.serial),
+                    marks: body.markedTriangles(0),
+                };
+            }, ball[0].q);
+            assert.deepEqual(seen, { kind: "root", isOf: true, marks: [] });
+        }));
+
     test("the colliding triangles shown are check's", () =>
         look(async (page) => {
             const { q, answer } = fewPairs();
@@ -188,23 +229,69 @@ describe("live", () => {
             assert.ok(kinds.has("colliding"), [...kinds].join(", "));
         }));
 
-    test("goes along a mode to the first self-collision", () =>
+    test("goes along a mode to the first self-collision, or says that there is none", () =>
         look(async (page) => {
-            await page.getByRole("button", { name: "mode 1 to the first self-collision" }).click();
-            await page.waitForFunction(() => globalThis.sscc.motion.track && !globalThis.sscc.motion.name);
+            // What each mode meets on its way is another matter for each model: the server knows.
+            const found = await page.evaluate(async () => {
+                const { source, shape } = globalThis.sscc;
+                const along = [];
+                for (const k of shape.model.limits.keys()) {
+                    const direction = shape.model.limits.map((_, i) => (i === k ? 1 : 0));
+                    along.push(await source.ask("/api/safe_scale", { direction }));
+                }
+                return along;
+            });
+            assert.ok(found.every((answer) => answer.complete));
+            const [mode, free] = [found.findIndex((a) => a.first), found.findIndex((a) => !a.first)];
+            const press = (k) =>
+                page.getByRole("button", { name: `mode ${k + 1} to the first self-collision` }).click();
+            const said = async (text) => {
+                await page.locator(".message", { hasText: text }).waitFor();
+                return page.locator(".message").innerText();
+            };
+            assert.ok(mode >= 0 && free >= 0);
+            await press(free);
+            const none = await said(`no self-collision along mode ${free + 1} up to`);
+            assert.ok(!none.includes("ran out"), none);
+            await press(mode);
+            await said(`first self-collision along mode ${mode + 1} at`);
+            await page.waitForFunction(
+                ([k, scale]) => globalThis.sscc.pose.q[k] === scale,
+                [mode, found[mode].first.scale],
+            );
             await answered(page);
             assert.match(await verdict(page), /^COLLIDING/);
-            assert.match(await page.locator(".message").innerText(), /first self-collision along mode 1 at/);
+            const check = async (q) => {
+                const row = `--q=${q.join(",")}`;
+                return JSON.parse(await run("check", model, "--certificates", certificates, "--json", row));
+            };
             const q = await page.evaluate(() => [...globalThis.sscc.pose.q]);
-            const exact = JSON.parse(
-                await run("check", model, "--certificates", certificates, "--json", `--q=${q.join(",")}`),
+            assert.ok((await check(q)).colliding);
+            assert.ok(!(await check(q.map((v) => v * (1 - 1e-6)))).colliding);
+        }));
+
+    test("of two searches the later one counts", () =>
+        look(async (page) => {
+            let release;
+            const held = new Promise((done) => {
+                release = done;
+            });
+            await page.route(
+                "**/api/safe_scale",
+                async (route) => {
+                    await held;
+                    await route.continue();
+                },
+                { times: 1 },
             );
-            assert.ok(exact.colliding);
-            const before = q.map((v) => v * 0.98);
-            const free = JSON.parse(
-                await run("check", model, "--certificates", certificates, "--json", `--q=${before.join(",")}`),
-            );
-            assert.ok(!free.colliding);
+            await page.getByRole("button", { name: "mode 1 to the first self-collision" }).click();
+            await page.getByRole("button", { name: "mode 2 to the first self-collision" }).click();
+            const later = page.locator(".message", { hasText: /self-collision along mode 2 (at|up to)/ });
+            await later.waitFor();
+            const [answer] = await Promise.all([page.waitForResponse("**/api/safe_scale"), release()]);
+            await answer.finished();
+            await settled(page);
+            assert.ok(!(await page.locator(".message").innerText()).includes("mode 1 "));
         }));
 
     test("costs stand beside the traditional method's", () =>
@@ -356,10 +443,7 @@ describe("the server", () => {
         const { page, context } = await open(browser, own.address);
         await answered(page);
         await own.stop();
-        await show(
-            page,
-            rows[0].map((v) => v + 1e-9),
-        );
+        await show(page, row((a) => !a.root_certified && !a.colliding).q);
         await page.getByText(/The server does not answer/).waitFor();
         await settled(page);
         assert.equal(await verdict(page), "unknown: no answer");

@@ -66,6 +66,7 @@ fn the_first_collision_is_found() {
             let scale = answer["first"]["scale"].as_f64().unwrap();
             let at = |scale: f64| direction.map(|d| d * scale);
             assert!(certified <= scale && certified > 0.5 * scale, "{answer}");
+            assert_eq!((&answer["searched"], &answer["complete"]), (&json!(scale), &json!(true)));
             // Flat strips pass each other without ever colliding at a number.
             let colliding = query.discrete(&at(scale)).unwrap();
             assert_eq!(colliding.is_empty(), direction[2] == 0.0);
@@ -80,7 +81,7 @@ fn the_first_collision_is_found() {
         // Away from each other, too far to the side, and no motion at all.
         for direction in [[-1.0, 0.0, 0.0], [0.3, 5.0, 0.1], [0.0, 0.0, 0.0]] {
             let answer = client.post("/api/safe_scale", &json!({"direction": direction}).to_string()).json();
-            assert_eq!(answer["first"], Value::Null);
+            assert_eq!((&answer["first"], &answer["complete"]), (&Value::Null, &json!(true)));
         }
     });
 }

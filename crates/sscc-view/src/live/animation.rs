@@ -77,3 +77,26 @@ fn frames<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec
 
     from.deserialize_seq(Frames(PhantomData))
 }
+
+#[cfg(test)]
+mod tests {
+    use sscc::{Modes, TriMesh};
+
+    use super::*;
+
+    #[test]
+    fn the_numbers_of_a_motion_are_bounded() {
+        const RANK: usize = 128;
+        let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+        let modes = Modes::from_matrix(3, RANK, |row, k| (row + k) as f64).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let refused = |frames: usize| {
+            let request = AnimationRequest { q: vec![Vec::new(); frames], times: Vec::new() };
+            glb("plate", &model, &request).unwrap_err().to_string()
+        };
+        let most = MOST_NUMBERS / RANK;
+        assert!(refused(most + 1).contains("more than 8388608 numbers"));
+        // So many may be: what is wrong then is that the rows are empty.
+        assert!(!refused(most).contains("8388608"));
+    }
+}
