@@ -5,9 +5,9 @@ import { request } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { launch, open } from "./browser.mjs";
+import { launch, nameless, open } from "./browser.mjs";
 import { readRows, run, view } from "./command.mjs";
-import { atTime, parse } from "./glb.mjs";
+import { atTime, isBounded, parse } from "./glb.mjs";
 import { drawnBox, orange, pixels, settled } from "./picture.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "sscc-view-"));
@@ -80,6 +80,10 @@ describe("live", () => {
             await answered(page);
             assert.ok(drawnBox(await pixels(page)).count > 2000);
             assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
+            assert.deepEqual(await nameless(page), []);
+            await page.keyboard.press("l");
+            await page.getByRole("dialog", { name: "load q" }).waitFor();
+            assert.deepEqual(await nameless(page), []);
             await page.reload();
             await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
             await answered(page);
@@ -339,6 +343,7 @@ describe("live", () => {
             const text = await page.locator(".ramp-legend").innerText();
             const [culled, opened] = text.match(/[\d,]+/g).map((n) => Number(n.replaceAll(",", "")));
             assert.ok(culled > 0 && opened > 0, text);
+            assert.ok((await colours()) > 1.3 * plain);
             await page.getByLabel("boxes of this level").check();
             await page.waitForFunction(() => globalThis.sscc.stage.scene.children.some((c) => c.isLineSegments));
         }));
@@ -356,6 +361,7 @@ describe("live", () => {
             assert.equal(png.subarray(1, 4).toString(), "PNG");
             assert.ok(png.length > 5000);
             const glb = await parse(await saved(page.getByRole("button", { name: "save the motion" })));
+            assert.ok(isBounded(glb));
             // The way from the centre to q and back: there at one second.
             for (const [time, share] of [
                 [0, 0],

@@ -5,9 +5,9 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { builtPage, launch, open } from "./browser.mjs";
+import { builtPage, launch, nameless, open } from "./browser.mjs";
 import { report, withReport } from "./fixture.mjs";
-import { atTime, parse } from "./glb.mjs";
+import { atTime, isBounded, parse } from "./glb.mjs";
 import { drawnBox, expectedBox, orange, pixels, settled } from "./picture.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "sscc-page-"));
@@ -227,6 +227,7 @@ describe("playback", () => {
             const button = page.getByRole("button", { name: "save the motion" });
             const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
             const glb = await parse(readFileSync(await download.path()));
+            assert.ok(isBounded(glb));
             const { shapes, box } = await page.evaluate(() => {
                 const { shape } = globalThis.sscc;
                 const frame = 30;
@@ -319,12 +320,7 @@ describe("the page", () => {
             assert.equal(await page.getByRole("tab", { name: "Certificates" }).getAttribute("aria-selected"), "true");
             const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
             assert.equal(outline, "solid");
-            const nameless = await page.evaluate(() =>
-                [...document.querySelectorAll("button, input, select, textarea, canvas[tabindex]")]
-                    .filter((e) => !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length))
-                    .map((e) => e.outerHTML),
-            );
-            assert.deepEqual(nameless, []);
+            assert.deepEqual(await nameless(page), []);
         }));
 
     test("fits the width of a phone, in light and dark", async () => {
