@@ -39,7 +39,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     const theme = new Theme(() => recolour());
     if (scene.models.length === 0) {
         const plots = new PlotsPanel({ scene } as App);
-        layout.stage.remove();
+        layout.withoutShape();
         layout.setTabs([{ name: "Plots", content: plots.element }, ...summary(source)]);
         return;
     }

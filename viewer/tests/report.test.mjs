@@ -337,6 +337,13 @@ describe("the page", () => {
         }
     });
 
+    test("without a shape has plots alone, in all its width", () =>
+        look({ playback: false, width: 1280, change: (scene) => (scene.models = []) }, async (page) => {
+            assert.equal(await page.locator(".plot").count(), 1);
+            assert.equal(await page.locator("canvas").count(), 0);
+            assert.equal((await page.locator(".panel").boundingBox()).width, 1280);
+        }));
+
     test("shows text as text", () =>
         look({ change: (scene) => (scene.title = "</script><img src=x onerror=alert(1)>") }, async (page) => {
             assert.equal(await page.locator("h1").innerText(), "</script><img src=x onerror=alert(1)>");

@@ -46,7 +46,7 @@ impl Rows {
         self.costs.borrow_mut().push(Plot {
             title: format!("Cost over time: {scenario}"),
             x: Axis::linear("time (s)"),
-            y: Axis::logarithmic("discrete query of all bodies, ms in a step"),
+            y: Axis::logarithmic("discrete query, ms in a step"),
             series: shown.into_iter().filter(|(_, times)| !times.is_empty()).map(line).collect(),
         });
     }
