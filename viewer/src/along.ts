@@ -33,15 +33,33 @@ export function vibrate(app: App, mode: number): void {
         );
 }
 
+/** Of several searches only the last is waited for; the server ends the others. */
+let searches = 0;
+
 export async function toFirstCollision(app: App, direction: number[], name: string): Promise<void> {
     app.motion.stop();
     app.say(`looking for the first self-collision along ${name}…`);
-    const { certified, first } = await app.source.ask<SafeScale>("/api/safe_scale", { direction });
+    const search = ++searches;
+    const { serial } = app.pose;
+    let found: SafeScale;
+    try {
+        found = await app.source.ask<SafeScale>("/api/safe_scale", { direction });
+    } catch (error) {
+        if (search !== searches) return;
+        throw error;
+    }
+    if (search !== searches) return;
+    const { certified, first, searched, complete } = found;
     const proven = certified === null ? "certified free without end" : `certified free up to ${digits(certified)}`;
     if (!first) {
-        app.say(`no self-collision found along ${name}; ${proven}`);
+        const end = searched === null ? "" : ` up to ${digits(searched)}`;
+        const why = complete ? "" : ", where the time for it ran out";
+        app.say(`no self-collision along ${name}${end}${why}; ${proven}`);
         return;
     }
+    app.say(`first self-collision along ${name} at ${digits(first.scale)}; ${proven}`);
+    // Whoever has moved the shape meanwhile wants to see that.
+    if (app.pose.serial !== serial) return;
     const { center } = app.shape.model;
     const seconds = 1.4;
     const path = (t: number): number[] => {
@@ -50,5 +68,4 @@ export async function toFirstCollision(app: App, direction: number[], name: stri
         return center.map((c, k) => c + s * direction[k]);
     };
     app.motion.start(`${name} to its first self-collision`, path, seconds);
-    app.say(`first self-collision along ${name} at ${digits(first.scale)}; ${proven}`);
 }

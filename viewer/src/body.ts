@@ -125,6 +125,8 @@ export class Body {
         // Hidden triangles are shown of the first instance: where many bodies move, they would only confuse.
         this.hidden = new THREE.InstancedMesh(this.hiddenGeometry, this.hiddenMaterial, 1);
         this.hidden.renderOrder = 1;
+        // Until something collides its program need not even be compiled.
+        this.hidden.visible = false;
         for (const mesh of [this.mesh, this.hidden]) {
             mesh.frustumCulled = false;
             for (let i = 0; i < mesh.count; i++) mesh.setMatrixAt(i, new THREE.Matrix4());
@@ -195,6 +197,7 @@ export class Body {
         });
         this.hiddenGeometry.index?.array && this.hiddenGeometry.dispose();
         this.hiddenGeometry.setIndex(new THREE.BufferAttribute(index, 1));
+        this.hidden.visible = list.length > 0;
     }
 
     /** The triangles marked as colliding in one instance, in order. */
@@ -221,7 +224,7 @@ export class Body {
     /** Without marks and tints, or with them again. */
     setPlain(plain: boolean): void {
         this.material.uniforms.plain.value = plain;
-        this.hidden.visible = !plain;
+        this.hidden.visible = !plain && (this.hiddenGeometry.index?.count ?? 0) > 0;
     }
 
     dispose(): void {

@@ -1,7 +1,7 @@
 /** Certificates on the shape: nodes coloured by radius, or as the answer opened and culled them; boxes. */
 import { type App, attempt } from "./app";
 import { digits, h } from "./dom";
-import { NONE, ramp, rampCss, searched } from "./palette";
+import { NONE, OPENED, openCss, ramp, rampCss, searched, searchedCss } from "./palette";
 import type { Boxes, Nodes } from "./protocol";
 import { thumbnails } from "./thumbnails";
 
@@ -150,20 +150,24 @@ export class CertificatesPanel {
         const nodes = this.app.checker?.answer?.nodes;
         if (!nodes || this.colouring.value !== "searched") return;
         const bytes = this.blank();
-        const deep = (node: number): number => Math.min(tree.level[node], 24);
-        for (const node of [...nodes.opened].sort((a, b) => a - b)) this.fill(tree, node, bytes, 128 + deep(node));
-        for (const node of nodes.culled) this.fill(tree, node, bytes, deep(node));
+        const deepest = nodes.culled.reduce((deepest, node) => Math.max(deepest, tree.level[node]), 1);
+        const shade = (node: number): number => Math.round(((OPENED - 1) * tree.level[node]) / deepest);
+        // What is culled below an opened node has the last word.
+        for (const node of nodes.opened) this.fill(tree, node, bytes, OPENED);
+        for (const node of nodes.culled) this.fill(tree, node, bytes, shade(node));
         this.app.body?.setTints({ bytes, palette: searched });
-        const swatch = (colour: string): HTMLElement => {
-            const box = h("span", { class: "swatch" });
-            box.style.background = colour;
-            return box;
-        };
+        const box = h("span", { class: "swatch" });
+        box.style.background = openCss;
+        const bar = h("div", { class: "ramp" });
+        bar.style.background = searchedCss;
+        const [culled, opened] = [nodes.culled, nodes.opened].map((list) => list.length.toLocaleString("en"));
         this.legend.replaceChildren(
-            swatch("rgb(104 140 185)"),
-            h("span", {}, `${nodes.culled.length.toLocaleString("en")} culled by certificates`),
-            swatch("rgb(240 190 60)"),
-            h("span", {}, `${nodes.opened.length.toLocaleString("en")} opened`),
+            h("span", { class: "whole" }, `${culled} culled by certificates, ${opened} opened`),
+            h("span", {}, "culled at the root"),
+            bar,
+            h("span", {}, `at level ${deepest}`),
+            box,
+            h("span", {}, "nowhere"),
         );
         this.app.frames.invalidate();
     }

@@ -37,5 +37,5 @@ export async function exportGlb(app: App, recorded: { bodies: Moved[]; times: nu
         file = writeGlb([{ name: shape.model.name, shape, q: rows, rigid: null, center: [0, 0, 0] }], times);
     }
     save(fileName(app, "glb"), file);
-    app.say(`saved ${fileName(app, "glb")}: the motion itself, modes as morph targets`);
+    app.say(`saved ${fileName(app, "glb")}: the motion itself, what moves of the modes as morph targets`);
 }

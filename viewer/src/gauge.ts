@@ -17,6 +17,8 @@ export function verdict(app: App): Verdict {
         if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (${what})` };
         return { kind: "free", text: `free (${what})` };
     }
+    // Told in the very frame that draws the shape; the answer, which says the same, has the costs.
+    if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: "free, proven by the root's certificate" };
     if (!checker) return { kind: "unknown", text: "not checked: this is a report" };
     if (checker.error) return { kind: "unknown", text: "unknown: no answer" };
     const answer = checker.answer;
@@ -57,11 +59,11 @@ export class Gauge {
         const norm = app.recorded && !app.body ? null : (answered?.norm ?? app.shape.norm(app.pose.q));
         const root = app.shape.model.root_radius;
         const share = norm === null || root === null ? null : norm / root;
+        this.element.dataset.serial = String(app.pose.serial);
         const key = `${kind} ${text} ${norm} ${answered?.microseconds}`;
         if (key === this.shown) return;
         this.shown = key;
         this.element.dataset.kind = kind;
-        this.element.dataset.serial = String(app.pose.serial);
         this.mark.textContent = { root: "●", free: "●", colliding: "▲", checking: "…", unknown: "?" }[kind];
         this.text.textContent = text;
         this.bar.hidden = norm === null;

@@ -1,4 +1,7 @@
-/** Writes a motion as GLB: modes as morph targets, q(t) as their weights, rigid motion on the nodes. */
+/**
+ * Writes a motion as GLB, rigid motion on the nodes. Morph targets are the modes that move, each as far as it moves,
+ * and a first one to where these begin: so all weights lie in [0, 1], where some programs cut them off (Blender does).
+ */
 import type { Shape } from "./shape";
 
 export interface Moved {
@@ -56,10 +59,59 @@ function extent(array: Float32Array | Uint32Array, size: number): { min: number[
     return { min, max };
 }
 
+/** What moves of a shape in any of several tracks. */
+class Range {
+    private readonly low: number[];
+    private readonly high: number[];
+    private readonly moving: number[];
+
+    constructor(
+        private readonly shape: Shape,
+        tracks: Float32Array[],
+    ) {
+        const { rank } = shape.model;
+        const every = { length: rank };
+        this.low = Array.from(every, () => Number.POSITIVE_INFINITY);
+        this.high = Array.from(every, () => Number.NEGATIVE_INFINITY);
+        for (const q of tracks) {
+            for (let i = 0; i < q.length; i++) {
+                this.low[i % rank] = Math.min(this.low[i % rank], q[i]);
+                this.high[i % rank] = Math.max(this.high[i % rank], q[i]);
+            }
+        }
+        this.moving = this.low.flatMap((low, k) => (low < this.high[k] ? [k] : []));
+    }
+
+    targets(): { name: string; moves: Float32Array }[] {
+        const { shape, low, high } = this;
+        const size = shape.positions.length;
+        const begin = shape.deformed(low).map((x, i) => x - shape.positions[i]);
+        return [
+            { name: "where it begins", moves: begin },
+            ...this.moving.map((k) => ({
+                name: shape.modeName(k),
+                moves: shape.modes.subarray(k * size, (k + 1) * size).map((u) => u * (high[k] - low[k])),
+            })),
+        ];
+    }
+
+    weights(q: Float32Array): Float32Array {
+        const { low, high, moving } = this;
+        const { rank } = this.shape.model;
+        const width = moving.length + 1;
+        return Float32Array.from({ length: (q.length / rank) * width }, (_, i) => {
+            if (i % width === 0) return 1;
+            const k = moving[(i % width) - 1];
+            const share = (q[Math.floor(i / width) * rank + k] - low[k]) / (high[k] - low[k]);
+            return Math.min(Math.max(share, 0), 1);
+        });
+    }
+}
+
 export function writeGlb(bodies: Moved[], times: number[]): Blob {
     const buffer = new Buffer();
     const meshes: object[] = [];
-    const meshOf = new Map<Shape, number>();
+    const known = new Map<Shape, { at: number; range: Range }>();
     const nodes: object[] = [];
     const roots: number[] = [];
     const samplers: object[] = [];
@@ -72,10 +124,16 @@ export function writeGlb(bodies: Moved[], times: number[]): Blob {
         });
     };
     for (const { name, shape, q, rigid, center } of bodies) {
-        if (!meshOf.has(shape)) meshOf.set(shape, meshes.push(mesh(shape, buffer)) - 1);
-        const inner = { name, mesh: meshOf.get(shape), ...(rigid && { translation: center.map((c) => -c) }) };
+        let moved = known.get(shape);
+        if (!moved) {
+            const tracks = bodies.filter((body) => body.shape === shape).map((body) => body.q);
+            const range = new Range(shape, tracks);
+            moved = { at: meshes.push(mesh(shape, range, buffer)) - 1, range };
+            known.set(shape, moved);
+        }
+        const inner = { name, mesh: moved.at, ...(rigid && { translation: center.map((c) => -c) }) };
         const at = nodes.push(inner) - 1;
-        animate(at, "weights", buffer.add(q, "SCALAR"));
+        animate(at, "weights", buffer.add(moved.range.weights(q), "SCALAR"));
         if (!rigid) {
             roots.push(at);
             continue;
@@ -103,19 +161,23 @@ export function writeGlb(bodies: Moved[], times: number[]): Blob {
     });
 }
 
-function mesh(shape: Shape, buffer: Buffer): object {
-    const { model, positions, faces, modes } = shape;
+function mesh(shape: Shape, range: Range, buffer: Buffer): object {
+    const { model, positions, faces } = shape;
     const points = (array: Float32Array): number =>
         buffer.add(array, "VEC3", { target: VERTEX_BUFFER, bounds: true });
-    const names = Array.from({ length: model.rank }, (_, k) => shape.modeName(k));
+    const targets = range.targets();
     const primitive = {
         attributes: { POSITION: points(positions) },
         indices: buffer.add(faces, "SCALAR", { target: INDEX_BUFFER }),
-        targets: names.map((_, k) => ({
-            POSITION: points(modes.subarray(k * positions.length, (k + 1) * positions.length)),
-        })),
+        targets: targets.map(({ moves }) => ({ POSITION: points(moves) })),
     };
-    return { name: model.name, primitives: [primitive], weights: names.map(() => 0), extras: { targetNames: names } };
+    const weights = targets.map((_, i) => (i === 0 ? 1 : 0));
+    return {
+        name: model.name,
+        primitives: [primitive],
+        weights,
+        extras: { targetNames: targets.map((t) => t.name) },
+    };
 }
 
 function pack(buffer: Buffer, json: object): Blob {

@@ -81,6 +81,12 @@ export class Layout {
         select(0);
     }
 
+    /** Plots and tables have all the room. */
+    withoutShape(): void {
+        this.stage.parentElement?.remove();
+        this.panel.classList.add("alone");
+    }
+
     /** In place of the picture. */
     noPicture(): void {
         this.stage.replaceChildren(

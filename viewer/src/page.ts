@@ -37,16 +37,18 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     const frames = new Frames(() => drawn());
     let recolour = (): void => undefined;
     const theme = new Theme(() => recolour());
-    const shape = scene.models.length > 0 ? await Shape.load(source, scene.models[0]) : null;
-    if (!shape) {
+    if (scene.models.length === 0) {
         const plots = new PlotsPanel({ scene } as App);
-        layout.stage.remove();
+        layout.withoutShape();
         layout.setTabs([{ name: "Plots", content: plots.element }, ...summary(source)]);
         return;
     }
+    const arriving = Shape.load(source, scene.models[0]);
+    // While the arrays are on their way.
+    const stage = openStage(layout, frames);
+    const shape = await arriving;
     const pose = new Pose(Float64Array.from(shape.model.default_q));
     const checker = source.live ? new Checker(source) : null;
-    const stage = openStage(layout, frames);
     const motion = new Motion(frames, pose, checker);
     const shared: App = {
         source,
@@ -136,11 +138,15 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     Object.assign(globalThis, { sscc: shared, player });
 }
 
-/** Colliding triangles as the last answer has them; the gauge tells whether it speaks of this very shape. */
+/**
+ * Colliding triangles as the last answer has them; the gauge tells whether it speaks of this very shape. None where the
+ * root's certificate holds.
+ */
 function marks(app: App): void {
     const { body, checker, chosen } = app;
     if (!body || !checker) return;
-    body.setMarks(0, checker.answer?.triangles ?? checker.answer?.pairs.flat() ?? [], chosen ?? []);
+    const answer = app.shape.isRootCertified(app.pose.q) ? null : checker.answer;
+    body.setMarks(0, answer?.triangles ?? answer?.pairs.flat() ?? [], chosen ?? []);
 }
 
 function summary(source: Source): Tab[] {

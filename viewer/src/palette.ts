@@ -32,25 +32,23 @@ function table(colour: (i: number) => number[]): Uint8Array {
 /** Entries 0 to 254: from small to large. */
 export const ramp = table((i) => between(CIVIDIS, i / 254));
 
-/** Entries 0 to 127: culled, the deeper the paler; 128 to 254: opened, the deeper the brighter. */
-export const searched = table((i) =>
-    i < 128
-        ? between(
-              [
-                  [34, 62, 110],
-                  [104, 140, 185],
-                  [178, 200, 222],
-              ],
-              i / 24,
-          )
-        : between(
-              [
-                  [146, 108, 20],
-                  [240, 190, 60],
-                  [255, 226, 120],
-              ],
-              (i - 128) / 24,
-          ),
-);
+/** From blue to yellow; bright enough for a dark ground. */
+const SEARCHED = [
+    [52, 98, 166],
+    [128, 148, 168],
+    [232, 196, 84],
+];
 
-export const rampCss = `linear-gradient(to right, ${CIVIDIS.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
+/** What no certificate culls. */
+const OPEN = [255, 240, 160];
+
+/** The entry of what is opened to the end. */
+export const OPENED = 254;
+
+/** Entries 0 to 253: culled, from the root to the deepest level. */
+export const searched = table((i) => (i === OPENED ? OPEN : between(SEARCHED, i / (OPENED - 1))));
+
+const css = (colour: number[]): string => `rgb(${colour.join(" ")})`;
+export const openCss = css(OPEN);
+export const searchedCss = `linear-gradient(to right, ${SEARCHED.map(css).join(", ")})`;
+export const rampCss = `linear-gradient(to right, ${CIVIDIS.map(css).join(", ")})`;

@@ -106,6 +106,10 @@ export interface Answer {
 export interface SafeScale {
     certified: number | null;
     first: { scale: number; pairs: [number, number][] } | null;
+    /** The way is known so far. */
+    searched: number | null;
+    /** False where time ran out. */
+    complete: boolean;
 }
 
 export interface Nodes {

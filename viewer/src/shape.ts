@@ -2,6 +2,9 @@
 import type { Model } from "./protocol";
 import type { Source } from "./source";
 
+/** More than what |z| is rounded by, here and where certificates are computed. */
+const ROUNDING = 1 + 1e-12;
+
 export class Shape {
     private constructor(
         readonly model: Model,
@@ -72,6 +75,16 @@ export class Shape {
         const { scales, center } = this.model;
         if (!scales) return null;
         return Math.hypot(...scales.map((s, k) => s * (q[k] - center[k])));
+    }
+
+    /**
+     * Whether the root's certificate alone proves q free, in which case nothing need be asked. Where exceptions were
+     * made, or the metric is not diagonal, that is for the program to say.
+     */
+    isRootCertified(q: ArrayLike<number>): boolean {
+        const { root_radius: radius, exceptions } = this.model;
+        const norm = this.norm(q);
+        return exceptions === 0 && norm !== null && norm * ROUNDING < (radius ?? Number.POSITIVE_INFINITY);
     }
 
     /** Names a mode: its own name, else its number and frequency. */

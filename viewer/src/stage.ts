@@ -132,7 +132,7 @@ export class Stage {
         const { shape } = body;
         const aside = this.camera.position.clone().sub(this.controls.target).normalize();
         camera.up.copy(this.camera.up);
-        camera.position.set(...shape.middle).addScaledVector(aside, shape.radius * 4.6);
+        camera.position.set(...shape.middle).addScaledVector(aside, shape.radius * 3.9);
         camera.lookAt(...shape.middle);
         draw();
         this.renderer.setRenderTarget(target);

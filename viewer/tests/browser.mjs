@@ -44,3 +44,12 @@ export async function open(browser, address, { width = 900, height = 560, scheme
     await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
     return { page, context, ...seen };
 }
+
+/** What can be pressed or filled in and has no name for those who do not see it. */
+export function nameless(page) {
+    return page.evaluate(() =>
+        [...document.querySelectorAll("button, input, select, textarea, canvas[tabindex]")]
+            .filter((e) => !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length))
+            .map((e) => e.outerHTML),
+    );
+}

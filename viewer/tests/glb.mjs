@@ -7,6 +7,12 @@ export async function parse(bytes) {
     return new GLTFLoader().parseAsync(buffer, "");
 }
 
+/** Whether all weights of morph targets lie in [0, 1]: programs may cut them off there. */
+export function isBounded(gltf) {
+    const tracks = gltf.animations[0].tracks.filter((track) => track.name.endsWith(".morphTargetInfluences"));
+    return tracks.length > 0 && tracks.every(({ values }) => values.every((w) => w >= 0 && w <= 1));
+}
+
 /** Positions of the first mesh, or of one by name, at a time of the first animation, in the world. */
 export function atTime(gltf, time, name) {
     const mixer = new AnimationMixer(gltf.scene);

@@ -5,10 +5,10 @@ import { request } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { launch, open } from "./browser.mjs";
+import { launch, nameless, open } from "./browser.mjs";
 import { readRows, run, view } from "./command.mjs";
-import { atTime, parse } from "./glb.mjs";
-import { drawnBox, orange, pixels, settled } from "./picture.mjs";
+import { atTime, isBounded, parse } from "./glb.mjs";
+import { drawnBox, orange, pixels, settled, yellow } from "./picture.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "sscc-view-"));
 const model = join(folder, "spring.model.safetensors");
@@ -80,6 +80,10 @@ describe("live", () => {
             await answered(page);
             assert.ok(drawnBox(await pixels(page)).count > 2000);
             assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
+            assert.deepEqual(await nameless(page), []);
+            await page.keyboard.press("l");
+            await page.getByRole("dialog", { name: "load q" }).waitFor();
+            assert.deepEqual(await nameless(page), []);
             await page.reload();
             await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
             await answered(page);
@@ -102,6 +106,47 @@ describe("live", () => {
                 const norm = await page.evaluate(() => globalThis.sscc.checker.answer.norm);
                 assert.equal(norm, answer.norm);
             }
+        }));
+
+    test("what the root certifies is told in the frame that draws it, as the program tells it", () =>
+        look(async (page) => {
+            await show(page, fewPairs().q);
+            await answered(page);
+            // q of one length in the metric along several directions, just inside the root's radius and just outside.
+            const ball = await page.evaluate(() => {
+                const { root_radius, scales, rank } = globalThis.sscc.shape.model;
+                const directions = [0, 1, 2, 3].map((d) => scales.map((_, k) => Math.sin(1 + d + k * (d + 1))));
+                directions.push(...[0, rank - 1].map((only) => scales.map((_, k) => Number(k === only))));
+                return directions.flatMap((z) =>
+                    [0.5, 1 - 1e-9, 1 + 1e-9].map((share) => ({
+                        share,
+                        q: z.map((v, k) => (v * share * root_radius) / Math.hypot(...z) / scales[k]),
+                    })),
+                );
+            });
+            for (const { q, share } of ball) {
+                await show(page, q);
+                await answered(page);
+                const told = await page.evaluate(() => globalThis.sscc.checker.answer.root_certified);
+                assert.equal(told, share < 1);
+                assert.equal(await page.locator(".gauge").getAttribute("data-kind"), share < 1 ? "root" : "free");
+            }
+            await show(page, fewPairs().q);
+            await answered(page);
+            await page.route("**/api/check", () => undefined);
+            // Within one frame, and without any answer.
+            const seen = await page.evaluate(async (q) => {
+                const { pose, body } = globalThis.sscc;
+                pose.show(q);
+                await new Promise((done) => requestAnimationFrame(done));
+                const gauge = document.querySelector(".gauge").dataset;
+                return {
+                    kind: gauge.kind,
+                    isOf: gauge.serial === String(pose.serial),
+                    marks: body.markedTriangles(0),
+                };
+            }, ball[0].q);
+            assert.deepEqual(seen, { kind: "root", isOf: true, marks: [] });
         }));
 
     test("the colliding triangles shown are check's", () =>
@@ -188,23 +233,69 @@ describe("live", () => {
             assert.ok(kinds.has("colliding"), [...kinds].join(", "));
         }));
 
-    test("goes along a mode to the first self-collision", () =>
+    test("goes along a mode to the first self-collision, or says that there is none", () =>
         look(async (page) => {
-            await page.getByRole("button", { name: "mode 1 to the first self-collision" }).click();
-            await page.waitForFunction(() => globalThis.sscc.motion.track && !globalThis.sscc.motion.name);
+            // What each mode meets on its way is another matter for each model: the server knows.
+            const found = await page.evaluate(async () => {
+                const { source, shape } = globalThis.sscc;
+                const along = [];
+                for (const k of shape.model.limits.keys()) {
+                    const direction = shape.model.limits.map((_, i) => (i === k ? 1 : 0));
+                    along.push(await source.ask("/api/safe_scale", { direction }));
+                }
+                return along;
+            });
+            assert.ok(found.every((answer) => answer.complete));
+            const [mode, free] = [found.findIndex((a) => a.first), found.findIndex((a) => !a.first)];
+            const press = (k) =>
+                page.getByRole("button", { name: `mode ${k + 1} to the first self-collision` }).click();
+            const said = async (text) => {
+                await page.locator(".message", { hasText: text }).waitFor();
+                return page.locator(".message").innerText();
+            };
+            assert.ok(mode >= 0 && free >= 0);
+            await press(free);
+            const none = await said(`no self-collision along mode ${free + 1} up to`);
+            assert.ok(!none.includes("ran out"), none);
+            await press(mode);
+            await said(`first self-collision along mode ${mode + 1} at`);
+            await page.waitForFunction(
+                ([k, scale]) => globalThis.sscc.pose.q[k] === scale,
+                [mode, found[mode].first.scale],
+            );
             await answered(page);
             assert.match(await verdict(page), /^COLLIDING/);
-            assert.match(await page.locator(".message").innerText(), /first self-collision along mode 1 at/);
+            const check = async (q) => {
+                const row = `--q=${q.join(",")}`;
+                return JSON.parse(await run("check", model, "--certificates", certificates, "--json", row));
+            };
             const q = await page.evaluate(() => [...globalThis.sscc.pose.q]);
-            const exact = JSON.parse(
-                await run("check", model, "--certificates", certificates, "--json", `--q=${q.join(",")}`),
+            assert.ok((await check(q)).colliding);
+            assert.ok(!(await check(q.map((v) => v * (1 - 1e-6)))).colliding);
+        }));
+
+    test("of two searches the later one counts", () =>
+        look(async (page) => {
+            let release;
+            const held = new Promise((done) => {
+                release = done;
+            });
+            await page.route(
+                "**/api/safe_scale",
+                async (route) => {
+                    await held;
+                    await route.continue();
+                },
+                { times: 1 },
             );
-            assert.ok(exact.colliding);
-            const before = q.map((v) => v * 0.98);
-            const free = JSON.parse(
-                await run("check", model, "--certificates", certificates, "--json", `--q=${before.join(",")}`),
-            );
-            assert.ok(!free.colliding);
+            await page.getByRole("button", { name: "mode 1 to the first self-collision" }).click();
+            await page.getByRole("button", { name: "mode 2 to the first self-collision" }).click();
+            const later = page.locator(".message", { hasText: /self-collision along mode 2 (at|up to)/ });
+            await later.waitFor();
+            const [answer] = await Promise.all([page.waitForResponse("**/api/safe_scale"), release()]);
+            await answer.finished();
+            await settled(page);
+            assert.ok(!(await page.locator(".message").innerText()).includes("mode 1 "));
         }));
 
     test("costs stand beside the traditional method's", () =>
@@ -243,6 +334,7 @@ describe("live", () => {
                 return seen.size;
             };
             const plain = await colours();
+            assert.equal(yellow(await pixels(page)), 0);
             await page.getByLabel("colours").selectOption("radius");
             await page.locator(".ramp").waitFor();
             assert.ok((await colours()) > 1.3 * plain);
@@ -250,8 +342,10 @@ describe("live", () => {
             await page.getByLabel("colours").selectOption("searched");
             await page.getByText(/culled by certificates/).waitFor();
             const text = await page.locator(".ramp-legend").innerText();
-            const [culled, opened] = text.match(/[\d,]+/g).map((n) => Number(n.replaceAll(",", "")));
+            const [culled, opened] = text.match(/\d[\d,]*/g).map((n) => Number(n.replaceAll(",", "")));
             assert.ok(culled > 0 && opened > 0, text);
+            await settled(page);
+            assert.ok(yellow(await pixels(page)) > 100);
             await page.getByLabel("boxes of this level").check();
             await page.waitForFunction(() => globalThis.sscc.stage.scene.children.some((c) => c.isLineSegments));
         }));
@@ -269,6 +363,7 @@ describe("live", () => {
             assert.equal(png.subarray(1, 4).toString(), "PNG");
             assert.ok(png.length > 5000);
             const glb = await parse(await saved(page.getByRole("button", { name: "save the motion" })));
+            assert.ok(isBounded(glb));
             // The way from the centre to q and back: there at one second.
             for (const [time, share] of [
                 [0, 0],
@@ -356,10 +451,7 @@ describe("the server", () => {
         const { page, context } = await open(browser, own.address);
         await answered(page);
         await own.stop();
-        await show(
-            page,
-            rows[0].map((v) => v + 1e-9),
-        );
+        await show(page, row((a) => !a.root_certified && !a.colliding).q);
         await page.getByText(/The server does not answer/).waitFor();
         await settled(page);
         assert.equal(await verdict(page), "unknown: no answer");

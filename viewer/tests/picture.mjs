@@ -59,17 +59,19 @@ export function expectedBox(page) {
     });
 }
 
-/** Pixels in the orange of colliding triangles, which nothing else has. */
-export function orange(picture) {
+function count(picture, wanted) {
     let n = 0;
     for (let y = 0; y < picture.height; y++) {
-        for (let x = 0; x < picture.width; x++) {
-            const [r, g, b] = picture.at(x, y);
-            if (r > 150 && r > 1.6 * g && g > b) n++;
-        }
+        for (let x = 0; x < picture.width; x++) if (wanted(...picture.at(x, y))) n++;
     }
     return n;
 }
+
+/** Pixels in the orange of colliding triangles, which nothing else has. */
+export const orange = (picture) => count(picture, (r, g, b) => r > 150 && r > 1.6 * g && g > b);
+
+/** Pixels in the yellow of nodes that lie deep. */
+export const yellow = (picture) => count(picture, (r, g, b) => r > 1.3 * b && r < 1.5 * g);
 
 /** After the next frame was drawn. */
 export function settled(page) {

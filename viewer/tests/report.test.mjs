@@ -5,9 +5,9 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { builtPage, launch, open } from "./browser.mjs";
+import { builtPage, launch, nameless, open } from "./browser.mjs";
 import { report, withReport } from "./fixture.mjs";
-import { atTime, parse } from "./glb.mjs";
+import { atTime, isBounded, parse } from "./glb.mjs";
 import { drawnBox, expectedBox, orange, pixels, settled } from "./picture.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "sscc-page-"));
@@ -44,6 +44,11 @@ async function look(options, steps) {
 describe("the shape", () => {
     test("is deformed on the graphics card as by the processor", () =>
         look({ playback: false }, async (page) => {
+            // From so far that every shape below is in the picture as a whole.
+            await page.focus(".stage canvas");
+            for (let i = 0; i < 6; i++) await page.keyboard.press("-");
+            // Without the ring around what has the focus.
+            await page.evaluate(() => document.activeElement.blur());
             for (const q of [
                 [0, 0, 0, 0],
                 [0.9, 0, 0, 0],
@@ -52,7 +57,9 @@ describe("the shape", () => {
             ]) {
                 await page.evaluate((q) => globalThis.sscc.pose.show(q), q);
                 await settled(page);
-                const [drawn, due] = [drawnBox(await pixels(page)), await expectedBox(page)];
+                const picture = await pixels(page);
+                const [drawn, due] = [drawnBox(picture), await expectedBox(page)];
+                assert.ok(due.left > 0 && due.top > 0 && due.right < picture.width && due.bottom < picture.height);
                 for (const side of ["left", "right", "top", "bottom"]) {
                     assert.ok(Math.abs(drawn[side] - due[side]) < 4, `${side} of ${q}: ${drawn[side]}, ${due[side]}`);
                 }
@@ -62,23 +69,29 @@ describe("the shape", () => {
     test("turns when dragged, comes nearer by the wheel, and by keys", () =>
         look({ playback: false }, async (page) => {
             const place = () => page.evaluate(() => globalThis.sscc.stage.camera.position.toArray());
-            const moved = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
+            /** Waits until the camera is so far from a place, and so many times as far from the middle. */
+            const until = async (from, apart, ratio) => {
+                await page.waitForFunction(
+                    ([from, apart, ratio]) => {
+                        const at = globalThis.sscc.stage.camera.position.toArray();
+                        const moved = Math.hypot(...at.map((v, i) => v - from[i]));
+                        return moved > apart && Math.hypot(...at) < ratio * Math.hypot(...from);
+                    },
+                    [from, apart, ratio],
+                );
+                return place();
+            };
             const first = await place();
-            await page.mouse.move(400, 300);
+            await page.mouse.move(300, 300);
             await page.mouse.down();
-            await page.mouse.move(520, 340, { steps: 4 });
+            await page.mouse.move(420, 340, { steps: 4 });
             await page.mouse.up();
-            await settled(page);
-            const turned = await place();
-            assert.ok(moved(first, turned) > 0.3);
+            const turned = await until(first, 0.3, 1.001);
             await page.mouse.wheel(0, -400);
-            await settled(page);
-            assert.ok(Math.hypot(...(await place())) < 0.95 * Math.hypot(...turned));
+            const near = await until(turned, 0.05, 0.95);
             await page.focus(".stage canvas");
-            const near = await place();
             await page.keyboard.press("ArrowLeft");
-            await settled(page);
-            assert.ok(moved(near, await place()) > 0.05);
+            await until(near, 0.05, 1.001);
         }));
 
     test("follows the slider of a mode; a double click puts it back", () =>
@@ -214,6 +227,7 @@ describe("playback", () => {
             const button = page.getByRole("button", { name: "save the motion" });
             const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
             const glb = await parse(readFileSync(await download.path()));
+            assert.ok(isBounded(glb));
             const { shapes, box } = await page.evaluate(() => {
                 const { shape } = globalThis.sscc;
                 const frame = 30;
@@ -306,12 +320,7 @@ describe("the page", () => {
             assert.equal(await page.getByRole("tab", { name: "Certificates" }).getAttribute("aria-selected"), "true");
             const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
             assert.equal(outline, "solid");
-            const nameless = await page.evaluate(() =>
-                [...document.querySelectorAll("button, input, select, textarea, canvas[tabindex]")]
-                    .filter((e) => !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length))
-                    .map((e) => e.outerHTML),
-            );
-            assert.deepEqual(nameless, []);
+            assert.deepEqual(await nameless(page), []);
         }));
 
     test("fits the width of a phone, in light and dark", async () => {
@@ -327,6 +336,13 @@ describe("the page", () => {
             });
         }
     });
+
+    test("without a shape has plots alone, in all its width", () =>
+        look({ playback: false, width: 1280, change: (scene) => (scene.models = []) }, async (page) => {
+            assert.equal(await page.locator(".plot").count(), 1);
+            assert.equal(await page.locator("canvas").count(), 0);
+            assert.equal((await page.locator(".panel").boundingBox()).width, 1280);
+        }));
 
     test("shows text as text", () =>
         look({ change: (scene) => (scene.title = "</script><img src=x onerror=alert(1)>") }, async (page) => {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
 use crate::tally::{SkipLog, Tally};
-use crate::test::cargo;
+use crate::test::{cargo, passed_on};
 
 /// Vite needs it (see `engines` in `viewer/package.json`).
 const NODE: (u32, u32) = (20, 19);
@@ -167,23 +167,23 @@ fn browser_tests() -> Result<Tally, String> {
     // This task lies beside it.
     let folder = env::current_exe().map_err(|e| e.to_string())?;
     let command = folder.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX));
-    let output = Command::new("npm")
-        .args(["run", "--silent", "test", "--", "--test-reporter=tap"])
+    let mut tests = Command::new("npm");
+    tests
+        .args(["run", "--silent", "test"])
         .current_dir(root().join("viewer"))
         .env("SSCC_COMMAND", command)
-        .stderr(Stdio::inherit())
-        .output()
+        .stdin(Stdio::null());
+    let mut text = String::new();
+    let success = passed_on(&mut tests, |line| text.extend([line, "\n"]))
         .map_err(|e| format!("npm cannot be run: {e}"))?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    print!("{text}");
     let mut tally = results(&text);
-    if !output.status.success() && tally.failed == 0 {
+    if !success && tally.failed == 0 {
         tally.failed = 1;
     }
     Ok(tally)
 }
 
-/// Adds up the lines `# pass 3` and `# fail 0` of TAP. What was skipped or cancelled did not pass.
+/// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. What was skipped or cancelled did not pass.
 fn results(text: &str) -> Tally {
     let number = |line: &str, what: &str| line.strip_prefix(what)?.trim().parse::<u64>().ok();
     let count = |what: &str| text.lines().filter_map(|line| number(line, what)).sum::<u64>();

@@ -129,8 +129,14 @@ fn measurements() {
     assert!(run.stdout.contains("\nall exact methods list the same pairs\n"), "{}", run.stdout);
 
     // Beyond 64 queries, the others answer 20 of the steps.
-    let run = bench(folder.path(), &["spring", "--quick", "--steps", "65", "--json"]);
+    let page = folder.path().join("spring.html");
+    let told = ["--report", page.to_str().unwrap()];
+    let run = bench(folder.path(), &[&["spring", "--quick", "--steps", "65", "--json"][..], &told].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
+    let page = fs::read_to_string(page).unwrap();
+    for part in ["Cost over time: spring", r#"{"name":"traditional","x":["#, r#"{"name":"kinetic","x":["#] {
+        assert!(page.contains(part), "{part}");
+    }
     let scene = &run.json()[0];
     check(scene, "note, discrete_ms_all_steps, simulation_speedup, simulation_ms");
     assert_eq!((&scene["scenario"], &scene["steps"]), (&json!("spring"), &json!(65)));

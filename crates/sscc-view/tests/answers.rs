@@ -66,6 +66,7 @@ fn the_first_collision_is_found() {
             let scale = answer["first"]["scale"].as_f64().unwrap();
             let at = |scale: f64| direction.map(|d| d * scale);
             assert!(certified <= scale && certified > 0.5 * scale, "{answer}");
+            assert_eq!((&answer["searched"], &answer["complete"]), (&json!(scale), &json!(true)));
             // Flat strips pass each other without ever colliding at a number.
             let colliding = query.discrete(&at(scale)).unwrap();
             assert_eq!(colliding.is_empty(), direction[2] == 0.0);
@@ -80,7 +81,7 @@ fn the_first_collision_is_found() {
         // Away from each other, too far to the side, and no motion at all.
         for direction in [[-1.0, 0.0, 0.0], [0.3, 5.0, 0.1], [0.0, 0.0, 0.0]] {
             let answer = client.post("/api/safe_scale", &json!({"direction": direction}).to_string()).json();
-            assert_eq!(answer["first"], Value::Null);
+            assert_eq!((&answer["first"], &answer["complete"]), (&Value::Null, &json!(true)));
         }
     });
 }
@@ -199,17 +200,28 @@ fn a_q_that_is_none_is_refused() {
 fn the_animation_is_the_reduced_motion() {
     let (model, _) = strips();
     with_server(|client| {
-        let q = [[0.0, 0.0, 0.0], [0.5, 2.0, -0.25], [-1.0, 0.0, 3.0]];
-        let reply = client.post("/api/glb", &json!({"q": q, "times": [0.0, 0.5, 1.0]}).to_string());
-        assert_eq!(reply.status, 200);
-        let read = sscc_io::gltf::parse(&reply.body, None).unwrap();
-        assert_eq!(read.mesh.faces(), model.mesh().faces());
-        assert_eq!(read.default_weights, q[0]);
-        let shown = sscc::ReducedModel::new(read.mesh, read.modes).unwrap();
-        for q in q {
-            let [ours, theirs] = [&model, &shown].map(|model| model.positions(&q).unwrap());
+        // Mode 1 rests.
+        let mut q = [[0.0, 2.0, 0.0], [0.5, 2.0, -0.25], [-100.0, 2.0, 30.0]];
+        for _ in 0..q.len() {
+            let reply = client.post("/api/glb", &json!({"q": q, "times": [0.0, 0.5, 1.0]}).to_string());
+            assert_eq!(reply.status, 200);
+            let read = sscc_io::gltf::parse(&reply.body, None).unwrap();
+            assert_eq!(read.mesh.faces(), model.mesh().faces());
+            // What moves, and where it begins.
+            assert_eq!(read.modes.rank(), 3);
+            // Beside the animation stand the weights of its first frame.
+            let length = u32::from_le_bytes(*reply.body[12..].first_chunk().unwrap()) as usize;
+            let root: Value = serde_json::from_slice(&reply.body[20..20 + length]).unwrap();
+            let weights: Vec<f64> = serde_json::from_value(root["nodes"][1]["weights"].clone()).unwrap();
+            assert!(weights.iter().all(|weight| (0.0..=1.0).contains(weight)), "{weights:?}");
+            let shown = sscc::ReducedModel::new(read.mesh, read.modes).unwrap();
+            let [ours, theirs] = [model.positions(&q[0]).unwrap(), shown.positions(&weights).unwrap()];
             let farthest = ours.iter().zip(theirs).map(|(a, b)| (*a - b).length()).fold(0.0, f64::max);
             assert!(farthest < 1e-5 * 19.0, "{farthest}");
+            q.rotate_left(1);
         }
+        // A shape that rests.
+        let reply = client.post("/api/glb", r#"{"q":[[0,0,0]],"times":[0]}"#);
+        assert_eq!(sscc_io::gltf::parse(&reply.body, None).unwrap().modes.rank(), 1);
     });
 }

@@ -7,7 +7,7 @@ mod common;
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use common::{Client, next_reply, read_reply, with_server};
 
@@ -119,6 +119,11 @@ fn bodies_are_bounded() {
             assert_eq!(reply.status, 413, "{length}");
             assert!(reply.head.contains("Connection: close"));
         }
+        // A motion may be longer, within bounds of its own.
+        let head = format!("POST /api/glb HTTP/1.1\r\n{lines}Content-Length: 67108865\r\n\r\n");
+        assert_eq!(client.send(head.as_bytes()).unwrap().status, 413);
+        let motion = format!(r#"{{"q":[[0,0,0]],"times":[0]{}}}"#, " ".repeat(2 << 20));
+        assert_eq!(client.post("/api/glb", &motion).status, 200);
         // And who sends it all nevertheless gets to read the answer.
         let body = format!("{{\"q\":[{}0]}}", "0,".repeat(1 << 20));
         let reply = client.post("/api/check", &body);
@@ -215,11 +220,16 @@ fn connections_are_kept_only_for_those_who_know_the_token() {
 fn slow_clients_are_hung_up_on_and_hold_up_nobody() {
     with_server(|client| {
         thread::scope(|scope| {
-            // One byte now and then, for ever: neither a head nor a body ends that way.
-            for start in ["GET / HTTP/1.1\r\nX: ".to_owned(), String::new()] {
+            // One byte now and then, for ever: no head ends that way, neither the first nor one that follows.
+            let later = client.request("POST", "/api/check", "", CHECK);
+            let starts = [Vec::new(), b"GET / HTTP/1.1\r\nX: ".to_vec(), [&later[..], b"GET /"].concat()];
+            for (start, answers) in starts.into_iter().zip([0, 0, 1]) {
                 scope.spawn(move || {
-                    let mut stream = client.connect();
-                    stream.write_all(start.as_bytes()).unwrap();
+                    let (mut stream, begin) = (client.connect(), Instant::now());
+                    stream.write_all(&start).unwrap();
+                    for _ in 0..answers {
+                        assert_eq!(read_reply(&mut stream).unwrap().status, 200);
+                    }
                     stream.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
                     loop {
                         match stream.read(&mut [0; 64]) {
@@ -232,6 +242,7 @@ fn slow_clients_are_hung_up_on_and_hold_up_nobody() {
                             break;
                         }
                     }
+                    assert!(begin.elapsed() >= Duration::from_secs(5), "hung up on too soon");
                 });
             }
             // Meanwhile others are answered, ...

@@ -1,4 +1,8 @@
 //! The motion of the page as a file.
+//!
+//! Its morph targets are the modes that move, each as far as it moves, and a first one to where these begin: so all
+//! weights lie in [0, 1]. Those who cut them off there (Blender does, but for the first key frame) show every vertex
+//! where it is; and files hold only what moves.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -6,7 +10,7 @@ use std::marker::PhantomData;
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
-use sscc::ReducedModel;
+use sscc::{Modes, ReducedModel};
 use sscc_io::gltf::{Track, animation_to_bytes};
 
 use crate::ViewError;
@@ -41,15 +45,37 @@ pub(super) fn glb(
     for q in q {
         model.check_coordinates(q)?;
     }
+    let (moved, weights) = bounded(model, q)?;
     let track = Track {
         name: name.to_owned(),
         model: 0,
         center: DVec3::ZERO,
         positions: vec![DVec3::ZERO; q.len()],
         orientations: vec![DQuat::IDENTITY; q.len()],
-        weights: q.concat(),
+        weights,
     };
-    animation_to_bytes(&[(name, model)], times, &[track]).map_err(ViewError::Request)
+    animation_to_bytes(&[(name, &moved)], times, &[track]).map_err(ViewError::Request)
+}
+
+/// The same motion with weights in [0, 1], row by row, and what they belong to.
+fn bounded(model: &ReducedModel, q: &[Vec<f64>]) -> Result<(ReducedModel, Vec<f64>), ViewError> {
+    let extreme = |k: usize, pick: fn(f64, f64) -> f64| q.iter().map(|q| q[k]).reduce(pick).unwrap_or(0.0);
+    let ranges: Vec<[f64; 2]> =
+        (0..model.rank()).map(|k| [extreme(k, f64::min), extreme(k, f64::max)]).collect();
+    let moving: Vec<usize> = (0..model.rank()).filter(|k| ranges[*k][0] < ranges[*k][1]).collect();
+    let of_vertex = |u: &[DVec3]| -> Vec<DVec3> {
+        let begin = u.iter().zip(&ranges).map(|(u, [low, _])| *u * *low).sum();
+        let targets = moving.iter().map(|&k| u[k] * (ranges[k][1] - ranges[k][0]));
+        std::iter::once(begin).chain(targets).collect()
+    };
+    let displacements = model.modes().displacements().chunks_exact(model.rank()).flat_map(of_vertex);
+    let modes = Modes::new(moving.len() + 1, displacements.collect())?;
+    let share = |q: f64, [low, high]: [f64; 2]| ((q - low) / (high - low)).clamp(0.0, 1.0);
+    let weights = q
+        .iter()
+        .flat_map(|q| std::iter::once(1.0).chain(moving.iter().map(|&k| share(q[k], ranges[k]))))
+        .collect();
+    Ok((ReducedModel::new(model.mesh().clone(), modes)?, weights))
 }
 
 /// A list with one entry for each frame, refused at the first that is too many.
@@ -76,4 +102,27 @@ fn frames<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec
     }
 
     from.deserialize_seq(Frames(PhantomData))
+}
+
+#[cfg(test)]
+mod tests {
+    use sscc::TriMesh;
+
+    use super::*;
+
+    #[test]
+    fn the_numbers_of_a_motion_are_bounded() {
+        const RANK: usize = 128;
+        let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+        let modes = Modes::from_matrix(3, RANK, |row, k| (row + k) as f64).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let refused = |frames: usize| {
+            let request = AnimationRequest { q: vec![Vec::new(); frames], times: Vec::new() };
+            glb("plate", &model, &request).unwrap_err().to_string()
+        };
+        let most = MOST_NUMBERS / RANK;
+        assert!(refused(most + 1).contains("more than 8388608 numbers"));
+        // So many may be: what is wrong then is that the rows are empty.
+        assert!(!refused(most).contains("8388608"));
+    }
 }

@@ -1,9 +1,10 @@
 //! The first self-collision along a direction.
 
 use serde::{Deserialize, Serialize};
-use sscc::{Certificates, Pair, Query, ReducedModel};
+use sscc::{Certificates, Error, Pair, Progress, Query, ReducedModel};
 
 use super::check::{MOST_FOUND, MOST_LISTED};
+use super::patience::Patience;
 use crate::ViewError;
 
 /// A direction from the centre.
@@ -15,10 +16,15 @@ pub struct DirectionRequest {
 /// What is known of `centre + s direction`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionAnswer {
-    /// Free at every s up to it.
+    /// Proven free at every s up to it, by certificates.
     certified: f64,
-    /// None where nothing meets until some vertex has moved by half the box's diagonal.
+    /// None where nothing meets up to `searched`.
     first: Option<First>,
+    /// So far was looked, at every s: until some vertex has moved by half the box's diagonal, unless there was a
+    /// collision before, or time ran out.
+    searched: f64,
+    /// Whether time did not run out.
+    complete: bool,
 }
 
 /// The first collision.
@@ -41,26 +47,41 @@ const NUDGES: [f64; 8] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
 const TOGETHER: f64 = 1e-9;
 
 pub(super) fn along(
-    query: &mut Query<'_>,
+    mut query: Query<'_>,
     model: &ReducedModel,
     certificates: &Certificates,
     DirectionRequest { direction }: &DirectionRequest,
+    patience: &Patience<'_>,
 ) -> Result<DirectionAnswer, ViewError> {
     let center = certificates.center();
     model.check_coordinates(direction)?;
     let at = |scale: f64| -> Vec<f64> { center.iter().zip(direction).map(|(c, d)| c + scale * d).collect() };
-    let certified = query.safe_scale(&at(1.0))?;
+    let certified = query.safe_scale(&at(1.0)).map_err(|error| patience.explain(error))?;
     let end = end(model, direction);
-    let mut first = None;
+    let mut answer = DirectionAnswer { certified, first: None, searched: certified, complete: true };
     if certified.is_finite() && end.is_finite() {
-        let mut from = certified.min(end);
-        while first.is_none() && from < end {
-            let to = (from + end / PIECES).min(end);
-            first = meet(query, &at, [from, to], end)?;
-            from = to;
+        answer.searched = certified.min(end);
+        while answer.first.is_none() && answer.searched < end {
+            let to = (answer.searched + end / PIECES).min(end);
+            let found = match patience.is_cancelled() {
+                true => Err(Error::Cancelled),
+                false => meet(&mut query, &at, [answer.searched, to], end),
+            };
+            match found {
+                Ok(first) => {
+                    answer.searched = first.as_ref().map_or(to, |first| first.scale);
+                    answer.first = first;
+                }
+                // What was found until then holds.
+                Err(Error::Cancelled) if (patience.is_wanted)() && (patience.is_over)() => {
+                    answer.complete = false;
+                    break;
+                }
+                Err(error) => return Err(patience.explain(error)),
+            }
         }
     }
-    Ok(DirectionAnswer { certified, first })
+    Ok(answer)
 }
 
 /// The first collision between two scales.
@@ -69,7 +90,7 @@ fn meet(
     at: &impl Fn(f64) -> Vec<f64>,
     [from, to]: [f64; 2],
     end: f64,
-) -> Result<Option<First>, ViewError> {
+) -> Result<Option<First>, Error> {
     let impacts = query.continuous(&at(from), &at(to))?;
     let Some(time) = impacts.iter().map(|impact| impact.time).min_by(f64::total_cmp) else { return Ok(None) };
     let together = impacts.iter().filter(|impact| impact.time <= time + TOGETHER);
@@ -94,4 +115,54 @@ fn end(model: &ReducedModel, direction: &[f64]) -> f64 {
         |v: u32| model.modes().of_vertex(v).iter().zip(direction).map(|(u, d)| *u * *d).sum::<glam::DVec3>();
     let fastest = (0..rest.len() as u32).map(|v| speed(v).length()).fold(0.0, f64::max);
     0.5 * (max - min).length() / fastest
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use glam::DVec3;
+    use sscc::{CertifyOptions, Modes, TriMesh};
+
+    use super::*;
+
+    /// What is answered of two triangles that move away from each other, so that all of their way is searched, where
+    /// after so many looks its time is over, or nobody wants it; and how many looks there were.
+    fn parted(over: u32, unwanted: u32) -> (Result<DirectionAnswer, ViewError>, u32) {
+        let below = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let positions = [below, below.map(|p| p + DVec3::new(0.1, 0.1, 0.01))].concat();
+        let modes = Modes::from_matrix(6, 2, |row, k| match (row % 3, row >= 9, k) {
+            (2, true, 0) => 1.0,
+            (2, false, 1) => -1.0,
+            _ => 0.0,
+        });
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let looks = AtomicU32::new(0);
+        let is_over = || looks.load(Ordering::Relaxed) > over;
+        let is_wanted = || looks.fetch_add(1, Ordering::Relaxed) < unwanted;
+        let patience = Patience { all: &(), is_over: &is_over, is_wanted: &is_wanted };
+        let query = Query::new(&model, &certificates).unwrap().cancelled_by(&patience);
+        let request = DirectionRequest { direction: vec![1.0, 1.0] };
+        let answer = along(query, &model, &certificates, &request, &patience);
+        (answer, looks.into_inner())
+    }
+
+    #[test]
+    fn a_search_ends_in_time_with_what_it_found() {
+        let (whole, looks) = parted(u32::MAX, u32::MAX);
+        let whole = whole.unwrap();
+        assert!(whole.complete && whole.first.is_none() && whole.searched > whole.certified, "{whole:?}");
+        // Certificates have been looked at by then, and not yet all pieces of the way.
+        let late = looks - 4;
+        let part = parted(late, u32::MAX).0.unwrap();
+        assert!(!part.complete && part.first.is_none() && part.certified == whole.certified, "{part:?}");
+        assert!(part.certified < part.searched && part.searched < whole.searched, "{part:?}");
+        assert!(parted(0, u32::MAX).0.unwrap_err().to_string().contains("within 10 s"));
+        for looks in [0, late] {
+            let error = parted(u32::MAX, looks).0.unwrap_err().to_string();
+            assert!(error.contains("another question"), "{error}");
+        }
+    }
 }

@@ -4,16 +4,21 @@ mod animation;
 mod check;
 mod collision;
 mod nodes;
+mod patience;
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sscc::{Certificates, Method, Progress, Query, ReducedModel};
 
 use crate::{Arrays, Scene, ViewError};
+use patience::{LONGEST, Patience};
 
 pub use animation::AnimationRequest;
 pub use check::{CheckAnswer, CheckRequest};
+pub use collision::{DirectionAnswer, DirectionRequest};
 pub use nodes::{BoxesAnswer, BoxesRequest, NodesAnswer};
 
 /// One model on show. Many threads may ask at once: short questions wait for short ones only, long ones for long ones.
@@ -24,6 +29,9 @@ pub struct Live<'a> {
     arrays: Arrays,
     checks: Mutex<Query<'a>>,
     long: Mutex<Long<'a>>,
+    progress: &'a dyn Progress,
+    /// The number of the search along a direction that was asked for last: only its answer is waited for.
+    latest: AtomicU64,
 }
 
 /// For what may take seconds.
@@ -31,7 +39,6 @@ struct Long<'a> {
     certified: Query<'a>,
     /// Made when it is first asked for.
     traditional: Option<Query<'a>>,
-    progress: &'a dyn Progress,
 }
 
 /// A q.
@@ -64,8 +71,9 @@ impl<'a> Live<'a> {
     ) -> Result<Self, ViewError> {
         arrays.add_u32(ORDER, certificates.hierarchy().order().iter().copied());
         let query = Query::new(model, certificates)?.cancelled_by(progress);
-        let long = Long { certified: query.clone(), traditional: None, progress };
-        Ok(Self { model, certificates, scene, arrays, checks: Mutex::new(query), long: Mutex::new(long) })
+        let long = Mutex::new(Long { certified: query.clone(), traditional: None });
+        let (checks, latest) = (Mutex::new(query), AtomicU64::new(0));
+        Ok(Self { model, certificates, scene, arrays, checks, long, progress, latest })
     }
 
     /// What is shown.
@@ -92,12 +100,11 @@ impl<'a> Live<'a> {
     /// As [`Live::check`].
     pub fn traditional(&self, At { q }: &At) -> Result<TraditionalAnswer, ViewError> {
         let mut long = locked(&self.long);
-        let Long { traditional, progress, .. } = &mut *long;
-        let query = match traditional {
+        let query = match &mut long.traditional {
             Some(query) => query,
             none => none.insert(
                 Query::with_method(self.model, self.certificates, Method::Traditional)?
-                    .cancelled_by(*progress),
+                    .cancelled_by(self.progress),
             ),
         };
         let (count, microseconds) =
@@ -105,15 +112,25 @@ impl<'a> Live<'a> {
         Ok(TraditionalAnswer { microseconds, count: count? })
     }
 
-    /// How far the shape is free along a direction from the centre, and where it first collides.
+    /// How far the shape is free along a direction from the centre, and where it first collides, as far as that is
+    /// found within the time for it. Ends early when nobody waits for the answer any more: when another such question
+    /// has come, or `is_gone`.
     ///
     /// # Errors
-    /// When the direction has not one finite number for each mode.
+    /// When the direction has not one finite number for each mode, or the search ended before it found anything.
     pub fn safe_scale(
         &self,
-        request: &collision::DirectionRequest,
-    ) -> Result<collision::DirectionAnswer, ViewError> {
-        collision::along(&mut locked(&self.long).certified, self.model, self.certificates, request)
+        request: &DirectionRequest,
+        is_gone: &(dyn Fn() -> bool + Sync),
+    ) -> Result<DirectionAnswer, ViewError> {
+        let number = self.latest.fetch_add(1, Ordering::Relaxed) + 1;
+        let long = locked(&self.long);
+        let is_wanted = || self.latest.load(Ordering::Relaxed) == number && !is_gone();
+        let end = Instant::now() + Duration::from_secs(LONGEST);
+        let patience =
+            Patience { all: self.progress, is_over: &|| Instant::now() >= end, is_wanted: &is_wanted };
+        let query = long.certified.clone().cancelled_by(&patience);
+        collision::along(query, self.model, self.certificates, request, &patience)
     }
 
     /// The hierarchy.

@@ -1,8 +1,9 @@
 //! One connection: request after request, each within its time.
 
-use std::io::{self, Read};
+use std::io::{self, ErrorKind, Read};
 use std::net::{Shutdown, TcpStream};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::access::Access;
 use super::deadline::Timed;
@@ -52,7 +53,8 @@ pub(super) fn talk(
                     Some(refusal) => refusal,
                     None => {
                         let body = buffer.body(head.length, &mut within(BODY))?;
-                        site.answer(&head, &body)
+                        let presence = Presence::of(&stream)?;
+                        site.answer(&head, &body, &|| presence.is_gone())
                     }
                 }
             }
@@ -71,10 +73,86 @@ pub(super) fn talk(
     Ok(())
 }
 
+/// Whether the other side still waits for its answer; looked at now and then while the answer is worked on.
+struct Presence<'a> {
+    stream: &'a TcpStream,
+    /// None once the other side has left.
+    next_look: Mutex<Option<Instant>>,
+}
+
+impl<'a> Presence<'a> {
+    /// Between two looks.
+    const PAUSE: Duration = Duration::from_millis(50);
+
+    fn of(stream: &'a TcpStream) -> io::Result<Self> {
+        stream.set_nonblocking(true)?;
+        Ok(Self { stream, next_look: Mutex::new(Some(Instant::now())) })
+    }
+
+    /// Whoever closes even one direction has left: browsers close both.
+    fn is_gone(&self) -> bool {
+        let mut next_look = self.next_look.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = Instant::now();
+        if next_look.is_some_and(|next| next <= now) {
+            let has_left = match self.stream.peek(&mut [0]) {
+                Ok(bytes) => bytes == 0,
+                Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
+            };
+            *next_look = (!has_left).then_some(now + Self::PAUSE);
+        }
+        next_look.is_none()
+    }
+}
+
+impl Drop for Presence<'_> {
+    fn drop(&mut self) {
+        let _ = self.stream.set_nonblocking(false);
+    }
+}
+
 /// What is said to a request whose body is not even read.
 fn refusal(head: &Head, access: &Access, site: &Site<'_, '_>) -> Option<Response<'static>> {
     if let Err(refusal) = access.check(head, site.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
     }
     site.check(head).err().map(|(status, message)| Response::error(status, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::net::TcpListener;
+    use std::thread;
+
+    use super::*;
+
+    #[test]
+    fn who_leaves_is_missed() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut there = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (here, _) = listener.accept().unwrap();
+        let presence = Presence::of(&here).unwrap();
+        let looks = |times: usize| {
+            (0..times).any(|_| {
+                thread::sleep(Presence::PAUSE);
+                presence.is_gone()
+            })
+        };
+        assert!(!looks(3));
+        there.write_all(b"the next request").unwrap();
+        assert!(!looks(3));
+        drop(presence);
+        let mut read = [0; 16];
+        // Reading waits again, and finds what was only looked at.
+        (&here).read_exact(&mut read).unwrap();
+        assert_eq!(&read, b"the next request");
+        let presence = Presence::of(&here).unwrap();
+        drop(there);
+        assert!((0..1200).any(|_| {
+            thread::sleep(Presence::PAUSE);
+            presence.is_gone()
+        }));
+        // And stays away, between two looks as well.
+        assert!(presence.is_gone());
+    }
 }

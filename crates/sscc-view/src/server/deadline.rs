@@ -70,3 +70,32 @@ impl Write for Timed<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+    use std::thread;
+
+    use super::*;
+
+    #[test]
+    fn little_by_little_is_no_way_beyond_the_end() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut there = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (here, _) = listener.accept().unwrap();
+        thread::scope(|scope| {
+            scope.spawn(move || {
+                // For ever: until the other end of the connection is closed.
+                while there.write_all(b"x").is_ok() {
+                    thread::sleep(Duration::from_millis(10));
+                }
+            });
+            let (time, begin) = (Duration::from_millis(300), Instant::now());
+            let mut timed = Timed::new(&here, time, &|| false);
+            let error = timed.read_to_end(&mut Vec::new()).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::TimedOut);
+            assert!(begin.elapsed() >= time);
+            drop(here);
+        });
+    }
+}

@@ -27,8 +27,11 @@ struct Route<'a> {
     answer: Answer<'a>,
 }
 
+/// Whether nobody waits for the answer any more.
+pub(super) type IsGone<'g> = &'g (dyn Fn() -> bool + Sync);
+
 /// From the body.
-type Answer<'a> = Box<dyn Fn(&[u8]) -> Response<'a> + 'a>;
+type Answer<'a> = Box<dyn Fn(&[u8], IsGone<'_>) -> Response<'a> + 'a>;
 
 impl<'a> Site<'a, '_> {
     /// Whether that is for everybody on this machine: the live page itself, which holds no data, so that it can be
@@ -47,9 +50,9 @@ impl<'a> Site<'a, '_> {
     }
 
     /// The answer to what [`Site::check`] let pass.
-    pub(super) fn answer(&self, head: &Head, body: &[u8]) -> Response<'a> {
+    pub(super) fn answer(&self, head: &Head, body: &[u8], is_gone: IsGone<'_>) -> Response<'a> {
         match self.route(&head.path) {
-            Some(route) => (route.answer)(body),
+            Some(route) => (route.answer)(body, is_gone),
             None => Response::error(404, "there is nothing of that name"),
         }
     }
@@ -71,29 +74,33 @@ impl<'a> Site<'a, '_> {
         Some(match path {
             "/api/scene" => get(|| Response::json(live.scene())),
             "/api/nodes" => get(|| Response::json(&live.nodes())),
-            "/api/check" => post(MOST_BODY, |request| Ok(Response::json(&live.check(&request)?))),
-            "/api/traditional" => post(MOST_BODY, |request| Ok(Response::json(&live.traditional(&request)?))),
-            "/api/safe_scale" => post(MOST_BODY, |request| Ok(Response::json(&live.safe_scale(&request)?))),
-            "/api/boxes" => post(MOST_BODY, |request| Ok(Response::json(&live.boxes(&request)?))),
-            "/api/glb" => post(MOST_MOTION, |request| Ok(Response::binary(live.animation(&request)?))),
+            "/api/check" => post(MOST_BODY, |request, _| Ok(Response::json(&live.check(&request)?))),
+            "/api/traditional" => {
+                post(MOST_BODY, |request, _| Ok(Response::json(&live.traditional(&request)?)))
+            }
+            "/api/safe_scale" => {
+                post(MOST_BODY, |request, is_gone| Ok(Response::json(&live.safe_scale(&request, is_gone)?)))
+            }
+            "/api/boxes" => post(MOST_BODY, |request, _| Ok(Response::json(&live.boxes(&request)?))),
+            "/api/glb" => post(MOST_MOTION, |request, _| Ok(Response::binary(live.animation(&request)?))),
             _ => return None,
         })
     }
 }
 
 fn get<'a>(answer: impl Fn() -> Response<'a> + 'a) -> Route<'a> {
-    Route { method: "GET", most: 0, answer: Box::new(move |_| answer()) }
+    Route { method: "GET", most: 0, answer: Box::new(move |_, _| answer()) }
 }
 
 /// Asked by JSON.
 fn post<'a, T: DeserializeOwned>(
     most: usize,
-    answer: impl Fn(T) -> Result<Response<'a>, ViewError> + 'a,
+    answer: impl Fn(T, IsGone<'_>) -> Result<Response<'a>, ViewError> + 'a,
 ) -> Route<'a> {
-    let answer = move |body: &[u8]| {
+    let answer = move |body: &[u8], is_gone: IsGone<'_>| {
         let refused = |error: &dyn ToString| Response::error(400, &error.to_string());
         match serde_json::from_slice(body) {
-            Ok(request) => answer(request).unwrap_or_else(|error| refused(&error)),
+            Ok(request) => answer(request, is_gone).unwrap_or_else(|error| refused(&error)),
             Err(error) => refused(&error),
         }
     };

@@ -174,6 +174,19 @@ fn time(
 }
 
 impl Times {
+    /// Milliseconds of one method, of the steps in which it was asked; where it has several engines, of the faster one.
+    pub fn of(&self, key: &str) -> Vec<(usize, f64)> {
+        if key == "kinetic" {
+            return self.kinetic.iter().copied().enumerate().collect();
+        }
+        let faster = |times: &Vec<Option<f64>>| {
+            let own = COLUMNS.iter().zip(times).filter(|(column, _)| column.key == key);
+            own.filter_map(|(_, time)| *time).reduce(f64::min)
+        };
+        let steps = self.times.iter().enumerate();
+        steps.filter_map(|(step, times)| Some((step, faster(times)?))).collect()
+    }
+
     /// Mean milliseconds over some steps, of the columns that were asked all of them.
     pub fn means(&self, steps: &[usize]) -> Vec<(&'static str, f64)> {
         let mut means: Vec<(&'static str, f64)> = Vec::new();
@@ -233,5 +246,9 @@ mod tests {
         assert_eq!(of(&times.means(&[0, 2]), COLUMNS[0].key), None);
         assert_eq!(of(&means, "kinetic"), Some(2.0));
         assert!(times.means(&[]).is_empty());
+        // Each step that was asked, and no other.
+        assert_eq!(times.of(COLUMNS[0].key), [(0, 1.0), (1, 3.0)]);
+        assert_eq!(times.of("parry")[1], (1, at as f64 + 3.0));
+        assert_eq!(times.of("kinetic"), [(0, 1.0), (1, 3.0), (2, 9.0)]);
     }
 }

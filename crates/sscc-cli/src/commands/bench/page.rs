@@ -7,13 +7,17 @@ use anyhow::Result;
 use sscc_io::write_whole;
 use sscc_view::{Arrays, Axis, Plot, Report as Page, Scene, Series};
 
+use super::measure::Times;
 use super::report::{Means, Report};
 use crate::machine;
 use crate::output::duration;
 
 /// What is told of each report.
 #[derive(Default)]
-pub struct Rows(RefCell<Vec<Row>>);
+pub struct Rows {
+    rows: RefCell<Vec<Row>>,
+    costs: RefCell<Vec<Plot>>,
+}
 
 struct Row {
     scenario: String,
@@ -25,7 +29,7 @@ struct Row {
 impl Rows {
     pub fn add(&self, report: &Report) {
         let Report { scenario, share, triangles, discrete_ms: Means(milliseconds), .. } = report;
-        self.0.borrow_mut().push(Row {
+        self.rows.borrow_mut().push(Row {
             scenario: scenario.clone(),
             share: *share,
             triangles: *triangles,
@@ -33,12 +37,27 @@ impl Rows {
         });
     }
 
+    /// Adds what each step of a scene took, in the manner of the paper's Figure 12; `seconds` is when a step was.
+    pub fn add_costs(&self, scenario: &str, times: &Times, seconds: impl Fn(usize) -> f64) {
+        let shown = ["traditional", "full", "kinetic"].map(|key| (key, times.of(key)));
+        let line = |(key, times): (&str, Vec<(usize, f64)>)| {
+            Series::new(key, times.into_iter().map(|(step, ms)| [seconds(step), ms]))
+        };
+        self.costs.borrow_mut().push(Plot {
+            title: format!("Cost over time: {scenario}"),
+            x: Axis::linear("time (s)"),
+            y: Axis::logarithmic("discrete query, ms in a step"),
+            series: shown.into_iter().filter(|(_, times)| !times.is_empty()).map(line).collect(),
+        });
+    }
+
     /// Writes all that was added.
     pub fn write(&self, path: &Path, title: &str) -> Result<()> {
-        let rows = self.0.borrow();
+        let rows = self.rows.borrow();
         let mut scene = Scene::new(format!("sscc bench {title}"));
         scene.summary = rows.iter().map(Row::line).collect();
         scene.summary.push(("machine".into(), machine::description()));
+        scene.plots.extend(self.costs.borrow().iter().cloned());
         // A model over how far it is displaced; ...
         for group in rows.chunk_by(|a, b| a.scenario == b.scenario).filter(|group| group.len() > 1) {
             let x = Axis::logarithmic("largest displacement, % of half the box's diagonal");

@@ -69,6 +69,7 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
     }
     let mut measured = measure(&case, &measured_steps, Asked::Both, &Bar::new("measuring"))?;
     measured.mismatches += follow(&case, &measured_steps, &mut measured.discrete)?;
+    session.rows.add_costs(name, &measured.discrete, |step| steps[step] as f64 * scene.step);
     let farthest = spread(&(0..history.len()).collect::<Vec<_>>(), LOOKED_AT)
         .into_iter()
         .flat_map(|state| {
