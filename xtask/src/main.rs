@@ -1,5 +1,5 @@
-//! Tasks of the project: `cargo xtask test` runs every test of the crates and says what it skipped, `cargo xtask
-//! python` those of the Python package, `cargo xtask page` builds the page and runs its own.
+//! Tasks of the project: `cargo xtask test` runs every test and says what it skipped, `cargo xtask python` those of the
+//! Python package alone; `cargo xtask page` builds the page, with `--test` it runs the page's own.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod page;

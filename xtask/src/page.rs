@@ -37,8 +37,10 @@ pub fn run(arguments: &[String]) -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let result =
-        node().and_then(|()| build()).and_then(|built| if write { take(&built) } else { compare(&built) });
+    let result = node()
+        .and_then(|()| install())
+        .and_then(|()| build())
+        .and_then(|built| if write { take(&built) } else { compare(&built) });
     match result {
         Ok(line) => {
             println!("{line}");
@@ -52,9 +54,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
 }
 
 /// Whether the page built from its sources is the one checked in, and all its tests in a browser.
-fn test(log: &Path) -> Tally {
+pub fn test(log: &Path) -> Tally {
     println!("== Page");
-    if let Err(reason) = node() {
+    if let Err(reason) = node().and_then(|()| install()) {
         return SkipLog::skip(log, "the page and its tests", &reason);
     }
     let broken = |line: String| {
@@ -97,8 +99,8 @@ fn npm(arguments: &[&str]) -> Result<(), String> {
     }
 }
 
-/// Installs what the lock file names (once), checks types and style, builds; answers with the file built.
-fn build() -> Result<PathBuf, String> {
+/// Installs what the lock file names, once.
+fn install() -> Result<(), String> {
     let viewer = root().join("viewer");
     let lock =
         fs::read(viewer.join("package-lock.json")).map_err(|e| format!("viewer/package-lock.json: {e}"))?;
@@ -108,9 +110,14 @@ fn build() -> Result<PathBuf, String> {
         npm(&["install", "--no-save", "--no-audit", "--no-fund"])?;
         fs::write(&stamp, &lock).map_err(|e| format!("{}: {e}", stamp.display()))?;
     }
+    Ok(())
+}
+
+/// Checks types and style, and builds; answers with the file built.
+fn build() -> Result<PathBuf, String> {
     npm(&["run", "--silent", "check"])?;
     npm(&["run", "--silent", "build"])?;
-    Ok(viewer.join("dist/index.html"))
+    Ok(root().join("viewer/dist/index.html"))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {

@@ -31,7 +31,7 @@ enum Stop {
 }
 
 /// What the tests came to.
-fn test(arguments: &[String], log: &Path) -> Tally {
+pub fn test(arguments: &[String], log: &Path) -> Tally {
     println!("== Python package");
     match build_and_test(arguments, log) {
         Ok(tally) => tally,

@@ -1,4 +1,5 @@
-//! `cargo xtask test`: all tests of all crates, examples in the documentation included.
+//! `cargo xtask test`: all tests of all crates, examples in the documentation included, then those of the Python package
+//! and of the page. With arguments for `cargo test` only those of the crates.
 //!
 //! Output is passed on as it comes. Then follow the tests that found their data missing, and as the last line
 //! `N passed, N failed`. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
@@ -9,11 +10,16 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
 use crate::tally::{SkipLog, Tally};
+use crate::{page, python};
 
 /// Runs all tests; arguments are passed on to `cargo test`.
 pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
-    let tally = cargo_test(&arguments, log.path());
+    let mut tally = cargo_test(&arguments, log.path());
+    if arguments.is_empty() {
+        tally += python::test(&[], log.path());
+        tally += page::test(log.path());
+    }
     log.conclude(tally)
 }
 
