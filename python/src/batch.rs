@@ -178,9 +178,7 @@ pub fn check_many(
     let array = floats(Q, "Q")?;
     let rows = rows(&array, model.rank())?;
     let answers = run_borrowing(py, progress, "checking", |progress| {
-        pool.with_first(|query| {
-            query.clone().cancelled_by(progress).batch_at_most(&rows, limit, threads, progress)
-        })
+        pool.with_first(|query| query.batch_at_most(&rows, limit, threads, progress))
     })?;
     let error = match answers {
         Ok(answers) => return Ok(Batch::of(answers)),

@@ -64,7 +64,7 @@ class Model:
         epsilon: relative error allowed of the root's radius (0.1).
         metric: as of the model; None: the model's own.
         center: the q about which radii are measured (r,); None: 0, the rest pose.
-        scheme: "full" (default) also stores pairs of nodes, within ``budget`` (16) bytes for each triangle; "paper" none.
+        scheme: "full" (default) stores pairs of nodes, too, ``budget`` (16) bytes for each triangle; "paper" does not.
         neighbours: whether triangles that share exactly one vertex count where they meet beside it.
         weld: whether vertices of equal position and modes are one, for adjacency; None: STL and glTF files.
         ignore_rest: pairs that collide at rest are left out for good.

@@ -81,31 +81,46 @@ fn queries_look_between_few_triangles() {
     }
 }
 
-/// Wherever a kinetic query is cancelled, its next answers are right.
+/// A batch also cancels the query at hand.
+#[test]
+fn batches_are_cancelled_within_a_query() {
+    let model = strip(120);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let (query, after) = (Query::new(&model, &certificates).unwrap(), After::new());
+    after.allow(3);
+    assert_eq!(query.batch(&[[1.0, 0.0]], Some(1), &after), Err(Error::Cancelled));
+}
+
+/// Wherever a kinetic query is cancelled, in a search or in a step, its next answers are right.
 #[test]
 fn cancelled_kinetic_queries_are_whole() {
-    let model = strip(120);
+    let model = strip(400);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let after = After::new();
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
-    let path: Vec<[f64; 2]> = (0..60).map(|i| [0.1, 0.5 + 1e-4 * f64::from(i)]).collect();
-    let expected: Vec<Vec<_>> = path.iter().map(|q| oracle.discrete(q).unwrap().to_vec()).collect();
-    let (mut cancelled, mut steps) = (0, 0);
-    for stride in 2..12 {
-        let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(&after);
-        for (i, (q, expected)) in path.iter().zip(&expected).enumerate() {
-            after.allow(if i % stride == 1 { i / stride % 8 } else { usize::MAX });
-            match kinetic.discrete(q) {
-                Ok(pairs) => {
-                    assert_eq!(pairs, expected);
-                    steps += u64::from(kinetic.statistics().opened == 0);
-                }
-                Err(error) => {
-                    assert_eq!(error, Error::Cancelled);
-                    cancelled += 1;
+    let (mut searches, mut steps, mut right) = (0, 0, 0);
+    for base in [0.05, 0.1] {
+        let path: Vec<[f64; 2]> = (0..60).map(|i| [0.0, base + 1e-4 * f64::from(i)]).collect();
+        let expected: Vec<Vec<_>> = path.iter().map(|q| oracle.discrete(q).unwrap().to_vec()).collect();
+        for stride in 2..12 {
+            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(&after);
+            for (i, (q, expected)) in path.iter().zip(&expected).enumerate() {
+                after.allow(if i % stride == 1 { i / stride % 8 } else { usize::MAX });
+                let found = kinetic.discrete(q).map(<[_]>::to_vec);
+                // A step opens no nodes.
+                let is_step = kinetic.statistics().opened == 0;
+                match found {
+                    Ok(pairs) => {
+                        assert_eq!(pairs, *expected);
+                        right += usize::from(is_step);
+                    }
+                    Err(error) => {
+                        assert_eq!(error, Error::Cancelled);
+                        *(if is_step { &mut steps } else { &mut searches }) += 1;
+                    }
                 }
             }
         }
     }
-    assert!(cancelled > 60 && steps > 60, "{cancelled} {steps}");
+    assert!(searches > 30 && steps > 60 && right > 300, "{searches} {steps} {right}");
 }

@@ -24,7 +24,8 @@ const REPORTED: usize = 64;
 
 impl Query<'_> {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
-    /// of threads (none: all cores).
+    /// of threads (none: all cores). `progress` also cancels the query at hand, in the place of what
+    /// [`Query::cancelled_by`] names.
     ///
     /// # Errors
     /// That of the first q that has one; when `progress` cancels.
@@ -49,6 +50,7 @@ impl Query<'_> {
         progress: &dyn Progress,
     ) -> Result<Vec<Answer>, Error> {
         let done = AtomicUsize::new(0);
+        let query = || self.clone().cancelled_by(progress);
         let answer = |query: &mut Query<'_>, (index, q): (usize, &Q)| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
@@ -60,7 +62,7 @@ impl Query<'_> {
             Ok(Answer { pairs, norm: query.norm(), statistics: query.statistics() })
         };
         let answers: Vec<Result<Answer, Error>> =
-            on_threads(threads, || batch.par_iter().enumerate().map_init(|| self.clone(), answer).collect());
+            on_threads(threads, || batch.par_iter().enumerate().map_init(query, answer).collect());
         progress.report(batch.len(), batch.len());
         answers.into_iter().collect()
     }
