@@ -54,6 +54,12 @@ export function duration(microseconds: number): string {
     return `${digits(microseconds / 1e6, 3)} s`;
 }
 
+/** Closes a dialog at once, and gives the keys back: what is closed only keeps the focus until the next picture. */
+export function dismiss(dialog: HTMLDialogElement): void {
+    dialog.close();
+    dialog.remove();
+}
+
 export function save(name: string, data: Blob): void {
     const link = h("a", { href: URL.createObjectURL(data), download: name });
     link.click();

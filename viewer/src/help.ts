@@ -1,5 +1,5 @@
 /** What the keys do. */
-import { h } from "./dom";
+import { dismiss, h } from "./dom";
 
 export const KEYS: [string, string][] = [
     ["drag, wheel, right drag", "turn, come nearer, move (one, two fingers)"],
@@ -41,7 +41,7 @@ export function help(): void {
                 "“Colliding” lists exactly the pairs that do. An answer counts only for the shape it was asked for; " +
                 "until it comes, the gauge says so.",
         ),
-        h("button", { type: "button", class: "primary", onclick: () => dialog.close() }, "Close"),
+        h("button", { type: "button", class: "primary", onclick: () => dismiss(dialog) }, "Close"),
     );
     dialog.addEventListener("close", () => dialog.remove());
     document.body.append(dialog);

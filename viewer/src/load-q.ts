@@ -1,6 +1,6 @@
 /** q from people: pasted numbers, or a text or .npy file; several rows become a trajectory. */
 import { type App, attempt } from "./app";
-import { count, h } from "./dom";
+import { count, dismiss, h } from "./dom";
 import { readNpy } from "./npy";
 
 /** Rows of numbers: separated by commas, blanks, semicolons or brackets; each line that is not empty is a row. */
@@ -61,7 +61,7 @@ export function loadQ(app: App): void {
     const use = async (rows: Promise<number[][]>): Promise<void> => {
         try {
             take(app, await rows);
-            dialog.close();
+            dismiss(dialog);
         } catch (error) {
             wrong.textContent = (error as Error).message;
         }
@@ -105,7 +105,7 @@ export function loadQ(app: App): void {
                 },
                 "Copy the q shown",
             ),
-            h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
+            h("button", { type: "button", onclick: () => dismiss(dialog) }, "Close"),
         ),
     );
     dialog.addEventListener("close", () => dialog.remove());

@@ -314,7 +314,7 @@ describe("the page", () => {
             await page.keyboard.press("?");
             await page.getByRole("dialog", { name: "help" }).waitFor();
             await page.keyboard.press("Escape");
-            assert.equal(await page.locator("dialog").count(), 0);
+            await page.locator("dialog").waitFor({ state: "detached" });
             await page.getByRole("tab", { name: "Modes" }).focus();
             await page.keyboard.press("ArrowRight");
             assert.equal(await page.getByRole("tab", { name: "Certificates" }).getAttribute("aria-selected"), "true");
