@@ -128,7 +128,7 @@ def certify_in_shards(
 ) -> Certificates:
     """Certifies one large model by all workers.
 
-    The work goes in some twenty stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of
+    The work goes in a few dozen stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of
     the workers), of one thread each; every number of shards gives the same certificates. Every worker process prepares
     the model once. ``options``: as of ``Model.certify``; ``threads`` counts here.
     """

@@ -50,7 +50,9 @@ fn what_is_apart_at_rest_is_stored() {
     let model = strips();
     let good = certificates(&model);
     let tree = &good.parts().pair_tree;
-    assert!(tree.limit() > 1.2 && good.root_radius() <= 1.0);
+    assert!(tree.limit() > 1.2);
+    // Known from growing the tree, and yet as close as asked for.
+    assert!((0.9..=1.0).contains(&good.root_radius()), "{}", good.root_radius());
     let mut oracle = Query::with_method(&model, &good, Method::BruteForce).unwrap();
     for q in [[1.0, 0.0], [1.0, 0.5], [-1.0, 0.0], [1.1, 0.0]] {
         let expected = oracle.discrete(&q).unwrap();

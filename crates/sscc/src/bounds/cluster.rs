@@ -280,8 +280,8 @@ fn corner_bound(
         }
     }
     let least = |lanes: [f64; CORNERS]| lanes.into_iter().fold(f64::INFINITY, f64::min);
-    // Gaps are finite. A rate that is not a number makes their sum none, too.
-    if least(least_gap) > 0.0 && rates.into_iter().sum::<f64>() >= 0.0 {
+    // A rate that is not a number makes their sum none, too; gaps are finite where their error is.
+    if least(least_gap) > 0.0 && rates.into_iter().sum::<f64>() >= 0.0 && (gap - rest_error).is_finite() {
         quotient_down(least(least_radius), 1.0)
     } else {
         0.0

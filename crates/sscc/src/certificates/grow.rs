@@ -16,7 +16,10 @@ use crate::{Error, Progress};
 /// The first limit is this share of the global radius.
 const FIRST: f64 = 1.0 / 16.0;
 
-/// Where not even the first limit fits, this share of the global radius is the last one tried.
+/// Where not even the first limit fits, the next is this many times less, ...
+const STEP_DOWN: f64 = 2.0;
+
+/// ... and this share of the global radius the last one tried.
 const LAST: f64 = FIRST / 32.0;
 
 /// The next limit is at most this many times the one before: farther away it is not known how the number of pairs
@@ -30,11 +33,12 @@ const SMALLEST_STEP: f64 = 1.2;
 /// round.
 const AHEAD: f64 = 2.0;
 
-/// Pairs in the making, for each that the budget allows: most turn out not to be needed.
-const SLACK: usize = 32;
+/// Pairs in the making, for each that the budget allows: most turn out not to be needed. Tests are to run out of room.
+const SLACK: usize = if cfg!(test) { 1 } else { 32 };
 
-/// Pairs that one task bounds at the most; what it leaves open is another's, so that threads finish together.
-const PORTION: usize = 256;
+/// Pairs that one task bounds at the most; what it leaves open is another's, so that threads finish together. Small
+/// models, as in tests, have few.
+const PORTION: usize = if cfg!(test) { 3 } else { 256 };
 
 /// Between two looks at whether the caller has cancelled; searches look for themselves.
 const STEPS: usize = 64;
@@ -76,7 +80,7 @@ pub(super) struct Round {
 }
 
 /// A pair anew, and behind it pairs below it that are split off, numbered in this list. `used` counts these in all lists
-/// of the round. The list is left unfinished once there is no room for them, and after a [`PORTION`]: what is not bounded
+/// of the stage. The list is left unfinished once there is no room for them, and after a [`PORTION`]: what is not bounded
 /// yet stays open, with a lower bound below the limit.
 pub(super) fn expand(
     pair: Grown,
@@ -155,7 +159,7 @@ impl Grove {
                 beyond = limit;
             }
             let (next, least) = match grove.next_limit(global_radius) {
-                _ if grove.reached == 0.0 => (limit / LARGEST_STEP, global_radius * LAST),
+                _ if grove.reached == 0.0 => (limit / STEP_DOWN, global_radius * LAST),
                 None => break,
                 Some(next) => {
                     // Half way, in logarithms, to what had too many.
@@ -172,7 +176,7 @@ impl Grove {
         Ok(grove)
     }
 
-    /// Splits and bounds every pair below the limit. False, and some still open, where there would be more than `room`.
+    /// Splits and bounds every pair below the limit. False, and nothing changed, where there would be more than `room`.
     fn round(
         &mut self,
         hierarchy: &Hierarchy,
@@ -183,11 +187,17 @@ impl Grove {
     ) -> Result<bool, Error> {
         let grown = &mut self.grown;
         let is_open = |pair: &Grown| pair.first == OPEN && f64::from(pair.lower) < limit;
+        let (count, mut replaced) = (grown.len(), Vec::new());
         let mut open: Vec<u32> = (0..grown.len() as u32).filter(|at| is_open(&grown[*at as usize])).collect();
         while !open.is_empty() {
             let pairs: Vec<Grown> = open.iter().map(|at| grown[*at as usize]).collect();
             let round = Round { limit, most, room: room.saturating_sub(grown.len()) };
-            let Some(lists) = solver.grow(&pairs, round)? else { return Ok(false) };
+            let Some(lists) = solver.grow(&pairs, round)? else {
+                grown.truncate(count);
+                replaced.into_iter().for_each(|(at, pair): (u32, Grown)| grown[at as usize] = pair);
+                return Ok(false);
+            };
+            replaced.extend(open.iter().copied().zip(pairs).filter(|(at, _)| (*at as usize) < count));
             let before = grown.len() as u32;
             for (at, list) in open.into_iter().zip(lists) {
                 // The pair itself stays where it is, the others follow.
@@ -202,6 +212,10 @@ impl Grove {
                 grown.extend(moved);
             }
             open = (before..grown.len() as u32).filter(|at| is_open(&grown[*at as usize])).collect();
+        }
+        let is_large = |pair: &Grown| hierarchy.split_large(pair.pair.0, pair.pair.1).is_some();
+        if grown.iter().any(|pair| is_open(pair) && is_large(pair)) {
+            return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }
         // A pair that is split has the least radius of its children.
         for at in (0..grown.len()).rev() {

@@ -26,10 +26,11 @@ pub use shards::{BUILD, RunJobs, ShardWorker};
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
     /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one. So is each
-    /// other radius outside the pair tree that may be as small. Larger ones are those of the tree's pairs below its
-    /// limit, and beyond it they are searched with an error of at least 0.4 and few subdivisions, because queries so far
-    /// out open many nodes anyway. Unless a radius is capped or a limit of the search (subdivisions, candidates waiting)
-    /// is reached. Paper, section 5.1: 0.1.
+    /// other radius outside the pair tree that may be as small. Larger ones come from growing the pair tree, as far as
+    /// that went: with an error of at least a quarter, or more where only subdivision would tell. Beyond it they are
+    /// searched with an error of at least 0.4 and few subdivisions, because queries so far out open many nodes anyway.
+    /// Unless a radius is capped or a limit of the search (subdivisions, candidates waiting) is reached. Paper, section
+    /// 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,

@@ -90,7 +90,8 @@ impl<'a> Work<'a> {
         Self { prepared, grove, tally, nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] }
     }
 
-    /// Computes the radii of all nodes that are below a limit, which also gives an upper bound of the root's.
+    /// Computes the radii of all nodes that are below a limit; roughly, growing has told some of them. Gives the smallest
+    /// upper bound that was met of any, if one was.
     ///
     /// Nodes of one level are independent of each other: level by level from the leaves, each result
     /// depends only on the model, whoever solves the tasks.
@@ -162,8 +163,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// An upper bound of the root's radius where that is known from growing alone: one is met by searching the pairs of
-    /// children that it comes from.
+    /// An upper bound of the root's radius where that is known from growing alone: as a rule one is met by searching the
+    /// pairs of children that it comes from. Infinite if not.
     fn upper_of_root(&self, solver: &mut dyn Solver) -> Result<f64, Error> {
         let nodes = self.prepared.hierarchy.nodes();
         let mut at = 0;

@@ -160,7 +160,7 @@ impl Solver for Here<'_> {
         let one = |search: &mut Search<'_>, pair: &Grown| {
             expand(*pair, round, &prepared.hierarchy, search, &used, progress)
         };
-        // Parts are unequal, so that each takes few: what was begun cannot be shared any more.
+        // Tasks are unequal, so that each thread takes few: what was begun cannot be shared any more.
         let open = open.par_iter().with_max_len(TOGETHER);
         let lists = open.map_init(|| prepared.search(progress), one).collect();
         if progress.is_cancelled() {
@@ -183,6 +183,7 @@ impl Solver for Here<'_> {
             search
         };
         let one = |search: &mut Search<'_>, at| tally.step(|| task(at).solve(prepared, search));
+        // These take longer.
         Ok((0..count).into_par_iter().with_max_len(1).map_init(search, one).collect())
     }
 }

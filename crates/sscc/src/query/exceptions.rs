@@ -5,6 +5,9 @@ use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
 
+/// Boxes compared between two looks at whether the query was cancelled.
+const BOXES: u64 = 1024;
+
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds the exceptions that count.
     pub(super) fn test_exceptions(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
@@ -17,6 +20,9 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
                 self.boxes.corners(places)
             });
             self.statistics.box_tests += 1;
+            if self.statistics.box_tests.is_multiple_of(BOXES) {
+                self.look(asked);
+            }
             if disjoint(&around(&x), &around(&y)) {
                 continue;
             }

@@ -123,9 +123,13 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
     }
 
-    /// An error if the search was cancelled.
-    pub(super) fn outcome(&self) -> Result<(), Error> {
-        if self.cancelled { Err(Error::Cancelled) } else { Ok(()) }
+    /// An error, and nothing found, if the search was cancelled.
+    pub(super) fn outcome(&mut self) -> Result<(), Error> {
+        if !self.cancelled {
+            return Ok(());
+        }
+        self.found.clear();
+        Err(Error::Cancelled)
     }
 
     /// Two triangles whose boxes overlap, each with the places of its corners.

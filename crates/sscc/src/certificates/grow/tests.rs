@@ -63,17 +63,26 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     open
 }
 
-/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth.
+/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth, of
+/// pairs and of nodes.
 #[test]
 fn below_the_limit_whatever_collides_is_open() {
     let (mut collided, mut lowered) = (0, 0);
-    for (case, budget) in [(0, 4), (1, 8), (2, 2), (3, 512), (4, 4096), (5, 4), (6, 512), (7, 2)] {
-        let model = ring(120 + 15 * case, 3 + case % 3, 0.3 + case as f64);
+    // The last two have no room for some rounds that are tried.
+    let large = [(8, 2, 1200), (9, 3, 900)];
+    let small = [(0, 4), (1, 8), (2, 2), (3, 512), (4, 4096), (5, 4), (6, 512), (7, 2)];
+    for (case, budget, quads) in
+        small.map(|(case, budget)| (case, budget, 120 + 15 * case)).into_iter().chain(large)
+    {
+        let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
         let certificates = certify(&model, budget);
-        let tree = &certificates.parts().pair_tree;
+        assert_eq!(Certificates::from_parts(certificates.parts().clone()).err(), None);
+        let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
+        let mut place = vec![0; hierarchy.order().len()];
+        hierarchy.order().iter().enumerate().for_each(|(at, t)| place[*t as usize] = at as u32);
         lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
-        for i in 0..120 {
+        for i in 0..if quads < 300 { 120 } else { 10 } {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             // Just below the limit, and well below.
@@ -85,10 +94,16 @@ fn below_the_limit_whatever_collides_is_open() {
             if norm == tree.limit() {
                 continue;
             }
-            let open = open_pairs(certificates.hierarchy(), tree, norm);
+            let open = open_pairs(hierarchy, tree, norm);
             for pair in brute.discrete(&q).unwrap() {
                 collided += 1;
                 assert!(open.binary_search(pair).is_ok(), "case {case}: {pair:?} at {norm}");
+                let places = [pair.0, pair.1].map(|t| place[t as usize]);
+                for (n, node) in hierarchy.nodes().iter().enumerate() {
+                    let range = node.first_triangle..node.first_triangle + node.triangle_count;
+                    let has_both = places.iter().all(|place| range.contains(place));
+                    assert!(!has_both || certificates.node_radius(n as u32) <= norm, "case {case}: node {n}");
+                }
             }
         }
     }
@@ -123,8 +138,8 @@ fn radii_never_fall_towards_the_leaves() {
 
 #[test]
 fn threads_grow_the_same_tree() {
-    let model = ring(240, 4, 0.9);
-    for budget in [4, 64] {
+    for (quads, budget) in [(240, 4), (240, 64), (900, 3)] {
+        let model = ring(quads, 4, 0.9);
         let on = |threads| {
             let options = CertifyOptions { budget, threads: Some(threads), ..Default::default() };
             Certificates::compute(&model, &options, &()).unwrap().parts().clone()

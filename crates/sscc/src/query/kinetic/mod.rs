@@ -211,13 +211,13 @@ impl<'a> KineticQuery<'a> {
                 finder.boxes.corners(places)[0]
             });
             let margin = self.margins.triangles(&asked.filter, pair, at);
+            if margin < LASTING * step || !front.keep(pair, margin) {
+                front.hot.push(pair);
+            }
             cost += MARGIN;
             if cost.is_multiple_of(MARGINS * MARGIN) {
                 finder.look(asked);
                 finder.outcome()?;
-            }
-            if margin < LASTING * step || !front.keep(pair, margin) {
-                front.hot.push(pair);
             }
         }
         front.answered();
