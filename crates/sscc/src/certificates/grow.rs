@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::pair_tree::{Entry, MOST_ENTRIES, PairTree, roots_of, round_down};
 use super::search::Search;
-use super::task::Solver;
+use super::task::{KnownPair, Solver};
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Progress};
 
@@ -119,12 +119,22 @@ pub(super) fn expand(
     list
 }
 
+/// Pairs of nodes, each with a lower bound of its radius.
+pub(super) struct Frontier {
+    /// The smallest radius of those that are bounded, at most the cap.
+    pub(super) radius: f64,
+    /// Of these only the lower bound is known.
+    pub(super) open: Vec<KnownPair>,
+    /// Pairs of small nodes whose radius is known, with a larger relative error.
+    pub(super) bounded: Vec<KnownPair>,
+}
+
 /// Lower bounds of pairs of nodes: of all that may be below a limit.
 pub(super) struct Grove {
     grown: Vec<Grown>,
     /// For each node where its pairs of children start, all of them; none within small nodes.
     roots: Vec<u32>,
-    /// Pairs that are not below this have at least this radius.
+    /// Radii below this are known.
     reached: f64,
     budget: usize,
 }
@@ -242,45 +252,32 @@ impl Grove {
         (next > self.reached).then_some(next)
     }
 
-    /// Radii below this are known here.
-    pub(super) fn reached(&self) -> f64 {
-        self.reached
-    }
-
-    /// A lower bound for some pairs of children of a node, if it is below what is reached: that of the closest pairs of
-    /// small nodes.
-    pub(super) fn least(&self, node: u32, which: std::ops::Range<usize>) -> Option<f64> {
-        let first = *self.roots.get(node as usize)? as usize;
-        let pairs = &self.grown[first + which.start..first + which.end];
-        let least = f64::from(pairs.iter().map(|pair| pair.lower).fold(f32::INFINITY, f32::min));
-        (least < self.reached).then_some(least)
-    }
-
-    /// The pairs of small nodes between two children of a node whose radius may be below `cap`, each with a lower
-    /// bound. `which`: the place among the pairs of children.
-    pub(super) fn small(
+    /// What is known of some pairs of a node's children (`which`: their places among these): pairs of nodes that make
+    /// them up, as far as they may be below `cap`. None within small nodes, and where nothing was grown.
+    pub(super) fn frontier(
         &self,
         hierarchy: &Hierarchy,
         node: u32,
         which: std::ops::Range<usize>,
         cap: f64,
-    ) -> Vec<((u32, u32), f64)> {
-        let mut found = Vec::new();
-        if self.roots.is_empty() {
-            return found;
-        }
-        let first = self.roots[node as usize] as usize;
+    ) -> Option<Frontier> {
+        let first = *self.roots.get(node as usize)? as usize;
+        let mut frontier = Frontier { radius: cap, open: Vec::new(), bounded: Vec::new() };
         let mut stack: Vec<usize> = (first + which.start..first + which.end).collect();
         while let Some(at) = stack.pop() {
             let pair = &self.grown[at];
-            if f64::from(pair.lower) >= cap {
+            let lower = f64::from(pair.lower);
+            if lower >= cap {
             } else if pair.is_split() {
                 stack.extend(children(hierarchy, pair));
+            } else if pair.first == BOUNDED {
+                frontier.radius = frontier.radius.min(lower);
+                frontier.bounded.push((pair.pair, lower));
             } else {
-                found.push((pair.pair, f64::from(pair.lower)));
+                frontier.open.push((pair.pair, lower));
             }
         }
-        found
+        Some(frontier)
     }
 
     /// The tree of all pairs below a limit, which is lowered until they fit the budget.

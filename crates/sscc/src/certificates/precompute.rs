@@ -5,7 +5,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::grow::Grove;
+use super::grow::{Frontier, Grove};
 use super::pair_tree::Entry;
 use super::search::Precision;
 use super::task::{Here, NodeTask, Prepared, Solver};
@@ -108,39 +108,23 @@ impl<'a> Work<'a> {
             if level.start == 0 && !nodes[0].is_leaf() {
                 continue;
             }
-            let mut wanted: Vec<usize> =
-                level.clone().filter(|n| self.nodes[*n] < below && !within_small[*n]).collect();
-            if precision == Precision::Rough {
-                wanted.retain(|n| {
-                    let least = self.grown(*n, 0..child_pairs(&nodes[*n]).count());
-                    if let Some(least) = least {
-                        self.nodes[*n] = least.min(self.least_child(&nodes[*n]));
-                    }
-                    least.is_none()
-                });
-            }
+            let wanted = |n: &usize| self.nodes[*n] < below && !within_small[*n];
+            let wanted: Vec<usize> = level.clone().filter(wanted).collect();
             self.tally.add(level.len() - wanted.len());
             let task = |at: usize| {
                 let node = &nodes[wanted[at]];
-                let cap = self.least_child(node);
-                self.task(wanted[at], 0..child_pairs(node).count(), cap)
+                self.task(precision, wanted[at], 0..child_pairs(node).count(), self.least_child(node))
             };
             let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
             wanted.into_iter().zip(found).for_each(|(n, found)| take(&mut self.nodes[n], found));
         }
         if !nodes[0].is_leaf() {
             // Between the children of the root each pair has a radius of its own.
-            let mut wanted: Vec<usize> =
-                (0..self.root_pairs.len()).filter(|at| self.root_pairs[*at] < below).collect();
-            if precision == Precision::Rough {
-                wanted.retain(|at| {
-                    let least = self.grown(0, *at..*at + 1);
-                    self.root_pairs[*at] = least.unwrap_or(self.root_pairs[*at]);
-                    least.is_none()
-                });
-            }
+            let wanted = |at: &usize| self.root_pairs[*at] < below;
+            let wanted: Vec<usize> = (0..self.root_pairs.len()).filter(wanted).collect();
             self.tally.add(self.root_pairs.len() - wanted.len() + 1);
-            let task = |at: usize| self.task(0, wanted[at]..wanted[at] + 1, self.prepared.global_radius);
+            let all = self.prepared.global_radius;
+            let task = |at: usize| self.task(precision, 0, wanted[at]..wanted[at] + 1, all);
             let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
             wanted.into_iter().zip(found).for_each(|(at, found)| take(&mut self.root_pairs[at], found));
             self.nodes[0] = self.root_pairs.iter().copied().fold(self.least_child(&nodes[0]), f64::min);
@@ -154,15 +138,6 @@ impl<'a> Work<'a> {
         Ok(upper)
     }
 
-    /// What is known of some pairs of a node's children from growing the pair tree, below the limit that it has reached.
-    fn grown(&self, node: usize, which: Range<usize>) -> Option<f64> {
-        if self.prepared.hierarchy.is_whole(node as u32) {
-            None
-        } else {
-            self.grove.least(node as u32, which)
-        }
-    }
-
     /// An upper bound of the root's radius where that is known from growing alone: as a rule one is met by searching the
     /// pairs of children that it comes from. Infinite if not.
     fn upper_of_root(&self, solver: &mut dyn Solver) -> Result<f64, Error> {
@@ -171,14 +146,18 @@ impl<'a> Work<'a> {
         while let Some(child) = nodes[at].children().find(|n| self.nodes[*n as usize] == self.nodes[0]) {
             at = child as usize;
         }
+        let hierarchy = &self.prepared.hierarchy;
+        let is_searched_within = nodes[at].is_leaf() || hierarchy.is_whole(at as u32);
+        if is_searched_within || self.grove.frontier(hierarchy, at as u32, 0..0, 0.0).is_none() {
+            return Ok(f64::INFINITY);
+        }
         let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {
             Some(pair) if at == 0 => pair..pair + 1,
             _ => 0..child_pairs(&nodes[at]).count(),
         };
-        if self.grown(at, which.clone()).is_none() {
-            return Ok(f64::INFINITY);
-        }
-        let task = |_| self.task(at, which.clone(), self.prepared.global_radius);
+        // Farther away than that there is hardly any.
+        let cap = self.prepared.global_radius.min(4.0 * self.nodes[0]);
+        let task = |_| self.task(Precision::Full, at, which.clone(), cap);
         let found = solver.radii(Precision::Rough, 1, &task, &Tally::new(&(), 1))?;
         Ok(found.into_iter().map(|(_, upper)| upper).fold(f64::INFINITY, f64::min))
     }
@@ -188,19 +167,28 @@ impl<'a> Work<'a> {
         radii.fold(self.prepared.global_radius, f64::min)
     }
 
-    /// To find the radius, at most `cap`, of a node or of some pairs of its children.
-    fn task(&self, node: usize, which: Range<usize>, cap: f64) -> NodeTask {
+    /// To find the radius, at most `cap`, of a node or of some pairs of its children. Roughly, what growing has bounded is
+    /// known.
+    fn task(&self, precision: Precision, node: usize, which: Range<usize>, cap: f64) -> NodeTask {
         let hierarchy = &self.prepared.hierarchy;
+        let parent = &hierarchy.nodes()[node];
         let node = node as u32;
-        if hierarchy.is_whole(node) || hierarchy.nodes()[node as usize].is_leaf() {
+        if hierarchy.is_whole(node) || parent.is_leaf() {
             // It is searched within, whatever its parts have: they were not.
-            let cap = self.prepared.global_radius;
-            return NodeTask { node, which, cap, known: cap, small: Vec::new() };
+            return NodeTask { node, cap: self.prepared.global_radius, pairs: Vec::new() };
         }
-        // Pairs that the grove does not know are at least what it has reached.
-        let known = cap.min(self.grove.reached());
-        let small = self.grove.small(hierarchy, node, which.clone(), known);
-        NodeTask { node, which, cap, known, small }
+        let Some(frontier) = self.grove.frontier(hierarchy, node, which.clone(), cap) else {
+            let pairs = child_pairs(parent).skip(which.start).take(which.len());
+            return NodeTask { node, cap, pairs: pairs.map(|pair| (pair, 0.0)).collect() };
+        };
+        let Frontier { radius, open, bounded } = frontier;
+        match precision {
+            Precision::Rough => {
+                let pairs = open.into_iter().filter(|(_, lower)| *lower < radius).collect();
+                NodeTask { node, cap: radius, pairs }
+            }
+            Precision::Full => NodeTask { node, cap, pairs: [open, bounded].concat() },
+        }
     }
 }
 

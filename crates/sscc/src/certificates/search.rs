@@ -150,18 +150,19 @@ impl<'a> Search<'a> {
 
     /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
     pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
-        self.start(cap);
-        for (n, m) in pairs {
-            self.consider(n, m, 0.0);
-        }
-        self.run()
+        self.among(pairs.into_iter().map(|pair| (pair, 0.0)).collect(), cap)
     }
 
-    /// The same for pairs of which a lower bound is known.
-    pub(crate) fn among(&mut self, known: Vec<((u32, u32), f64)>, cap: f64) -> f64 {
+    /// The same for pairs of which a lower bound is known; 0: not looked at yet.
+    pub(crate) fn among(&mut self, pairs: Vec<((u32, u32), f64)>, cap: f64) -> f64 {
         self.start(cap);
-        let entry = |((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) };
-        self.waiting = known.into_iter().map(entry).collect();
+        let mut waiting = std::mem::take(&mut self.waiting).into_vec();
+        let known = pairs.iter().filter(|(_, lower)| *lower > 0.0);
+        waiting.extend(known.map(|&((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) }));
+        self.waiting = waiting.into();
+        for ((n, m), _) in pairs.into_iter().filter(|(_, lower)| *lower <= 0.0) {
+            self.consider(n, m, 0.0);
+        }
         self.run()
     }
 

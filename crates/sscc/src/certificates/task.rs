@@ -4,7 +4,6 @@
 //! other, the next stage depends on their results. A result depends on the task alone, so that it does not matter who
 //! solves it: the threads of this process ([`Here`]) or other processes (`shards.rs`).
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -12,7 +11,7 @@ use rayon::prelude::*;
 use super::grow::{Grown, Round, expand};
 use super::precompute::Tally;
 use super::search::{Precision, Search};
-use super::{CertifyOptions, Digest, Scope, child_pairs, global::global_radius};
+use super::{CertifyOptions, Digest, Scope, global::global_radius};
 use crate::bounds::{ClusterBounds, ScaledModel};
 use crate::hierarchy::Hierarchy;
 use crate::metric::check_scaled_modes;
@@ -96,34 +95,26 @@ impl Prepared {
 
 /// The radius of a node, or of one pair of its children.
 pub(super) struct NodeTask {
+    /// Searched within, if it is searched as a whole.
     pub(super) node: u32,
-    /// Which pairs of children.
-    pub(super) which: Range<usize>,
     /// More is not asked for.
     pub(super) cap: f64,
-    /// Up to here the radius is that of the pairs of small nodes given, at most `cap`.
-    pub(super) known: f64,
-    /// These, each with a lower bound.
-    pub(super) small: Vec<KnownPair>,
+    /// Otherwise the pairs of nodes whose radius is wanted.
+    pub(super) pairs: Vec<KnownPair>,
 }
 
-/// Two nodes and a lower bound of their radius.
+/// Two nodes and a lower bound of their radius; 0: not looked at yet.
 pub(super) type KnownPair = ((u32, u32), f64);
 
 impl NodeTask {
     /// The radius, and the smallest upper bound of any radius that the searcher has met.
     pub(super) fn solve(self, prepared: &Prepared, search: &mut Search<'_>) -> (f64, f64) {
-        let Self { node, which, cap, known, small } = self;
-        let parent = &prepared.hierarchy.nodes()[node as usize];
-        let radius = if parent.is_leaf() || prepared.hierarchy.is_whole(node) {
+        let Self { node, cap, pairs } = self;
+        let hierarchy = &prepared.hierarchy;
+        let radius = if hierarchy.nodes()[node as usize].is_leaf() || hierarchy.is_whole(node) {
             search.within(node, cap)
         } else {
-            let radius = search.among(small, known);
-            if radius < known || known == cap {
-                radius
-            } else {
-                search.between(child_pairs(parent).skip(which.start).take(which.len()), cap)
-            }
+            search.among(pairs, cap)
         };
         (radius, search.upper())
     }

@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::super::child_pairs;
 use super::super::grow::{BOUNDED, Grown, OPEN, Round, expand};
 use super::super::search::Precision;
 use super::super::task::{NodeTask, Prepared};
@@ -47,13 +46,10 @@ impl Job {
             Self::Radii(precision, tasks) => {
                 bytes.push(if *precision == Precision::Rough { ROUGH } else { FULL });
                 for task in tasks {
-                    for number in [task.node, task.which.start as u32, task.which.end as u32] {
-                        bytes.extend(number.to_le_bytes());
-                    }
+                    bytes.extend(task.node.to_le_bytes());
                     bytes.extend(task.cap.to_le_bytes());
-                    bytes.extend(task.known.to_le_bytes());
-                    bytes.extend((task.small.len() as u64).to_le_bytes());
-                    for ((n, m), lower) in &task.small {
+                    bytes.extend((task.pairs.len() as u64).to_le_bytes());
+                    for ((n, m), lower) in &task.pairs {
                         bytes.extend(n.to_le_bytes());
                         bytes.extend(m.to_le_bytes());
                         bytes.extend(lower.to_le_bytes());
@@ -83,17 +79,13 @@ impl Job {
         };
         let mut tasks = Vec::new();
         while !from.0.is_empty() {
-            let (node, which) = (from.u32()?, from.u32()? as usize..from.u32()? as usize);
-            let parent = hierarchy.nodes().get(node as usize)?;
-            if which.start > which.end || which.end > child_pairs(parent).count() {
-                return None;
-            }
-            let (cap, known) = (from.radius()?, from.radius()?);
-            let mut small = Vec::new();
+            let (node, cap) = (from.u32()?, from.radius()?);
+            hierarchy.nodes().get(node as usize)?;
+            let mut pairs = Vec::new();
             for _ in 0..from.u64()? {
-                small.push((read_pair(hierarchy, &mut from)?, from.radius()?));
+                pairs.push((read_pair(hierarchy, &mut from)?, from.radius()?));
             }
-            tasks.push(NodeTask { node, which, cap, known, small });
+            tasks.push(NodeTask { node, cap, pairs });
         }
         Some(Self::Radii(precision, tasks))
     }
