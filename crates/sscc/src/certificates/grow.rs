@@ -252,6 +252,11 @@ impl Grove {
         (next > self.reached).then_some(next)
     }
 
+    /// Whether no limit was reached, so that no radius is known.
+    pub(super) fn is_empty(&self) -> bool {
+        self.reached == 0.0
+    }
+
     /// What is known of some pairs of a node's children (`which`: their places among these): pairs of nodes that make
     /// them up, as far as they may be below `cap`. None within small nodes, and where nothing was grown.
     pub(super) fn frontier(

@@ -146,9 +146,8 @@ impl<'a> Work<'a> {
         while let Some(child) = nodes[at].children().find(|n| self.nodes[*n as usize] == self.nodes[0]) {
             at = child as usize;
         }
-        let hierarchy = &self.prepared.hierarchy;
-        let is_searched_within = nodes[at].is_leaf() || hierarchy.is_whole(at as u32);
-        if is_searched_within || self.grove.frontier(hierarchy, at as u32, 0..0, 0.0).is_none() {
+        if self.grove.is_empty() || nodes[at].is_leaf() || self.prepared.hierarchy.is_whole(at as u32) {
+            // It was searched, and has met one.
             return Ok(f64::INFINITY);
         }
         let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {
