@@ -147,7 +147,7 @@ impl<'a> Work<'a> {
             at = child as usize;
         }
         if self.grove.is_empty() || nodes[at].is_leaf() || self.prepared.hierarchy.is_whole(at as u32) {
-            // It was searched, and has met one.
+            // It was searched, not grown: what upper bounds that met are known.
             return Ok(f64::INFINITY);
         }
         let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {

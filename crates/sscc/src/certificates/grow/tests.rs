@@ -63,8 +63,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     open
 }
 
-/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth, of
-/// pairs and of nodes.
+/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth.
 #[test]
 fn below_the_limit_whatever_collides_is_open() {
     let (mut collided, mut lowered) = (0, 0);
@@ -78,8 +77,6 @@ fn below_the_limit_whatever_collides_is_open() {
         let certificates = certify(&model, budget);
         assert_eq!(Certificates::from_parts(certificates.parts().clone()).err(), None);
         let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
-        let mut place = vec![0; hierarchy.order().len()];
-        hierarchy.order().iter().enumerate().for_each(|(at, t)| place[*t as usize] = at as u32);
         lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
         for i in 0..if quads < 300 { 120 } else { 10 } {
@@ -98,17 +95,46 @@ fn below_the_limit_whatever_collides_is_open() {
             for pair in brute.discrete(&q).unwrap() {
                 collided += 1;
                 assert!(open.binary_search(pair).is_ok(), "case {case}: {pair:?} at {norm}");
-                let places = [pair.0, pair.1].map(|t| place[t as usize]);
-                for (n, node) in hierarchy.nodes().iter().enumerate() {
-                    let range = node.first_triangle..node.first_triangle + node.triangle_count;
-                    let has_both = places.iter().all(|place| range.contains(place));
-                    assert!(!has_both || certificates.node_radius(n as u32) <= norm, "case {case}: node {n}");
-                }
             }
         }
     }
     assert!(collided > 150, "{collided}");
     assert!(lowered >= 2, "{lowered}");
+}
+
+/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from growing it,
+/// above from a search among what growing has left open.
+#[test]
+fn no_node_is_free_where_two_of_its_triangles_meet() {
+    let (mut below, mut above) = (0, 0);
+    for (case, budget, quads) in [(0, 2, 400), (1, 3, 500), (2, 16, 400), (3, 2, 600), (4, 0, 400)] {
+        let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
+        let certificates = certify(&model, budget);
+        let (hierarchy, limit) = (certificates.hierarchy(), certificates.parts().pair_tree.limit());
+        let mut place = vec![0; hierarchy.order().len()];
+        hierarchy.order().iter().enumerate().for_each(|(at, t)| place[*t as usize] = at as u32);
+        let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+        for i in 0..60 {
+            let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
+            let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
+            let share = (1 + i % 12) as f64 / 12.0 * certificates.global_radius() / length;
+            let q = model.metric().unscaled(&z.iter().map(|z| z * share).collect::<Vec<_>>());
+            let norm = certificates.norm(&q);
+            *(if norm < limit { &mut below } else { &mut above }) += 1;
+            let mut pairs: Vec<[u32; 2]> =
+                brute.discrete(&q).unwrap().iter().map(|(a, b)| [*a, *b]).collect();
+            pairs.iter_mut().flatten().for_each(|t| *t = place[*t as usize]);
+            for (n, node) in hierarchy.nodes().iter().enumerate() {
+                let range = node.first_triangle..node.first_triangle + node.triangle_count;
+                let meets = pairs.iter().any(|pair| pair.iter().all(|place| range.contains(place)));
+                assert!(
+                    !meets || certificates.node_radius(n as u32) <= norm,
+                    "case {case}: node {n} at {norm}"
+                );
+            }
+        }
+    }
+    assert!(below > 50 && above > 50, "{below} {above}");
 }
 
 /// Would fail where a parent is bounded better than its children and that is not pushed down.
