@@ -102,7 +102,7 @@ fn below_the_limit_whatever_collides_is_open() {
     assert!(lowered >= 2, "{lowered}");
 }
 
-/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from growing it,
+/// Would fail for radii of nodes, and of the root's pairs, above the truth, wherever they come from: below the limit of the tree from growing it,
 /// above from a search among what growing has left open.
 #[test]
 fn no_node_is_free_where_two_of_its_triangles_meet() {
@@ -135,6 +135,25 @@ fn no_node_is_free_where_two_of_its_triangles_meet() {
         }
     }
     assert!(below > 50 && above > 50, "{below} {above}");
+}
+
+/// The radius is 1 wherever it comes from: a search from the beginning, what growing has left open, what it has bounded.
+#[test]
+fn the_root_is_as_close_as_asked_for() {
+    // Two parallel strips at a distance of 1, which the mode takes away.
+    let positions: Vec<DVec3> =
+        (0..800).map(|i| DVec3::new((i / 2 % 200) as f64, (i % 2) as f64, (i / 400) as f64)).collect();
+    let faces = (0..798).filter(|i| i % 400 < 398).map(|i| [i, i + 1, i + 2]).collect();
+    let displacements = positions.iter().map(|p| DVec3::NEG_Z * p.z).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, displacements).unwrap()).unwrap();
+    let limits = [0, 1, 64].map(|budget| {
+        let certificates = certify(&model, budget);
+        let root = certificates.root_radius();
+        assert!((0.9..=1.0).contains(&root), "{budget}: {root}");
+        certificates.parts().pair_tree.limit()
+    });
+    assert!(limits[0] == 0.0 && 0.0 < limits[1] && limits[1] < 0.9 && 1.0 < limits[2], "{limits:?}");
 }
 
 /// Would fail where a parent is bounded better than its children and that is not pushed down.
