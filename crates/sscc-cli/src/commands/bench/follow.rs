@@ -14,6 +14,9 @@ const ROUNDS: usize = 3;
 
 /// Times kinetic queries, of each body its own, brought up to date by one untimed query before each block of steps.
 /// Gives the number of steps at which their answers are not those of plain queries.
+///
+/// What such a query computes at one step serves the next ones: the steps of a block that the root's certificate leaves
+/// open share the time of all of them, whichever of them other methods are asked, too.
 pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
     let bodies = steps.first().map_or(0, |step| step.q_t0.len());
     let certificates = &case.full.certificates;
@@ -24,6 +27,7 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
     }
     let mut rounds: Vec<Vec<f64>> = vec![Vec::with_capacity(ROUNDS); steps.len()];
     let mut wrong = vec![false; steps.len()];
+    let is_quick = |step: &Step| step.q_t0.iter().all(|q| case.is_root_certified(q));
     for _ in 0..ROUNDS {
         let mut at = 0;
         while at < steps.len() {
@@ -33,7 +37,6 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
             }
             // Steps that the root's certificate answers for all bodies take less time than a look at the clock:
             // stretches of them share one.
-            let is_quick = |step: &Step| step.q_t0.iter().all(|q| case.is_root_certified(q));
             let first = at;
             let goes_on = |n: usize| n < steps.len() && steps[n].before.is_none() && is_quick(&steps[n]);
             at += 1;
@@ -62,5 +65,31 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
         }
     }
     times.kinetic = rounds.into_iter().map(median).collect();
+    let mut at = 0;
+    for block in steps.chunk_by(|_, next| next.before.is_none()) {
+        share(&mut times.kinetic[at..][..block.len()], |n| !is_quick(&block[n]));
+        at += block.len();
+    }
     Ok(wrong.into_iter().filter(|wrong| *wrong).count())
+}
+
+/// Gives each of the numbers that take part the mean of them.
+fn share(times: &mut [f64], takes_part: impl Fn(usize) -> bool) {
+    let own: Vec<usize> = (0..times.len()).filter(|n| takes_part(*n)).collect();
+    let mean = own.iter().map(|n| times[*n]).sum::<f64>() / own.len().max(1) as f64;
+    own.into_iter().for_each(|n| times[n] = mean);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_part_shares_its_time() {
+        let mut times = [1.0, 6.0, 2.0];
+        share(&mut times, |n| n != 0);
+        assert_eq!(times, [1.0, 4.0, 4.0]);
+        share(&mut times, |_| false);
+        assert_eq!(times, [1.0, 4.0, 4.0]);
+    }
 }
