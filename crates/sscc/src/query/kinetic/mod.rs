@@ -57,6 +57,8 @@ pub struct KineticQuery<'a> {
     pace: Pace,
     /// The last q, at which the root's certificate did not do; empty if there was none.
     before: Vec<f64>,
+    /// The last step within a motion.
+    last: f64,
     /// Scratch for differences of q, and for pairs.
     offset: Vec<f64>,
     work: Vec<Pair>,
@@ -81,6 +83,7 @@ impl<'a> KineticQuery<'a> {
             front: Front::default(),
             pace: Pace::FIRST,
             before: Vec::new(),
+            last: 0.0,
             offset: vec![0.0; model.rank()],
             work: Vec::new(),
             query,
@@ -125,7 +128,7 @@ impl<'a> KineticQuery<'a> {
 
     fn answer(&mut self, ends: &Ends<'_, 1>) -> Result<(), Error> {
         let [q] = ends.q;
-        let step = if self.before.is_empty() {
+        let mut step = if self.before.is_empty() {
             f64::INFINITY
         } else {
             self.query.asked.scope.metric.norm_from(q, &self.before, &mut self.offset)
@@ -133,14 +136,21 @@ impl<'a> KineticQuery<'a> {
         self.before.clear();
         self.before.extend_from_slice(q);
         let had_begun = self.front.has_begun();
-        if step <= MOST * ends.norm {
-            self.front.go(step)
+        let goes_on = step <= MOST * ends.norm;
+        if goes_on {
+            self.front.go(step);
         } else {
-            self.front.jump()
+            self.front.jump();
         }
         if had_begun && !self.front.stands(ends.reach) {
             self.front.end();
-            self.pace.left(self.front.steps);
+            self.pace.left(self.front.steps, self.last);
+        }
+        if goes_on {
+            self.last = step;
+        } else if let Some(usual) = self.pace.usual.take() {
+            // Another motion begins here, as a rule, with steps like those of the last one.
+            step = usual;
         }
         if !self.front.has_begun() && !self.begin_front(ends, step)? {
             self.query.discrete.find(&self.query.asked, ends)?;

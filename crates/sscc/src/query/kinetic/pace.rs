@@ -22,11 +22,13 @@ pub(super) struct Pace {
     rate: f64,
     /// Plain queries until the next ball.
     pub(super) pause: u64,
+    /// The last step within a motion, if the last ball paid.
+    pub(super) usual: Option<f64>,
 }
 
 impl Pace {
     pub(super) const FIRST: Self =
-        Self { share: SHARE, factor: FACTOR, plain: 0, cost: 0, rate: f64::INFINITY, pause: 0 };
+        Self { share: SHARE, factor: FACTOR, plain: 0, cost: 0, rate: f64::INFINITY, pause: 0, usual: None };
 
     /// The next ball becomes larger, or smaller, as long as that makes balls cheaper for their size.
     pub(super) fn searched(&mut self, cost: u64, share: f64) {
@@ -41,14 +43,16 @@ impl Pace {
     /// A ball that more can meet in than there is room for.
     pub(super) fn too_much(&mut self, cost: u64, share: f64) {
         self.cost = cost;
-        self.left(0);
+        self.left(0, 0.0);
         (self.share, self.factor, self.rate) = ((share / 4.0).max(LEAST), 1.0 / FACTOR, f64::INFINITY);
     }
 
-    /// A ball has been left after so many steps. What it lost, if it did, is to be little beside what follows.
-    pub(super) fn left(&mut self, steps: u64) {
+    /// A ball has been left after so many steps, the last of that length. What it lost, if it did, is to be little
+    /// beside what follows.
+    pub(super) fn left(&mut self, steps: u64, step: f64) {
         let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain));
         self.pause = SHY.saturating_mul(lost) / self.plain.max(1);
+        self.usual = (lost == 0).then_some(step);
         if lost > 0 {
             self.share = (self.share / 2.0).max(LEAST);
         }

@@ -265,3 +265,34 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
     assert!(seen.balls > 300 && seen.known > 1000 && seen.expired > 1000 && seen.aimed > 100, "{seen:?}");
     assert!(seen.begun > 50 && seen.begun_beyond > 5 && seen.root_certified_within > 50, "{seen:?}");
 }
+
+/// Only a ball that paid makes the next jump begin one; of unrelated q none does.
+#[test]
+fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
+    let random = &mut Random(7);
+    let model = sheets(random, 1);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+    let root = certificates.root_radius().max(1e-3);
+    let q = |t: f64| {
+        let z: Vec<f64> = (0..model.rank()).map(|k| if k == 0 { t * root } else { 0.0 }).collect();
+        certificates.metric().unscaled(&z)
+    };
+    for t in [2.0, -3.0, 1.5, -2.0] {
+        kinetic.discrete(&q(t)).unwrap();
+        assert!(!kinetic.front.has_begun() && kinetic.pace.usual.is_none());
+    }
+    kinetic.pace.plain = 1_000_000;
+    for i in 0..40 {
+        kinetic.discrete(&q(-2.0 + f64::from(i) * 1e-6)).unwrap();
+    }
+    assert!(kinetic.front.has_begun());
+    kinetic.discrete(&q(2.0)).unwrap();
+    assert!(kinetic.front.has_begun());
+    kinetic.discrete(&q(2.0 + 1e-6)).unwrap();
+    assert_eq!(kinetic.front.steps, 2);
+    // This ball has not paid.
+    kinetic.pace.plain = 0;
+    kinetic.discrete(&q(-2.0)).unwrap();
+    assert!(!kinetic.front.has_begun());
+}
