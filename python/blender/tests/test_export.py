@@ -1,4 +1,4 @@
-"""The motion that the page saves, opened in Blender."""
+"""The motion that the page saves, and that of a simulation, opened in Blender."""
 
 from __future__ import annotations
 
@@ -76,3 +76,44 @@ def test_blender_moves_every_vertex_as_we_do(address: str, tmp_path: Path) -> No
         points = points[:, [0, 2, 1]] * [1, 1, -1]
         due = positions + (modes @ q).reshape(-1, 3)
         assert np.abs(points - due).max() < 1e-5 * box, f"at {seconds} s"
+
+
+SCENE = """
+steps_per_second = 2000
+duration = 0.2
+frames_per_second = 100
+[models.spring]
+shape = "spring-4k"
+kind = "linear"
+rank = 3
+material = { youngs = 1e6, poisson = 0.4, density = 1000 }
+[[bodies]]
+model = "spring"
+position = [0, 0, 1]
+velocity = [0.3, 0, 0]
+angular_velocity = [1, 0.5, 0]
+shake = [40, -50, 60]
+"""
+
+
+def test_blender_plays_a_simulation(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE)
+    out = tmp_path / "out"
+    asked = [str(COMMAND), "simulate", str(tmp_path / "scene.toml"), "--out", str(out), "--cache", str(tmp_path)]
+    subprocess.run(asked, check=True, capture_output=True)
+    motion = np.load(out / "trajectories.npz")
+    q, time = motion["q_spring"][:, 0], motion["time"]
+    # Of both signs, and beyond what Blender allows by itself.
+    assert q.min() < -0.1 and q.max() > 1.5
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.fps = 100
+    assert bpy.ops.import_scene.gltf(filepath=str(out / "animation.glb")) == {"FINISHED"}
+    [shape] = [thing for thing in scene.objects if thing.type == "MESH"]
+    for seconds in [0.0, 0.05, 0.1, 0.15]:
+        scene.frame_set(round(100 * seconds))
+        moved = shape.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        shown = [key.value for key in moved.data.shape_keys.key_blocks[1:]]
+        due = q[np.abs(time - seconds).argmin()]
+        assert np.allclose(shown, due, rtol=1e-5, atol=1e-5 * np.abs(q).max()), f"at {seconds} s"

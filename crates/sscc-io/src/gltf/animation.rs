@@ -4,6 +4,9 @@
 //! centre c. Numbers are rounded to single precision (2^-24 of each), which is all that the format has; between key
 //! frames weights and places are interpolated linearly, turns on the shortest arc. Bodies of one model share its
 //! numbers in the file.
+//!
+//! Beside the motion there are two animations of one key frame, the least and the greatest weights that occur: Blender
+//! (5.0) clamps weights to [0, 1], widened only by the first key frame of each animation.
 
 use std::path::Path;
 
@@ -80,7 +83,10 @@ pub fn animation_to_bytes(
     let meshes: Vec<Value> =
         models.iter().map(|(name, model)| file.mesh(name, model)).collect::<Result<_, _>>()?;
     let input = file.accessor(SCALAR, times, None)?;
-    let (mut nodes, mut samplers, mut channels) = (Vec::new(), Vec::new(), Vec::new());
+    let mut nodes = Vec::new();
+    let [mut motion, mut least, mut greatest] =
+        ["simulation", "least weights", "greatest weights"].map(Animation::new);
+    let start = file.accessor(SCALAR, &times[..1], None)?;
     for track in tracks {
         let (mover, shape) = (nodes.len(), nodes.len() + 1);
         let flat = |points: &[DVec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<f64>>();
@@ -90,8 +96,15 @@ pub fn animation_to_bytes(
             (shape, "weights", file.accessor(SCALAR, &track.weights, None)?),
         ];
         for (node, path, output) in outputs {
-            channels.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
-            samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+            motion.push(node, path, input, output);
+        }
+        let rank = models[track.model].1.rank();
+        for (animation, pick) in
+            [(&mut least, f64::min as fn(f64, f64) -> f64), (&mut greatest, f64::max as fn(f64, f64) -> f64)]
+        {
+            let of_mode = |k: usize| track.weights.iter().skip(k).step_by(rank).copied().reduce(pick);
+            let weights: Vec<f64> = (0..rank).filter_map(of_mode).collect();
+            animation.push(shape, "weights", start, file.accessor(SCALAR, &weights, None)?);
         }
         nodes.push(json!({
             "name": track.name,
@@ -99,7 +112,6 @@ pub fn animation_to_bytes(
             "translation": singles(&track.positions[0].to_array()),
             "rotation": singles(&track.orientations[0].to_array()),
         }));
-        let rank = models[track.model].1.rank();
         nodes.push(json!({
             "mesh": track.model,
             "translation": singles(&(-track.center).to_array()),
@@ -113,12 +125,35 @@ pub fn animation_to_bytes(
         "scenes": [{"nodes": roots}],
         "nodes": nodes,
         "meshes": meshes,
-        "animations": [{"name": "simulation", "samplers": samplers, "channels": channels}],
+        "animations": [motion.json(), least.json(), greatest.json()],
         "accessors": file.accessors,
         "bufferViews": file.views,
         "buffers": [{"byteLength": file.binary.len()}],
     });
     joined(root.to_string().into_bytes(), file.binary)
+}
+
+/// What moves, and how.
+struct Animation {
+    name: &'static str,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+impl Animation {
+    fn new(name: &'static str) -> Self {
+        Self { name, samplers: Vec::new(), channels: Vec::new() }
+    }
+
+    fn push(&mut self, node: usize, path: &str, input: usize, output: usize) {
+        let sampler = self.samplers.len();
+        self.channels.push(json!({"sampler": sampler, "target": {"node": node, "path": path}}));
+        self.samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+    }
+
+    fn json(self) -> Value {
+        json!({"name": self.name, "samplers": self.samplers, "channels": self.channels})
+    }
 }
 
 fn check(models: &[(&str, &ReducedModel)], times: &[f64], tracks: &[Track]) -> Result<(), String> {

@@ -100,6 +100,28 @@ fn another_reader_plays_the_motion() {
     }
 }
 
+/// One key frame each, so that players that take ranges from first key frames know all weights.
+#[test]
+fn the_least_and_the_greatest_weights_are_animations_too() {
+    let model = model();
+    let track = track("a", 0.0);
+    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, std::slice::from_ref(&track)).unwrap();
+    let file = gltf::Gltf::from_slice(&bytes).unwrap();
+    let blob = file.blob.clone().unwrap();
+    assert_eq!(file.animations().count(), 3);
+    for (animation, greatest) in file.animations().skip(1).zip([false, true]) {
+        let channel = animation.channels().next().unwrap();
+        let reader = channel.reader(|_| Some(&blob));
+        assert_eq!(reader.read_inputs().unwrap().count(), 1);
+        let Some(ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { panic!() };
+        for (k, weight) in weights.into_f32().enumerate() {
+            let of_mode = track.weights.chunks(2).map(|q| q[k] as f32);
+            let expected = if greatest { of_mode.reduce(f32::max) } else { of_mode.reduce(f32::min) };
+            assert_eq!(Some(weight), expected);
+        }
+    }
+}
+
 #[test]
 fn what_is_no_animation_is_refused() {
     let model = model();
