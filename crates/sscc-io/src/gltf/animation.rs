@@ -5,8 +5,9 @@
 //! frames weights and places are interpolated linearly, turns on the shortest arc. Bodies of one model share its
 //! numbers in the file.
 //!
-//! Beside the motion there are two animations of one key frame, the least and the greatest weights that occur: Blender
-//! (5.0) clamps weights to [0, 1], widened only by the first key frame of each animation.
+//! After the motion, the first animation, which players play by default, there are two of one key frame, the least and
+//! the greatest weights that occur: Blender (5.0) clamps weights to [0, 1], widened only by the first key frame of each
+//! animation.
 
 use std::path::Path;
 

@@ -9,14 +9,14 @@ use super::measure::{Step, Times};
 use crate::case::Case;
 use crate::interrupt;
 
-/// Times that all blocks are gone through; the median counts for each step.
+/// Times that all blocks are gone through; the median counts.
 const ROUNDS: usize = 3;
 
 /// Times kinetic queries, of each body its own, brought up to date by one untimed query before each block of steps.
 /// Gives the number of steps at which their answers are not those of plain queries.
 ///
 /// What such a query computes at one step serves the next ones: the steps of a block that the root's certificate leaves
-/// open share the time of all of them, whichever of them other methods are asked, too.
+/// open share the time of all of them, since other methods are asked some of them only.
 pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
     let bodies = steps.first().map_or(0, |step| step.q_t0.len());
     let certificates = &case.full.certificates;
@@ -29,6 +29,7 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
     let mut wrong = vec![false; steps.len()];
     let is_quick = |step: &Step| step.q_t0.iter().all(|q| case.is_root_certified(q));
     for _ in 0..ROUNDS {
+        let mut own = vec![0.0; steps.len()];
         let mut at = 0;
         while at < steps.len() {
             interrupt::check()?;
@@ -56,20 +57,21 @@ pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
             }
             let mean = start.elapsed().as_secs_f64() * 1e3 / stretch.len() as f64;
             for (n, step) in stretch.iter().enumerate() {
-                rounds[first + n].push(mean);
+                own[first + n] = mean;
                 for (q, found) in step.q_t0.iter().zip(&found) {
                     // Where the stretch is longer than a step, nothing may be found at all.
                     wrong[first + n] |= plain.discrete(q)? != found;
                 }
             }
         }
+        let mut at = 0;
+        for block in steps.chunk_by(|_, next| next.before.is_none()) {
+            share(&mut own[at..][..block.len()], |n| !is_quick(&block[n]));
+            at += block.len();
+        }
+        rounds.iter_mut().zip(own).for_each(|(round, time)| round.push(time));
     }
     times.kinetic = rounds.into_iter().map(median).collect();
-    let mut at = 0;
-    for block in steps.chunk_by(|_, next| next.before.is_none()) {
-        share(&mut times.kinetic[at..][..block.len()], |n| !is_quick(&block[n]));
-        at += block.len();
-    }
     Ok(wrong.into_iter().filter(|wrong| *wrong).count())
 }
 

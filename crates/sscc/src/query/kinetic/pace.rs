@@ -9,6 +9,10 @@ const FACTOR: f64 = 1.5;
 /// Plain queries after a ball that lost time, for each that it lost.
 const SHY: u64 = 32;
 
+/// Only a ball of at least as many steps tells of the ones to come after a jump: what a plain query cost, by which it
+/// is judged, may be long ago.
+const TELLING: u64 = 8;
+
 /// How large balls are, and whether they pay. Costs are in boxes compared.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
@@ -22,7 +26,7 @@ pub(super) struct Pace {
     rate: f64,
     /// Plain queries until the next ball.
     pub(super) pause: u64,
-    /// The last step within a motion, if the last ball paid.
+    /// The last step within a motion, if the last ball paid and tells of others.
     pub(super) usual: Option<f64>,
 }
 
@@ -52,7 +56,7 @@ impl Pace {
     pub(super) fn left(&mut self, steps: u64, step: f64) {
         let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain));
         self.pause = SHY.saturating_mul(lost) / self.plain.max(1);
-        self.usual = (lost == 0).then_some(step);
+        self.usual = (lost == 0 && steps >= TELLING).then_some(step);
         if lost > 0 {
             self.share = (self.share / 2.0).max(LEAST);
         }
