@@ -96,7 +96,7 @@ shake = [40, -50, 60]
 """
 
 
-def test_blender_plays_a_simulation(tmp_path: Path) -> None:
+def test_blender_keeps_all_weights_of_a_simulation(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SCENE)
     out = tmp_path / "out"
     asked = [str(COMMAND), "simulate", str(tmp_path / "scene.toml"), "--out", str(out), "--cache", str(tmp_path)]
@@ -116,4 +116,5 @@ def test_blender_plays_a_simulation(tmp_path: Path) -> None:
         moved = shape.evaluated_get(bpy.context.evaluated_depsgraph_get())
         shown = [key.value for key in moved.data.shape_keys.key_blocks[1:]]
         due = q[np.abs(time - seconds).argmin()]
+        assert len(shown) == len(due) == 3
         assert np.allclose(shown, due, rtol=1e-5, atol=1e-5 * np.abs(q).max()), f"at {seconds} s"

@@ -104,20 +104,22 @@ fn another_reader_plays_the_motion() {
 #[test]
 fn the_least_and_the_greatest_weights_are_animations_too() {
     let model = model();
-    let track = track("a", 0.0);
-    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, std::slice::from_ref(&track)).unwrap();
+    let tracks = [track("a", 0.0), track("b", 3.0)];
+    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     assert_eq!(file.animations().count(), 3);
     for (animation, greatest) in file.animations().skip(1).zip([false, true]) {
-        let channel = animation.channels().next().unwrap();
-        let reader = channel.reader(|_| Some(&blob));
-        assert_eq!(reader.read_inputs().unwrap().count(), 1);
-        let Some(ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { panic!() };
-        for (k, weight) in weights.into_f32().enumerate() {
-            let of_mode = track.weights.chunks(2).map(|q| q[k] as f32);
-            let expected = if greatest { of_mode.reduce(f32::max) } else { of_mode.reduce(f32::min) };
-            assert_eq!(Some(weight), expected);
+        assert_eq!(animation.channels().count(), tracks.len());
+        for (channel, track) in animation.channels().zip(&tracks) {
+            let reader = channel.reader(|_| Some(&blob));
+            assert_eq!(reader.read_inputs().unwrap().count(), 1);
+            let Some(ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { panic!() };
+            let expected = [0, 1].map(|k| {
+                let of_mode = track.weights.chunks(2).map(|q| q[k] as f32);
+                if greatest { of_mode.reduce(f32::max) } else { of_mode.reduce(f32::min) }.unwrap()
+            });
+            assert_eq!(weights.into_f32().collect::<Vec<_>>(), expected);
         }
     }
 }

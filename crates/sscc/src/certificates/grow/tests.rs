@@ -102,7 +102,7 @@ fn below_the_limit_whatever_collides_is_open() {
     assert!(lowered >= 2, "{lowered}");
 }
 
-/// Would fail for radii of nodes, and of the root's pairs, above the truth, wherever they come from: below the limit of the tree from growing it,
+/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from growing it,
 /// above from a search among what growing has left open.
 #[test]
 fn no_node_is_free_where_two_of_its_triangles_meet() {
@@ -137,7 +137,8 @@ fn no_node_is_free_where_two_of_its_triangles_meet() {
     assert!(below > 50 && above > 50, "{below} {above}");
 }
 
-/// The radius is 1 wherever it comes from: a search from the beginning, what growing has left open, what it has bounded.
+/// The radius is 1 wherever it comes from: a search from the beginning, what growing has left open, what it has
+/// bounded.
 #[test]
 fn the_root_is_as_close_as_asked_for() {
     // Two parallel strips at a distance of 1, which the mode takes away.

@@ -57,8 +57,6 @@ pub struct KineticQuery<'a> {
     pace: Pace,
     /// The last q, at which the root's certificate did not do; empty if there was none.
     before: Vec<f64>,
-    /// The last step within a motion.
-    last: f64,
     /// Scratch for differences of q, and for pairs.
     offset: Vec<f64>,
     work: Vec<Pair>,
@@ -83,7 +81,6 @@ impl<'a> KineticQuery<'a> {
             front: Front::default(),
             pace: Pace::FIRST,
             before: Vec::new(),
-            last: 0.0,
             offset: vec![0.0; model.rank()],
             work: Vec::new(),
             query,
@@ -144,13 +141,12 @@ impl<'a> KineticQuery<'a> {
         }
         if had_begun && !self.front.stands(ends.reach) {
             self.front.end();
-            self.pace.left(self.front.steps, self.last);
+            self.pace.left(self.front.steps);
         }
         if goes_on {
-            self.last = step;
-        } else if let Some(usual) = self.pace.usual.take() {
-            // Another motion begins here, as a rule, with steps like those of the last one.
-            step = usual;
+            self.pace.went(step);
+        } else {
+            step = self.pace.after_jump().unwrap_or(step);
         }
         if !self.front.has_begun() && !self.begin_front(ends, step)? {
             self.query.discrete.find(&self.query.asked, ends)?;

@@ -280,7 +280,7 @@ fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
     };
     for t in [2.0, -3.0, 1.5, -2.0] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.front.has_begun() && kinetic.pace.usual.is_none());
+        assert!(!kinetic.front.has_begun() && !kinetic.pace.has_paid);
     }
     kinetic.pace.plain = 1_000_000;
     for i in 0..40 {
