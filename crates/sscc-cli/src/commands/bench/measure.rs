@@ -1,4 +1,7 @@
-//! Every method on the same steps, by turns, its time and whether its answers are those of the others.
+//! Every method on the same steps, its time and whether its answers are those of the others.
+//!
+//! The methods take turns on blocks of steps: what else the machine does meets all of them, and each finds in the
+//! processor's caches what its own last query left there, as in a program that asks one method only.
 
 use anyhow::Result;
 use sscc::{Impact, Pair, Progress};
@@ -10,8 +13,11 @@ use crate::case::Case;
 use crate::interrupt;
 use crate::progress::Bar;
 
-/// Turns of each method on each step; the median counts.
+/// Turns of each method on each block of steps; of each step the median counts.
 const ROUNDS: usize = 3;
+
+/// Steps in a block. The first of each finds the caches as the other methods left them.
+const BLOCK: usize = 16;
 
 /// Up to so many queries of steps and bodies, comparators answer all that are discrete.
 const FEW: usize = 64;
@@ -62,45 +68,53 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
         COLUMNS.iter().map(|column| column.engine(case)).collect::<Result<_>>()?;
     let objects = steps.first().map_or(0, |step| step.q_t0.len());
     let all: Vec<usize> = (0..steps.len()).collect();
-    let compared = if steps.len() * objects <= FEW { all } else { spread(&all, COMPARED) };
+    let compared = if steps.len() * objects <= FEW { all.clone() } else { spread(&all, COMPARED) };
     let continuous = match asked {
         Asked::Both => spread(&compared, COMPARED),
         Asked::Discrete => Vec::new(),
     };
-    let mut measured = Measured {
-        colliding: Vec::with_capacity(steps.len()),
-        root_failed: Vec::with_capacity(steps.len()),
-        discrete: Times { compared, times: Vec::with_capacity(steps.len()), kinetic: Vec::new() },
-        continuous: Times {
-            compared: continuous,
-            times: Vec::with_capacity(steps.len()),
-            kinetic: Vec::new(),
-        },
-        mismatches: 0,
-    };
-    for (index, step) in steps.iter().enumerate() {
-        interrupt::check()?;
-        let in_discrete = measured.discrete.compared.binary_search(&index).is_ok();
-        let takes_part = |column: &Column| in_discrete || column.role == Role::Certified;
-        let (colliding, agreed) = answer_discrete(&mut engines, takes_part, step)?;
-        let mut wrong = !agreed;
-        measured.colliding.push(colliding);
-        measured.root_failed.push(step.q_t0.iter().any(|q| !case.is_root_certified(q)));
-        measured.discrete.times.push(time(&mut engines, takes_part, &mut |engine| {
-            step.q_t0.iter().try_for_each(|q| engine.discrete(q).map(drop))
-        })?);
+    let is_compared = |step: &usize| compared.binary_search(step).is_ok();
+    let others: Vec<usize> = all.into_iter().filter(|step| !is_compared(step)).collect();
 
-        let in_continuous = measured.continuous.compared.binary_search(&index).is_ok();
-        if in_continuous {
-            wrong |= !answer_continuous(&mut engines, case, step)?;
-        }
-        measured.continuous.times.push(time(&mut engines, |_| in_continuous, &mut |engine| {
-            step.q_t0.iter().zip(&step.q_t1).try_for_each(|(a, b)| engine.continuous(a, b).map(drop))
-        })?);
-        measured.mismatches += usize::from(wrong);
-        bar.report(index + 1, steps.len());
+    let mut done = 0;
+    let total = 2 * steps.len() + continuous.len();
+    let mut tick = || {
+        done += 1;
+        bar.report(done, total);
+        interrupt::check()
+    };
+    let (mut colliding, mut root_failed) = (Vec::with_capacity(steps.len()), Vec::with_capacity(steps.len()));
+    let mut mismatches = 0;
+    for (at, step) in steps.iter().enumerate() {
+        let takes_part = |column: &Column| column.role == Role::Certified || is_compared(&at);
+        let (collides, agreed) = answer_discrete(&mut engines, takes_part, &step.q_t0)?;
+        let wrong =
+            !agreed || continuous.binary_search(&at).is_ok() && !answer_continuous(&mut engines, case, step)?;
+        colliding.push(collides);
+        root_failed.push(step.q_t0.iter().any(|q| !case.is_root_certified(q)));
+        mismatches += usize::from(wrong);
+        tick()?;
     }
-    Ok(measured)
+    let mut discrete = Clock::new(&mut engines, steps, &mut tick);
+    let mut ask = |engine: &mut dyn Engine, step: &Step| -> Result<()> {
+        Ok(step.q_t0.iter().try_for_each(|q| engine.discrete(q).map(drop))?)
+    };
+    discrete.time(&compared, |_| true, &mut ask)?;
+    discrete.time(&others, |column| column.role == Role::Certified, &mut ask)?;
+    let discrete = discrete.times;
+    let mut moving = Clock::new(&mut engines, steps, &mut tick);
+    moving.time(&continuous, |_| true, &mut |engine, step| {
+        let mut ends = step.q_t0.iter().zip(&step.q_t1);
+        Ok(ends.try_for_each(|(a, b)| engine.continuous(a, b).map(drop))?)
+    })?;
+    let moving = moving.times;
+    Ok(Measured {
+        colliding,
+        root_failed,
+        discrete: Times { compared, times: discrete, kinetic: Vec::new() },
+        continuous: Times { compared: continuous, times: moving, kinetic: Vec::new() },
+        mismatches,
+    })
 }
 
 /// At most `count` of the indices, evenly spread.
@@ -113,10 +127,10 @@ pub fn spread(indices: &[usize], count: usize) -> Vec<usize> {
 fn answer_discrete(
     engines: &mut [Box<dyn Engine + '_>],
     takes_part: impl Fn(&Column) -> bool,
-    step: &Step,
+    bodies: &[Vec<f64>],
 ) -> Result<(bool, bool)> {
     let (mut colliding, mut agreed) = (false, true);
-    for q in &step.q_t0 {
+    for q in bodies {
         let mut expected: Option<Vec<Pair>> = None;
         for (column, engine) in COLUMNS.iter().zip(&mut *engines) {
             if !takes_part(column) {
@@ -156,21 +170,54 @@ fn answer_continuous(engines: &mut [Box<dyn Engine + '_>], case: &Case, step: &S
     Ok(agreed)
 }
 
-/// The time of each column that takes part.
-fn time(
-    engines: &mut [Box<dyn Engine + '_>],
-    takes_part: impl Fn(&Column) -> bool,
-    work: &mut dyn FnMut(&mut dyn Engine) -> Result<(), sscc::Error>,
-) -> Result<Vec<Option<f64>>> {
-    let mut rounds: Vec<Vec<f64>> = vec![Vec::new(); engines.len()];
-    for _ in 0..ROUNDS {
-        for (at, engine) in engines.iter_mut().enumerate() {
-            if takes_part(&COLUMNS[at]) {
-                rounds[at].push(milliseconds(&mut || Ok(work(engine.as_mut())?))?);
+/// Times the methods.
+struct Clock<'t, 'a> {
+    engines: &'t mut [Box<dyn Engine + 'a>],
+    steps: &'t [Step],
+    /// After each step.
+    tick: &'t mut dyn FnMut() -> Result<()>,
+    /// By step and column.
+    times: Vec<Vec<Option<f64>>>,
+}
+
+impl<'t, 'a> Clock<'t, 'a> {
+    fn new(
+        engines: &'t mut [Box<dyn Engine + 'a>],
+        steps: &'t [Step],
+        tick: &'t mut dyn FnMut() -> Result<()>,
+    ) -> Self {
+        let times = vec![vec![None; engines.len()]; steps.len()];
+        Self { engines, steps, tick, times }
+    }
+
+    /// Times some methods on some steps, block by block.
+    fn time(
+        &mut self,
+        chosen: &[usize],
+        takes_part: impl Fn(&Column) -> bool,
+        ask: &mut dyn FnMut(&mut dyn Engine, &Step) -> Result<()>,
+    ) -> Result<()> {
+        for block in chosen.chunks(BLOCK) {
+            let mut rounds = vec![vec![Vec::new(); self.engines.len()]; block.len()];
+            for _ in 0..ROUNDS {
+                for (column, engine) in self.engines.iter_mut().enumerate() {
+                    for (rounds, at) in rounds.iter_mut().zip(block) {
+                        if takes_part(&COLUMNS[column]) {
+                            let step = &self.steps[*at];
+                            rounds[column].push(milliseconds(&mut || ask(engine.as_mut(), step))?);
+                        }
+                    }
+                    interrupt::check()?;
+                }
+            }
+            for (rounds, at) in rounds.into_iter().zip(block) {
+                let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times));
+                self.times[*at] = rounds.into_iter().map(middle).collect();
+                (self.tick)()?;
             }
         }
+        Ok(())
     }
-    Ok(rounds.into_iter().map(|times| (!times.is_empty()).then(|| median(times))).collect())
 }
 
 impl Times {
