@@ -45,14 +45,18 @@ const WIDE: f64 = 0.75;
 fn widest(pair: &Separation, t: f64, x: &[DVec3; 3], y: &[DVec3; 3]) -> Option<Direction> {
     let edges = |[a, b, c]: [DVec3; 3]| [b - a, c - b, a - c].map(unit);
     let (edges_x, edges_y) = (edges(*x), edges(*y));
-    let mut best = (0.0, None);
+    // Only the best one is projected at both ends, with its rounding.
+    let mut best = (0.0, DVec3::ZERO);
     let mut consider = |n: DVec3| {
-        if let Some(along) = pair.along(n) {
-            for along in [along, along.reversed()] {
-                let gap = along.gap(t);
-                if gap > best.0 {
-                    best = (gap, Some(along));
-                }
+        let n = n / n.abs().max_element();
+        let [(low_x, high_x), (low_y, high_y)] = [x, y].map(|t| {
+            let [a, b, c] = t.map(|p| n.dot(p));
+            (a.min(b).min(c), a.max(b).max(c))
+        });
+        // Both are NaN where n has no direction.
+        for (gap, n) in [(low_y - high_x, n), (low_x - high_y, -n)] {
+            if gap > best.0 {
+                best = (gap, n);
             }
         }
     };
@@ -76,7 +80,7 @@ fn widest(pair: &Separation, t: f64, x: &[DVec3; 3], y: &[DVec3; 3]) -> Option<D
             }
         }
     }
-    best.1
+    pair.along(best.1).filter(|along| along.gap(t) > 0.0)
 }
 
 /// The unit vector of any vector but 0, however small.
