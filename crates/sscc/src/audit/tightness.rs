@@ -6,7 +6,7 @@ use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Minimum};
 use super::random::Random;
 use crate::bounds::ClusterBounds;
-use crate::certificates::{Search, child_pairs, within_small};
+use crate::certificates::{ROUGH, Search, child_pairs, within_small};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -42,12 +42,22 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let clusters = ClusterBounds::new(minimum.scaled, &parts.hierarchy);
-    let search =
-        || Search::new(minimum.scaled, minimum.filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
-    let limit = parts.pair_tree.limit();
-    let is_capped = |claim: &Claim| {
-        claim.radius >= parts.global_radius || claim.nodes.0 != claim.nodes.1 && claim.radius == limit
+    let search = || {
+        Search::new(
+            minimum.scaled,
+            minimum.filter,
+            &parts.hierarchy,
+            &clusters,
+            parts.epsilon,
+            parts.global_radius,
+            progress,
+        )
     };
+    let limit = parts.pair_tree.limit();
+    // More was not asked for.
+    let enough = parts.global_radius * (1.0 - ROUGH.max(parts.epsilon));
+    let is_capped =
+        |claim: &Claim| claim.radius >= enough || claim.nodes.0 != claim.nodes.1 && claim.radius == limit;
     let mut measured = vec![claims.node(0)];
     measured.extend(claims.root_pairs());
     let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));

@@ -19,7 +19,7 @@ pub use pair_tree::PairTree;
 pub(crate) use pair_tree::{Entry as PairEntry, roots_of};
 pub(crate) use precompute::{child_pairs, within_small};
 pub use scope::Scope;
-pub(crate) use search::Search;
+pub(crate) use search::{ROUGH, Search};
 pub use shards::{BUILD, RunJobs, ShardWorker};
 
 /// How certificates are computed.

@@ -89,7 +89,15 @@ impl Prepared {
     }
 
     pub(super) fn search<'a>(&'a self, progress: &'a dyn Progress) -> Search<'a> {
-        Search::new(&self.scaled, &self.filter, &self.hierarchy, &self.clusters, self.epsilon, progress)
+        Search::new(
+            &self.scaled,
+            &self.filter,
+            &self.hierarchy,
+            &self.clusters,
+            self.epsilon,
+            self.global_radius,
+            progress,
+        )
     }
 }
 
