@@ -87,10 +87,10 @@ impl BdTree {
         if place >= self.rest.len() {
             return None;
         }
-        let (mut centre, mut half) = (motion.shift, [Vec4::ZERO; E]);
+        let (mut centre, mut half) = (motion.shift, Vec4::ZERO);
         let start = place * (self.rank + 1) * SHARES;
         let shares = &self.shares[start..][..(self.rank + 1) * SHARES + 1];
-        for (k, factors) in motion.factors.iter().enumerate() {
+        for (k, (factors, largest)) in motion.factors.iter().zip(&motion.largest).enumerate() {
             // The fourth components are of what follows.
             let of_mode = &shares[k * SHARES..][..SHARES + 1];
             let vector =
@@ -98,15 +98,13 @@ impl BdTree {
             let (mean, growth) = (vector(0), vector(3));
             for end in 0..E {
                 centre[end] += mean * factors[end];
-                half[end] += growth * factors[end].abs();
             }
+            // At neither end it is larger: where a step is short, hardly.
+            half += growth * *largest;
         }
         // The error of the centre, and that of the half.
-        let margin = Vec4::splat(2.0 * motion.margin);
-        let ends = std::array::from_fn::<_, E, _>(|end| {
-            let half = half[end] + margin;
-            Box32 { lower: centre[end] - half, upper: centre[end] + half }
-        });
+        let half = half + Vec4::splat(2.0 * motion.margin);
+        let ends = centre.map(|centre| Box32 { lower: centre - half, upper: centre + half });
         ends.into_iter().reduce(|a, b| a.union(&b))
     }
 
@@ -156,6 +154,43 @@ mod tests {
             .collect();
         let mesh = TriMesh::new(positions, faces).unwrap();
         ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
+    }
+
+    /// From one q to another, of all sizes and directions.
+    #[test]
+    fn rough_boxes_contain_the_positions_at_both_ends() {
+        let (mut state, mut rough) = (8, 0);
+        for case in 0..300 {
+            let rank = [1, 2, 7, 30][case % 4];
+            let model = model(rank, &mut state);
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
+            let units = Units::new(&model, &vertices);
+            let tree = BdTree::new(&model, &hierarchy, &units, |_| true);
+            let size = 10.0_f64.powi(case as i32 % 7 - 4);
+            let mut random_q = || -> Vec<f64> { (0..rank).map(|_| random(&mut state) * size).collect() };
+            let ends = [random_q(), random_q()];
+            let ends = [&ends[0][..], &ends[1][..]];
+            let reach = ends.iter().map(|q| model.check_coordinates(q).unwrap()).fold(0.0, f64::max);
+            let rounding = margin(reach, rank);
+            let frame = Frame::of(tree.root(ends, DVec3::splat(rounding)));
+            let mut motion = Motion::default();
+            if !units.begin(&mut motion, ends, &frame, rounding) {
+                continue;
+            }
+            rough += 1;
+            for (n, node) in hierarchy.nodes().iter().enumerate() {
+                let mapped = tree.rough(n as u32, &motion).unwrap();
+                for v in hierarchy.vertices(node, model.mesh().faces()) {
+                    for q in ends {
+                        let x = frame.map(model.position(v, q));
+                        let inside = x.cmpge(mapped.lower) & x.cmple(mapped.upper);
+                        assert_eq!(inside.bitmask() & 0b111, 0b111, "case {case}");
+                    }
+                }
+            }
+        }
+        assert!(rough > 100, "{rough}");
     }
 
     #[test]

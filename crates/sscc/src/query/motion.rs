@@ -33,13 +33,15 @@ pub(super) struct Motion<const E: usize> {
     pub(super) shift: [Vec4; E],
     /// For each mode the same number in all lanes.
     pub(super) factors: Vec<[Vec4; E]>,
+    /// For each mode the larger magnitude of both ends.
+    pub(super) largest: Vec<Vec4>,
     /// How far along an axis positions may be from the exact ones, mapped to the frame.
     pub(super) margin: f32,
 }
 
 impl<const E: usize> Default for Motion<E> {
     fn default() -> Self {
-        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), margin: f32::INFINITY }
+        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), largest: Vec::new(), margin: f32::INFINITY }
     }
 }
 
@@ -80,7 +82,8 @@ impl Units {
     /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
     /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
     /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d).
-    /// Shares are off by half a unit, all of them by d / (2 WHOLE).
+    /// Shares are off by half a unit, all of them by d / (2 WHOLE). A sum of the larger magnitudes of two ends is at most
+    /// 2 d, and none of its terms is less than at either end.
     pub(super) fn begin<const E: usize>(
         &self,
         motion: &mut Motion<E>,
@@ -100,6 +103,9 @@ impl Units {
             (0..E).for_each(|end| sums[end] += factors[end].abs());
             motion.factors.push(factors.map(factor));
         }
+        let largest = |ends: &[Vec4; E]| ends.iter().fold(Vec4::ZERO, |most, factor| most.max(factor.abs()));
+        motion.largest.clear();
+        motion.largest.extend(motion.factors.iter().map(largest));
         let most = if sums.iter().all(|sum| sum.is_finite()) {
             sums.into_iter().fold(0.0, f64::max)
         } else {

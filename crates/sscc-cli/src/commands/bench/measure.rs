@@ -17,7 +17,7 @@ use crate::progress::Bar;
 const ROUNDS: usize = 3;
 
 /// Steps in a block. The first of each finds the caches as the other methods left them.
-const BLOCK: usize = 16;
+const BLOCK: usize = 20;
 
 /// Up to so many queries of steps and bodies, comparators answer all that are discrete.
 const FEW: usize = 64;
