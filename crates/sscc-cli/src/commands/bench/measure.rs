@@ -76,8 +76,11 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
     let is_compared = |step: &usize| compared.binary_search(step).is_ok();
     let others: Vec<usize> = all.into_iter().filter(|step| !is_compared(step)).collect();
 
+    let is_certified = |column: &Column| column.role == Role::Certified;
     let mut done = 0;
-    let total = 2 * steps.len() + continuous.len();
+    let (columns, certified) = (COLUMNS.len(), COLUMNS.iter().filter(|column| is_certified(column)).count());
+    let turns = columns * (compared.len() + continuous.len()) + certified * others.len();
+    let total = steps.len() + ROUNDS * turns;
     let mut tick = || {
         done += 1;
         bar.report(done, total);
@@ -86,7 +89,7 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
     let (mut colliding, mut root_failed) = (Vec::with_capacity(steps.len()), Vec::with_capacity(steps.len()));
     let mut mismatches = 0;
     for (at, step) in steps.iter().enumerate() {
-        let takes_part = |column: &Column| column.role == Role::Certified || is_compared(&at);
+        let takes_part = |column: &Column| is_certified(column) || is_compared(&at);
         let (collides, agreed) = answer_discrete(&mut engines, takes_part, &step.q_t0)?;
         let wrong =
             !agreed || continuous.binary_search(&at).is_ok() && !answer_continuous(&mut engines, case, step)?;
@@ -100,7 +103,7 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
         Ok(step.q_t0.iter().try_for_each(|q| engine.discrete(q).map(drop))?)
     };
     discrete.time(&compared, |_| true, &mut ask)?;
-    discrete.time(&others, |column| column.role == Role::Certified, &mut ask)?;
+    discrete.time(&others, is_certified, &mut ask)?;
     let discrete = discrete.times;
     let mut moving = Clock::new(&mut engines, steps, &mut tick);
     moving.time(&continuous, |_| true, &mut |engine, step| {
@@ -174,7 +177,7 @@ fn answer_continuous(engines: &mut [Box<dyn Engine + '_>], case: &Case, step: &S
 struct Clock<'t, 'a> {
     engines: &'t mut [Box<dyn Engine + 'a>],
     steps: &'t [Step],
-    /// After each step.
+    /// After each turn on a step.
     tick: &'t mut dyn FnMut() -> Result<()>,
     /// By step and column.
     times: Vec<Vec<Option<f64>>>,
@@ -205,15 +208,14 @@ impl<'t, 'a> Clock<'t, 'a> {
                         if takes_part(&COLUMNS[column]) {
                             let step = &self.steps[*at];
                             rounds[column].push(milliseconds(&mut || ask(engine.as_mut(), step))?);
+                            (self.tick)()?;
                         }
                     }
-                    interrupt::check()?;
                 }
             }
             for (rounds, at) in rounds.into_iter().zip(block) {
                 let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times));
                 self.times[*at] = rounds.into_iter().map(middle).collect();
-                (self.tick)()?;
             }
         }
         Ok(())
