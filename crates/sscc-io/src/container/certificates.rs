@@ -6,7 +6,7 @@
 //! | `nodes` | U32 | n x 4 | first triangle, number of triangles, first child, number of children |
 //! | `order` | U32 | N | all triangles, so that each node's are contiguous |
 //! | `node_radii` | F64 | n | `R_n` |
-//! | `node_states` | U8 | n | 0: the radius was resolved; 1: capped at the limit, the true one is no smaller |
+//! | `node_states` | U8 | n | 0: the radius was resolved, far from the root's roughly; 1: capped at the limit, the true one is no smaller |
 //! | `root_pair_radii` | F64 | p | `R_nm` of the pairs of the root's children: (0,1), (0,2), ..., (2,3) |
 //! | `root_pair_states` | U8 | p | as `node_states` |
 //! | `metric_scales` | F64 | r | the diagonal of the metric's factor S, or |

@@ -42,22 +42,16 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let clusters = ClusterBounds::new(minimum.scaled, &parts.hierarchy);
-    let search = || {
-        Search::new(
-            minimum.scaled,
-            minimum.filter,
-            &parts.hierarchy,
-            &clusters,
-            parts.epsilon,
-            parts.global_radius,
-            progress,
-        )
-    };
+    let search =
+        || Search::new(minimum.scaled, minimum.filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
     let limit = parts.pair_tree.limit();
-    // More was not asked for.
+    // More was not asked for: of nodes, where growing the tree had told something of them, see `Prepared::rough_limit`.
     let enough = parts.global_radius * (1.0 - ROUGH.max(parts.epsilon));
-    let is_capped =
-        |claim: &Claim| claim.radius >= enough || claim.nodes.0 != claim.nodes.1 && claim.radius == limit;
+    let is_capped = |claim: &Claim| match claim.nodes {
+        _ if claim.radius >= parts.global_radius => true,
+        (n, m) if n != m => claim.radius == limit,
+        (n, _) => n != 0 && limit > 0.0 && claim.radius >= enough,
+    };
     let mut measured = vec![claims.node(0)];
     measured.extend(claims.root_pairs());
     let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));

@@ -174,19 +174,20 @@ impl<'a> Work<'a> {
         let node = node as u32;
         if hierarchy.is_whole(node) || parent.is_leaf() {
             // It is searched within, whatever its parts have: they were not.
-            return NodeTask { node, cap: self.prepared.global_radius, pairs: Vec::new() };
+            let cap = self.prepared.global_radius;
+            return NodeTask { node, cap, enough: cap, pairs: Vec::new() };
         }
         let Some(frontier) = self.grove.frontier(hierarchy, node, which.clone(), cap) else {
             let pairs = child_pairs(parent).skip(which.start).take(which.len());
-            return NodeTask { node, cap, pairs: pairs.map(|pair| (pair, 0.0)).collect() };
+            return NodeTask { node, cap, enough: cap, pairs: pairs.map(|pair| (pair, 0.0)).collect() };
         };
         let Frontier { radius, open, bounded } = frontier;
         match precision {
             Precision::Rough => {
                 let pairs = open.into_iter().filter(|(_, lower)| *lower < radius).collect();
-                NodeTask { node, cap: radius, pairs }
+                NodeTask { node, cap: radius, enough: self.prepared.rough_limit(), pairs }
             }
-            Precision::Full => NodeTask { node, cap, pairs: [open, bounded].concat() },
+            Precision::Full => NodeTask { node, cap, enough: cap, pairs: [open, bounded].concat() },
         }
     }
 }

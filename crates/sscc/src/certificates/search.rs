@@ -24,9 +24,7 @@ pub(crate) enum Precision {
     Full,
 }
 
-/// The relative error of rough searches. Beyond what growing the pair tree has bounded, that is so also where the largest
-/// radius of interest is the answer: to prove that of the spring's nodes, most of which can hardly collide, took a sixth
-/// of the time of all its certificates.
+/// The relative error of rough searches.
 pub(crate) const ROUGH: f64 = 0.4;
 
 /// Subdivisions of one triangle pair in rough searches. With none at all the dragon's certificates take 0.8 of the
@@ -100,8 +98,6 @@ pub(crate) struct Search<'a> {
     leaves: LeafPair<'a>,
     pairs: Vec<HullPair>,
     epsilon: f64,
-    /// The largest radius of interest.
-    most: f64,
     precision: Precision,
     target: Target,
     /// The smallest upper bound of all searches before.
@@ -120,7 +116,6 @@ impl<'a> Search<'a> {
         hierarchy: &'a Hierarchy,
         clusters: &'a ClusterBounds,
         epsilon: f64,
-        most: f64,
         progress: &'a dyn Progress,
     ) -> Self {
         Self {
@@ -134,7 +129,6 @@ impl<'a> Search<'a> {
             leaves: LeafPair::new(model),
             pairs: Vec::new(),
             epsilon,
-            most,
             precision: Precision::Full,
             target: Target { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
             upper: f64::INFINITY,
@@ -156,15 +150,14 @@ impl<'a> Search<'a> {
 
     /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
     pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
-        self.among(pairs.into_iter().map(|pair| (pair, 0.0)).collect(), cap)
+        self.among(pairs.into_iter().map(|pair| (pair, 0.0)).collect(), cap, cap)
     }
 
-    /// The same for pairs of which a lower bound is known; 0: not looked at yet.
-    pub(crate) fn among(&mut self, pairs: Vec<((u32, u32), f64)>, cap: f64) -> f64 {
+    /// The same for pairs of which a lower bound is known; 0: not looked at yet. From `enough` on the radius is made no
+    /// better.
+    pub(crate) fn among(&mut self, pairs: Vec<((u32, u32), f64)>, cap: f64, enough: f64) -> f64 {
         self.start(cap);
-        if self.precision == Precision::Rough && pairs.iter().all(|(_, lower)| *lower > 0.0) {
-            self.target.cap = cap.min(self.most * (1.0 - self.target.epsilon));
-        }
+        self.target.cap = cap.min(enough);
         let mut waiting = std::mem::take(&mut self.waiting).into_vec();
         let known = pairs.iter().filter(|(_, lower)| *lower > 0.0);
         waiting.extend(known.map(|&((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) }));

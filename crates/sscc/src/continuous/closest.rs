@@ -45,18 +45,19 @@ const WIDE: f64 = 0.75;
 fn widest(pair: &Separation, t: f64, x: &[DVec3; 3], y: &[DVec3; 3]) -> Option<Direction> {
     let edges = |[a, b, c]: [DVec3; 3]| [b - a, c - b, a - c].map(unit);
     let (edges_x, edges_y) = (edges(*x), edges(*y));
-    // Only the best one is projected at both ends, with its rounding.
+    // Only the best one is projected at both ends.
     let mut best = (0.0, DVec3::ZERO);
     let mut consider = |n: DVec3| {
         let n = n / n.abs().max_element();
-        let [(low_x, high_x), (low_y, high_y)] = [x, y].map(|t| {
-            let [a, b, c] = t.map(|p| n.dot(p));
+        let [(low_x, high_x), (low_y, high_y)] = [x, y].map(|triangle| {
+            let [a, b, c] = triangle.map(|p| n.dot(p));
             (a.min(b).min(c), a.max(b).max(c))
         });
+        let error = pair.error(n);
         // Both are NaN where n has no direction.
         for (gap, n) in [(low_y - high_x, n), (low_x - high_y, -n)] {
-            if gap > best.0 {
-                best = (gap, n);
+            if gap - error > best.0 {
+                best = (gap - error, n);
             }
         }
     };

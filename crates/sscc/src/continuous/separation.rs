@@ -71,8 +71,13 @@ impl Separation {
             return None;
         }
         let project = |triangle: &MovingTriangle| [triangle.t0, triangle.t1].map(|p| p.map(|p| n.dot(p)));
-        let error = RELATIVE * n.abs().dot(self.reach) + ABSOLUTE;
-        Some(Direction { x: project(&self.x), y: project(&self.y), error })
+        Some(Direction { x: project(&self.x), y: project(&self.y), error: self.error(n) })
+    }
+
+    /// What gaps along a vector count beyond.
+    #[inline]
+    pub(super) fn error(&self, n: DVec3) -> f64 {
+        RELATIVE * n.abs().dot(self.reach) + ABSOLUTE
     }
 }
 

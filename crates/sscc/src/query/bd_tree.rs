@@ -99,7 +99,7 @@ impl BdTree {
             for end in 0..E {
                 centre[end] += mean * factors[end];
             }
-            // At neither end it is larger: where a step is short, hardly.
+            // No less than at either end, since rounding is monotone; where a step is short, hardly more.
             half += growth * *largest;
         }
         // The error of the centre, and that of the half.

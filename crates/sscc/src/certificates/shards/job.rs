@@ -48,6 +48,7 @@ impl Job {
                 for task in tasks {
                     bytes.extend(task.node.to_le_bytes());
                     bytes.extend(task.cap.to_le_bytes());
+                    bytes.extend(task.enough.to_le_bytes());
                     bytes.extend((task.pairs.len() as u64).to_le_bytes());
                     for ((n, m), lower) in &task.pairs {
                         bytes.extend(n.to_le_bytes());
@@ -79,13 +80,13 @@ impl Job {
         };
         let mut tasks = Vec::new();
         while !from.0.is_empty() {
-            let (node, cap) = (from.u32()?, from.radius()?);
+            let (node, cap, enough) = (from.u32()?, from.radius()?, from.radius()?);
             hierarchy.nodes().get(node as usize)?;
             let mut pairs = Vec::new();
             for _ in 0..from.u64()? {
                 pairs.push((read_pair(hierarchy, &mut from)?, from.radius()?));
             }
-            tasks.push(NodeTask { node, cap, pairs });
+            tasks.push(NodeTask { node, cap, enough, pairs });
         }
         Some(Self::Radii(precision, tasks))
     }
