@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
-use sscc::{Certificates, CertifyOptions, ReducedModel};
+use sscc::{Certificates, CertifyOptions, Metric, ReducedModel};
 use sscc_io::{read_certificates, read_whole, write_certificates, write_whole};
 
 use super::cache::{Cache, Key, program};
@@ -33,19 +33,27 @@ pub struct Cost {
 
 impl Certified {
     /// From the cache, or computed now.
-    pub fn get(cache: &Cache, name: &str, model: &ReducedModel, source: &str, budget: usize) -> Result<Self> {
-        let key = Key::new("certificates").text(program()?).text(&format!("{budget}")).model(model);
+    pub fn get(
+        cache: &Cache,
+        name: &str,
+        model: &ReducedModel,
+        metric: &Metric,
+        source: &str,
+        budget: usize,
+    ) -> Result<Self> {
+        let asked = format!("{budget} {metric:?}");
+        let key = Key::new("certificates").text(program()?).text(&asked).model(model);
         cache.get(
             &format!("{name}-{key}.sscc.safetensors"),
             |path| Self::read(path, model),
-            || Self::compute(model, source, budget),
+            || Self::compute(model, metric, source, budget),
             |path, certified| certified.write(path),
         )
     }
 
-    fn compute(model: &ReducedModel, source: &str, budget: usize) -> Result<Self> {
-        let threads = load::threads(&Threads { threads: None });
-        let options = CertifyOptions { budget, threads: Some(threads), ..CertifyOptions::default() };
+    fn compute(model: &ReducedModel, metric: &Metric, source: &str, budget: usize) -> Result<Self> {
+        let (metric, threads) = (Some(metric.clone()), load::threads(&Threads { threads: None }));
+        let options = CertifyOptions { metric, budget, threads: Some(threads), ..CertifyOptions::default() };
         let peak = PeakMemory::start();
         let start = Instant::now();
         let certificates = load::certify(model, Path::new(source), &options)?;

@@ -45,16 +45,18 @@ pub struct Case {
 impl Case {
     /// From the cache, or made now.
     pub fn get(begun: &Begun<'_>, cache: &Cache) -> Result<Self> {
-        let Recipe { name, kind, .. } = begun.recipe();
+        let recipe @ Recipe { name, kind, .. } = begun.recipe();
         let (model, elasticity) = modes(begun, *kind, cache)?;
-        let full = Certified::get(cache, name, &model, &begun.source, CertifyOptions::DEFAULT_BUDGET)?;
+        let (metric, budget) = (recipe.metric(&model)?, CertifyOptions::DEFAULT_BUDGET);
+        let full = Certified::get(cache, name, &model, &metric, &begun.source, budget)?;
         let (source, note) = (begun.source.clone(), begun.note.clone());
         Ok(Self { name: name.clone(), source, note, model, elasticity, full, paper: None })
     }
 
     /// The same with certificates as in the paper.
     pub fn with_paper(self, cache: &Cache) -> Result<Self> {
-        let paper = Certified::get(cache, &self.name, &self.model, &self.source, 0)?;
+        let metric = self.full.certificates.metric();
+        let paper = Certified::get(cache, &self.name, &self.model, metric, &self.source, 0)?;
         Ok(Self { paper: Some(paper), ..self })
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use glam::DQuat;
-use sscc::{ReducedModel, TriMesh};
+use sscc::{Metric, MetricKind, ReducedModel, TriMesh};
 use sscc_io::{ModelInfo, read_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_modes::{
@@ -29,6 +29,8 @@ pub struct Recipe {
     pub cells: Option<usize>,
     /// The longest side of the box around a surface; none: as it is.
     pub size: Option<f64>,
+    /// How far q goes along each mode as a rule: certificates measure it in these units. None: in the model's metric.
+    pub spread: Option<Vec<f64>>,
 }
 
 /// A shape to begin with.
@@ -106,13 +108,28 @@ impl Shape {
 impl Recipe {
     /// Of the default material, in its own size and its usual lattice.
     pub fn new(name: impl Into<String>, shape: Shape, kind: Kind) -> Self {
-        Self { name: name.into(), shape, kind, material: Material::default(), cells: None, size: None }
+        Self {
+            name: name.into(),
+            shape,
+            kind,
+            material: Material::default(),
+            cells: None,
+            size: None,
+            spread: None,
+        }
     }
 
     /// Cubes along the longest side of the lattice; none: as many as any surface has.
     fn cells(&self) -> Option<usize> {
         let usual = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
         self.cells.or(usual)
+    }
+
+    /// The metric of certificates of a model made from this.
+    pub fn metric(&self, model: &ReducedModel) -> Result<Metric> {
+        let Some(spread) = &self.spread else { return Ok(model.metric().clone()) };
+        let scales = spread.iter().map(|far| 1.0 / far).collect();
+        Metric::from_scales(MetricKind::Given, scales).with_context(|| format!("{}: spread", self.name))
     }
 
     /// Reads or makes the shape.
@@ -235,5 +252,16 @@ mod tests {
         };
         assert_eq!(key(None), key(Some(SPRING_CELLS)));
         assert_ne!(key(None), key(Some(SPRING_CELLS + 1)));
+    }
+
+    #[test]
+    fn the_spread_is_the_unit_of_certificates() {
+        let plain = Recipe::new("spring", Shape::SMALL_SPRING, Kind::Linear(6));
+        let (model, _) = plain.begin(None).unwrap().modes(Kind::Linear(6)).unwrap();
+        assert_eq!(&plain.metric(&model).unwrap(), model.metric());
+        let spread = vec![0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+        let metric = Recipe { spread: Some(spread.clone()), ..plain }.metric(&model).unwrap();
+        assert_eq!(metric.kind(), MetricKind::Given);
+        assert!((metric.norm(&spread) - 6.0_f64.sqrt()).abs() < 1e-12);
     }
 }

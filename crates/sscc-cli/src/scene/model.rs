@@ -35,14 +35,15 @@ impl ModelSpec {
 
     /// The small spring in its place.
     pub fn quicken(&mut self) {
-        let Recipe { shape, kind, cells, .. } = &mut self.recipe;
+        let Recipe { shape, kind, cells, spread, .. } = &mut self.recipe;
         (*shape, *kind, *cells) = (Shape::SMALL_SPRING, Kind::Linear(QUICK_RANK), None);
+        *spread = None;
         self.is_linear = true;
     }
 }
 
-const KEYS: [&str; 9] =
-    ["shape", "file", "size", "resolution", "kind", "rank", "material", "damping", "dynamics"];
+const KEYS: [&str; 10] =
+    ["shape", "file", "size", "resolution", "kind", "rank", "material", "damping", "dynamics", "spread"];
 
 /// Names of embedded shapes, and of those that they stand in for.
 const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
@@ -97,9 +98,22 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         material,
         cells: model.count("resolution", MOST_CELLS)?,
         size: model.positive("size")?,
+        spread: spread(model, kind.rank())?,
     };
     let damping = damping(model)?.unwrap_or(usual);
     Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
+}
+
+/// `spread = [...]`, a number for each mode.
+fn spread(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
+    let Some(spread) = model.numbers("spread")? else { return Ok(None) };
+    if spread.len() != rank {
+        return Err(model.refused("spread", format!("{} numbers for {rank} modes", spread.len())));
+    }
+    if spread.iter().any(|far| *far <= 0.0) {
+        return Err(model.refused("spread", "numbers above 0 were expected"));
+    }
+    Ok(Some(spread))
 }
 
 /// `damping = { mass, stiffness }`

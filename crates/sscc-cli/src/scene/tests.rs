@@ -89,6 +89,8 @@ fn what_cannot_be_is_named_with_its_line() {
         ("shape = \"spring-4k\"", "", "shape: it is missing (or a file)"),
         ("rank = 12", "rank = 12\ndynamics = \"nonlinear\"", "line 13: dynamics: linear modes move linearly"),
         ("kind = \"linear\"", "kind = \"polynomial\"", "line 12: rank: polynomial modes are always all 24"),
+        ("rank = 12", "rank = 12\nspread = [1, 2]", "line 13: spread: 2 numbers for 12 modes"),
+        ("rank = 12", "rank = 1\nspread = [0]", "line 13: spread: numbers above 0 were expected"),
         ("[ground]", "[ground", "line 6: "),
         ("{ youngs = 1e5, density = 900 }", "\"stel\"", "line 14: material: one of steel, "),
         ("duration", "detection = \"magic\"\nduration", "line 4: detection: one of certified, kinetic, "),
