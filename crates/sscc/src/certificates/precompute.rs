@@ -185,7 +185,9 @@ impl<'a> Work<'a> {
         match precision {
             Precision::Rough => {
                 let pairs = open.into_iter().filter(|(_, lower)| *lower < radius).collect();
-                NodeTask { node, cap: radius, enough: self.prepared.rough_limit(), pairs }
+                // Without a tree these radii are all that queries have.
+                let enough = if self.grove.is_empty() { cap } else { self.prepared.rough_limit() };
+                NodeTask { node, cap: radius, enough, pairs }
             }
             Precision::Full => NodeTask { node, cap, enough: cap, pairs: [open, bounded].concat() },
         }

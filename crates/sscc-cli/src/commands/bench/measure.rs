@@ -98,14 +98,14 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
         mismatches += usize::from(wrong);
         tick()?;
     }
-    let mut discrete = Clock::new(&mut engines, steps, &mut tick);
+    let mut discrete = Turns::new(&mut engines, steps, &mut tick);
     let mut ask = |engine: &mut dyn Engine, step: &Step| -> Result<()> {
         Ok(step.q_t0.iter().try_for_each(|q| engine.discrete(q).map(drop))?)
     };
     discrete.time(&compared, |_| true, &mut ask)?;
     discrete.time(&others, is_certified, &mut ask)?;
     let discrete = discrete.times;
-    let mut moving = Clock::new(&mut engines, steps, &mut tick);
+    let mut moving = Turns::new(&mut engines, steps, &mut tick);
     moving.time(&continuous, |_| true, &mut |engine, step| {
         let mut ends = step.q_t0.iter().zip(&step.q_t1);
         Ok(ends.try_for_each(|(a, b)| engine.continuous(a, b).map(drop))?)
@@ -173,8 +173,8 @@ fn answer_continuous(engines: &mut [Box<dyn Engine + '_>], case: &Case, step: &S
     Ok(agreed)
 }
 
-/// Times the methods.
-struct Clock<'t, 'a> {
+/// Times the methods by turns.
+struct Turns<'t, 'a> {
     engines: &'t mut [Box<dyn Engine + 'a>],
     steps: &'t [Step],
     /// After each turn on a step.
@@ -183,7 +183,7 @@ struct Clock<'t, 'a> {
     times: Vec<Vec<Option<f64>>>,
 }
 
-impl<'t, 'a> Clock<'t, 'a> {
+impl<'t, 'a> Turns<'t, 'a> {
     fn new(
         engines: &'t mut [Box<dyn Engine + 'a>],
         steps: &'t [Step],
