@@ -221,6 +221,20 @@ fn the_motion_is_the_same_for_any_number_of_threads_and_any_detection() {
     assert!(found.windows(2).all(|pair| pair[0] == pair[1]));
 }
 
+/// In units twice as long the radius is half as many.
+#[test]
+fn certificates_are_measured_in_the_spread() {
+    let radius = |spread: &str| {
+        let folder = folder(&SCENE.replace("rank = 10", &format!("rank = 10{spread}")));
+        let run = simulate(folder.path(), &["scene.toml", "--steps", "1", "--json"]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run.json()[0]["models"][0]["root_radius"].as_f64().unwrap()
+    };
+    let spread = |far: f64| format!("\nspread = {:?}", [far; 10]);
+    let [energy, one, two] = ["", &spread(0.125), &spread(0.25)].map(radius);
+    assert!((one - 2.0 * two).abs() < 1e-9 * one && (one / energy - 1.0).abs() > 0.1, "{energy} {one} {two}");
+}
+
 #[test]
 fn a_killed_simulation_goes_on_to_the_same_bits() {
     let whole = folder(SCENE);
