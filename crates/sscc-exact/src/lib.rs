@@ -7,7 +7,10 @@
 //! at most four, which are then in one plane: the time is a root of a determinant of those corners. Where that
 //! vanishes all the time, it is a root of a smaller one. So it is enough to try time 0 and all these roots.
 
+mod distance;
 mod polynomial;
+
+pub use distance::{distance, squared_distance};
 
 use glam::DVec3;
 use num_rational::BigRational;
@@ -24,13 +27,7 @@ type Corners = [[Polynomial; 4]; 6];
 /// # Panics
 /// When a corner is not finite.
 pub fn first_contact(x: &MovingTriangle, y: &MovingTriangle) -> Option<Root> {
-    let of = |p: DVec3, q: DVec3| -> [Polynomial; 4] {
-        let exact = |x: f64| BigRational::from_float(x).expect("corners are finite");
-        let linear = |i: usize| Polynomial::new(vec![exact(p[i]), exact(q[i]) - exact(p[i])]);
-        [linear(0), linear(1), linear(2), Polynomial::new(vec![BigRational::one()])]
-    };
-    let corners: Corners =
-        std::array::from_fn(|i| if i < 3 { of(x.t0[i], x.t1[i]) } else { of(y.t0[i - 3], y.t1[i - 3]) });
+    let corners = corners(x, y);
     let start = Root::at(BigRational::zero());
     if meet_at(&corners, &start, 5) {
         return Some(start);
@@ -55,6 +52,16 @@ pub fn first_contact(x: &MovingTriangle, y: &MovingTriangle) -> Option<Root> {
         }
     }
     first
+}
+
+/// The corners of both triangles as polynomials in time.
+fn corners(x: &MovingTriangle, y: &MovingTriangle) -> Corners {
+    let of = |p: DVec3, q: DVec3| -> [Polynomial; 4] {
+        let exact = |x: f64| BigRational::from_float(x).expect("corners are finite");
+        let linear = |i: usize| Polynomial::new(vec![exact(p[i]), exact(q[i]) - exact(p[i])]);
+        [linear(0), linear(1), linear(2), Polynomial::new(vec![BigRational::one()])]
+    };
+    std::array::from_fn(|i| if i < 3 { of(x.t0[i], x.t1[i]) } else { of(y.t0[i - 3], y.t1[i - 3]) })
 }
 
 /// Whether a Radon partition of at most `most` corners exists at that time.

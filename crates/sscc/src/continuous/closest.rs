@@ -9,7 +9,7 @@ use crate::intersect_triangle_triangle;
 
 /// The closest points of the two triangles at a time.
 pub(super) struct Closest {
-    /// The distance of two of their points, rounded: they are no farther apart.
+    /// The distance of two of their points, rounded: they are no farther apart. 0 where they meet.
     pub(super) distance: f64,
     /// A direction that separates them then, if one was found.
     pub(super) direction: Option<Direction>,
@@ -29,9 +29,14 @@ impl Closest {
         // Two points that are close tell the direction between them badly; and in flat cases they may not be the
         // closest ones. Either way the gap is then too narrow.
         let between = pair.along(point).filter(|n| n.gap(t) > WIDE * distance);
+        if between.is_some() {
+            return Self { distance, direction: between };
+        }
         // No direction separates what meets: looking for one takes long.
-        let look = || if intersect_triangle_triangle(&x, &y) { None } else { widest(pair, t, &x, &y) };
-        Self { distance, direction: between.or_else(look) }
+        if intersect_triangle_triangle(&x, &y) {
+            return Self { distance: 0.0, direction: None };
+        }
+        Self { distance, direction: widest(pair, t, &x, &y) }
     }
 }
 

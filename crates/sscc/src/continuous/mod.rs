@@ -4,8 +4,8 @@
 //! to where it is at t = 1; the way between the given `f64` positions is meant exactly. Touching counts.
 //!
 //! **What "no" promises:** the shapes have no point in common at any t in [0, 1]. Never a miss.
-//! **How wrong a "yes" may be:** it comes with a time before which the shapes do not meet, and at that time they are
-//! within the given tolerance of each other (or within what rounding can tell: see [`impact_triangle_triangle`]).
+//! **How wrong a "yes" may be:** it comes with a time before which the shapes do not meet, and at that time their
+//! distance is at most the given tolerance (no less than about 1e-13 of their size, see [`impact_triangle_triangle`]).
 //!
 //! # The method
 //!
@@ -13,8 +13,9 @@
 //! corners along a fixed direction is linear in t; along a direction that turns linearly, too, it is quadratic. A
 //! linear or quadratic polynomial is positive on an interval where its Bernstein coefficients there are. So a single
 //! direction, or the two between which it turns, proves a whole interval of time free, for all pairs of corners, hence
-//! for the hulls: faces, edges and vertices at once ([`separation`]). What remains is to walk from t = 0 to 1 in as few
-//! such intervals as possible ([`impact`]).
+//! for the hulls: faces, edges and vertices at once ([`separation`]). A direction that is perpendicular to two moving
+//! features is a polynomial of t of degree 2 or 3, and proves as much for as long as these two are closest, however narrow
+//! the gap is ([`feature`]). What remains is to advance from t = 0 to 1 in as few intervals as possible ([`advance`]).
 //!
 //! The usual tests, 6 of a vertex and a face and 9 of two edges, each by subdivision of (t, u, v) (Wang et al. 2021,
 //! *A Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*), share the idea:
@@ -22,9 +23,12 @@
 //! do there; and a pair that is pierced all the way, which has no event of a vertex or of two edges, is no special
 //! case.
 
+mod advance;
 mod closest;
+mod feature;
 mod impact;
 mod moving;
+mod number;
 mod separation;
 
 pub use impact::{impact_edge_edge, impact_triangle_triangle, impact_vertex_face};

@@ -29,6 +29,11 @@ impl MovingTriangle {
         Self { t0: corners.map(|i| self.t0[i]), t1: corners.map(|i| self.t1[i]) }
     }
 
+    /// All coordinates times a factor.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self { t0: self.t0.map(|p| p * factor), t1: self.t1.map(|p| p * factor) }
+    }
+
     /// The corners at time t, rounded (t = 0 and t = 1 are exact).
     pub(super) fn at(&self, t: f64) -> [DVec3; 3] {
         std::array::from_fn(|i| self.t0[i] * (1.0 - t) + self.t1[i] * t)

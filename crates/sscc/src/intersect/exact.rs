@@ -67,7 +67,7 @@ fn integers<const DIM: usize, const COUNT: usize>(points: [[f64; DIM]; COUNT]) -
 }
 
 /// A finite number as `mantissa * 2^(exponent - 1075)`, exactly; the exponent is at least 1.
-fn decode(x: f64) -> (i64, u32) {
+pub(crate) fn decode(x: f64) -> (i64, u32) {
     const FRACTION_BITS: u32 = 52;
     let bits = x.to_bits();
     let biased = (bits >> FRACTION_BITS) as u32 & 0x7ff;

@@ -17,4 +17,5 @@ mod segment_triangle;
 mod triangle_triangle;
 
 pub use beyond_vertex::intersect_beyond_vertex;
+pub(crate) use exact::decode;
 pub use triangle_triangle::intersect_triangle_triangle;

@@ -26,10 +26,10 @@ impl Query<'_> {
     /// impact of each.
     ///
     /// None is missed: whatever has a point in common at any time from 0 to 1, both ends included, is listed,
-    /// with a time that is never later than the true one. A pair listed without need has come as near as
-    /// [`Impact::TOLERANCE`], and nothing but such pairs can differ between methods. Triangles that share exactly one
-    /// vertex, where the rule includes them, are listed when the edge opposite to it of one of them meets the other,
-    /// which is what they must do to have another point in common.
+    /// with a time that is never later than the true one, and at which their distance is at most [`Impact::TOLERANCE`]
+    /// times their size. Only pairs that come that near without a contact can differ between methods. Triangles that
+    /// share exactly one vertex, where the rule includes them, are listed when the edge opposite to it of one of them
+    /// meets the other, which is what they must do to have another point in common.
     ///
     /// A certificate holds for the way when it holds for both ends: its region is convex, and what a
     /// radius grants to rounding (see `bounds/scaled.rs`) is granted at the radius itself, which covers

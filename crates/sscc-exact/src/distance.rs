@@ -1,0 +1,141 @@
+//! How far two moving triangles are apart at one time.
+
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+use sscc::MovingTriangle;
+
+/// A point or a vector, in exact arithmetic.
+type Vector = [BigRational; 3];
+
+/// The squared distance of two moving triangles at time `t`, exactly: 0 where they have a point in common.
+///
+/// # Panics
+/// When a corner or `t` is not finite.
+pub fn squared_distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> BigRational {
+    if super::meet_at(&super::corners(x, y), &super::Root::at(exact(t)), 5) {
+        return BigRational::zero();
+    }
+    let (x, y) = (at(x, t), at(y, t));
+    let mut least: Option<BigRational> = None;
+    let mut consider = |squared: Option<BigRational>| {
+        if let Some(squared) = squared
+            && least.as_ref().is_none_or(|least| squared < *least)
+        {
+            least = Some(squared);
+        }
+    };
+    // Of disjoint triangles one of these pairs of features has the closest points.
+    for i in 0..3 {
+        consider(vertex_face(&x[i], &y));
+        consider(vertex_face(&y[i], &x));
+        for j in 0..3 {
+            consider(Some(dot(&minus(&x[i], &y[j]), &minus(&x[i], &y[j]))));
+            let edges = [[&x[i], &x[(i + 1) % 3]], [&y[j], &y[(j + 1) % 3]]];
+            consider(vertex_edge(&x[i], edges[1]));
+            consider(vertex_edge(&y[j], edges[0]));
+            consider(edge_edge(edges));
+        }
+    }
+    least.expect("vertices have a distance")
+}
+
+/// The distance of two moving triangles at time `t`: rounded once, from the exact square.
+pub fn distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> f64 {
+    let squared = squared_distance(x, y, t);
+    // Squares of small numbers have no double near them: the root is taken of the number times a power of four.
+    let four = BigRational::from_integer(4.into());
+    let (mut scaled, mut halvings) = (squared, 0);
+    while !scaled.is_zero() && scaled < BigRational::one() {
+        scaled *= &four;
+        halvings += 1;
+    }
+    let root = scaled.to_f64().expect("a rational number has a double near it").sqrt();
+    (0..halvings).fold(root, |root, _| root / 2.0)
+}
+
+/// The squared distance to the plane of a face, where the foot of the perpendicular lies within the face.
+fn vertex_face(p: &Vector, [a, b, c]: &[Vector; 3]) -> Option<BigRational> {
+    let n = cross(&minus(b, a), &minus(c, a));
+    let squared = dot(&n, &n);
+    if squared.is_zero() {
+        return None;
+    }
+    let inside = [[a, b], [b, c], [c, a]]
+        .iter()
+        .all(|[from, to]| !dot(&cross(&minus(to, from), &minus(p, from)), &n).is_negative());
+    let height = dot(&n, &minus(p, a));
+    inside.then(|| &height * &height / squared)
+}
+
+/// The squared distance to the line of an edge, where the foot of the perpendicular lies within the edge.
+fn vertex_edge(p: &Vector, [a, b]: [&Vector; 2]) -> Option<BigRational> {
+    let (e, d) = (minus(b, a), minus(p, a));
+    let (squared, along) = (dot(&e, &e), dot(&e, &d));
+    let inside = !squared.is_zero() && !along.is_negative() && along <= squared;
+    inside.then(|| dot(&d, &d) - &along * &along / squared)
+}
+
+/// The squared distance of the lines of two edges, where their closest points lie within both.
+fn edge_edge([[a, b], [c, d]]: [[&Vector; 2]; 2]) -> Option<BigRational> {
+    let (e, f, r) = (minus(b, a), minus(d, c), minus(c, a));
+    let n = cross(&e, &f);
+    let squared = dot(&n, &n);
+    if squared.is_zero() {
+        return None;
+    }
+    let inside =
+        [dot(&cross(&r, &f), &n), dot(&cross(&r, &e), &n)].iter().all(|s| !s.is_negative() && *s <= squared);
+    let height = dot(&n, &r);
+    inside.then(|| &height * &height / squared)
+}
+
+fn at(triangle: &MovingTriangle, t: f64) -> [Vector; 3] {
+    let t = exact(t);
+    std::array::from_fn(|i| {
+        let (p, q) = (triangle.t0[i], triangle.t1[i]);
+        std::array::from_fn(|k| exact(p[k]) + (exact(q[k]) - exact(p[k])) * &t)
+    })
+}
+
+fn exact(x: f64) -> BigRational {
+    BigRational::from_float(x).expect("numbers are finite")
+}
+
+fn minus(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|k| &a[k] - &b[k])
+}
+
+fn dot(a: &Vector, b: &Vector) -> BigRational {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn distances_of_simple_pairs() {
+        let face = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let still = |t0: [DVec3; 3]| MovingTriangle { t0, t1: t0 };
+        let of = |other: [DVec3; 3]| distance(&still(face), &still(other), 0.5);
+        assert_eq!(of(face.map(|p| p + DVec3::Z * 1e-200)), 1e-200);
+        assert_eq!(of(face.map(|p| p + DVec3::new(3.0, 0.0, 0.0))), 2.0);
+        assert_eq!(of(face.map(|p| p + DVec3::new(4.0, 0.0, 4.0))), 5.0);
+        assert_eq!(of(face.map(|p| p + DVec3::new(0.25, 0.25, 0.0))), 0.0);
+        // Two edges crosswise, and one that pierces the face.
+        let [a, b] = [DVec3::new(0.2, -0.5, 3.0), DVec3::new(0.2, 0.5, 3.0)];
+        assert_eq!(of([a, b, a + DVec3::Z]), 3.0);
+        assert_eq!(
+            of([DVec3::new(0.2, 0.2, -1.0), DVec3::new(0.2, 0.2, 1.0), DVec3::new(5.0, 5.0, 1.0)]),
+            0.0
+        );
+        let falling = MovingTriangle { t0: face.map(|p| p + DVec3::Z), t1: face };
+        assert_eq!(distance(&still(face), &falling, 0.25), 0.75);
+    }
+}
