@@ -24,8 +24,11 @@ export interface App {
     body: Body | null;
     /** The pair looked at. */
     chosen: [number, number] | null;
-    /** What a recording says of the frame shown: colliding pairs of triangles. */
-    recorded: { pairs: number; what: string } | null;
+    /**
+     * What a recording says of the frame shown: its colliding pairs of triangles, null where they are not known; and
+     * the most of them in one step since the frame before.
+     */
+    recorded: { pairs: number | null; since: number } | null;
     /** Paints the colliding triangles again. */
     refreshMarks(): void;
     /** Plays q row by row. */

@@ -13,9 +13,10 @@ interface Verdict {
 export function verdict(app: App): Verdict {
     const { checker, pose, recorded } = app;
     if (recorded) {
-        const { pairs, what } = recorded;
-        if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (${what})` };
-        return { kind: "free", text: `free (${what})` };
+        const { pairs } = recorded;
+        if (pairs === null) return { kind: "unknown", text: "unknown: collisions of this frame were not recorded" };
+        if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (as recorded)` };
+        return { kind: "free", text: "free (as recorded)" };
     }
     // Told in the very frame that draws the shape; the answer, which says the same, has the costs.
     if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: "free, proven by the root's certificate" };
@@ -31,10 +32,16 @@ export function verdict(app: App): Verdict {
     return { kind: "free", text: "free, proven" };
 }
 
+/** What a recording says of the steps between the frame before and the one shown; none of it is seen in either. */
+export function sinceText(since: number): string {
+    return since > 0 ? `collided since the last frame: at most ${count(since, "pair")} in one step` : "";
+}
+
 export class Gauge {
     readonly element: HTMLElement;
     private readonly mark = h("span", { class: "verdict-mark", "aria-hidden": "true" });
     private readonly text = h("span", { class: "verdict-text" });
+    private readonly since = h("div", { class: "since", role: "status", "aria-live": "polite", hidden: true });
     private readonly needle = h("div", { class: "needle" });
     private readonly bar = h("div", { class: "bar" }, h("div", { class: "root-tick" }), this.needle);
     private readonly detail = h("div", { class: "detail" });
@@ -44,7 +51,12 @@ export class Gauge {
         this.element = h(
             "section",
             { class: "gauge", "aria-label": "certificate gauge" },
-            h("div", { class: "verdict", role: "status", "aria-live": "polite" }, this.mark, this.text),
+            h(
+                "div",
+                { class: "told" },
+                h("div", { class: "verdict", role: "status", "aria-live": "polite" }, this.mark, this.text),
+                this.since,
+            ),
             this.bar,
             this.detail,
         );
@@ -60,12 +72,15 @@ export class Gauge {
         const root = app.shape.model.root_radius;
         const share = norm === null || root === null ? null : norm / root;
         this.element.dataset.serial = String(app.pose.serial);
-        const key = `${kind} ${text} ${norm} ${answered?.microseconds}`;
+        const since = sinceText(app.recorded?.since ?? 0);
+        const key = `${kind} ${text} ${since} ${norm} ${answered?.microseconds}`;
         if (key === this.shown) return;
         this.shown = key;
         this.element.dataset.kind = kind;
         this.mark.textContent = { root: "●", free: "●", colliding: "▲", checking: "…", unknown: "?" }[kind];
         this.text.textContent = text;
+        this.since.textContent = since;
+        this.since.hidden = since === "";
         this.bar.hidden = norm === null;
         // The root's radius stands at half of the bar; what is beyond is squeezed into the other half.
         const at = share === null ? 0 : share <= 1 ? share / 2 : 1 - 0.5 / share;

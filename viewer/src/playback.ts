@@ -70,11 +70,18 @@ export class Playback {
         return this.data.times.length;
     }
 
-    /** Colliding pairs of all bodies in each frame; null where they are not known. */
+    /** Colliding pairs of all bodies in each frame itself; null where they are not known. */
     get pairs(): number[] | null {
+        // Without `pairs_since` those of a simulation are the most up to the next frame, not those of the frame.
+        if (this.data.pairs_since === undefined && !this.posed) return null;
         const known = this.data.bodies.flatMap((b) => (b.pairs ? [b.pairs] : []));
         if (known.length === 0) return null;
         return this.data.times.map((_, t) => known.reduce((sum, pairs) => sum + pairs[t], 0));
+    }
+
+    /** The most of them in one step between the frame before and each frame; null where there are no such steps. */
+    get since(): number[] | null {
+        return this.data.pairs_since ?? null;
     }
 
     get moved(): Moved[] {
@@ -121,12 +128,12 @@ export class Playback {
     show(frame: number): void {
         const { app } = this;
         const pairs = this.pairs;
-        const recorded = pairs ? { pairs: pairs[frame], what: "as recorded" } : null;
+        const recorded = { pairs: pairs?.[frame] ?? null, since: this.since?.[frame] ?? 0 };
         if (this.posed) {
             // Live, each frame is asked about again.
             if (app.checker) app.motion.propose(this.row(0, frame));
             else {
-                app.recorded = recorded;
+                app.recorded = pairs ? recorded : null;
                 app.pose.show(this.row(0, frame));
                 app.body?.setMarks(0, this.triangles(0, frame) ?? []);
             }

@@ -47,7 +47,8 @@ export class Player {
         this.recorded = await Playback.load(app, app.source, data, shapeOf);
         const sound =
             data.sound === null ? null : new Blob([await app.source.array(data.sound)], { type: "audio/wav" });
-        this.open({ times: data.times, pairs: this.recorded.pairs, sound, show: (frame) => this.show(frame) });
+        const { pairs, since } = this.recorded;
+        this.open({ times: data.times, pairs, since, sound, show: (frame) => this.show(frame) });
         this.enterPlayback();
     }
 
@@ -62,7 +63,7 @@ export class Player {
             app.motion.propose(rows[frame]);
             this.showing = false;
         };
-        this.open({ times, pairs: null, sound: null, show });
+        this.open({ times, pairs: null, since: null, sound: null, show });
         this.timeline?.seek(0);
         this.timeline?.start();
     }

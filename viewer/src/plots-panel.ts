@@ -22,12 +22,12 @@ function levels(model: Model): PlotData {
     };
 }
 
-/** Times at which something collides with itself, as spans. */
-export function contactSpans(times: number[], pairs: number[][]): [number, number][] {
+/** Times at which something collides with itself, as spans from frame to frame: in a frame, or before the next one. */
+export function contactSpans(times: number[], pairs: number[][], since: number[] | null): [number, number][] {
     const spans: [number, number][] = [];
     let open: number | null = null;
     times.forEach((time, i) => {
-        const touching = pairs.some((p) => p[i] > 0);
+        const touching = pairs.some((p) => p[i] > 0) || (since?.[i + 1] ?? 0) > 0;
         if (touching && open === null) open = time;
         const end = !touching || i === times.length - 1;
         if (end && open !== null) {
@@ -45,7 +45,7 @@ export class PlotsPanel {
     constructor(app: App) {
         const { scene } = app;
         const pairs = scene.playback?.bodies.flatMap((b) => (b.pairs ? [b.pairs] : [])) ?? [];
-        const spans = contactSpans(scene.playback?.times ?? [], pairs);
+        const spans = contactSpans(scene.playback?.times ?? [], pairs, scene.playback?.pairs_since ?? null);
         const overTime = scene.playback?.costs ?? null;
         const all = [
             ...(overTime ? [overTime] : []),

@@ -58,12 +58,18 @@ export interface PlaybackBody {
     q: string;
     rigid: string | null;
     center: number[];
+    /** Colliding pairs of triangles in each frame. */
     pairs: number[] | null;
 }
 
 export interface PlaybackData {
     times: number[];
     bodies: PlaybackBody[];
+    /**
+     * For each frame the most colliding pairs of all bodies in one step between the frame before and this one; null
+     * where there are no such steps. Earlier versions wrote none, and counted these steps in the `pairs` of bodies.
+     */
+    pairs_since?: number[] | null;
     colliding: { offsets: string; triangles: string } | null;
     ground: number | null;
     sound: string | null;

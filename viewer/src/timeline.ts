@@ -1,6 +1,6 @@
 /** Plays frames against a clock, sound in sync; contact is marked on the line. */
 
-import { digits, h, svg } from "./dom";
+import { count, digits, h, svg } from "./dom";
 import type { Frames } from "./frames";
 
 const SPEEDS = [2, 1, 0.5, 0.25, 0.1, 0.02];
@@ -11,6 +11,8 @@ export interface Track {
     times: number[];
     /** Colliding pairs per frame, null where not known. */
     pairs: number[] | null;
+    /** The most of them in one step between the frame before and each frame, null where there are no such steps. */
+    since: number[] | null;
     show(frame: number): void;
     sound: Blob | null;
 }
@@ -54,7 +56,7 @@ export class Timeline {
                 h("option", { value: s, selected: s === first }, s >= 1 ? `${s}×` : `1/${Math.round(1 / s)}×`),
             ),
         );
-        const contact = track.pairs?.some((p) => p > 0) ?? false;
+        const contact = times.some((_, frame) => this.touches(frame));
         const jump = (step: number): HTMLButtonElement =>
             h(
                 "button",
@@ -130,12 +132,16 @@ export class Timeline {
         this.element.remove();
     }
 
-    /** To the next frame that collides after one that does not. */
+    /** Whether bodies collide with themselves in a frame, or did since the frame before. */
+    private touches(frame: number): boolean {
+        const { pairs, since } = this.track;
+        return (pairs?.[frame] ?? 0) > 0 || (since?.[frame] ?? 0) > 0;
+    }
+
+    /** To the next frame that touches after one that does not. */
     private jump(step: number): void {
-        const { pairs } = this.track;
-        if (!pairs) return;
-        for (let f = this.frame + step; f >= 0 && f < pairs.length; f += step) {
-            if (pairs[f] > 0 && !(pairs[f - 1] > 0)) {
+        for (let f = this.frame + step; f >= 0 && f < this.track.times.length; f += step) {
+            if (this.touches(f) && !this.touches(f - 1)) {
                 this.seek(f);
                 return;
             }
@@ -168,12 +174,13 @@ export class Timeline {
     }
 
     private update(): void {
-        const { times, pairs } = this.track;
+        const { times, pairs, since } = this.track;
         this.play.textContent = this.playing ? "❚❚" : "▶";
         this.play.setAttribute("aria-label", this.playing ? "pause" : "play");
         this.slider.value = String(this.frame);
-        const touching = pairs && pairs[this.frame] > 0 ? `, ${pairs[this.frame]} colliding pairs` : "";
-        this.slider.setAttribute("aria-valuetext", `${digits(times[this.frame], 3)} seconds${touching}`);
+        const touching = pairs && pairs[this.frame] > 0 ? `, ${count(pairs[this.frame], "colliding pair")}` : "";
+        const touched = since && since[this.frame] > 0 ? ", collided since the last frame" : "";
+        this.slider.setAttribute("aria-valuetext", `${digits(times[this.frame], 3)} seconds${touching}${touched}`);
         this.clock.textContent = `${times[this.frame].toFixed(3)} s`;
     }
 
@@ -188,9 +195,12 @@ export class Timeline {
         button.setAttribute("aria-pressed", String(this.audio.muted));
     }
 
-    /** Bars where pairs collide, higher for more; at most one for each hundredth of the line's width. */
+    /**
+     * Bars where pairs collide, higher for more; low ones where they did between two frames alone. At most three for
+     * each hundredth of the line's width.
+     */
     private marks(): SVGElement {
-        const { pairs, times } = this.track;
+        const { pairs, since, times } = this.track;
         const columns = Math.min(300, times.length);
         const root = svg("svg", {
             class: "marks",
@@ -198,21 +208,22 @@ export class Timeline {
             preserveAspectRatio: "none",
             "aria-hidden": "true",
         });
-        if (!pairs) return root;
-        const most = Math.log1p(pairs.reduce((a, b) => Math.max(a, b), 1));
+        const most = Math.log1p((pairs ?? []).reduce((a, b) => Math.max(a, b), 1));
+        const largest = (of: number[] | null, from: number, to: number): number =>
+            (of ?? []).slice(from, to).reduce((a, b) => Math.max(a, b), 0);
         for (let c = 0; c < columns; c++) {
             const from = Math.floor((c * times.length) / columns);
             const to = Math.max(from + 1, Math.floor(((c + 1) * times.length) / columns));
-            const height = pairs.slice(from, to).reduce((a, b) => Math.max(a, b), 0);
-            if (height === 0) continue;
-            const tall = 5 + (15 * Math.log1p(height)) / most;
+            const height = largest(pairs, from, to);
+            if (height === 0 && largest(since, from, to) === 0) continue;
+            const tall = height > 0 ? 8 + (12 * Math.log1p(height)) / most : 4;
             root.append(
                 svg("rect", {
                     x: (300 * c) / columns,
                     width: 300 / columns + 0.3,
                     y: 20 - tall,
                     height: tall,
-                    class: "contact",
+                    class: height > 0 ? "contact" : "contact since",
                 }),
             );
         }

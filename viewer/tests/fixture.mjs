@@ -1,4 +1,4 @@
-// A small scene made in code: a tube with four modes, three bodies that fall, contact in the middle, a tone.
+// A small scene made in code: a tube with four modes, three bodies that fall, contact in the middle, another one between two frames, a tone.
 const RINGS = 60;
 const SIDES = 16;
 
@@ -145,6 +145,7 @@ export function report({ sound = false, playback = true, change = () => {} } = {
             ? {
                   times,
                   bodies,
+                  pairs_since: times.map((_, t) => (t === 40 ? 2922 : t > 20 && t <= 30 ? t - 15 : 0)),
                   colliding: { offsets: "offsets", triangles: "triangles" },
                   ground: 0,
                   sound: sound ? "sound" : null,

@@ -190,6 +190,48 @@ describe("playback", () => {
             assert.equal(await slider.inputValue(), "59");
         }));
 
+    test("tells what collided since the last frame apart from the frame itself", () =>
+        look({}, async (page) => {
+            const slider = page.getByRole("slider", { name: "frame" });
+            const verdict = page.locator(".verdict-text");
+            const since = page.locator(".gauge .since");
+            await slider.fill("40");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "free (as recorded)");
+            assert.equal(await since.innerText(), "collided since the last frame: at most 2,922 pairs in one step");
+            assert.match(
+                await slider.getAttribute("aria-valuetext"),
+                /^1.33 seconds, collided since the last frame$/,
+            );
+            assert.equal(orange(await pixels(page)), 0);
+            // Low marks here and where the longer contact ends, lower than all others.
+            const heights = (which) =>
+                page.locator(which).evaluateAll((bars) => bars.map((bar) => Number(bar.getAttribute("height"))));
+            assert.deepEqual(await heights(".marks .contact.since"), [4, 4]);
+            assert.ok((await heights(".marks .contact:not(.since)")).every((height) => height >= 8));
+            await page.keyboard.press(".");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "free (as recorded)");
+            assert.ok(await since.isHidden());
+            await page.keyboard.press(",");
+            await page.keyboard.press(",");
+            await settled(page);
+            assert.ok(await since.isHidden());
+            await page.getByRole("button", { name: "next self-contact" }).click();
+            assert.equal(await slider.inputValue(), "40");
+            // It lies between the two frames in plots, too.
+            await page.getByRole("tab", { name: "Plots" }).click();
+            assert.equal(await page.locator(".plot").nth(0).locator(".span").count(), 2);
+        }));
+
+    test("claims nothing of frames whose own collisions were not recorded", () =>
+        look({ change: (scene) => delete scene.playback.pairs_since }, async (page) => {
+            await page.getByRole("slider", { name: "frame" }).fill("25");
+            await settled(page);
+            const text = await page.locator(".verdict-text").innerText();
+            assert.equal(text, "unknown: collisions of this frame were not recorded");
+        }));
+
     test("moves each body by its q and its own rigid motion", () =>
         look({}, async (page) => {
             await page.getByRole("slider", { name: "frame" }).fill("30");
@@ -287,7 +329,7 @@ describe("the page", () => {
             const ticks = await page.locator(".plot").nth(1).locator(".tick").allTextContents();
             for (const tick of ["0.01", "0.1", "1", "10", "1e-6", "0.001"])
                 assert.ok(ticks.includes(tick), `${tick}: ${ticks}`);
-            assert.equal(await page.locator(".plot").nth(0).locator(".span").count(), 1);
+            assert.equal(await page.locator(".plot").nth(0).locator(".span").count(), 2);
             await page.locator(".plot").nth(1).locator("svg[role=img]").hover();
             assert.match(
                 await page.locator(".readout").nth(1).innerText(),

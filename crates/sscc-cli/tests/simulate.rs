@@ -7,6 +7,7 @@ mod common;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 use std::process::Stdio;
 use std::sync::LazyLock;
@@ -190,7 +191,16 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!(floats(&report, &body["rigid"]).len(), 7 * times.len());
     let pairs: Vec<u64> =
         body["pairs"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).collect();
-    assert_eq!(pairs.iter().any(|count| *count > 0), trajectories["self_pairs"].1.iter().any(|n| *n > 0.0));
+    // What collides in a frame is told of that very frame; what collides between it and the one before, apart from it.
+    let frames = sscc_io::gltf::key_frames(800, 1.0 / 8000.0, 60.0);
+    let own = |state: usize| trajectories["self_pairs"].1[state] as u64;
+    let most = |states: Range<usize>| states.map(own).max().unwrap_or(0);
+    assert_eq!(pairs, frames.iter().map(|frame| own(*frame)).collect::<Vec<_>>());
+    let since: Vec<u64> =
+        playback["pairs_since"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).collect();
+    let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
+    assert_eq!(since, [0].into_iter().chain(between).collect::<Vec<_>>());
+    assert!(pairs.iter().zip(&since).any(|(own, since)| *own == 0 && *since > 0), "{pairs:?} {since:?}");
     let offsets = bytes_of(&report, &playback["colliding"]["offsets"]);
     assert_eq!(offsets.len(), 4 * (times.len() + 1));
     assert_eq!(&bytes_of(&report, &playback["sound"])[..4], b"RIFF");

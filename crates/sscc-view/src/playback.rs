@@ -11,6 +11,9 @@ pub struct Playback {
     pub times: Vec<f64>,
     /// What moves.
     pub bodies: Vec<Body>,
+    /// For each frame the most pairs of triangles in which all bodies collide with themselves in one step between the
+    /// frame before and this one (neither of both counts; 0 at the first); none where there are no such steps.
+    pub pairs_since: Option<Vec<u64>>,
     /// Triangles that collide, where they are known.
     pub colliding: Option<Colliding>,
     /// How high the ground is (z).
@@ -34,7 +37,7 @@ pub struct Body {
     pub rigid: Option<String>,
     /// The point about which it turns.
     pub center: [f64; 3],
-    /// For each frame the pairs of triangles in which it collides with itself, then or before the next; none where
+    /// For each frame the number of pairs of triangles in which it collides with itself in that very frame; none where
     /// they are not known.
     pub pairs: Option<Vec<u64>>,
 }

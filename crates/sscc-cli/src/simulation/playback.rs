@@ -1,11 +1,14 @@
 //! The motion of a simulation, for its report.
 
+use std::ops::Range;
+
 use anyhow::Result;
 use sscc::Query;
 use sscc_io::gltf::key_frames;
 use sscc_io::{WavFormat, wav_to_bytes};
 use sscc_view::{Arrays, Body, Colliding, Playback};
 
+use super::history::History;
 use super::outputs::{LOUDEST, loud};
 use super::page::Page;
 use crate::interrupt;
@@ -45,8 +48,6 @@ pub fn playback(page: &Page<'_>, arrays: &mut Arrays) -> Result<(Option<Playback
     if frames.is_empty() {
         return Ok((None, notes));
     }
-    let ends = frames.iter().skip(1).copied().chain([history.len()]);
-    let windows: Vec<_> = frames.iter().copied().zip(ends).map(|(from, to)| from..to).collect();
     let tracks = (0..bodies).map(|body| {
         let at = || frames.iter().map(|state| history.body(*state, body));
         let spec = &scene.bodies[body];
@@ -57,17 +58,13 @@ pub fn playback(page: &Page<'_>, arrays: &mut Arrays) -> Result<(Option<Playback
             numbers[3..].copy_from_slice(&facts.orientation.to_array());
             numbers.map(|x| x as f32)
         });
-        // Contacts between two frames are told with the first of them.
-        let most = |states: &std::ops::Range<usize>| {
-            states.clone().map(|state| history.body(state, body).pairs as u64).max().unwrap_or(0)
-        };
         Body {
             name: format!("{} {body}", prepared.models[spec.model].case.name),
             model: spec.model,
             q: arrays.add_f32(format!("q-{body}"), q),
             rigid: Some(arrays.add_f32(format!("rigid-{body}"), rigid)),
             center: prepared.models[spec.model].center().to_array(),
-            pairs: Some(windows.iter().map(most).collect()),
+            pairs: Some(at().map(|facts| facts.pairs as u64).collect()),
         }
     });
     let tracks = tracks.collect();
@@ -78,12 +75,21 @@ pub fn playback(page: &Page<'_>, arrays: &mut Arrays) -> Result<(Option<Playback
     let playback = Playback {
         times: frames.iter().map(|state| page.time(*state)).collect(),
         bodies: tracks,
+        pairs_since: Some(pairs_since(history, &frames)),
         colliding,
         ground: scene.ground.map(|ground| ground.height),
         sound,
         costs: Some(page.costs()),
     };
     Ok((Some(playback), notes))
+}
+
+/// For each frame, the most pairs in which all bodies collide with themselves in one state between the frame before and
+/// this one: contacts shorter than a frame are seen in none.
+fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
+    let most = |states: Range<usize>| states.map(|state| history.self_pairs(state) as u64).max().unwrap_or(0);
+    let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
+    [0].into_iter().chain(between).take(frames.len()).collect()
 }
 
 /// The colliding triangles of each frame, body by body; none of them where they are too many.
@@ -142,5 +148,33 @@ fn sound(page: &Page<'_>, arrays: &mut Arrays) -> (Option<String>, Option<String
     match wav_to_bytes(rate, &loud(&samples, LOUDEST), WavFormat::Pcm16) {
         Ok(bytes) => (Some(arrays.add_bytes("sound", bytes)), None),
         Err(why) => (None, Some(format!("the sound is left out: {why}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use super::*;
+    use crate::simulation::history::{BodyFacts, Layout, StepFacts};
+
+    #[test]
+    fn steps_between_frames_are_told_apart_from_frames() {
+        let pairs = [[0, 0], [7, 0], [3, 5], [0, 0], [4, 0], [0, 2], [0, 0], [0, 9]];
+        let (layout, mut numbers) = (Layout::new([0, 0]), Vec::new());
+        for state in pairs {
+            let bodies = state.map(|pairs| BodyFacts {
+                pairs,
+                position: DVec3::ZERO,
+                orientation: DQuat::IDENTITY,
+                q: &[],
+            });
+            layout.push(StepFacts::default(), bodies, &mut numbers);
+        }
+        let history = History::new(layout, numbers);
+        // States 1 and 2 between the first two frames; none between 3 and 4; state 4 is a frame itself.
+        assert_eq!(pairs_since(&history, &[0, 3, 4, 6, 7]), [0, 8, 0, 2, 0]);
+        assert_eq!(pairs_since(&history, &[0, 7]), [0, 8]);
+        assert_eq!(pairs_since(&history, &[0]), [0]);
     }
 }

@@ -63,6 +63,7 @@ pub fn html(
             center: [0.0; 3],
             pairs: Some(pairs.iter().map(|pairs| pairs.len() as u64).collect()),
         }],
+        pairs_since: None,
         colliding: Some(Colliding {
             offsets: arrays.add_u32("colliding-offsets", offsets),
             triangles: arrays.add_u32("colliding-triangles", triangles),
