@@ -32,9 +32,9 @@ export function verdict(app: App): Verdict {
     return { kind: "free", text: "free, proven" };
 }
 
-/** What a recording says of the steps between the frame before and the one shown; none of it is seen in either. */
+/** The most pairs in one step between the frame before and the one shown: neither picture shows them. */
 export function sinceText(since: number): string {
-    return since > 0 ? `collided since the last frame: at most ${count(since, "pair")} in one step` : "";
+    return since > 0 ? `collided since the last frame: at most ${count(since, "pair")}` : "";
 }
 
 export class Gauge {

@@ -198,7 +198,7 @@ describe("playback", () => {
             await slider.fill("40");
             await settled(page);
             assert.equal(await verdict.innerText(), "free (as recorded)");
-            assert.equal(await since.innerText(), "collided since the last frame: at most 2,922 pairs in one step");
+            assert.equal(await since.innerText(), "collided since the last frame: at most 2,922 pairs");
             assert.match(
                 await slider.getAttribute("aria-valuetext"),
                 /^1.33 seconds, collided since the last frame$/,
