@@ -6,16 +6,18 @@ use glam::{DQuat, DVec3};
 pub const PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
 
 /// Numbers of a step beside those of its bodies.
-const OF_STEP: usize = PARTS.len() + 3;
+const OF_STEP: usize = PARTS.len() + 4;
 
 /// Numbers of a body beside its q.
 const OF_BODY: usize = 8;
 
-/// A state, and the step that begins with it: what it cost (seconds of the wall clock), and what came of it.
+/// A state, and the step that begins with it: what it cost, and what came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepFacts {
-    /// Of each part.
+    /// Processor time of each part (s).
     pub seconds: [f64; PARTS.len()],
+    /// What passed meanwhile by the wall's clock (s).
+    pub wall: f64,
     /// Kinetic, elastic and potential energy; not a number at the steps at which it was not computed.
     pub energy: f64,
     /// The sample of the sound during the step; 0 without.
@@ -30,7 +32,7 @@ impl StepFacts {
         self.seconds[0]
     }
 
-    /// The whole step (s).
+    /// The whole step (s of the processor).
     pub fn all(&self) -> f64 {
         self.seconds.iter().sum()
     }
@@ -40,6 +42,7 @@ impl StepFacts {
         numbers[..PARTS.len()].copy_from_slice(&self.seconds);
         numbers[PARTS.len() + 1] = self.sound;
         numbers[PARTS.len() + 2] = self.inter_pairs as f64;
+        numbers[PARTS.len() + 3] = self.wall;
         numbers
     }
 }
@@ -110,6 +113,13 @@ impl Layout {
             state[*start] = pairs as f64;
         }
     }
+
+    /// Multiplies the seconds of the parts of all states that are given.
+    pub fn scale_seconds(&self, factor: f64, states: &mut [f64]) {
+        for state in states.chunks_exact_mut(self.width()) {
+            state[..PARTS.len()].iter_mut().for_each(|seconds| *seconds *= factor);
+        }
+    }
 }
 
 /// The states of a simulation so far, the first of them its beginning.
@@ -148,8 +158,8 @@ impl History {
     pub fn facts(&self, state: usize) -> StepFacts {
         let of = self.of(state);
         let seconds = std::array::from_fn(|part| of[part]);
-        let [energy, sound, inter_pairs] = [0, 1, 2].map(|n| of[PARTS.len() + n]);
-        StepFacts { seconds, energy, sound, inter_pairs: inter_pairs as usize }
+        let [energy, sound, inter_pairs, wall] = [0, 1, 2, 3].map(|n| of[PARTS.len() + n]);
+        StepFacts { seconds, wall, energy, sound, inter_pairs: inter_pairs as usize }
     }
 
     pub fn body(&self, state: usize, body: usize) -> BodyFacts<'_> {
@@ -186,6 +196,7 @@ mod tests {
         let layout = Layout::new([2, 0]);
         let facts = |x: f64| StepFacts {
             seconds: std::array::from_fn(|part| x + part as f64),
+            wall: 2.0 * x,
             energy: x + 0.5,
             sound: -x,
             inter_pairs: x as usize + 2,
@@ -200,9 +211,9 @@ mod tests {
         let mut numbers = Vec::new();
         layout.push(facts(0.0), [body(0, &q[0]), body(0, &[])], &mut numbers);
         layout.push(facts(0.0), [body(0, &q[1]), body(0, &[])], &mut numbers);
-        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[27..]);
+        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[28..]);
         let history = History::new(layout, numbers);
-        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 27, 2));
+        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 28, 2));
         assert_eq!(
             (history.facts(1), history.body(1, 0)),
             (facts(10.0), BodyFacts { position: body(0, &q[1]).position, ..body(3, &q[1]) })

@@ -1,5 +1,6 @@
 //! Simulations of scenes: what they need, how they go on after being killed, what becomes of them.
 
+mod clock;
 mod history;
 mod log;
 mod meter;

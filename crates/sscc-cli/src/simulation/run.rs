@@ -7,7 +7,8 @@ use anyhow::{Context, Error, Result, anyhow, ensure};
 use cpu_time::ThreadTime;
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, Start, State, World};
 
-use super::history::{BodyFacts, History, Layout, PARTS, StepFacts};
+use super::clock::{Clocks, StepClock, StepTimes, SystemClocks};
+use super::history::{BodyFacts, History, Layout, StepFacts};
 use super::log::Log;
 use super::meter::Meter;
 use super::outputs;
@@ -64,7 +65,9 @@ pub fn run(
         let at = checkpoint.states;
         restore(&mut world, &mut sounds, at, &checkpoint.memory).context("the checkpoint")?;
     }
-    let mut simulation = Simulation { world, sounds, layout, numbers: Vec::new() };
+    // One body is tested and moved by the thread that calls.
+    let is_one_thread = scene.bodies.len() == 1 || rayon::current_num_threads() == 1;
+    let mut simulation = Simulation::new(world, sounds, layout, SystemClocks::new(is_one_thread));
     let is_whole = log.len() == 0;
     let processor = ThreadTime::now();
     let mut last = Instant::now();
@@ -81,17 +84,17 @@ pub fn run(
             break;
         }
         if simulation.numbers.len() >= KEPT {
-            log.append(&std::mem::take(&mut simulation.numbers))?;
+            log.append(&simulation.take())?;
         }
         if last.elapsed() >= CHECKPOINT {
-            log.append(&std::mem::take(&mut simulation.numbers))?;
+            log.append(&simulation.take())?;
             log.write_checkpoint(&simulation.memory())?;
             last = Instant::now();
         }
         meter.report(log.len() + simulation.waiting(), steps, scene.step);
     }
     let processor_seconds = is_whole.then(|| processor.elapsed().as_secs_f64());
-    log.append(&std::mem::take(&mut simulation.numbers))?;
+    log.append(&simulation.take())?;
     // What diverged is no place to go on from.
     if can_go_on {
         log.write_checkpoint(&simulation.memory())?;
@@ -160,15 +163,36 @@ fn named(error: DynamicsError, world: &World<'_>) -> Error {
     )
 }
 
-struct Simulation<'a> {
+struct Simulation<'a, C> {
     world: World<'a>,
     sounds: Vec<Option<SoundBank>>,
     layout: Layout,
+    clock: StepClock<C>,
     /// States that are not yet in the log.
     numbers: Vec<f64>,
+    /// Where those begin whose processor time is not yet known.
+    unsettled: usize,
 }
 
-impl Simulation<'_> {
+impl<'a, C: Clocks> Simulation<'a, C> {
+    fn new(world: World<'a>, sounds: Vec<Option<SoundBank>>, layout: Layout, clocks: C) -> Self {
+        Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), unsettled: 0 }
+    }
+
+    /// The states that are not yet in the log, to be put there.
+    fn take(&mut self) -> Vec<f64> {
+        self.settle();
+        self.unsettled = 0;
+        std::mem::take(&mut self.numbers)
+    }
+
+    /// Gives the last states their processor time.
+    fn settle(&mut self) {
+        let factor = self.clock.settle();
+        self.layout.scale_seconds(factor, &mut self.numbers[self.unsettled..]);
+        self.unsettled = self.numbers.len();
+    }
+
     fn waiting(&self) -> usize {
         self.numbers.len() / self.layout.width()
     }
@@ -185,15 +209,19 @@ impl Simulation<'_> {
             q: body.q(),
         });
         self.layout.push(StepFacts::default(), bodies, &mut self.numbers);
-        let mut clock = Clock { part: None, since: Instant::now(), seconds: [0.0; PARTS.len()] };
+        let begin = self.clock.begin();
+        let clock = &mut self.clock;
         let advanced = self.world.advance(&mut |phase| clock.enter(part(phase)));
-        clock.enter(Some(SOUND));
+        self.clock.enter(Some(SOUND));
         let sound = self.hear();
-        clock.enter(None);
+        let StepTimes { parts: seconds, wall } = self.clock.end(begin);
         let inter_pairs = self.world.inter_pairs().map(|(_, pairs)| pairs.len()).sum();
-        let facts = StepFacts { seconds: clock.seconds, energy, sound, inter_pairs };
+        let facts = StepFacts { seconds, wall, energy, sound, inter_pairs };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);
+        if self.clock.is_due() {
+            self.settle();
+        }
         // The state from which it could not go on is kept, too.
         advanced.map(drop)
     }
@@ -230,19 +258,47 @@ fn part(phase: Phase) -> Option<usize> {
     }
 }
 
-/// Times of the parts of a step, by the wall clock: bodies may be tested on several threads.
-struct Clock {
-    part: Option<usize>,
-    since: Instant,
-    seconds: [f64; PARTS.len()],
-}
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
 
-impl Clock {
-    fn enter(&mut self, part: Option<usize>) {
-        let now = Instant::now();
-        if let Some(part) = self.part {
-            self.seconds[part] += (now - self.since).as_secs_f64();
+    use sscc_dynamics::WorldOptions;
+
+    use super::*;
+
+    /// Each look at the wall's clock takes a millisecond, a tenth of which this thread works.
+    #[derive(Default)]
+    struct Busy {
+        looks: Cell<u32>,
+    }
+
+    impl Clocks for Busy {
+        fn wall(&self) -> f64 {
+            self.looks.set(self.looks.get() + 1);
+            1e-3 * f64::from(self.looks.get())
         }
-        (self.part, self.since) = (part, now);
+
+        fn processor(&self) -> f64 {
+            1e-4 * f64::from(self.looks.get())
+        }
+
+        fn is_one_thread(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn costs_are_processor_time() {
+        let world = World::new(WorldOptions::default()).unwrap();
+        let layout = Layout::new([]);
+        let mut simulation = Simulation::new(world, Vec::new(), layout.clone(), Busy::default());
+        (0..3).for_each(|_| simulation.step().unwrap());
+        let history = History::new(layout, simulation.take());
+        for state in 0..3 {
+            let facts = history.facts(state);
+            // Each part lasts from one look to the next.
+            assert!(facts.seconds.iter().all(|seconds| (0.5e-4..1.5e-4).contains(seconds)), "{facts:?}");
+            assert!(facts.wall > 6e-3, "{facts:?}");
+        }
     }
 }

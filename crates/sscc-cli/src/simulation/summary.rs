@@ -17,11 +17,12 @@ pub struct Summary {
     /// Steps that were simulated, and those that the scene has.
     pub steps: usize,
     pub scene_steps: usize,
-    /// Seconds of a step, of all steps, and those that it took.
+    /// Seconds of a step, of all steps, and the processor's that its parts took.
     pub step: f64,
     pub simulated_seconds: f64,
     pub simulation_seconds: f64,
-    /// Seconds simulated in each second that passed; and in each second of the processor, where one thread did it all.
+    /// Seconds simulated in each second that passed by the wall's clock: whether it keeps up with the world; and in each
+    /// second of the processor, where one thread did it all.
     pub real_time_factor: f64,
     pub real_time_factor_processor: Option<f64>,
     pub colliding_steps: usize,
@@ -61,6 +62,7 @@ impl Summary {
         let colliding: Vec<usize> = (0..steps).map(|state| history.colliding(state)).collect();
         let facts = || (0..steps).map(|state| history.facts(state));
         let seconds: f64 = facts().map(|f| f.all()).sum();
+        let wall: f64 = facts().map(|f| f.wall).sum();
         let own: f64 = facts().map(|f| f.own()).sum();
         let energies =
             || (0..steps).map(|state| history.facts(state).energy).filter(|energy| energy.is_finite());
@@ -81,7 +83,7 @@ impl Summary {
             step: scene.step,
             simulated_seconds: steps as f64 * scene.step,
             simulation_seconds: seconds,
-            real_time_factor: steps as f64 * scene.step / seconds,
+            real_time_factor: steps as f64 * scene.step / wall,
             // Several bodies are tested on other threads, too.
             real_time_factor_processor: processor_seconds
                 .filter(|_| scene.bodies.len() == 1)
@@ -130,7 +132,7 @@ impl Summary {
 
     fn motion(&self) -> String {
         format!(
-            "{}, {}, {} s, simulated in {:.2} s ({:.2} times real time{})",
+            "{}, {}, {} s, simulated in {:.2} s of the processor ({:.2} times real time{})",
             if self.objects == 1 { "one body".into() } else { format!("{} bodies", self.objects) },
             counted(self.steps as u64, "step"),
             self.simulated_seconds,
@@ -168,5 +170,27 @@ impl Summary {
 impl ModelFacts {
     fn line(&self) -> String {
         format!("{} triangles, {} modes ({})", grouped(self.triangles as u64), self.rank, self.source)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SHIPPED;
+    use crate::simulation::history::{Layout, StepFacts};
+
+    #[test]
+    fn costs_are_processor_time_and_the_real_time_factor_is_by_the_wall() {
+        let (name, text) = SHIPPED[0];
+        let scene = Scene::parse(name.as_ref(), text).unwrap();
+        let (layout, mut numbers) = (Layout::new([]), Vec::new());
+        let facts =
+            StepFacts { seconds: [1e-3, 2e-3, 0.0, 0.0, 5e-3, 0.0], wall: 0.1, ..StepFacts::default() };
+        (0..4).for_each(|_| layout.push(facts, [], &mut numbers));
+        let prepared = Prepared { models: Vec::new() };
+        let summary = Summary::new(&scene, &prepared, &History::new(layout, numbers), None);
+        assert!((summary.simulation_seconds - 4.0 * 8e-3).abs() < 1e-12);
+        assert!((summary.self_collision_share - 1.0 / 8.0).abs() < 1e-12);
+        assert!((summary.real_time_factor - scene.step / 0.1).abs() < 1e-12 * summary.real_time_factor);
     }
 }

@@ -30,7 +30,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         let mut reports = Vec::new();
         for share in SHARES {
             let steps = steps(&unit, share);
-            let measured = measure(&case, &steps, Asked::Both, &Bar::new("measuring"))?;
+            let measured = measure(&case, &steps, None, Asked::Both, &Bar::new("measuring"))?;
             mismatches += measured.mismatches;
             let name = format!("amplitudes/{name}");
             reports.push(Report::new(name, share, &case, &measured, 1, None));

@@ -61,7 +61,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         let recipe = Recipe::new(name, Shape::Spring { rings, around }, Kind::Linear(rank));
         let case = session.case(&recipe)?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
-        let measured = measure(&case, &steps(&unit, SHARE), Asked::Discrete, &Bar::new("measuring"))?;
+        let measured = measure(&case, &steps(&unit, SHARE), None, Asked::Discrete, &Bar::new("measuring"))?;
         reports.push(Report::new(format!("growth/{name}"), SHARE, &case, &measured, 1, None));
     }
     let mismatches = reports.iter().map(|report| report.mismatches).sum();

@@ -10,8 +10,8 @@ use sscc::{KineticQuery, Progress, Query};
 use super::Session;
 use super::clock::median;
 use super::columns::{COLUMNS, Engine, Role};
-use super::measure::spread;
 use super::report::Means;
+use super::strata::{Strata, Stratum, weighted_mean};
 use super::vibration::Vibration;
 use crate::case::{Case, Kind, Recipe, Shape};
 use crate::interrupt;
@@ -30,7 +30,7 @@ const PERIODS: f64 = 5.0;
 const BLOCKS: usize = 10;
 const STEPS: usize = 20_000;
 
-/// Methods that do not follow are asked so many of the steps.
+/// Methods that do not follow are asked so many of the steps, drawn of each stratum.
 const COMPARED: usize = 20;
 
 /// Repetitions of what is asked of comparators; the median counts.
@@ -56,7 +56,7 @@ struct Report {
     mismatches: usize,
     /// Over the steps that collide.
     kinetic_us_colliding: Option<f64>,
-    /// Comparators over `compared_steps`.
+    /// Comparators over `compared_steps`, each of which counts by its stratum's share of all steps.
     microseconds: Means,
     machine: String,
 }
@@ -94,7 +94,7 @@ fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> 
     let bar = Bar::new("measuring");
     let (mut colliding, mut mismatches, mut step) = (0, 0, 0.0);
     let (mut times, mut time_colliding) = ([0.0; 2], 0.0);
-    let mut compared = Vec::new();
+    let (mut states, mut strata) = (Vec::with_capacity(steps), Vec::with_capacity(steps));
     for block in 0..blocks {
         interrupt::check()?;
         let count = steps / blocks + usize::from(block < steps % blocks);
@@ -106,6 +106,7 @@ fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> 
             let expected = full.discrete(q)?;
             mismatches += usize::from(follower.discrete(q)? != expected);
             hits.push(!expected.is_empty());
+            strata.push(Stratum::of(!case.is_root_certified(q), !expected.is_empty()));
         }
         colliding += hits.iter().filter(|hit| **hit).count();
         // Each method by itself, as in a simulation; stretches of steps that all collide or are all free share a look
@@ -126,25 +127,24 @@ fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> 
             }
             _ => 0.0,
         };
-        compared.extend(
-            spread(&(0..count).collect::<Vec<_>>(), COMPARED.div_ceil(blocks))
-                .into_iter()
-                .map(|i| path[i].clone()),
-        );
+        states.extend(path);
         bar.report(block + 1, blocks);
     }
     let mut microseconds =
         vec![("kinetic", times[0] * 1e6 / steps as f64), ("full", times[1] * 1e6 / steps as f64)];
+    let strata = Strata::new(strata, None);
+    let compared = strata.draw(COMPARED);
+    let weights = strata.weights(&compared);
     for column in COLUMNS.iter().filter(|column| column.role == Role::Comparator) {
         let mut engine = column.engine(case)?;
-        let mut total = 0.0;
-        for q in &compared {
+        let mut times = Vec::with_capacity(compared.len());
+        for q in compared.iter().map(|step| &states[*step]) {
             mismatches += usize::from(engine.discrete(q)? != full.discrete(q)?);
             let rounds: Result<Vec<f64>> =
                 (0..ROUNDS).map(|_| seconds(|| Engine::discrete(engine.as_mut(), q).map(drop))).collect();
-            total += median(rounds?);
+            times.push(median(rounds?));
         }
-        let mean = total * 1e6 / compared.len() as f64;
+        let mean = 1e6 * weighted_mean(times, &weights);
         match microseconds.iter_mut().find(|(key, _)| *key == column.key) {
             Some((_, known)) => *known = known.min(mean),
             None => microseconds.push((column.key, mean)),

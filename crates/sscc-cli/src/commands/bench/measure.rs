@@ -8,6 +8,7 @@ use sscc::{Impact, Pair, Progress};
 
 use super::clock::{median, milliseconds};
 use super::columns::{COLUMNS, Column, Engine, Role};
+use super::strata::{Counts, Strata, Stratum, weighted_mean};
 use super::verdict::is_wrong;
 use crate::case::Case;
 use crate::interrupt;
@@ -22,7 +23,7 @@ const BLOCK: usize = 20;
 /// Up to so many queries of steps and bodies, comparators answer all that are discrete.
 const FEW: usize = 64;
 
-/// Else they answer so many steps, and as many that are continuous.
+/// Else they answer so many steps, drawn of each stratum, and as many that are continuous.
 const COMPARED: usize = 20;
 
 /// One step of all bodies: from each `q_t0[i]` to `q_t1[i]`. Discrete queries are asked at its start.
@@ -39,6 +40,8 @@ pub struct Measured {
     pub colliding: Vec<bool>,
     /// Whether some body's root certificate fails there.
     pub root_failed: Vec<bool>,
+    /// How much steps count.
+    pub strata: Strata,
     pub discrete: Times,
     pub continuous: Times,
     /// Steps in which two exact methods differ.
@@ -62,42 +65,58 @@ pub enum Asked {
     Discrete,
 }
 
-/// Asks all methods.
-pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<Measured> {
+/// Asks all methods. `scene` are the strata of all steps that the given ones stand for; none where these are all.
+pub fn measure(
+    case: &Case,
+    steps: &[Step],
+    scene: Option<Counts>,
+    asked: Asked,
+    bar: &Bar,
+) -> Result<Measured> {
     let mut engines: Vec<Box<dyn Engine + '_>> =
         COLUMNS.iter().map(|column| column.engine(case)).collect::<Result<_>>()?;
     let objects = steps.first().map_or(0, |step| step.q_t0.len());
+    let is_certified = |column: &Column| column.role == Role::Certified;
+    // Which steps are compared depends on what collides in all of them.
+    let (mut colliding, mut root_failed) = (Vec::with_capacity(steps.len()), Vec::with_capacity(steps.len()));
+    let mut wrong = Vec::with_capacity(steps.len());
+    for step in steps {
+        interrupt::check()?;
+        let (collides, agreed) = answer_discrete(&mut engines, is_certified, &step.q_t0)?;
+        colliding.push(collides);
+        root_failed.push(step.q_t0.iter().any(|q| !case.is_root_certified(q)));
+        wrong.push(!agreed);
+    }
+    let of = root_failed.iter().zip(&colliding).map(|(failed, collides)| Stratum::of(*failed, *collides));
+    let strata = Strata::new(of.collect(), scene);
     let all: Vec<usize> = (0..steps.len()).collect();
-    let compared = if steps.len() * objects <= FEW { all.clone() } else { spread(&all, COMPARED) };
+    let is_few = steps.len() * objects <= FEW;
+    let compared = if is_few { all.clone() } else { strata.draw(COMPARED) };
     let continuous = match asked {
-        Asked::Both => spread(&compared, COMPARED),
+        Asked::Both if is_few => strata.draw(COMPARED),
+        Asked::Both => compared.clone(),
         Asked::Discrete => Vec::new(),
     };
     let is_compared = |step: &usize| compared.binary_search(step).is_ok();
     let others: Vec<usize> = all.into_iter().filter(|step| !is_compared(step)).collect();
 
-    let is_certified = |column: &Column| column.role == Role::Certified;
     let mut done = 0;
     let (columns, certified) = (COLUMNS.len(), COLUMNS.iter().filter(|column| is_certified(column)).count());
     let turns = columns * (compared.len() + continuous.len()) + certified * others.len();
-    let total = steps.len() + ROUNDS * turns;
+    let total = compared.len() + ROUNDS * turns;
     let mut tick = || {
         done += 1;
         bar.report(done, total);
         interrupt::check()
     };
-    let (mut colliding, mut root_failed) = (Vec::with_capacity(steps.len()), Vec::with_capacity(steps.len()));
-    let mut mismatches = 0;
-    for (at, step) in steps.iter().enumerate() {
-        let takes_part = |column: &Column| is_certified(column) || is_compared(&at);
-        let (collides, agreed) = answer_discrete(&mut engines, takes_part, &step.q_t0)?;
-        let wrong =
-            !agreed || continuous.binary_search(&at).is_ok() && !answer_continuous(&mut engines, case, step)?;
-        colliding.push(collides);
-        root_failed.push(step.q_t0.iter().any(|q| !case.is_root_certified(q)));
-        mismatches += usize::from(wrong);
+    for at in &compared {
+        let step = &steps[*at];
+        let (_, agreed) = answer_discrete(&mut engines, |_| true, &step.q_t0)?;
+        wrong[*at] |=
+            !agreed || continuous.binary_search(at).is_ok() && !answer_continuous(&mut engines, case, step)?;
         tick()?;
     }
+    let mismatches = wrong.into_iter().filter(|wrong| *wrong).count();
     let mut discrete = Turns::new(&mut engines, steps, &mut tick);
     let mut ask = |engine: &mut dyn Engine, step: &Step| -> Result<()> {
         Ok(step.q_t0.iter().try_for_each(|q| engine.discrete(q).map(drop))?)
@@ -114,6 +133,7 @@ pub fn measure(case: &Case, steps: &[Step], asked: Asked, bar: &Bar) -> Result<M
     Ok(Measured {
         colliding,
         root_failed,
+        strata,
         discrete: Times { compared, times: discrete, kinetic: Vec::new() },
         continuous: Times { compared: continuous, times: moving, kinetic: Vec::new() },
         mismatches,
@@ -236,24 +256,24 @@ impl Times {
         steps.filter_map(|(step, times)| Some((step, faster(times)?))).collect()
     }
 
-    /// Mean milliseconds over some steps, of the columns that were asked all of them.
-    pub fn means(&self, steps: &[usize]) -> Vec<(&'static str, f64)> {
+    /// Mean milliseconds over the scene that some steps stand for, of the columns that were asked all of them.
+    pub fn means(&self, steps: &[usize], strata: &Strata) -> Vec<(&'static str, f64)> {
         let mut means: Vec<(&'static str, f64)> = Vec::new();
         if steps.is_empty() {
             return means;
         }
+        let weights = strata.weights(steps);
         for (at, column) in COLUMNS.iter().enumerate() {
             let times: Option<Vec<f64>> = steps.iter().map(|&step| self.times[step][at]).collect();
             let Some(times) = times else { continue };
-            let mean = times.iter().sum::<f64>() / times.len() as f64;
+            let mean = weighted_mean(times, &weights);
             match means.iter_mut().find(|(key, _)| *key == column.key) {
                 Some((_, known)) => *known = known.min(mean),
                 None => means.push((column.key, mean)),
             }
         }
         if !self.kinetic.is_empty() {
-            let sum: f64 = steps.iter().map(|step| self.kinetic[*step]).sum();
-            means.push(("kinetic", sum / steps.len() as f64));
+            means.push(("kinetic", weighted_mean(steps.iter().map(|step| self.kinetic[*step]), &weights)));
         }
         means
     }
@@ -287,14 +307,22 @@ mod tests {
         partial[0] = None;
         let kinetic = vec![1.0, 3.0, 9.0];
         let times = Times { compared: vec![0, 1], times: vec![row(0.0), row(2.0), partial], kinetic };
-        let means = times.means(&[0, 1]);
+        let strata = Strata::new(vec![Stratum::RootCertified; 3], None);
+        let means = times.means(&[0, 1], &strata);
         let of =
             |means: &[(&str, f64)], key: &str| means.iter().find(|mean| mean.0 == key).map(|mean| mean.1);
         let at = COLUMNS.iter().position(|column| column.key == "parry").unwrap();
         assert_eq!((of(&means, "parry"), of(&means, COLUMNS[0].key)), (Some(at as f64 + 2.0), Some(2.0)));
-        assert_eq!(of(&times.means(&[0, 2]), COLUMNS[0].key), None);
+        assert_eq!(of(&times.means(&[0, 2], &strata), COLUMNS[0].key), None);
         assert_eq!(of(&means, "kinetic"), Some(2.0));
-        assert!(times.means(&[]).is_empty());
+        assert!(times.means(&[], &strata).is_empty());
+        // A step that stands for three of the scene, and one that stands for itself.
+        let strata = Strata::new(
+            vec![Stratum::RootCertified, Stratum::Colliding, Stratum::Colliding],
+            Some([3, 0, 1]),
+        );
+        let means = times.means(&[0, 1], &strata);
+        assert_eq!((of(&means, COLUMNS[0].key), of(&means, "kinetic")), (Some(1.5), Some(1.5)));
         // Each step that was asked, and no other.
         assert_eq!(times.of(COLUMNS[0].key), [(0, 1.0), (1, 3.0)]);
         assert_eq!(times.of("parry")[1], (1, at as f64 + 3.0));

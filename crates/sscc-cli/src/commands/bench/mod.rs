@@ -18,6 +18,7 @@ mod report;
 mod sample;
 mod scenario;
 mod scene;
+mod strata;
 mod table;
 mod verdict;
 mod vibration;

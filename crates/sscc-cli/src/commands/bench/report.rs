@@ -3,12 +3,14 @@
 use serde::{Serialize, Serializer};
 
 use super::measure::Measured;
+use super::strata::Counts;
 use crate::case::Case;
 use crate::machine;
 use crate::simulation::PARTS;
 
-/// One line of JSON. Times are means over steps; where comparators were not asked all steps, those that they were asked
-/// count for every method, so that ratios are of the same steps.
+/// One line of JSON. Times are means over the whole scene, estimated from steps that count by the shares of their strata;
+/// where comparators were not asked all steps, those that they were asked count for every method, so that ratios are of
+/// the same steps.
 #[derive(Serialize)]
 pub struct Report {
     /// With the model, where the scenario has several.
@@ -39,13 +41,16 @@ pub struct Report {
     pub certify_peak_bytes: Option<u64>,
     /// One discrete query of one body.
     pub parry_query_seconds: Option<f64>,
-    /// Of the whole scene; none where nothing is simulated. It looks for self-collisions as its file says.
+    /// How many steps of each stratum the scene has, and how many of them are compared.
+    #[serde(skip)]
+    pub strata: [Counts; 2],
+    /// Processor time of the whole scene; none where nothing is simulated. It looks for self-collisions as its file says.
     pub simulation_seconds: Option<f64>,
     pub self_collision_share: Option<f64>,
     /// What it would take with the traditional method, over what it took.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation_speedup: Option<f64>,
-    /// Mean milliseconds of the parts of a step, over the whole scene.
+    /// Mean milliseconds of the processor of the parts of a step, over the whole scene.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub simulation_ms: Means,
     pub discrete_ms: Means,
@@ -114,17 +119,17 @@ impl Report {
             Some(parts) => PARTS.iter().zip(parts).map(|(part, seconds)| (*part, of_step(seconds))).collect(),
             None => Vec::new(),
         };
-        let Measured { discrete, continuous, .. } = measured;
+        let Measured { discrete, continuous, strata, .. } = measured;
         let (compared, all): (&[usize], Vec<usize>) = (&discrete.compared, (0..steps).collect());
         let root_failed: Vec<usize> =
             compared.iter().copied().filter(|step| measured.root_failed[*step]).collect();
-        let everywhere = if compared.len() < steps { discrete.means(&all) } else { Vec::new() };
-        let discrete_ms = Means(discrete.means(compared));
+        let everywhere = if compared.len() < steps { discrete.means(&all, strata) } else { Vec::new() };
+        let discrete_ms = Means(discrete.means(compared, strata));
         Self {
             scenario,
             model: case.name.clone(),
             source: case.source.clone(),
-            note: case.note.clone(),
+            note: notes(case.note.clone(), strata.missing()),
             share,
             triangles: case.model.mesh().faces().len(),
             rank: case.model.rank(),
@@ -135,6 +140,7 @@ impl Report {
             compared_steps: compared.len(),
             compared_root_failed_steps: root_failed.len(),
             continuous_steps: continuous.compared.len(),
+            strata: [strata.scene(), strata.counts(compared)],
             scene_steps: whole.steps,
             scene_colliding_steps: whole.colliding_steps,
             scene_body_steps: whole.body_steps,
@@ -152,10 +158,16 @@ impl Report {
             }),
             simulation_ms: Means(simulation_ms),
             discrete_ms,
-            continuous_ms: Means(continuous.means(&continuous.compared)),
-            discrete_ms_root_failed: Means(discrete.means(&root_failed)),
+            continuous_ms: Means(continuous.means(&continuous.compared, strata)),
+            discrete_ms_root_failed: Means(discrete.means(&root_failed, strata)),
             discrete_ms_all_steps: Means(everywhere),
             machine: machine::description(),
         }
     }
+}
+
+/// Both notes, if there are any.
+fn notes(first: Option<String>, second: Option<String>) -> Option<String> {
+    let notes: Vec<String> = first.into_iter().chain(second).collect();
+    (!notes.is_empty()).then(|| notes.join("; "))
 }

@@ -11,6 +11,7 @@ use super::paper;
 use super::report::{Report, Whole};
 use super::sample::{half_diagonal, largest_displacement};
 use super::scenario::PaperTable;
+use super::strata::{Stratum, blocks};
 use crate::output::{Output, one_line};
 use crate::progress::Bar;
 use crate::scene::Scene;
@@ -18,9 +19,6 @@ use crate::simulation::{History, Log, Meter, PARTS, Prepared, Ran, run};
 
 /// Steps that are measured, if nothing is said.
 const STEPS: usize = 100;
-
-/// Steps are measured in so many blocks, spread evenly over the scene.
-const BLOCKS: usize = 10;
 
 /// States that are looked at for how far bodies are displaced.
 const LOOKED_AT: usize = 100;
@@ -51,23 +49,29 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
     }
     let prepared = Prepared::get(&scene, session.models.as_deref(), &session.cache)?;
     let history = simulated(session, &scene, &prepared)?;
-    let steps = blocks(history.len() - 1, session.args.steps.map_or(STEPS, |steps| steps as usize));
+    let mut models = prepared.models.into_iter();
+    let (Some(model), None) = (models.next(), models.next()) else {
+        bail!("scenes of one model are measured");
+    };
+    let mut case = model.case.with_paper(&session.cache)?;
+    let stratum = |state: usize| {
+        let root_failed = history.bodies(state).any(|body| !case.is_root_certified(body.q));
+        Stratum::of(root_failed, history.colliding(state) > 0)
+    };
+    let strata: Vec<Stratum> = (0..history.len() - 1).map(stratum).collect();
+    let steps = blocks(&strata, session.args.steps.map_or(STEPS, |steps| steps as usize));
     let at = |state: usize| -> Vec<Vec<f64>> { history.bodies(state).map(|body| body.q.to_vec()).collect() };
     let step = |(n, state): (usize, &usize)| {
         let is_first = n == 0 || steps[n - 1] + 1 != *state;
         Step { before: is_first.then(|| at(state.saturating_sub(1))), q_t0: at(*state), q_t1: at(state + 1) }
     };
     let measured_steps: Vec<Step> = steps.iter().enumerate().map(step).collect();
-    let mut models = prepared.models.into_iter();
-    let (Some(model), None) = (models.next(), models.next()) else {
-        bail!("scenes of one model are measured");
-    };
-    let mut case = model.case.with_paper(&session.cache)?;
     if session.args.quick {
         case.note =
             Some("--quick: a spring of 4,000 triangles stands in for any model, for half a second".into());
     }
-    let mut measured = measure(&case, &measured_steps, Asked::Both, &Bar::new("measuring"))?;
+    let scene_strata = Some(Stratum::counts(strata));
+    let mut measured = measure(&case, &measured_steps, scene_strata, Asked::Both, &Bar::new("measuring"))?;
     measured.mismatches += follow(&case, &measured_steps, &mut measured.discrete)?;
     session.rows.add_costs(name, &measured.discrete, |step| steps[step] as f64 * scene.step);
     let farthest = spread(&(0..history.len()).collect::<Vec<_>>(), LOOKED_AT)
@@ -104,15 +108,6 @@ fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Resul
     }
 }
 
-/// Numbers of `wanted` of the steps, in blocks.
-fn blocks(steps: usize, wanted: usize) -> Vec<usize> {
-    let wanted = wanted.min(steps);
-    let count = BLOCKS.min(wanted);
-    let starts = spread(&(0..steps).collect::<Vec<_>>(), count);
-    let length = |block: usize| wanted / count + usize::from(block < wanted % count);
-    starts.into_iter().enumerate().flat_map(|(block, start)| start..start + length(block)).collect()
-}
-
 /// What collides in the whole scene, and what its simulation took.
 fn whole(history: &History) -> Whole {
     let steps = history.len();
@@ -127,22 +122,5 @@ fn whole(history: &History) -> Whole {
         body_steps: steps * history.layout().bodies(),
         colliding_body_steps: colliding.iter().sum(),
         seconds: Some(seconds),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blocks_cover_the_scene() {
-        assert_eq!(blocks(600, 20)[..4], [0, 1, 60, 61]);
-        assert_eq!(blocks(600, 3), [0, 200, 400]);
-        assert_eq!(blocks(600, 12)[..5], [0, 1, 60, 61, 120]);
-        for wanted in [1, 10, 33, 599, 600, 10_000] {
-            let steps = blocks(600, wanted);
-            assert_eq!(steps.len(), wanted.min(600));
-            assert!(steps.windows(2).all(|pair| pair[0] < pair[1]) && steps.iter().all(|i| *i < 600));
-        }
     }
 }

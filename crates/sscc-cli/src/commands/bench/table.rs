@@ -53,12 +53,20 @@ impl<'a> Table<'a> {
         }
         if let (Some(seconds), Some(share)) = (first.simulation_seconds, first.self_collision_share) {
             lines.push(format!(
-                "simulated in {seconds:.2} s, {:.1}% of it to find self-collisions; {} as fast as with the traditional method",
+                "simulated in {seconds:.2} s of the processor, {:.1}% of it to find self-collisions; {} as fast as with the traditional method",
                 100.0 * share,
                 times(first.simulation_speedup)
             ));
         }
         lines.extend(first.note.iter().map(|note| format!("note: {note}")));
+        if self.reports.len() == 1 && first.scene_steps > first.compared_steps {
+            let [scene, compared] = first.strata;
+            let scene = scene.map(|steps| grouped(steps as u64));
+            lines.push(format!(
+                "means are of the whole scene: the root certifies {} steps ({} compared), leaves {} open ({}), and {} collide ({})",
+                scene[0], compared[0], scene[1], compared[1], scene[2], compared[2]
+            ));
+        }
         let label = |report: &Report| format!("{}%", (report.share * 10.0).round() / 10.0);
         let discrete = self.reports.iter().flat_map(|report| {
             let all = Row {

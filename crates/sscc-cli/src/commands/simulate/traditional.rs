@@ -1,8 +1,7 @@
 //! What the traditional method takes at some states of a simulation.
 
-use std::time::Instant;
-
 use anyhow::Result;
+use cpu_time::ThreadTime;
 use sscc::{Method, Progress, Query};
 
 use crate::interrupt;
@@ -16,7 +15,7 @@ const STATES: usize = 100;
 /// ... and bodies in all of them.
 const BODIES: usize = 2000;
 
-/// States, and the seconds that the traditional method takes for all bodies of each.
+/// States, and the seconds of the processor that the traditional method takes for all bodies of each, on this thread.
 pub fn costs(scene: &Scene, prepared: &Prepared, history: &History) -> Result<Vec<(usize, f64)>> {
     let mut queries: Vec<Query<'_>> = Vec::new();
     for model in &prepared.models {
@@ -29,7 +28,7 @@ pub fn costs(scene: &Scene, prepared: &Prepared, history: &History) -> Result<Ve
     for sample in 0..count {
         interrupt::check()?;
         let state = sample * history.len() / count;
-        let start = Instant::now();
+        let start = ThreadTime::now();
         for (body, facts) in scene.bodies.iter().zip(history.bodies(state)) {
             queries[body.model].discrete(facts.q)?;
         }
