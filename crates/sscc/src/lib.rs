@@ -249,6 +249,9 @@
 //! | 5.2, nodes and precomputation | `bounds/cluster.rs`, `certificates/` |
 //! | 6, scaling | [`Metric`] |
 
+#[macro_use]
+mod mutants;
+
 mod audit;
 mod bounds;
 mod certificates;

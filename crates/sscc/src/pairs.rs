@@ -195,7 +195,9 @@ impl PairFilter {
             Relation::Adjacent => [None, None],
             Relation::Apart => [Some((whole, whole)), None],
             Relation::OneVertex(v) => match (self.opposite(a, v), self.opposite(b, v)) {
-                (Some(e), Some(f)) => [Some((edge(e), whole)), Some((whole, edge(f)))],
+                (Some(e), Some(f)) => {
+                    [Some((edge(e), whole)), right_or!(Some((whole, edge(f))), OneHullOfTwo, None)]
+                }
                 _ => [None, None],
             },
         };

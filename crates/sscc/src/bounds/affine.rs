@@ -103,6 +103,16 @@ impl AffineFit {
         squared_distance(&self.residuals[a * width..][..width], &self.residuals[b * width..][..width])
     }
 
+    /// `|E_b - E_a|` from above, up to the rate error, from a [`Self::residual`].
+    ///
+    /// Rounding of the residuals is relative to the scaled modes (covered by the rate error, which [`Self::bound`]
+    /// grants twice because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
+    /// sub-triangles are themselves rounded, which moves both the offsets here and the directions in the bound.
+    pub(super) fn residual_up(&self, residual: f64, error: &GapError) -> f64 {
+        let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * error.rest(DVec3::ONE);
+        norm_up(residual, 3 * self.row) + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
+    }
+
     /// The bound for two triangles among the points: the differences of their corners, a rest distance that they at
     /// least have, and the largest [`Self::residual`] between corners of theirs.
     pub(crate) fn bound(
@@ -114,15 +124,11 @@ impl AffineFit {
         error: &GapError,
     ) -> f64 {
         let row = self.row;
-        // Rounding of the residuals: relative to the scaled modes (covered by the rate error, which is granted
-        // twice here because two corners are involved on each side) and to `|G| |p_v - p_0|`; and corners of
-        // sub-triangles are themselves rounded, which moves both the offsets here and the directions below.
-        let residual_error =
-            (16.0 * f64::EPSILON * self.longest + 4.0 * error.rest(DVec3::ONE)) * self.frobenius;
-        let e = norm_up(residual, 3 * row) + residual_error;
+        let e = self.residual_up(residual, error);
         let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
         let rest_error = error.rest(axes);
-        let slack = (e + 2.0 * error.rate(axes)) * UP;
+        let rate_error = right_or!(2.0 * error.rate(axes), AffineWithoutRateError, 0.0);
+        let slack = (e + rate_error) * UP;
         let rounding = 8.0 * f64::EPSILON * self.frobenius;
         let bound = |rate: f64| radius(delta - rest_error, ((rate * UP + rounding) * delta + slack) * UP);
         let all = bound(self.rate);
@@ -266,3 +272,6 @@ fn largest_rate(gram: &StrainGram, row: usize) -> f64 {
 
 /// Covers gradient entries whose squares underflow.
 const VANISHED: f64 = 1e-150;
+
+#[cfg(test)]
+mod tests;

@@ -110,7 +110,8 @@ impl Cluster {
         // Rounding of residuals and corners: relative to the modes it is covered by the rate error, relative
         // to `|G| |h|` by this.
         let frobenius = norm_up(dot(&gradient, &gradient), 9 * row);
-        residual += DVec3::splat(64.0 * f64::EPSILON * frobenius * half.length());
+        let lost = right_or!(64.0 * f64::EPSILON * frobenius * half.length(), ClusterFitExact, 0.0);
+        residual += DVec3::splat(lost);
         Self { centre, half, residual, modes, gradient }
     }
 }
@@ -243,9 +244,10 @@ fn corner_bound(
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
     // The terms of a square add up to at most (the sum of all |row|)^2; the products are wrong by row eps of that, and
     // at most 16 sums follow one another: 2,000 leaves room.
-    let lost = (row as f64 + 2_000.0) * f64::EPSILON * size * size;
-    let slack = n.abs().dot(x.residual + y.residual) + 2.0 * model.error.rate(n);
-    let rest_error = 2.0 * model.error.rest(n);
+    let lost = right_or!((row as f64 + 2_000.0) * f64::EPSILON * size * size, ClusterProductsExact, 0.0);
+    let rate_error = right_or!(2.0 * model.error.rate(n), ClusterWithoutRateError, 0.0);
+    let slack = n.abs().dot(x.residual + y.residual) + rate_error;
+    let rest_error = right_or!(2.0 * model.error.rest(n), ClusterWithoutRestError, 0.0);
     let gap = n.dot(y.centre - x.centre);
     // For corners Y of y and X of x, `|c + Y + X|^2 = |c|^2 + (|c + Y|^2 - |c|^2) + (|c + X|^2 - |c|^2) + 2 Y.X`.
     let [(steps_y, squares_y), (steps_x, squares_x)] = [0, 3].map(|first| {
@@ -287,3 +289,6 @@ fn corner_bound(
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests;

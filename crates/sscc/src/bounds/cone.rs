@@ -30,7 +30,8 @@ pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wante
     if !trace.is_finite() {
         return f64::INFINITY;
     }
-    let forms = Forms { gram, error: (row as f64 + 1024.0) * f64::EPSILON * trace };
+    let error = right_or!((row as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
+    let forms = Forms { gram, error };
     let [a, b, c, e] = corners;
     let mut cones: Vec<Cone> = Vec::with_capacity(2 * CONES);
     for directions in [[a, b, c], [a, c, e]] {
@@ -137,3 +138,6 @@ impl Forms<'_> {
         largest * (1.0 + 32.0 * f64::EPSILON)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -62,7 +62,9 @@ pub(crate) fn direction_bound(
 /// [`GapError::rest`] and [`GapError::rate`].
 #[inline]
 pub(crate) fn point_bound(gap: f64, a: &[f64], b: &[f64], (rest_error, rate_error): (f64, f64)) -> f64 {
-    radius(gap - rest_error, norm_up(squared_distance(a, b), a.len()) + rate_error)
+    let gap = gap - right_or!(rest_error, DirectionWithoutRestError, 0.0);
+    let rate = norm_up(squared_distance(a, b), a.len());
+    radius(gap, rate + right_or!(rate_error, DirectionWithoutRateError, 0.0))
 }
 
 /// A lower bound of the rest distance of the two triangles: the smallest gap along n over its length.

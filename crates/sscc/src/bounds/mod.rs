@@ -16,6 +16,8 @@ mod min_norm;
 mod path;
 #[cfg(test)]
 mod reference;
+#[cfg(test)]
+mod rounding_tests;
 mod scaled;
 #[cfg(test)]
 mod tests;

@@ -52,7 +52,8 @@ impl Path {
     /// The t up to which a gap that is at least `gap` at `t` and closes no faster than `-opening` stays positive.
     #[inline]
     pub(crate) fn closes_at(&self, t: f64, gap: f64, opening: f64) -> f64 {
-        let (gap, opening) = (gap - self.rest - t * self.rate, opening - self.rate);
+        let gap = right_or!(gap - self.rest - t * self.rate, PathExact, gap);
+        let opening = right_or!(opening - self.rate, PathExact, opening);
         if gap.is_nan() || gap <= 0.0 {
             0.0
         } else if opening >= 0.0 {

@@ -36,7 +36,8 @@ impl GapError {
     /// The error between two z, both of at most that norm, in the place of one between rest and z: the gap is rounded
     /// at both. Again twice that, for what evaluating the bounds about z rounds.
     pub(crate) fn within(&self, norm: f64) -> Self {
-        Self { rest: (self.rest + self.rate * norm) * (4.0 * UP), rate: self.rate }
+        let moved = right_or!(self.rate * norm, MarginErrorAtRest, DVec3::ZERO);
+        Self { rest: (self.rest + moved) * (4.0 * UP), rate: self.rate }
     }
 
     /// The part of the error that does not depend on z, for a direction n, rounded up.
@@ -76,13 +77,13 @@ pub(crate) fn radius(numerator: f64, denominator: f64) -> f64 {
 #[inline]
 pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
     let quotient = numerator / denominator;
-    if quotient < f64::MIN_POSITIVE { 0.0 } else { quotient * DOWN }
+    if quotient < f64::MIN_POSITIVE { 0.0 } else { quotient * right_or!(DOWN, QuotientToNearest, 1.0) }
 }
 
 /// The root of a sum of squares over at most `terms` numbers, rounded up.
 #[inline]
 pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
-    sum_of_squares.sqrt() * (1.0 + (terms as f64 + 16.0) * f64::EPSILON)
+    sum_of_squares.sqrt() * right_or!(1.0 + (terms as f64 + 16.0) * f64::EPSILON, NormUpToNearest, 1.0)
 }
 
 /// Positions at the centre (called rest below) and scaled modes of a model, laid out for the bounds.
@@ -117,7 +118,8 @@ impl ScaledModel {
             }
             // What is added up on the way to the centre is rounded, too.
             let moved: DVec3 = of_vertex.iter().zip(center).map(|(u, q)| (*u * *q).abs()).sum();
-            rest_reach = rest_reach.max(mesh.rest_positions()[v as usize].abs() + moved);
+            let at_rest = mesh.rest_positions()[v as usize].abs();
+            rest_reach = rest_reach.max(at_rest + right_or!(moved, RestErrorWithoutCentre, DVec3::ZERO));
             metric.magnitudes(&scaled, &mut magnitudes);
             let norm = |c: usize| norm_up(magnitudes.iter().map(|m| m[c] * m[c]).sum(), row);
             rate_reach = rate_reach.max(DVec3::new(norm(0), norm(1), norm(2)));

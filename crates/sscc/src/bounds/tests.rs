@@ -156,7 +156,7 @@ fn far_target() -> Target {
 }
 
 /// All bounds of one pair of triangles, by name.
-fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
+pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let pair = triangle_pair(&scaled);
     let differences = pair.differences();
@@ -342,7 +342,7 @@ fn two_leaves(split: u32, count: u32) -> Hierarchy {
     Hierarchy::from_parts(nodes, (0..count).collect(), count as usize).unwrap()
 }
 
-fn cluster_bound(model: &ReducedModel, split: u32) -> f64 {
+pub(super) fn cluster_bound(model: &ReducedModel, split: u32) -> f64 {
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);
     let clusters = ClusterBounds::new(&scaled, &hierarchy);

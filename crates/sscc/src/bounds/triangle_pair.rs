@@ -47,9 +47,9 @@ impl Target {
 }
 
 /// Corner weights of a sub-triangle over the corners of its triangle: multiples of 2^-20, exact.
-type Weights = [DVec3; 3];
+pub(super) type Weights = [DVec3; 3];
 
-const WHOLE: Weights = [DVec3::X, DVec3::Y, DVec3::Z];
+pub(super) const WHOLE: Weights = [DVec3::X, DVec3::Y, DVec3::Z];
 
 /// A part of a triangle pair that is not refined yet.
 struct Part {
@@ -314,7 +314,7 @@ impl<'a> PairRefiner<'a> {
 }
 
 /// The part of a pair with the given corner weights; its modes are written to `corner_modes` (18 rows).
-fn sub_pair<'b>(
+pub(super) fn sub_pair<'b>(
     whole: &TrianglePair<'_>,
     x: &Weights,
     y: &Weights,
@@ -344,7 +344,7 @@ fn inverse_factor(m: DMat3) -> Option<DMat3> {
 }
 
 /// The four quarters of a triangle by edge midpoints, as corner weights.
-fn quarters(w: &Weights) -> [Weights; 4] {
+pub(super) fn quarters(w: &Weights) -> [Weights; 4] {
     let [a, b, c] = *w;
     let (ab, bc, ca) = ((a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5);
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]

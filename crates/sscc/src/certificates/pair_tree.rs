@@ -57,7 +57,8 @@ impl Entry {
 /// A radius in single precision, rounded down.
 pub(super) fn round_down(radius: f64) -> f32 {
     let rounded = radius as f32;
-    let rounded = if f64::from(rounded) > radius { rounded.next_down() } else { rounded };
+    let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
+    let rounded = if is_above { rounded.next_down() } else { rounded };
     rounded.clamp(0.0, f32::MAX)
 }
 

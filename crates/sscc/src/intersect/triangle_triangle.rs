@@ -69,7 +69,8 @@ fn intersect_crossing(a: &[DVec3; 3], sides_of_a: [i8; 3], b: &[DVec3; 3], sides
     let (apex_b, b_above) = apex(sides_of_b);
     let [a0, a1, a2] = turned(a, apex_a, b_above);
     let [b0, b1, b2] = turned(b, apex_b, a_above);
-    orient3d(a0, a1, b0, b1) <= 0 && orient3d(a0, a2, b0, b2) >= 0
+    let touch = right_or!(0, TouchingIsFree, 1);
+    orient3d(a0, a1, b0, b1) <= -touch && orient3d(a0, a2, b0, b2) >= touch
 }
 
 /// The corner that is alone on its side: its index, and whether its side is the greatest (else the least).

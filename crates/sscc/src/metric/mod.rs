@@ -200,7 +200,11 @@ impl Metric {
     pub(crate) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(_) => out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
-            Factor::Triangular(factor) => factor.magnitudes(scaled, out),
+            Factor::Triangular(factor) => right_or!(
+                factor.magnitudes(scaled, out),
+                DenseRateOfModesAlone,
+                out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
+            ),
         }
     }
 

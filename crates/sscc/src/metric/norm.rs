@@ -33,7 +33,7 @@ impl Metric {
 
 /// Rounds up what `count` products, squares and sums have rounded.
 fn up(count: usize) -> f64 {
-    1.0 + (count as f64 + 16.0) * f64::EPSILON
+    right_or!(1.0 + (count as f64 + 16.0) * f64::EPSILON, NormToNearest, 1.0)
 }
 
 fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
@@ -79,6 +79,8 @@ fn norm_by_largest(numbers: impl Iterator<Item = f64> + Clone, count: usize) -> 
 
 #[cfg(test)]
 mod tests {
+    use num_rational::BigRational;
+
     use super::*;
     use crate::MetricKind;
 
@@ -99,6 +101,62 @@ mod tests {
         let factor = vec![1.0, 1.0, 0.0, tiny];
         let dense = Metric::from_factor(MetricKind::Given, 2, factor).unwrap();
         assert!(dense.norm(&[1.0 + f64::EPSILON, -1.0]) >= f64::EPSILON);
+    }
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random() -> impl FnMut() -> f64 {
+        let mut state = 1_u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// The norm against the sum of squares in exact arithmetic, also where the products of a dense factor cancel.
+    #[test]
+    fn norm_is_at_least_the_exact_one() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let mut random = random();
+        let larger = exact(1.0 + 1e-12);
+        let mut cancelled = 0;
+        for case in 0..1200 {
+            let rank = 1 + case % 7;
+            let mut q: Vec<f64> = (0..rank).map(|_| random() * 10.0_f64.powf(3.0 * random())).collect();
+            let mut factor: Vec<f64> = (0..rank * rank).map(|_| random()).collect();
+            for i in 0..rank {
+                factor[i * rank..][..i].fill(0.0);
+                factor[i * (rank + 1)] = random().abs() + 0.1;
+            }
+            let is_cancelling = case % 3 == 2 && rank > 1;
+            if is_cancelling {
+                // All rows are 0 but for rounding, and the last one is hardly larger.
+                factor[rank * rank - 1] = 1e-12;
+                for i in (0..rank - 1).rev() {
+                    let known: f64 = (i + 1..rank).map(|j| factor[i * rank + j] * q[j]).sum();
+                    q[i] = -known / factor[i * (rank + 1)];
+                }
+            }
+            let metric = if case % 3 == 0 {
+                let scales = (0..rank).map(|i| factor[i * (rank + 1)]).collect();
+                (0..rank).for_each(|i| factor[i * rank + i + 1..][..rank - i - 1].fill(0.0));
+                Metric::from_scales(MetricKind::Given, scales).unwrap()
+            } else {
+                match Metric::from_factor(MetricKind::Given, rank, factor.clone()) {
+                    Ok(metric) => metric,
+                    // Nearly singular.
+                    Err(_) => continue,
+                }
+            };
+            let square: BigRational = (0..rank)
+                .map(|i| (i..rank).map(|j| exact(factor[i * rank + j]) * exact(q[j])).sum::<BigRational>())
+                .map(|row| &row * &row)
+                .sum();
+            let norm = exact(metric.norm(&q));
+            cancelled += usize::from(is_cancelling);
+            assert!(&norm * &norm >= square, "case {case}: {q:?}");
+            assert!(is_cancelling || &norm * &norm <= square * &larger * &larger, "case {case}: {q:?}");
+        }
+        assert!(cancelled > 100, "{cancelled}");
     }
 
     #[test]

@@ -144,7 +144,7 @@ impl Triangular {
 
     /// `|S q|_i` from above, for each row i.
     pub(super) fn products_up(&self, q: &[f64]) -> impl Iterator<Item = f64> + Clone {
-        let gamma = (self.rank as f64 + 8.0) * f64::EPSILON;
+        let gamma = right_or!((self.rank as f64 + 8.0) * f64::EPSILON, DenseProductsExact, 0.0);
         (0..self.rank).map(move |i| {
             let products = self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x);
             let (sum, size) = products.fold((0.0_f64, 0.0_f64), |(sum, size), p| (sum + p, size + p.abs()));
@@ -185,7 +185,7 @@ impl Triangular {
             return None;
         }
         let up = 1.0 + 4.0 * gamma;
-        let excess = rho / (1.0 - rho) * up;
+        let excess = right_or!(rho / (1.0 - rho) * up, DenseInverseExact, 0.0);
         for row in inverse.chunks_exact_mut(r) {
             let sum: f64 = row.iter().map(|t| t.abs()).sum();
             row.iter_mut().for_each(|t| *t = (t.abs() + excess * sum) * up);
@@ -199,5 +199,60 @@ impl Triangular {
             }
         }
         growth.iter().all(|g| g.is_finite()).then_some(growth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+    use num_traits::Signed;
+
+    use super::*;
+
+    /// `|S||S^-1|` in exact arithmetic, for factors that are more or less singular.
+    #[test]
+    fn growth_is_at_least_the_exact_one() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let (mut checked, mut largest) = (0, 0.0_f64);
+        for case in 0..300 {
+            let r = 2 + case % 6;
+            let size = 10.0_f64.powf(2.0 * random());
+            let mut entries = vec![0.0; r * r];
+            for i in 0..r {
+                (i..r).for_each(|j| entries[i * r + j] = random() * size);
+                entries[i * (r + 1)] = 0.2 + random().abs();
+            }
+            if r == 4 {
+                // An entry of the inverse that is nothing but rounding, and with it all of one of the product.
+                entries[7] = entries[6] * entries[11] / entries[10];
+                (entries[2], entries[3]) = (0.0, 0.0);
+            }
+            let Ok(factor) = Triangular::new(r, entries.clone()) else { continue };
+            // Row by row from the last: S T = I.
+            let mut inverse = vec![exact(0.0); r * r];
+            for j in 0..r {
+                for i in (0..=j).rev() {
+                    let one = exact(if i == j { 1.0 } else { 0.0 });
+                    let known: BigRational =
+                        (i + 1..=j).map(|k| exact(entries[i * r + k]) * &inverse[k * r + j]).sum();
+                    inverse[i * r + j] = (one - known) / exact(entries[i * (r + 1)]);
+                }
+            }
+            for i in 0..r {
+                for j in 0..r {
+                    let growth: BigRational =
+                        (0..r).map(|k| exact(entries[i * r + k].abs()) * inverse[k * r + j].abs()).sum();
+                    assert!(exact(factor.growth[i * r + j]) >= growth, "case {case}: {i} {j}");
+                    largest = largest.max(factor.growth[i * r + j]);
+                }
+            }
+            checked += 1;
+        }
+        assert!(checked > 200 && largest > 1e9, "{checked} {largest:e}");
     }
 }

@@ -42,7 +42,8 @@ impl Directions {
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], margin: f32) -> bool {
         let [x, y, z] = self.axes;
         // What underflows is far less than the last.
-        let slack = (x.abs() + y.abs() + z.abs()) * (4.0 * margin) + f32::MIN_POSITIVE;
+        let margins = right_or!(4.0, ApartSlackHalved, 2.0) * margin;
+        let slack = (x.abs() + y.abs() + z.abs()) * margins + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut apart = [u32::MAX; 2];
         for end in 0..E {
@@ -102,6 +103,32 @@ mod tests {
             met += usize::from(meet);
         }
         assert!(apart > 20_000 && missed < apart / 8 && met > 20_000, "{apart} {missed} {met}");
+    }
+
+    /// Triangles with a common corner on both sides of the plane of one of them, each moved away from the other by all of
+    /// the margin: along the normal that uses up what positions may be wrong by, and sums are rounded as well.
+    #[test]
+    fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
+        let random = &mut Random(9);
+        // Exact in single precision, as are the margins and what they move.
+        let grid = |x: DVec3| (x * 2.0_f64.powi(20)).round() / 2.0_f64.powi(20);
+        let mut used = 0;
+        for case in 0..20_000 {
+            let margin = 2.0_f64.powi([-20, -19, -16][case % 3]);
+            let a = [(); 3].map(|()| grid(random.vector() * 0.4));
+            let normal = (a[1] - a[0]).cross(a[2] - a[0]);
+            let [b, c] = [(); 2].map(|()| grid(random.vector() * 0.4));
+            if normal.dot(b - a[0]) <= 0.0 || normal.dot(c - a[0]) <= 0.0 {
+                continue;
+            }
+            let b = [a[case / 3 % 3], b, c];
+            assert!(intersect_triangle_triangle(&a, &b));
+            let away = normal.signum() * margin;
+            let moved = |t: [DVec3; 3], by: DVec3| t.map(|x| [(x + by).as_vec3().extend(f32::NAN)]);
+            assert!(!are_apart(&moved(a, -away), &moved(b, away), margin as f32), "case {case}: {a:?} {b:?}");
+            used += 1;
+        }
+        assert!(used > 4000, "{used}");
     }
 
     /// The same on the way from one place to another.

@@ -103,9 +103,9 @@ impl BdTree {
             half += growth * *largest;
         }
         // The error of the centre, and that of the half.
-        let half = half + Vec4::splat(2.0 * motion.margin);
+        let half = half + Vec4::splat(right_or!(2.0 * motion.margin, CoarseNodesNotWidened, 0.0));
         let ends = centre.map(|centre| Box32 { lower: centre - half, upper: centre + half });
-        ends.into_iter().reduce(|a, b| a.union(&b))
+        ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtOneEnd, a))
     }
 
     /// The same for the whole shape.
@@ -124,7 +124,8 @@ impl BdTree {
             }
         }
         let ends = boxes.map(|(centre, half)| (centre - (half + margin), centre + (half + margin)));
-        ends.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+        let join = |a: Aabb, b: Aabb| right_or!((a.0.min(b.0), a.1.max(b.1)), SweptNodesAtOneEnd, a);
+        ends.into_iter().reduce(join).unwrap_or_default()
     }
 }
 
@@ -158,7 +159,7 @@ mod tests {
 
     /// From one q to another, of all sizes and directions.
     #[test]
-    fn rough_boxes_contain_the_positions_at_both_ends() {
+    fn boxes_contain_the_positions_at_both_ends() {
         let (mut state, mut rough) = (8, 0);
         for case in 0..300 {
             let rank = [1, 2, 7, 30][case % 4];
@@ -181,9 +182,12 @@ mod tests {
             rough += 1;
             for (n, node) in hierarchy.nodes().iter().enumerate() {
                 let mapped = tree.rough(n as u32, &motion).unwrap();
+                let (lower, upper) = tree.at(n as u32, ends, DVec3::splat(rounding)).unwrap();
                 for v in hierarchy.vertices(node, model.mesh().faces()) {
                     for q in ends {
-                        let x = frame.map(model.position(v, q));
+                        let x = model.position(v, q);
+                        assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "case {case}");
+                        let x = frame.map(x);
                         let inside = x.cmpge(mapped.lower) & x.cmple(mapped.upper);
                         assert_eq!(inside.bitmask() & 0b111, 0b111, "case {case}");
                     }

@@ -197,7 +197,7 @@ impl<const E: usize> Boxes<E> {
         let mut by = Vec4::ZERO;
         if self.is_rough {
             rough.move_cluster(cluster, &self.motion, &mut self.rough);
-            by = self.reach(n, ends) + self.motion.margin;
+            by = self.reach(n, ends) + right_or!(self.motion.margin, CoarseTrianglesNotWidened, 0.0);
         }
         let mut whole = Box32::EMPTY;
         for (lane, block) in clusters.blocks(cluster).enumerate() {
@@ -283,5 +283,5 @@ impl<const E: usize> Boxes<E> {
 
 /// What rounding can add to a BD-tree box and to positions: well above the 2 (r + 1) roundings of each.
 pub(super) fn margin(reach: f64, rank: usize) -> f64 {
-    reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE
+    right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
 }

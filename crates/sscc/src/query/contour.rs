@@ -104,7 +104,8 @@ pub(super) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     let next = |i: usize| if i + 1 == count { 0 } else { i + 1 };
     let end = |i: usize| polygon[next(i)];
     // More than rounding may have moved any coordinate by.
-    let moved = f64::EPSILON * polygon.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let reach = polygon.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let moved = right_or!(f64::EPSILON * reach, ContourCoordinatesExact, 0.0);
     let low = |i: usize, axis: usize| polygon[i][axis].min(end(i)[axis]);
     let high = |i: usize, axis: usize| polygon[i][axis].max(end(i)[axis]) + 2.0 * moved;
     order.clear();
@@ -136,9 +137,16 @@ pub(super) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
 }
 
 /// What two products of differences, each difference off by at most `2 moved`, may be off by together.
+///
+/// Let m be the largest magnitude of a coordinate and u = 2^-53, so that `moved = 2 u m`. Coordinates are off by `u m`,
+/// a difference of two by `moved`, and it is itself rounded by at most `moved`, since it is at most `2 m`. So two products
+/// are off by at most `2 moved reach + 8 moved^2`. The magnitudes of the products add up to at most `m reach`; rounding
+/// them and their sum adds `2 u m reach = moved reach`. The second term alone is a third larger than all of this: without
+/// the first the test would be right as well.
 fn error([ux, uy]: [f64; 2], [vx, vy]: [f64; 2], products: f64, moved: f64) -> f64 {
     let reach = ux.abs() + uy.abs() + vx.abs() + vy.abs();
-    ROUNDING * products + 4.0 * moved * (reach + 4.0 * moved) + f64::MIN_POSITIVE
+    let products = right_or!(ROUNDING * products, ContourProductsExact, 0.0);
+    right_or!(products + 4.0 * moved * (reach + 4.0 * moved) + f64::MIN_POSITIVE, ContourExact, 0.0)
 }
 
 fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
@@ -192,6 +200,37 @@ mod tests {
         }
         // Straight on is no way back.
         assert!(is_simple(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]));
+    }
+
+    /// A corner lies exactly on the first edge; the coordinates are rounded once, also those of small polygons far from
+    /// the origin. Where rounding takes the corner off the edge the polygon would be simple.
+    #[test]
+    fn rounding_separates_nothing_that_touches() {
+        let mut state = 1_u64;
+        let mut integer = |size: i128| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (i128::from((state >> 11) as i64 - (1_i64 << 52)) * size) >> 52
+        };
+        let mut rounded = 0;
+        for case in 0..3000 {
+            let (size, far) = [(1 << 56, 0), (1 << 40, 1 << 70)][case % 2];
+            let mut vector = |size| [integer(size), integer(size)];
+            let (middle, step) = (vector(far), vector(size));
+            // Corners in units of the edge and of a vector askew to it.
+            let up = [-step[1] + step[0] / 3, step[0] + step[1] / 5];
+            let corners = [(0, 0), (4, 0), (5, 2), (1 + case as i128 / 2 % 3, 0), (-1, 3)];
+            let polygon: Vec<[i128; 2]> = corners
+                .iter()
+                .map(|(x, y)| std::array::from_fn(|i| middle[i] + x * step[i] + y * up[i]))
+                .collect();
+            let mut moved = false;
+            let mut near: Vec<[f64; 2]> = polygon.iter().map(|p| p.map(|x| x as f64)).collect();
+            polygon.iter().zip(&near).for_each(|(p, near)| moved |= near.map(|x| x as i128) != *p);
+            rounded += usize::from(moved);
+            near.rotate_left(case % 5);
+            assert!(!is_simple(&near, &mut Vec::new()), "case {case}: {near:?}");
+        }
+        assert!(rounded > 2500, "{rounded}");
     }
 
     #[test]

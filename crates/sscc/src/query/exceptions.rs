@@ -11,7 +11,7 @@ const BOXES: u64 = 1024;
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds the exceptions that count.
     pub(super) fn test_exceptions(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
-        for &pair in asked.exceptions() {
+        for &pair in right_or!(asked.exceptions(), ExceptionsForgotten, &[]) {
             if self.is_full() {
                 return;
             }

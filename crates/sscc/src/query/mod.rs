@@ -220,7 +220,8 @@ impl<'a> Query<'a> {
             };
             let near = norm < self.near.radius;
             let reach = if near { self.near.reach } else { self.asked.model.check_coordinates(q)? };
-            (ends.norm, ends.reach) = (ends.norm.max(norm), ends.reach.max(reach));
+            let norm = right_or!(ends.norm.max(norm), SweptNormAtOneEnd, norm);
+            (ends.norm, ends.reach) = (norm, ends.reach.max(reach));
         }
         self.norm = ends.norm;
         Ok(ends)

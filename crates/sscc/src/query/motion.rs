@@ -111,7 +111,8 @@ impl Units {
         } else {
             f64::INFINITY
         };
-        let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + most / (2.0 * WHOLE);
+        let quantized = right_or!(most / (2.0 * WHOLE), CoarseSharesExact, 0.0);
+        let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + quantized;
         let margin = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];
         motion.margin = (margin * (1.0 + 1e-6)) as f32;

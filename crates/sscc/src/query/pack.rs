@@ -28,7 +28,8 @@ impl Box32 {
     pub(super) fn around<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
             let first = Self { lower: ends[0], upper: ends[0] };
-            ends[1..].iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
+            let others = right_or!(&ends[1..], SweptTrianglesAtOneEnd, &ends[..0]);
+            others.iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
         });
         a.union(&b).union(&c)
     }

@@ -4,13 +4,20 @@ use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
 use crate::PairTree;
-use crate::certificates::child_pairs;
+use crate::certificates::{PairEntry, child_pairs};
 
 /// Between two looks at whether the query was cancelled.
 const STEPS: u32 = 1024;
 
 /// The place of a node against itself.
 const NODE: u32 = u32::MAX;
+
+/// Whether the radius of a stored pair has been passed: equality is no proof.
+#[inline]
+fn is_entry_passed(entry: PairEntry, norm: f64) -> bool {
+    let radius = f64::from(entry.radius);
+    right_or!(radius <= norm, TreeRadiusReached, radius < norm)
+}
 
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds all that is found, exceptions apart. On the stack, `(n, n, NODE)` stands for a node against itself, `(n, m,
@@ -49,12 +56,13 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
         let node = asked.hierarchy.nodes()[n as usize];
         let radii = asked.used_certificates().map_or(&[][..], |parts| &parts.node_radii);
-        let is_open = |child: &u32| radii.get(*child as usize).is_none_or(|radius| ends.norm >= *radius);
+        let is_passed = |radius| right_or!(radius <= ends.norm, TreeNodeRadiusReached, radius < ends.norm);
+        let is_open = |child: &u32| radii.get(*child as usize).is_none_or(|radius| is_passed(*radius));
         self.walk.extend(node.children().filter(is_open).map(|child| (child, child, NODE)));
         let mut pairs = child_pairs(&node).enumerate();
         for (place, entry) in tree.of_node(n) {
             if let Some((_, (a, b))) = pairs.find(|(which, _)| *which == entry.which() as usize)
-                && f64::from(entry.radius) <= ends.norm
+                && is_entry_passed(entry, ends.norm)
             {
                 self.walk.push((a, b, place));
             }
@@ -81,7 +89,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         self.statistics.opened += 1;
         if let Some(split) = asked.hierarchy.split_large(n, m) {
             for (place, entry) in tree.below(place) {
-                if f64::from(entry.radius) <= ends.norm {
+                if is_entry_passed(entry, ends.norm) {
                     let (a, b) = split.pair(entry.which());
                     self.walk.push((a, b, place));
                 }

@@ -39,7 +39,8 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Lines 1 to 14: a node against itself.
     fn intra(&mut self, asked: &Asked<'_>, n: u32, ends: &Ends<'_, E>) {
         let certificates = asked.used_certificates();
-        if certificates.is_some_and(|c| ends.norm < c.node_radii[n as usize]) || self.culled_by_normals(n) {
+        let is_within = |radius| right_or!(ends.norm < radius, NodeRadiusReached, ends.norm <= radius);
+        if certificates.is_some_and(|c| is_within(c.node_radii[n as usize])) || self.culled_by_normals(n) {
             return;
         }
         self.statistics.opened += 1;
@@ -52,7 +53,9 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         self.stack.extend(node.children().map(|child| (child, child)));
         // Only the root's children have certificates as pairs.
         for (pair, (a, b)) in child_pairs(&node).enumerate() {
-            let certified = n == 0 && certificates.is_some_and(|c| ends.norm < c.root_pair_radii[pair]);
+            let is_within =
+                |radius| right_or!(ends.norm < radius, RootPairRadiusReached, ends.norm <= radius);
+            let certified = n == 0 && certificates.is_some_and(|c| is_within(c.root_pair_radii[pair]));
             if !certified {
                 self.statistics.box_tests += 1;
                 let lanes = self.boxes.pack(n).overlapping(self.boxes.node(a));

@@ -45,19 +45,21 @@ impl Ball {
     /// From now on the ball has this radius, and the reach of the shape in it is at most that.
     pub(super) fn set(&mut self, radius: f64, reach: f64, rank: usize) {
         self.radius = radius;
-        self.rounding = 4.0 * boxes::margin(reach, rank);
+        self.rounding = right_or!(4.0 * boxes::margin(reach, rank), BallExact, 0.0);
     }
 
     /// By how much the vertex at a place may move.
     #[inline]
     pub(in crate::query) fn of_vertex(&self, place: u32) -> DVec3 {
-        self.rates[place as usize] * self.radius + self.rounding
+        let radius = right_or!(self.radius, BallVerticesHalfAsFar, 0.5 * self.radius);
+        self.rates[place as usize] * radius + self.rounding
     }
 
     /// By how much any vertex of a node may move.
     #[inline]
     pub(in crate::query) fn of_node(&self, node: u32) -> DVec3 {
-        self.node_rates[node as usize] * self.radius + self.rounding
+        let radius = right_or!(self.radius, BallNodesHalfAsFar, 0.5 * self.radius);
+        self.node_rates[node as usize] * radius + self.rounding
     }
 }
 

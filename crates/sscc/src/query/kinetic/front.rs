@@ -35,7 +35,7 @@ pub(super) struct Front {
 impl Front {
     /// Goes a step.
     pub(super) fn go(&mut self, step: f64) {
-        self.way = up(self.way + step);
+        self.way = right_or!(up(self.way + step), WayToNearest, self.way + step);
     }
 
     /// Begins to stand: in a ball of this radius around where z is.
@@ -70,8 +70,9 @@ impl Front {
     /// A pair whose margin is used up, if there is one.
     #[inline]
     pub(super) fn expired(&mut self) -> Option<Pair> {
-        // Equality is no proof.
-        if self.apart.peek()?.until > self.way {
+        // Equality would be a proof here, too: `until` has been rounded down, the way up.
+        let until = self.apart.peek()?.until;
+        if right_or!(until > self.way, MarginReached, until >= self.way) {
             return None;
         }
         self.apart.pop().map(|standing| standing.pair)
@@ -155,7 +156,22 @@ impl Eq for Standing {}
 
 #[cfg(test)]
 mod tests {
+    use num_rational::BigRational;
+
     use super::*;
+
+    /// The way against the sum of its steps in exact arithmetic.
+    #[test]
+    fn the_way_is_never_short() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let (mut front, mut sum) = (Front::default(), exact(0.0));
+        for i in 0..500 {
+            let step = f64::from(i * i % 37 + 1).sqrt() * 0.1_f64.powi(i % 7);
+            front.go(step);
+            sum += exact(step);
+            assert!(exact(front.way) >= sum, "{i}");
+        }
+    }
 
     #[test]
     fn pairs_fall_in_order_and_never_late() {

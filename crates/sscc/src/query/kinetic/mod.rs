@@ -176,7 +176,8 @@ impl<'a> KineticQuery<'a> {
         if !(radius > 0.0 && radius.is_finite() && radius <= MOST * ends.norm) {
             return Ok(false);
         }
-        let (norm, reach) = (up(ends.norm + radius), 2.0 * ends.reach);
+        let norm = right_or!(up(ends.norm + radius), KineticBallAtCentre, ends.norm);
+        let reach = 2.0 * ends.reach;
         self.ball.set(radius, reach, q.len());
         self.margins.within(norm);
         let most = MOST_FOUND * asked.model.mesh().faces().len();

@@ -1,0 +1,32 @@
+//! Rates that nearly vanish along the only direction there is.
+
+use super::super::reference::Random;
+use super::*;
+
+/// All strains nearly leave one direction as it is: the form of their Gram matrix is then all rounding.
+#[test]
+fn rates_that_cancel_are_not_too_small() {
+    let root = std::f64::consts::SQRT_2;
+    for case in 0..4000 {
+        let random = &mut Random::new(case);
+        let rank = 1 + random.below(40);
+        let u = random.vector().normalize();
+        let m = [u.x * u.x, u.y * u.y, u.z * u.z, u.y * u.z * root, u.x * u.z * root, u.x * u.y * root];
+        let form = |s: &[f64; 6]| s.iter().zip(m).map(|(s, m)| s * m).sum::<f64>();
+        // How much is left: about the root of what the form is rounded by.
+        let left = random.power(-9.5, -7.5);
+        let strains: Vec<[f64; 6]> = (0..rank)
+            .map(|_| {
+                let s: [f64; 6] = std::array::from_fn(|_| random.uniform() - 0.5);
+                let along = form(&s);
+                std::array::from_fn(|i| s[i] - m[i] * along * (1.0 - left))
+            })
+            .collect();
+        let gram: StrainGram =
+            std::array::from_fn(|i| std::array::from_fn(|j| strains.iter().map(|s| s[i] * s[j]).sum()));
+        let rate = cone_rate(&[u; 9], &gram, rank.next_multiple_of(4), f64::INFINITY);
+        let here = strains.iter().map(|s| form(s) * form(s)).sum::<f64>().sqrt();
+        // The strains themselves are rounded, too.
+        assert!(here <= rate * (1.0 + 1e-6), "case {case}: {here:e} above {rate:e}");
+    }
+}

@@ -1,0 +1,82 @@
+//! Mutations: small wrong variants of the core, each of which some test must catch. `cargo xtask mutants` tries them
+//! all; `list.rs` names them.
+//!
+//! The wrong variant stands beside the right one:
+//!
+//! ```text
+//! let norm = right_or!(up(ends.norm + radius), KineticBallAtCentre, ends.norm);
+//! ```
+//!
+//! The macro is its first argument and nothing else, unless the feature `mutants` is on in a build with debug
+//! assertions. Then the environment variable `SSCC_MUTANT` names the mutation that a process runs with, so that one
+//! build serves all of them.
+
+#[cfg(not(all(feature = "mutants", debug_assertions)))]
+macro_rules! right_or {
+    ($right:expr, $($mutant:ident, $wrong:expr),+ $(,)?) => {
+        $right
+    };
+}
+
+#[cfg(all(feature = "mutants", debug_assertions))]
+macro_rules! right_or {
+    ($right:expr, $($mutant:ident, $wrong:expr),+ $(,)?) => {
+        match $crate::mutants::active() {
+            $(Some($crate::mutants::Mutant::$mutant) => {
+                $crate::mutants::reached();
+                $wrong
+            })+
+            _ => $right,
+        }
+    };
+}
+
+#[cfg(all(feature = "mutants", debug_assertions))]
+mod switch {
+    use std::io::Write;
+    use std::sync::{Once, OnceLock};
+
+    macro_rules! mutants {
+        ($($(#[doc = $wrong:literal])+ $name:ident: $fate:ident($text:literal);)+) => {
+            /// A mutation.
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub(crate) enum Mutant {
+                $($(#[doc = $wrong])+ $name,)+
+            }
+
+            impl Mutant {
+                /// The mutation of that name.
+                fn from_name(name: &str) -> Option<Self> {
+                    match name {
+                        $(stringify!($name) => Some(Self::$name),)+
+                        _ => None,
+                    }
+                }
+            }
+        };
+    }
+
+    include!("list.rs");
+
+    /// The mutation that this process runs with, read once.
+    pub(crate) fn active() -> Option<Mutant> {
+        static ACTIVE: OnceLock<Option<Mutant>> = OnceLock::new();
+        *ACTIVE.get_or_init(|| {
+            let name = std::env::var("SSCC_MUTANT").ok()?;
+            let mutant = Mutant::from_name(&name);
+            assert!(mutant.is_some(), "SSCC_MUTANT={name}: there is no such mutation");
+            mutant
+        })
+    }
+
+    /// Says once that wrong code runs. The test harness keeps back what `eprintln!` writes, but not this.
+    pub(crate) fn reached() {
+        static REACHED: Once = Once::new();
+        REACHED.call_once(|| {
+            let _ = std::io::stderr().write_all(b"mutant reached\n");
+        });
+    }
+}
+
+#[cfg(all(feature = "mutants", debug_assertions))]
+pub(crate) use switch::{Mutant, active, reached};

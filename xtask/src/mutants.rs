@@ -1,0 +1,231 @@
+//! `cargo xtask mutants`: whether the tests catch each of the wrong variants that `crates/sscc/src/mutants/list.rs`
+//! names. With arguments only those of these names.
+//!
+//! The core is built once with all of them. Then the tests run without any, which must pass, and for each mutation the
+//! test that is to catch it, which must reach the wrong code and fail.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use crate::tally::Tally;
+use crate::test::cargo;
+
+/// A wrong variant of some line of the core.
+struct Mutation {
+    name: &'static str,
+    /// What is wrong with it.
+    wrong: &'static str,
+    fate: Fate,
+}
+
+enum Fate {
+    /// The test that fails: `lib` or the name of a file of tests, and the test's own.
+    CaughtBy(&'static str),
+    /// Why no test can fail.
+    Covered(&'static str),
+}
+
+macro_rules! mutants {
+    ($($(#[doc = $wrong:literal])+ $name:ident: $fate:ident($text:literal);)+) => {
+        const ALL: &[Mutation] =
+            &[$(Mutation { name: stringify!($name), wrong: concat!($($wrong),+), fate: Fate::$fate($text) }),+];
+    };
+}
+
+include!("../../crates/sscc/src/mutants/list.rs");
+
+/// Runs the tests and prints a table.
+pub fn run(names: &[String]) -> ExitCode {
+    match try_run(names) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(line) => {
+            eprintln!("error: {line}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn try_run(names: &[String]) -> Result<bool, String> {
+    if let Some(unknown) = names.iter().find(|name| ALL.iter().all(|mutation| mutation.name != *name)) {
+        return Err(format!("no mutation '{unknown}' in crates/sscc/src/mutants/list.rs"));
+    }
+    check_uses()?;
+    let mutations: Vec<&Mutation> = ALL
+        .iter()
+        .filter(|mutation| names.is_empty() || names.iter().any(|name| name == mutation.name))
+        .collect();
+    let tests = tests(&mutations)?;
+    build(&tests)?;
+    for &test in &tests {
+        let outcome = outcome(test, None)?;
+        if !outcome.is_pass() {
+            return Err(format!(
+                "{} {} does not pass without any mutation: {}",
+                test.0,
+                test.1,
+                outcome.says()
+            ));
+        }
+    }
+    let width = mutations.iter().map(|mutation| mutation.name.len()).max().unwrap_or(0);
+    let mut survived = 0;
+    for mutation in mutations.iter() {
+        let (is_fine, fate) = match mutation.fate {
+            Fate::Covered(reason) => (true, format!("covered: {reason}")),
+            Fate::CaughtBy(test) => {
+                let outcome = outcome(parts(test)?, Some(mutation.name))?;
+                let says = if outcome.is_caught() { String::new() } else { format!("{}: ", outcome.says()) };
+                (outcome.is_caught(), says + test)
+            }
+        };
+        survived += usize::from(!is_fine);
+        println!("{:width$}  {fate}", mutation.name);
+        if !is_fine {
+            println!("{:width$}  {}", "", mutation.wrong.trim());
+        }
+    }
+    let covered = mutations.iter().filter(|mutation| matches!(mutation.fate, Fate::Covered(_))).count();
+    println!("\n{} caught, {covered} covered, {survived} survived", mutations.len() - covered - survived);
+    Ok(survived == 0)
+}
+
+/// Target and name of a test.
+fn parts(test: &'static str) -> Result<(&'static str, &'static str), String> {
+    test.split_once(' ').ok_or_else(|| format!("list.rs: '{test}' is no target and test"))
+}
+
+/// All tests that are to catch something, each once.
+fn tests(mutations: &[&Mutation]) -> Result<BTreeSet<(&'static str, &'static str)>, String> {
+    let caught = mutations.iter().filter_map(|mutation| match mutation.fate {
+        Fate::CaughtBy(test) => Some(parts(test)),
+        Fate::Covered(_) => None,
+    });
+    caught.collect()
+}
+
+/// Refuses mutations that no code of the core has. (Those that it has and that are not listed do not compile.)
+fn check_uses() -> Result<(), String> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/sscc/src");
+    let mut files = Vec::new();
+    collect(&source, &mut files).map_err(|error| format!("{}: {error}", source.display()))?;
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let mut words = BTreeSet::new();
+    for file in files {
+        let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+        for (at, _) in text.match_indices("right_or!(") {
+            words
+                .extend(text[at..].split(';').next().unwrap_or("").split(|c| !is_part(c)).map(str::to_owned));
+        }
+    }
+    match ALL.iter().find(|mutation| !words.contains(mutation.name)) {
+        Some(mutation) => Err(format!("crates/sscc/src/mutants/list.rs: no code has '{}'", mutation.name)),
+        None => Ok(()),
+    }
+}
+
+/// The files with code, without those of the mutations themselves.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() && !path.ends_with("mutants") {
+            collect(&path, files)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// `cargo test` for the core with all mutations.
+fn cargo_test(targets: impl IntoIterator<Item = &'static str>) -> Command {
+    let mut command = cargo();
+    command.args(["test", "--quiet", "--package", "sscc", "--features", "mutants"]);
+    for target in targets {
+        if target == "lib" {
+            command.arg("--lib");
+        } else {
+            command.args(["--test", target]);
+        }
+    }
+    command.env_remove("SSCC_MUTANT");
+    command
+}
+
+fn build(tests: &BTreeSet<(&'static str, &'static str)>) -> Result<(), String> {
+    let targets: BTreeSet<&str> = tests.iter().map(|(target, _)| *target).collect();
+    let status = cargo_test(targets).arg("--no-run").status();
+    match status.map_err(|error| format!("cargo cannot be run: {error}"))?.success() {
+        true => Ok(()),
+        false => Err("the core cannot be built with mutations (see above)".to_owned()),
+    }
+}
+
+/// How a single test went.
+struct Outcome {
+    tally: Tally,
+    /// Whether it ran wrong code.
+    reached: bool,
+}
+
+impl Outcome {
+    fn is_pass(&self) -> bool {
+        self.tally == Tally { passed: 1, failed: 0 }
+    }
+
+    fn is_caught(&self) -> bool {
+        self.tally == Tally { passed: 0, failed: 1 } && self.reached
+    }
+
+    fn says(&self) -> &'static str {
+        match (self.tally, self.reached) {
+            (Tally { passed: 0, failed: 0 }, _) => "NO SUCH TEST, or it did not run to its end",
+            (Tally { failed: 0, .. }, false) => "NOT REACHED",
+            (Tally { failed: 0, .. }, true) => "SURVIVED",
+            (Tally { passed: 0, .. }, _) => "it fails",
+            _ => "MORE THAN ONE TEST",
+        }
+    }
+}
+
+/// Runs one test with or without a mutation.
+fn outcome((target, test): (&'static str, &'static str), mutation: Option<&str>) -> Result<Outcome, String> {
+    let mut command = cargo_test([target]);
+    command.args(["--", "--exact", test]);
+    if let Some(name) = mutation {
+        command.env("SSCC_MUTANT", name);
+    }
+    let output = command.output().map_err(|error| format!("cargo cannot be run: {error}"))?;
+    let mut tally = Tally::default();
+    String::from_utf8_lossy(&output.stdout).lines().for_each(|line| tally.add_rust(line));
+    let reached = String::from_utf8_lossy(&output.stderr).lines().any(|line| line.contains("mutant reached"));
+    Ok(Outcome { tally, reached })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_mutations_are_in_the_code_and_have_a_test() {
+        check_uses().unwrap();
+        let names: BTreeSet<&str> = ALL.iter().map(|mutation| mutation.name).collect();
+        assert_eq!(names.len(), ALL.len());
+        assert!(tests(&ALL.iter().collect::<Vec<_>>()).unwrap().len() > 10);
+        assert!(ALL.iter().all(|mutation| !mutation.wrong.is_empty()));
+    }
+
+    #[test]
+    fn only_a_test_that_fails_in_wrong_code_catches() {
+        let outcome = |passed, failed, reached| Outcome { tally: Tally { passed, failed }, reached };
+        assert!(outcome(0, 1, true).is_caught() && outcome(1, 0, false).is_pass());
+        for (passed, failed, reached) in
+            [(1, 0, true), (1, 0, false), (0, 0, true), (0, 1, false), (1, 1, true)]
+        {
+            assert!(!outcome(passed, failed, reached).is_caught());
+        }
+    }
+}
