@@ -202,7 +202,7 @@ fn radii_are_crossed_inside_a_ball() {
     let (mut crossed, mut lasting) = (0, 0);
     for case in 0..12 {
         let random = &mut Random::new(case + 700_000);
-        let side = [8, 7, 5][case as usize % 3];
+        let side = [10, 8, 5][case as usize % 3];
         let heights = [-1.0 - random.uniform(), 0.0, 2.5 + random.uniform()];
         let (mut p, mut faces) = (Vec::new(), Vec::new());
         for (height, fold) in heights.into_iter().zip([-0.5, 0.0, 0.5]) {
