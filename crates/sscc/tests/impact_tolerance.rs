@@ -148,3 +148,20 @@ fn thin_sheets_that_turn_together_are_free() {
         assert_eq!(impact_triangle_triangle(&y, &x, Impact::TOLERANCE), None, "{angle}");
     }
 }
+
+/// A vertex that ends exactly on a face: coordinates have so few digits that its position, with weights of quarters, is
+/// exact, while normals and projections are rounded.
+#[test]
+fn what_touches_at_the_end_is_listed() {
+    let random = &mut Random::new(8);
+    let mut coarse = || (random.vector() * 1_048_576.0).round() / 1_048_576.0;
+    for case in 0..2_000 {
+        let face = [coarse(), coarse(), coarse()];
+        let still = MovingTriangle { t0: face, t1: face };
+        let foot = face[0] * 0.5 + face[1] * 0.25 + face[2] * 0.25;
+        let normal = (face[1] - face[0]).cross(face[2] - face[0]);
+        let falling = MovingTriangle::vertex(foot + normal + coarse() * 0.01, foot);
+        let found = impact_triangle_triangle(&still, &falling, Impact::TOLERANCE);
+        assert!(found.is_some(), "case {case}: {face:?}");
+    }
+}

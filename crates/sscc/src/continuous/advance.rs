@@ -51,7 +51,9 @@ pub(super) fn advance(
     match advance_by_rounded_directions(pair, tolerance) {
         Advance::Free => None,
         Advance::Within(t) => Some(t),
-        Advance::Unknown(t) => advance_along_features(x, y, pair, t, tolerance),
+        Advance::Unknown(t) => {
+            right_or!(advance_along_features(x, y, pair, t, tolerance), FeaturesNotFollowed, Some(t))
+        }
     }
 }
 

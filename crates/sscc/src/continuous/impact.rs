@@ -46,7 +46,7 @@ pub fn impact_triangle_triangle(x: &MovingTriangle, y: &MovingTriangle, toleranc
         None
     } else if intersect_triangle_triangle(&x.t0, &y.t0) {
         Some(0.0)
-    } else if pair.size() < SMALL {
+    } else if pair.size() < right_or!(SMALL, SmallPairsNotEnlarged, 0.0) {
         let [x, y] = [x, y].map(|triangle| triangle.scaled(enlargement(pair.size())));
         advance(&x, &y, &Separation::new(&x, &y), tolerance)
     } else {

@@ -61,7 +61,8 @@ impl Bounded {
     /// of this line. What underflows, here, there or in the result, is less than 2^-1070 in all.
     #[inline]
     fn rounded(value: f64, error: f64) -> Self {
-        Self { value, error: (error + U * value.abs()) * (1.0 + 8.0 * U) + f64::MIN_POSITIVE }
+        let rounding = right_or!(U, BoundedExact, 0.0) * value.abs();
+        Self { value, error: (error + rounding) * (1.0 + 8.0 * U) + f64::MIN_POSITIVE }
     }
 }
 

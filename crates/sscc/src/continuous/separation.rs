@@ -77,7 +77,7 @@ impl Separation {
     /// What gaps along a vector count beyond.
     #[inline]
     pub(super) fn error(&self, n: DVec3) -> f64 {
-        RELATIVE * n.abs().dot(self.reach) + ABSOLUTE
+        right_or!(RELATIVE * n.abs().dot(self.reach) + ABSOLUTE, SeparationExact, 0.0)
     }
 }
 

@@ -98,4 +98,12 @@ mutants! {
     WayToNearest: CaughtBy("lib query::kinetic::front::tests::the_way_is_never_short");
     /// A margin that is used up exactly still holds.
     MarginReached: Covered("the end of a margin has been rounded down");
+    /// Gaps of moving triangles along a direction are as if they were exact.
+    SeparationExact: CaughtBy("impact_tolerance what_touches_at_the_end_is_listed");
+    /// Numbers that carry an error bound forget their own rounding.
+    BoundedExact: CaughtBy("lib continuous::number::tests::both_kinds_agree_with_rational_arithmetic");
+    /// Pairs that rounded directions do not settle are listed at the time reached.
+    FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");
+    /// Pairs of tiny triangles are not made larger.
+    SmallPairsNotEnlarged: CaughtBy("impact_tolerance the_tolerance_holds_at_every_size");
 }
