@@ -108,13 +108,9 @@ pub fn symmetric_eigenvalues(rank: usize, matrix: &[f64]) -> Result<Vec<f64>, Mo
 /// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
 /// matrix, the largest component of each positive.
 pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
-    // Divided by a power of two, so that the largest entry is about 1 and no square leaves the range.
-    let largest = matrix.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let (_, exponent) = libm::frexp(largest);
-    let scaled = Mat::from_fn(rank, rank, |i, j| libm::ldexp(matrix[i * rank + j], -exponent));
-    let (values, mut vectors) = symmetric_eigen(scaled.as_ref())?;
+    let matrix = Mat::from_fn(rank, rank, |i, j| matrix[i * rank + j]);
+    let (values, mut vectors) = symmetric_eigen(matrix.as_ref())?;
     fix_signs(&mut vectors);
-    let values = values.into_iter().map(|x| libm::ldexp(x, exponent)).collect();
     let vectors = (0..rank * rank).map(|at| vectors[(at / rank, at % rank)]).collect();
     Ok((values, vectors))
 }

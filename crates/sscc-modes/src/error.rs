@@ -61,9 +61,49 @@ pub enum ModesError {
         /// The largest magnitude of an eigenvalue.
         largest: f64,
     },
-    /// The iteration for the eigenvalues did not end. Not known to happen.
-    #[error("the eigenvalues of the stiffness did not converge: scale the modes to similar lengths")]
-    NoEigenvalues,
+    /// The iteration for the eigenvalues of a dense matrix did not end. Not known to happen.
+    #[error(
+        "the eigenvalues of a matrix of {rows} rows did not converge, which is not known to happen: please report it; another number of modes may help"
+    )]
+    NoEigenvalues {
+        /// Its number of rows.
+        rows: usize,
+    },
+    /// A mass, a stiffness or a product of them is no double-precision number any more.
+    #[error(
+        "the mass or the stiffness leaves the range of numbers (1e-308 to 1e308): take units in which size, density and Young's modulus are nearer to 1"
+    )]
+    OutOfRange,
+    /// Not all vibrations reached the accuracy asked for.
+    #[error("{}", unconverged(*.converged, *.wanted, *.ratio, *.is_rounding))]
+    Unconverged {
+        /// The vibrations that reached it.
+        converged: usize,
+        /// Those looked for: a few more than were asked for.
+        wanted: usize,
+        /// The highest frequency looked for over the lowest.
+        ratio: f64,
+        /// Whether the rounding errors of the lowest vibration are larger than the error allowed for the highest.
+        is_rounding: bool,
+    },
+    /// Rounding hides the number of vibrations, so that it is not known whether one was missed.
+    #[error(
+        "rounding hides whether a vibration was missed: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; take elements and materials that differ less, or larger elements"
+    )]
+    Uncounted {
+        /// The largest entry on the diagonal of the stiffness over the smallest.
+        contrast: f64,
+        /// The lowest eigenvalue over the mean one: small for slender bodies.
+        lowest: f64,
+    },
+    /// A basis for large deformations could not be computed. Not known to happen.
+    #[error(
+        "the modal derivatives could be computed to {residual:.0e} of their forces only, which rounding explains where elements or materials differ much: take linear modes, or elements and materials that differ less"
+    )]
+    Derivatives {
+        /// The largest residual, as a share of the force.
+        residual: f64,
+    },
     /// An eigenvalue that no stiffness at rest has.
     #[error(
         "eigenvalue {index} (counted from 0) is {value:e}: it must be finite and at least 0; set small negative ones to 0"
@@ -324,4 +364,17 @@ pub enum ModesError {
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),
+}
+
+/// Why vibrations did not converge.
+fn unconverged(converged: usize, wanted: usize, ratio: f64, is_rounding: bool) -> String {
+    let found = format!("{converged} of {wanted} vibrations converged");
+    match is_rounding {
+        true => format!(
+            "{found}: the highest is about {ratio:.0} times as fast as the lowest, so that rounding in the lowest hides it; ask for fewer modes"
+        ),
+        false => format!(
+            "{found} in the steps that usually are enough, which is not known to happen: please report it; another number of modes may help"
+        ),
+    }
 }

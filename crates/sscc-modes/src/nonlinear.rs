@@ -101,6 +101,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
     let norm = |x: &Mat<f64>, k: usize| x.col(k).norm_l2();
     let mut x = Mat::zeros(right.nrows(), right.ncols());
     let mut residual = right.clone();
+    let mut worst = f64::INFINITY;
     for _ in 0..REFINEMENTS {
         let mut coefficients = inner(lowest.vectors.as_ref(), residual.as_ref());
         for k in 0..coefficients.ncols() {
@@ -117,8 +118,9 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
         if (0..right.ncols()).all(|k| norm(&residual, k) <= SOLVED * norm(&right, k)) {
             return Ok(x);
         }
+        worst = (0..right.ncols()).map(|k| norm(&residual, k) / norm(&right, k)).fold(0.0, f64::max);
     }
-    Err(ModesError::NoEigenvalues)
+    Err(ModesError::Derivatives { residual: worst })
 }
 
 /// The `rank` directions of the most mass among the columns.

@@ -213,3 +213,19 @@ fn what_is_no_solid_is_refused() {
         ModesError::InvertedCube { cube: 0 }
     );
 }
+
+/// A bar of which one half is stiffer and heavier than the other beyond all measure.
+#[test]
+fn a_count_that_rounding_hides_is_told_with_its_cause() {
+    let one = bar(DVec3::new(5.0, 1.0, 1.0), [30, 5, 5], Material::default());
+    let usual = Material::default();
+    let hard =
+        Material { youngs_modulus: 1e14 * usual.youngs_modulus, density: 1e14 * usual.density, ..usual };
+    let cubes = one.cubes().to_vec();
+    let of = cubes.iter().map(|cube| u32::from(one.vertices()[cube[0] as usize].x >= 2.49)).collect();
+    let solid = Solid::new(one.vertices().to_vec(), vec![], cubes, vec![usual, hard], of).unwrap();
+    let error = linear_modes(&solid, &[], 20, &()).unwrap_err();
+    let ModesError::Uncounted { contrast, lowest } = error else { panic!("{error}") };
+    assert!(contrast > 1e13 && lowest > 0.0, "{error}");
+    assert!(error.to_string().contains("rounding hides whether a vibration was missed"), "{error}");
+}

@@ -13,22 +13,32 @@ use crate::sparse::BlockSparse;
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix (its lower triangle). On one thread, so
 /// that the order of sums is fixed.
+///
+/// faer's divide and conquer (from 128 rows on) compares a matrix's entries with those of unit vectors: off-diagonal
+/// entries below about 1e-15 count as 0, however small all others are. So the matrix is divided by the power of two
+/// next to its largest entry, which loses nothing, and the eigenvalues are multiplied by it.
 pub(crate) fn symmetric_eigen(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
     let size = matrix.nrows();
+    let lower = || (0..size).flat_map(|j| (j..size).map(move |i| matrix[(i, j)]));
+    if !lower().all(f64::is_finite) {
+        return Err(ModesError::OutOfRange);
+    }
+    let (_, exponent) = libm::frexp(lower().fold(0.0_f64, |m, x| m.max(x.abs())));
+    let scaled = Mat::from_fn(size, size, |i, j| libm::ldexp(matrix[(i.max(j), i.min(j))], -exponent));
     let mut values = Diag::zeros(size);
     let mut vectors = Mat::zeros(size, size);
     let scratch =
         self_adjoint_evd_scratch::<f64>(size, ComputeEigenvectors::Yes, Par::Seq, Default::default());
     self_adjoint_evd(
-        matrix,
+        scaled.as_ref(),
         values.as_mut(),
         Some(vectors.as_mut()),
         Par::Seq,
         MemStack::new(&mut MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?),
         Default::default(),
     )
-    .map_err(|_| ModesError::NoEigenvalues)?;
-    Ok(((0..size).map(|k| values[k]).collect(), vectors))
+    .map_err(|_| ModesError::NoEigenvalues { rows: size })?;
+    Ok(((0..size).map(|k| libm::ldexp(values[k], exponent)).collect(), vectors))
 }
 
 /// All eigenvalues of `K x = lambda M x` beside the rigid motions, ascending, and M-orthonormal vectors.
@@ -48,7 +58,8 @@ pub(super) fn all_modes(
         MemStack::new(&mut memory),
         Default::default(),
     )
-    .map_err(|_| ModesError::NoEigenvalues)?;
+    // A mass is positive definite, unless its numbers were lost.
+    .map_err(|_| ModesError::OutOfRange)?;
     // C = L^-1 K L^-T for M = L L'.
     let mut matrix = full(stiffness);
     solve_lower_triangular_in_place(lower.as_ref(), matrix.as_mut(), Par::Seq);
@@ -80,4 +91,47 @@ pub(super) fn full(matrix: &BlockSparse) -> Mat<f64> {
         }
     }
     full
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eigen::lattice::random_matrix;
+
+    /// A symmetric matrix with eigenvalues from 1 down to 1e-6: `X' D X`, X nearly orthogonal.
+    fn graded(size: usize) -> Mat<f64> {
+        let half = random_matrix(size, size);
+        let weighted = Mat::from_fn(size, size, |i, j| half[(i, j)] * 1e-6_f64.powf(i as f64 / size as f64));
+        inner(half.as_ref(), weighted.as_ref())
+    }
+
+    /// Sizes on both sides of faer's 128 rows, from which on it divides and conquers.
+    #[test]
+    fn eigenvalues_are_as_accurate_in_any_unit() {
+        for size in [5, 127, 200] {
+            let matrix = graded(size);
+            let (values, vectors) = symmetric_eigen(matrix.as_ref()).unwrap();
+            let residual = &matrix * &vectors - Mat::from_fn(size, size, |i, j| vectors[(i, j)] * values[j]);
+            assert!(residual.norm_max() < 1e-13 * values[size - 1]);
+            for exponent in [-700, -60, -30, 30, 60, 700] {
+                let scaled = Mat::from_fn(size, size, |i, j| libm::ldexp(matrix[(i, j)], exponent));
+                let (found, of_scaled) = symmetric_eigen(scaled.as_ref()).unwrap();
+                assert!(
+                    values.iter().zip(&found).all(|(a, b)| libm::ldexp(*a, exponent) == *b),
+                    "{exponent}"
+                );
+                assert!(vectors == of_scaled, "{size} rows, {exponent}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut matrix = graded(130);
+            matrix[(129, 0)] = bad;
+            assert_eq!(symmetric_eigen(matrix.as_ref()).err(), Some(ModesError::OutOfRange));
+        }
+        assert!(symmetric_eigen(Mat::zeros(130, 130).as_ref()).unwrap().0.iter().all(|x| *x == 0.0));
+    }
 }

@@ -89,7 +89,7 @@ impl Pencil<'_> {
     fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
         self.refuse_mechanisms(&values)?;
-        let Some(lowest) = values.first() else { return Err(ModesError::NoEigenvalues) };
+        let Some(lowest) = values.first() else { return Err(Error::RankZero.into()) };
         let shifted = factor_below(self.stiffness, self.mass, &self.analysis, self.rigid.ncols(), *lowest)?;
         Ok((values, vectors, shifted))
     }
@@ -124,7 +124,7 @@ impl Pencil<'_> {
                 return Err(Error::Cancelled.into());
             }
             let counted = count_below_gap(self.stiffness, self.mass, &self.analysis, &values, count)?;
-            let Some(Count { found, counted }) = counted else { return Err(ModesError::NoEigenvalues) };
+            let Some(Count { found, counted }) = counted else { return Err(self.uncounted(values[0])) };
             let found = found + self.rigid.ncols();
             if found == counted {
                 return Ok((values, ritz.vectors, shifted));
@@ -132,6 +132,13 @@ impl Pencil<'_> {
             missed = Count { found, counted };
         }
         Err(ModesError::MissedModes { found: missed.found, counted: missed.counted })
+    }
+
+    /// An error that tells what makes the count hard.
+    fn uncounted(&self, lowest: f64) -> ModesError {
+        let mean = self.stiffness.trace() / self.mass.trace();
+        let (least, most) = self.stiffness.diagonal_range();
+        ModesError::Uncounted { contrast: most / least, lowest: lowest / mean }
     }
 
     /// An error where eigenvalues (ascending) are 0.

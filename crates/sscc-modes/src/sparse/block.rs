@@ -85,12 +85,20 @@ impl BlockSparse {
 
     /// The sum of the diagonal.
     pub fn trace(&self) -> f64 {
-        let diagonal = |row: usize| {
-            let at = self.columns(row).binary_search(&(row as u32)).unwrap_or_default();
-            let block = &self.blocks(row)[at];
-            block[0] + block[4] + block[8]
-        };
-        (0..self.rows()).map(diagonal).sum()
+        (0..self.rows()).map(|row| self.diagonal(row).iter().sum::<f64>()).sum()
+    }
+
+    /// The least and the largest entry of the diagonal.
+    pub fn diagonal_range(&self) -> (f64, f64) {
+        let entries = (0..self.rows()).flat_map(|row| self.diagonal(row));
+        entries.fold((f64::INFINITY, 0.0), |(least, most), x| (x.min(least), x.max(most)))
+    }
+
+    /// The three entries of the diagonal in a row of blocks.
+    fn diagonal(&self, row: usize) -> [f64; 3] {
+        let at = self.columns(row).binary_search(&(row as u32)).unwrap_or_default();
+        let block = &self.blocks(row)[at];
+        [block[0], block[4], block[8]]
     }
 
     /// The product with a matrix of `3 rows` rows. Each entry is one sum in the order of the columns, whatever the

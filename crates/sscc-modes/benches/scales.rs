@@ -1,0 +1,125 @@
+//! Modes of springs from soft to stiff, light to heavy and small to large: `cargo bench -p sscc-modes --bench scales`.
+//!
+//! Frequencies go as `sqrt(E / density) / size`. This is checked: the bench fails where one of them is off by more than
+//! 1e-8 of itself. It prints the worst error, and the processor time over that of the default material, measured in
+//! turns: at most 1.3 is expected. With `--quick` the small spring alone.
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+
+use cpu_time::ProcessTime;
+use sscc::TriMesh;
+use sscc_modes::{Embedded, Material, linear_modes, shapes::spring_of};
+
+/// Powers of ten by which stiffness, density and size are multiplied.
+const POWERS: [i32; 6] = [-6, -4, -2, 2, 4, 6];
+
+/// The error allowed for a frequency, as a share of it.
+const ERROR: f64 = 1e-8;
+
+/// Each is measured so often, and the fastest counts.
+const REPETITIONS: usize = 3;
+
+/// Rings and vertices around the wire, cubes along the spring, and numbers of modes.
+struct Spring {
+    name: &'static str,
+    rings: [usize; 2],
+    cells: usize,
+    ranks: &'static [usize],
+}
+
+const SPRINGS: [Spring; 2] = [
+    Spring { name: "coarse", rings: [120, 6], cells: 12, ranks: &[20, 100] },
+    Spring { name: "default", rings: [500, 16], cells: 30, ranks: &[20, 100, 200] },
+];
+
+/// What is changed about a spring.
+const CHANGES: [&str; 3] = ["stiffness", "density", "size"];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let quick = std::env::args().any(|arg| arg == "--quick");
+    println!(
+        "| spring | degrees of freedom | modes | changed | by 10^ | worst error of a frequency | processor time, s | over the default's |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    for spring in SPRINGS.iter().take(if quick { 1 } else { SPRINGS.len() }) {
+        for rank in spring.ranks {
+            for changed in CHANGES {
+                for power in POWERS {
+                    compare(spring, *rank, changed, power)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Measures a spring beside that of the default material and size.
+fn compare(spring: &Spring, rank: usize, changed: &str, power: i32) -> Result<(), Box<dyn Error>> {
+    let factor = 10.0_f64.powi(power);
+    let mut material = Material::default();
+    let (size, expected) = match changed {
+        "stiffness" => {
+            material.youngs_modulus *= factor;
+            (1.0, factor.sqrt())
+        }
+        "density" => {
+            material.density *= factor;
+            (1.0, 1.0 / factor.sqrt())
+        }
+        _ => (factor, 1.0 / factor),
+    };
+    let (mut usual, mut found) = (Measured::default(), Measured::default());
+    for _ in 0..REPETITIONS {
+        usual.repeat(spring, rank, Material::default(), 1.0)?;
+        found.repeat(spring, rank, material, size)?;
+    }
+    let error = |(a, b): (&f64, &f64)| (a / (b * expected) - 1.0).abs();
+    let worst = found.frequencies.iter().zip(&usual.frequencies).map(error).fold(0.0, f64::max);
+    println!(
+        "| {} | {} | {rank} | {changed} | {power} | {worst:.1e} | {:.2} | {:.2} |",
+        spring.name,
+        found.freedom,
+        found.seconds,
+        found.seconds / usual.seconds
+    );
+    if worst > ERROR {
+        return Err(format!("a frequency is off by {worst:e} of itself").into());
+    }
+    Ok(())
+}
+
+/// What was found, and how long it took in the fastest repetition (s of processor time).
+struct Measured {
+    freedom: usize,
+    frequencies: Vec<f64>,
+    seconds: f64,
+}
+
+impl Default for Measured {
+    fn default() -> Self {
+        Self { freedom: 0, frequencies: Vec::new(), seconds: f64::INFINITY }
+    }
+}
+
+impl Measured {
+    /// Once more.
+    fn repeat(
+        &mut self,
+        spring: &Spring,
+        rank: usize,
+        material: Material,
+        size: f64,
+    ) -> Result<(), Box<dyn Error>> {
+        let mesh = spring_of(spring.rings[0], spring.rings[1]);
+        let positions = mesh.rest_positions().iter().map(|p| *p * size).collect();
+        let mesh = TriMesh::new(positions, mesh.faces().to_vec())?;
+        let start = ProcessTime::now();
+        let body = Embedded::new(&mesh, Some(spring.cells), material, &())?;
+        let found = linear_modes(body.solid(), &[], rank, &())?;
+        self.seconds = self.seconds.min(start.elapsed().as_secs_f64());
+        self.freedom = 3 * body.solid().vertices().len();
+        self.frequencies = found.frequencies();
+        Ok(())
+    }
+}
