@@ -8,9 +8,9 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sscc::TriMesh;
-use sscc_cli::make::{self, Body, Kind, Wanted};
+use sscc_cli::make::{self, AskedMaterial, Body, Kind, Wanted};
 use sscc_io::{IoError, ModelInfo, read_frames, splits_vertices};
-use sscc_modes::{Material, ModesError, pca_modes};
+use sscc_modes::{ModesError, pca_modes};
 
 use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
@@ -128,12 +128,11 @@ fn loaded(made: make::Model) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<Material> {
-    let default = Material::default();
-    Ok(Material {
-        youngs_modulus: number(youngs.as_ref(), "youngs")?.unwrap_or(default.youngs_modulus),
-        poisson_ratio: number(poisson.as_ref(), "poisson")?.unwrap_or(default.poisson_ratio),
-        density: number(density.as_ref(), "density")?.unwrap_or(default.density),
+fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<AskedMaterial> {
+    Ok(AskedMaterial {
+        youngs: number(youngs.as_ref(), "youngs")?,
+        poisson: number(poisson.as_ref(), "poisson")?,
+        density: number(density.as_ref(), "density")?,
     })
 }
 

@@ -8,7 +8,7 @@ Common arguments:
 
 - ``fix``: vertex numbers (n,) that do not move; ``fix_box``: two corners (2, 3) of a box in which none moves. Without
   any the body is free, and its rigid motions are no modes.
-- ``youngs``, ``poisson``, ``density``: what it is made of, where its file does not say (1e6, 0.4, 1000).
+- ``youngs``, ``poisson``, ``density``: what it is made of; None is what a solid's file says, else 1e6, 0.4 and 1000.
 - ``resolution``: cubes along the longest side of the lattice (for about 20,000 in all).
 - ``threads``, ``progress``: as of ``Model.certify``.
 

@@ -91,8 +91,9 @@ pub struct Modes {
     /// [default: none, a free body without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
-    /// The material, where the file names none: any of youngs=E,poisson=NU,density=RHO [default:
-    /// youngs=1e6,poisson=0.4, density=1000]
+    /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of
+    /// youngs=E,poisson=NU,density=RHO; it goes before what a solid's file says [default: that, else
+    /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,
     /// Cubes along the longest side of the lattice around a surface [default: for about 20,000 cubes in all]

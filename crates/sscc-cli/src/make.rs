@@ -6,9 +6,10 @@ use anyhow::{Context, Result, ensure};
 use glam::DVec3;
 use sscc::{Progress, ReducedModel, TriMesh};
 use sscc_io::ModelInfo;
-use sscc_modes::{Material, polynomial_modes};
+use sscc_modes::polynomial_modes;
 
 use crate::args::ModesKind;
+pub use crate::commands::modes::AskedMaterial;
 use crate::commands::modes::{Made, Source, is_solid, of_solid};
 
 /// Kinds of modes of a body.
@@ -37,8 +38,8 @@ pub enum Body<'a> {
 pub struct Wanted {
     /// Number of modes; none: 20 linear, 30 nonlinear ones. Polynomial modes are always 24.
     pub rank: Option<usize>,
-    /// What the body is made of, where its file does not say.
-    pub material: Material,
+    /// What the body is made of; numbers left out are those of the file, else 1e6, 0.4 and 1000.
+    pub material: AskedMaterial,
     /// Vertices that do not move.
     pub fixed: Vec<u32>,
     /// All vertices in this box (two corners) do not move either.
@@ -67,10 +68,10 @@ pub struct Model {
 pub fn elastic(body: Body<'_>, kind: Kind, wanted: Wanted, progress: &dyn Progress) -> Result<Model> {
     let Wanted { rank, material, fixed, fixed_box, resolution } = wanted;
     let (source, name) = match body {
-        Body::File(path) => (Source::read(path, resolution, material, progress)?, name(path)),
+        Body::File(path) => (Source::read(path, resolution, &material, progress)?, name(path)),
         Body::Surface(mesh) => {
             let cells = resolution.map(|cells| cells as usize);
-            (Source::around(mesh, cells, material, progress)?, "in memory".into())
+            (Source::around(mesh, cells, &material, progress)?, "in memory".into())
         }
     };
     let mut held = Vec::new();
@@ -89,7 +90,7 @@ pub fn elastic(body: Body<'_>, kind: Kind, wanted: Wanted, progress: &dyn Progre
         Kind::Nonlinear => ModesKind::Nonlinear,
         Kind::Polynomial => ModesKind::Polynomial,
     };
-    let made = of_solid(kind, rank, source, &held, material, name, progress)?;
+    let made = of_solid(kind, rank, source, &held, name, progress)?;
     let is_split = made.is_split;
     let (model, info) = made.into_model()?;
     Ok(Model { model, info, is_split })

@@ -139,6 +139,71 @@ fn solids_from_files_vibrate() {
     assert_eq!(held["degrees_of_freedom"], 9);
 }
 
+/// The provenance that a model's file tells.
+fn provenance(folder: &Path) -> String {
+    sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap().1.provenance
+}
+
+fn frequencies(report: &serde_json::Value) -> Vec<f64> {
+    report["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect()
+}
+
+/// The materials of `two.veg`, each with one number replaced, are told from those that are the file's own.
+#[test]
+fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
+    let directory = folder();
+    let folder = directory.path();
+    let run = |file: &str, material: Option<&str>| {
+        let args = ["modes", "-o", "x.model.safetensors", file, "--kind", "linear", "--rank", "9", "--json"];
+        let material = material.map_or(vec![], |material| vec!["--material", material]);
+        let run = sscc(folder, &[&args[..], &material].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        (frequencies(&run.json()[0]), run.stderr, provenance(folder))
+    };
+    let note = |numbers: &str| format!("note: --material goes before what the file says: {numbers}\n");
+    let (own, silent, told) = run("two.veg", None);
+    assert_eq!(silent, "");
+    assert!(told.ends_with(", materials of the file"), "{told}");
+
+    // Written into the file, a material gives what it gives when asked for.
+    let both = |enu: &str| VEG.replace("1000, 1e6, 0.4", enu).replace("2000, 1e7, 0.3", enu);
+    fs::write(folder.join("steel.veg"), both("7850, 2e11, 0.29")).unwrap();
+    let (steel, ..) = run("steel.veg", None);
+    for asked in ["steel", "youngs=2e11,poisson=0.29,density=7850"] {
+        let (found, said, told) = run("two.veg", Some(asked));
+        assert_eq!((found, said), (steel.clone(), note("youngs=2e11 poisson=0.29 density=7850")));
+        assert!(told.ends_with(", youngs=2e11 poisson=0.29 density=7850"), "{told}");
+    }
+    // One number alone replaces that of each material.
+    let dense = VEG.replace("ENU, 1000", "ENU, 4000").replace("ENU, 2000", "ENU, 4000");
+    fs::write(folder.join("dense.veg"), dense).unwrap();
+    let (found, said, told) = run("two.veg", Some("density=4000"));
+    assert_eq!((&found, said), (&run("dense.veg", None).0, note("density=4000")));
+    assert!(found != own && told.ends_with(", materials of the file with density=4000"), "{told}");
+
+    // A file that names none: the default's numbers, or those asked for, and nothing is replaced.
+    let medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1 1\n\
+        Tetrahedra\n2\n1 2 3 4 1\n2 3 4 5 1\nEnd\n";
+    fs::write(folder.join("two.mesh"), medit).unwrap();
+    for (asked, numbers) in [
+        (None, "youngs=1e6 poisson=0.4 density=1000"),
+        (Some("glass"), "youngs=6.2e10 poisson=0.2 density=2600"),
+    ] {
+        let (_, said, told) = run("two.mesh", asked);
+        assert_eq!(said, "");
+        assert!(told.ends_with(&format!(", {numbers}")), "{told}");
+    }
+}
+
+#[test]
+fn the_help_lists_the_materials() {
+    let directory = folder();
+    let help = sscc(directory.path(), &["modes", "--help"]).stdout;
+    for material in sscc_dynamics::MATERIALS {
+        assert!(help.contains(material.name), "{}", material.name);
+    }
+}
+
 #[test]
 fn what_has_no_modes_is_told() {
     let directory = folder();
@@ -169,7 +234,10 @@ fn what_has_no_modes_is_told() {
             &["box.obj", "--resolution", "4", "--material", "poisson=0.5"],
             "Poisson's ratio is 5e-1: it must be",
         ),
-        (&["box.obj", "--resolution", "4", "--material", "steel"], "--material: 'steel' is not youngs=E"),
+        (
+            &["box.obj", "--resolution", "4", "--material", "stel"],
+            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber)",
+        ),
         (
             &["inverted.veg"],
             "inverted.veg: tetrahedron 1 (counted from 0, vertices [1, 3, 2, 4]) is inverted",

@@ -9,12 +9,11 @@ use sscc::{Metric, MetricKind, ReducedModel, TriMesh};
 use sscc_io::{ModelInfo, read_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_modes::{
-    DEFAULT_ELL, Material, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
-    polynomial_solid_modes,
+    DEFAULT_ELL, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes, polynomial_solid_modes,
 };
 
 use super::cache::Key;
-use crate::commands::modes::{Source, elasticity, is_solid};
+use crate::commands::modes::{AskedMaterial, Source, elasticity, is_solid};
 use crate::progress::Bar;
 
 /// A free elastic body with modes.
@@ -23,8 +22,8 @@ pub struct Recipe {
     pub name: String,
     pub shape: Shape,
     pub kind: Kind,
-    /// Of surfaces, and of solids whose file names none.
-    pub material: Material,
+    /// Goes before what the file of a solid names.
+    pub material: AskedMaterial,
     /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
     pub cells: Option<usize>,
     /// The longest side of the box around a surface; none: as it is.
@@ -77,19 +76,26 @@ impl Shape {
     pub const SMALL_SPRING: Self = Self::Spring { rings: SPRING_RINGS[0] / 2, around: SPRING_RINGS[1] / 2 };
 
     /// Reads or makes it.
-    fn begin(&self, models: Option<&Path>) -> Result<(Matter, String, Option<String>)> {
+    fn begin(
+        &self,
+        models: Option<&Path>,
+        material: &AskedMaterial,
+    ) -> Result<(Matter, String, Option<String>)> {
         let (file, name, embedded): (_, _, fn() -> TriMesh) = match self {
             Self::Spring { rings, around } => {
                 return Ok((Matter::Surface(spring_of(*rings, *around)), "embedded spring".into(), None));
             }
             Self::File(path) => {
-                let matter = if is_solid(path) {
-                    let whole = Source::read(path, None, Material::default(), &Bar::new("modes"));
-                    Matter::Solid(Box::new(whole.with_context(|| path.display().to_string())?))
-                } else {
-                    Matter::Surface(read_mesh(path)?)
-                };
-                return Ok((matter, path.file_name().unwrap_or_default().to_string_lossy().into(), None));
+                let name: String = path.file_name().unwrap_or_default().to_string_lossy().into();
+                if !is_solid(path) {
+                    return Ok((Matter::Surface(read_mesh(path)?), name, None));
+                }
+                let whole = Source::read(path, None, material, &Bar::new("modes"));
+                let whole = whole.with_context(|| path.display().to_string())?;
+                let replaced = whole.material().replaced.as_ref();
+                let note = replaced
+                    .map(|replaced| format!("the scene's material goes before what {name} says: {replaced}"));
+                return Ok((Matter::Solid(Box::new(whole)), name, note));
             }
             Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
             Self::Dragon => ("dragon_77202_closed.ply", "serpent", serpent),
@@ -112,7 +118,7 @@ impl Recipe {
             name: name.into(),
             shape,
             kind,
-            material: Material::default(),
+            material: AskedMaterial::default(),
             cells: None,
             size: None,
             spread: None,
@@ -134,7 +140,7 @@ impl Recipe {
 
     /// Reads or makes the shape.
     pub fn begin(&self, models: Option<&Path>) -> Result<Begun<'_>> {
-        let (mut matter, source, note) = self.shape.begin(models)?;
+        let (mut matter, source, note) = self.shape.begin(models, &self.material)?;
         match (&mut matter, self.size) {
             (Matter::Surface(mesh), Some(size)) => *mesh = resized(mesh, size)?,
             (Matter::Solid(_), Some(_)) => {
@@ -160,7 +166,7 @@ pub struct Begun<'a> {
     matter: Matter,
     /// Where the shape is from.
     pub source: String,
-    /// What an embedded shape stands in for.
+    /// What an embedded shape stands in for, or which numbers of a file a material replaces.
     pub note: Option<String>,
     /// From its own axes to those of a shape that stands upright, z up.
     pub upright: DQuat,
@@ -180,7 +186,7 @@ impl Begun<'_> {
 
     /// The hash of all that something of this solid is made from.
     pub fn key(&self, what: &str) -> Key {
-        let Recipe { material, .. } = self.recipe;
+        let material = self.recipe.material.alone();
         let key = Key::new(what).text(&format!("{material:?} {:?}", self.recipe.cells()));
         match &self.matter {
             Matter::Surface(mesh) => key.mesh(mesh),
@@ -198,7 +204,7 @@ impl Begun<'_> {
             return Ok(source);
         }
         let Recipe { material, .. } = self.recipe;
-        let around = Source::around(mesh.clone(), self.recipe.cells(), *material, &Bar::new("solid"));
+        let around = Source::around(mesh.clone(), self.recipe.cells(), material, &Bar::new("solid"));
         let around = around.with_context(|| self.source.clone())?;
         Ok(self.around.get_or_init(|| around))
     }
@@ -252,6 +258,31 @@ mod tests {
         };
         assert_eq!(key(None), key(Some(SPRING_CELLS)));
         assert_ne!(key(None), key(Some(SPRING_CELLS + 1)));
+    }
+
+    /// One tetrahedron of a soft material.
+    const SOFT: &str = "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n\
+        *MATERIAL soft\nENU, 1000, 1e6, 0.4\n*REGION\nallElements, soft\n";
+
+    #[test]
+    fn a_scenes_material_goes_before_that_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("soft.veg");
+        std::fs::write(&file, SOFT).unwrap();
+        let first = |material: AskedMaterial| {
+            let recipe = Recipe::new("soft", Shape::File(file.clone()), Kind::Linear(6));
+            let recipe = Recipe { material, ..recipe };
+            let begun = recipe.begin(None).unwrap();
+            let (_, info) = begun.modes(Kind::Linear(6)).unwrap();
+            (info.elasticity.unwrap().stiffness()[0], begun.note.clone(), begun.key("model").to_string())
+        };
+        let (own, nothing, key) = first(AskedMaterial::default());
+        assert_eq!(nothing, None);
+        let (stiff, note, of_stiff) = first(AskedMaterial { youngs: Some(4e6), ..Default::default() });
+        assert!((stiff / own - 4.0).abs() < 1e-9, "{own} {stiff}");
+        let said = "the scene's material goes before what soft.veg says: youngs=4e6";
+        assert_eq!(note.as_deref(), Some(said));
+        assert_ne!(key, of_stiff);
     }
 
     #[test]

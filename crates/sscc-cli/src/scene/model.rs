@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::Result;
 use sscc_dynamics::{Damping, MATERIALS};
-use sscc_modes::Material;
 
 use super::section::Section;
 use crate::case::{Kind, Recipe, Shape};
+use crate::commands::modes::AskedMaterial;
 
 /// The most modes of a body.
 pub const MOST_RANK: usize = 500;
@@ -125,25 +125,20 @@ pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
     }))
 }
 
-/// A material by its name, with its usual damping, or by its numbers.
-fn material(model: &Section<'_>) -> Result<(Material, Damping)> {
+/// A material by its name, with its usual damping, or by its numbers; those left out are the file's.
+fn material(model: &Section<'_>) -> Result<(AskedMaterial, Damping)> {
     if model.is_text("material") {
         let known = MATERIALS.map(|material| (material.name, material));
         let found = model.wanted("material", model.word("material", &known)?)?;
-        return Ok((found.elastic, found.damping));
+        return Ok((found.elastic.into(), found.damping));
     }
-    let usual = Material::default();
     let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {
-        return Ok((usual, Damping::default()));
+        return Ok((AskedMaterial::default(), Damping::default()));
     };
-    let poisson_ratio = material.number("poisson")?.unwrap_or(usual.poisson_ratio);
-    if !(-1.0..0.5).contains(&poisson_ratio) || poisson_ratio == -1.0 {
+    let poisson = material.number("poisson")?;
+    if poisson.is_some_and(|nu| nu <= -1.0 || nu >= 0.5) {
         return Err(material.refused("poisson", "a number between -1 and 0.5 was expected"));
     }
-    let elastic = Material {
-        youngs_modulus: material.positive("youngs")?.unwrap_or(usual.youngs_modulus),
-        poisson_ratio,
-        density: material.positive("density")?.unwrap_or(usual.density),
-    };
-    Ok((elastic, Damping::default()))
+    let (youngs, density) = (material.positive("youngs")?, material.positive("density")?);
+    Ok((AskedMaterial { youngs, poisson, density }, Damping::default()))
 }

@@ -39,7 +39,8 @@ fn a_scene_is_what_its_file_says() {
     assert_eq!((scene.gravity, scene.ground.unwrap().friction), (DVec3::new(0.0, 0.0, -9.81), 0.3));
     let model = &scene.models[0];
     assert_eq!((model.recipe.name.as_str(), model.recipe.size, model.damping.mass), ("soft", Some(0.3), 0.5));
-    assert_eq!((model.recipe.material.youngs_modulus, model.recipe.material.poisson_ratio), (1e5, 0.4));
+    let material = model.recipe.material;
+    assert_eq!((material.youngs, material.poisson, material.density), (Some(1e5), None, Some(900.0)));
     assert!(model.is_linear && scene.sound.is_none());
     let [one, .., last] = &scene.bodies[..] else { panic!() };
     assert!((one.orientation * DVec3::X - DVec3::Y).length() < 1e-15 && one.shake == [0.1, -2.0]);

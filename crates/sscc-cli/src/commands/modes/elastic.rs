@@ -4,12 +4,12 @@ use anyhow::{Result, bail};
 use sscc::{Modes, Progress};
 use sscc_io::{Cubic, Elasticity};
 use sscc_modes::{
-    DEFAULT_ELL, Material, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes,
-    nonlinear_modes, polynomial_solid_modes,
+    DEFAULT_ELL, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
+    polynomial_solid_modes,
 };
 
 use super::source::Source;
-use super::{Made, POLYNOMIALS_ARE_FREE, fix, material, name};
+use super::{AskedMaterial, Made, POLYNOMIALS_ARE_FREE, fix, name};
 use crate::args::{self, ModesKind};
 use crate::progress::Bar;
 
@@ -21,21 +21,22 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     if args.kind == ModesKind::Polynomial && (args.rank.is_some() || args.fix.is_some()) {
         bail!(POLYNOMIALS_ARE_FREE);
     }
-    let material = material::parse(args.material.as_deref())?;
+    let asked = args.material.as_deref().map(AskedMaterial::parse).transpose()?.unwrap_or_default();
     let bar = Bar::new("modes");
-    let source = Source::read(&args.source, args.resolution, material, &bar)?;
+    let source = Source::read(&args.source, args.resolution, &asked, &bar)?;
+    if let Some(replaced) = &source.material().replaced {
+        eprintln!("note: --material goes before what the file says: {replaced}");
+    }
     let fixed = fix::vertices(args.fix.as_deref(), &source)?;
-    of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, material, name(args), &bar)
+    of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, name(args), &bar)
 }
 
-/// Modes of a solid with fixed vertices; without a rank as many as usual. `name` is that of the source, and `material`
-/// what it is made of where that has none of its own.
+/// Modes of a solid with fixed vertices; without a rank as many as usual. `name` is that of the source.
 pub fn of_solid(
     kind: ModesKind,
     rank: Option<usize>,
     source: Source,
     fixed: &[u32],
-    material: Material,
     name: String,
     progress: &dyn Progress,
 ) -> Result<Made> {
@@ -65,13 +66,7 @@ pub fn of_solid(
     let (elements, freedom) =
         (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
     let of_source = if source.is_embedded() { "mesh" } else { "solid" };
-    // A file's own materials are in the file.
-    let made_of = if source.is_embedded() {
-        let Material { density, youngs_modulus, poisson_ratio } = material;
-        format!("youngs={youngs_modulus:e} poisson={poisson_ratio} density={density}")
-    } else {
-        "materials of the file".into()
-    };
+    let made_of = &source.material().provenance;
     let provenance = format!(
         "{of_source} {name}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
         kind.name(),

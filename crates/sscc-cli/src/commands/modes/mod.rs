@@ -16,6 +16,7 @@ use crate::args::{self, ModesKind};
 use crate::output::{Output, counted, grouped, length};
 use crate::{Outcome, interrupt, load};
 pub use elastic::{elasticity, of_solid};
+pub use material::AskedMaterial;
 use pca::Components;
 pub use source::{Source, is_solid};
 

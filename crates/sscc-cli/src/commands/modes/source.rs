@@ -6,18 +6,21 @@ use anyhow::{Result, bail};
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_io::{read_mesh, read_solid};
-use sscc_modes::{Boundary, Embedded, Material, Solid, tets_within};
+use sscc_modes::{Boundary, Embedded, Solid, tets_within};
+
+use super::material::{AskedMaterial, Origin};
 
 /// A solid with a surface.
 pub enum Source {
     /// Around a surface.
-    Around { mesh: TriMesh, embedded: Embedded },
+    Around { mesh: TriMesh, embedded: Embedded, material: Origin },
     /// From a file, with its boundary.
     Whole {
         solid: Solid,
         boundary: Boundary,
         /// The solid's vertex for each of the file's, if it is left.
         vertices: Vec<Option<u32>>,
+        material: Origin,
     },
 }
 
@@ -32,17 +35,18 @@ impl Source {
     pub fn around(
         mesh: TriMesh,
         cells: Option<usize>,
-        material: Material,
+        material: &AskedMaterial,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let embedded = Embedded::new(&mesh, cells, material, progress)?;
-        Ok(Self::Around { mesh, embedded })
+        let embedded = Embedded::new(&mesh, cells, material.alone(), progress)?;
+        Ok(Self::Around { mesh, embedded, material: Origin::new(material, &[]) })
     }
 
+    /// From a file. A material that is asked for goes before those of the file.
     pub fn read(
         path: &Path,
         resolution: Option<u32>,
-        material: Material,
+        material: &AskedMaterial,
         progress: &dyn Progress,
     ) -> Result<Self> {
         if !is_solid(path) {
@@ -71,28 +75,36 @@ impl Source {
         }
         let number = |v: u32| vertices[v as usize].unwrap_or_default();
         let positions = file.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect();
-        let materials = file.materials.iter().map(|m| Material {
-            density: m.density.unwrap_or(material.density),
-            youngs_modulus: m.youngs_modulus.unwrap_or(material.youngs_modulus),
-            poisson_ratio: m.poisson_ratio.unwrap_or(material.poisson_ratio),
-        });
         let of_tets = kept.iter().map(|t| file.element_material[*t]);
         let of_cubes = file.element_material[file.tets.len()..].iter().copied();
+        let of_elements: Vec<u32> = of_tets.chain(of_cubes).collect();
+        // A file may name materials that none of its elements has.
+        let mut is_used = vec![false; file.materials.len()];
+        of_elements.iter().for_each(|at| is_used[*at as usize] = true);
+        let named = file.materials.iter().zip(&is_used).filter(|(_, used)| **used).map(|(named, _)| named);
+        let origin = Origin::new(material, &named.collect::<Vec<_>>());
         let solid = Solid::new(
             positions,
             tets.iter().map(|t| t.map(number)).collect(),
             file.cubes.iter().map(|c| c.map(number)).collect(),
-            materials.collect(),
-            of_tets.chain(of_cubes).collect(),
+            file.materials.iter().map(|of_file| material.over(of_file)).collect(),
+            of_elements,
         )?;
         let boundary = solid.boundary()?;
-        Ok(Self::Whole { solid, boundary, vertices })
+        Ok(Self::Whole { solid, boundary, vertices, material: origin })
     }
 
     pub fn solid(&self) -> &Solid {
         match self {
             Self::Around { embedded, .. } => embedded.solid(),
             Self::Whole { solid, .. } => solid,
+        }
+    }
+
+    /// Where its material comes from.
+    pub fn material(&self) -> &Origin {
+        match self {
+            Self::Around { material, .. } | Self::Whole { material, .. } => material,
         }
     }
 
@@ -152,7 +164,7 @@ impl Source {
         let inside = |p: &DVec3| p.cmpge(low).all() && p.cmple(high).all();
         let solid = self.solid().vertices();
         let mut found: Vec<u32> = (0..solid.len() as u32).filter(|v| inside(&solid[*v as usize])).collect();
-        if let Self::Around { mesh, embedded } = self {
+        if let Self::Around { mesh, embedded, .. } = self {
             let points = mesh.rest_positions();
             (0..points.len()).filter(|v| inside(&points[*v])).for_each(|v| found.extend(embedded.holding(v)));
         }
