@@ -1,9 +1,12 @@
 //! Arrays in and out. In: any memory order, byte order and numeric type, or lists of numbers. Out: read-only.
+//!
+//! Other threads may write to an array at any time, even while this one holds the GIL: NumPy releases it in long loops.
+//! So each entry is read once, into memory of our own, before anything is decided by it.
 
 use numpy::ndarray::{Array1, Array2};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArrayDyn,
-    PyUntypedArray, PyUntypedArrayMethods,
+    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
@@ -11,12 +14,12 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyTuple};
 use sscc::Pair;
 
-use crate::errors::{kind, value};
+use crate::errors::{kind, room, value};
 
 /// Beyond it, not every integer is a float64.
 const LARGEST_EXACT: i128 = 1 << 53;
 
-/// The floats of one argument in C order; `name` is the argument's.
+/// The floats of one argument in C order; `name` is the argument's. Others may write to them: see [`copied`].
 pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = any.cast_exact::<PyArrayDyn<f64>>()
         && is_plain(array.as_untyped())
@@ -30,7 +33,12 @@ pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyAr
     match letter {
         'f' if size <= 8 => {}
         'i' | 'u' if size < 8 => {}
-        'i' | 'u' => check_exact(&array, name)?,
+        'i' | 'u' => {
+            // What is checked must be what is converted.
+            let copy = array.call_method0("copy")?;
+            check_exact(&copy, name)?;
+            return borrow(require(&copy, "float64")?.cast::<PyArrayDyn<f64>>()?, name);
+        }
         _ => {
             return Err(kind(format!(
                 "{name} is an array of {dtype}: float64, float32 or integers were expected"
@@ -40,7 +48,7 @@ pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyAr
     borrow(require(&array, "float64")?.cast::<PyArrayDyn<f64>>()?, name)
 }
 
-/// The integers of one argument in C order.
+/// The integers of one argument in C order. Others may write to them: see [`copied`].
 pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
     let array = numbers(any, name)?;
     let dtype = array.getattr("dtype")?;
@@ -55,23 +63,31 @@ pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonly
     borrow(require(&array, "int64")?.cast::<PyArrayDyn<i64>>()?, name)
 }
 
-/// One configuration: r numbers. Read where they are, if they are float64 side by side.
+/// The entries of an array in C order, which nobody else can write to; `name` is the argument's.
+pub fn copied(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<f64>> {
+    let entries = array.as_slice()?;
+    let mut copy = room(entries.len(), name)?;
+    copy.extend_from_slice(entries);
+    Ok(copy)
+}
+
+/// One configuration: a copy of its r numbers. Copied from where they are, if they are float64 side by side.
 #[inline]
-pub fn vector<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray1<'py, f64>> {
+pub fn vector(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
     if let Ok(array) = any.cast_exact::<PyArray1<f64>>()
         && let Ok(array) = array.try_readonly()
-        && array.as_slice().is_ok()
+        && let Ok(entries) = array.as_slice()
     {
-        return Ok(array);
+        return Ok(entries.to_vec());
     }
     let array = floats(any, name)?;
-    match array.cast::<PyArray1<f64>>() {
-        Ok(array) => Ok(array.readonly()),
-        Err(_) => Err(value(format!(
+    if array.ndim() != 1 {
+        return Err(value(format!(
             "{name} has shape {:?}: one configuration was expected, one number for each mode",
             array.shape()
-        ))),
+        )));
     }
+    copied(&array, name)
 }
 
 /// Something that NumPy takes for an array of numbers, without a mask.
@@ -211,7 +227,7 @@ pub fn table<'py, T: Element>(py: Python<'py>, columns: usize, items: Vec<T>) ->
 
 /// Pairs of triangles as an array (n, 2) of uint32.
 pub fn pairs<'py>(py: Python<'py>, pairs: &[Pair]) -> PyResult<Bound<'py, PyAny>> {
-    let mut entries = crate::errors::room(2 * pairs.len(), "pairs")?;
+    let mut entries = room(2 * pairs.len(), "pairs")?;
     entries.extend(pairs.iter().flat_map(|(i, j)| [*i, *j]));
     table::<u32>(py, 2, entries)
 }

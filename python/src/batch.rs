@@ -9,7 +9,7 @@ use pyo3::types::PyList;
 
 use crate::answer::{Answer, Pickled, Reduced, pickled, unpickled};
 use crate::arguments::count;
-use crate::arrays::{Cached, cached, floats, line, table};
+use crate::arrays::{Cached, cached, copied, floats, line, table};
 use crate::certificates::Certificates;
 use crate::errors::{refused, room, value};
 use crate::interrupt::run_borrowing;
@@ -142,25 +142,30 @@ pub fn _batch(answers: Vec<Pickled<'_>>) -> PyResult<Batch> {
     Ok(Batch::of(answers.iter().map(unpickled).collect::<PyResult<_>>()?))
 }
 
-/// The rows of Q (n, r).
-fn rows<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<&'a [f64]>> {
+/// The entries of Q (n, r), which nobody else can write to.
+fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64>> {
     if array.ndim() != 2 || array.shape()[1] != rank {
         let hint = if array.ndim() == 1 { "; for one q there is check" } else { "" };
         return Err(value(format!("Q has shape {:?}: (n, {rank}) was expected{hint}", array.shape())));
     }
-    let mut rows = room(array.shape()[0], "Q")?;
-    rows.extend(array.as_slice()?.chunks_exact(rank));
+    copied(array, "Q")
+}
+
+/// The rows of the entries of Q.
+fn rows(entries: &[f64], rank: usize) -> PyResult<Vec<&[f64]>> {
+    let mut rows = room(entries.len() / rank, "Q")?;
+    rows.extend(entries.chunks_exact(rank));
     Ok(rows)
 }
 
-/// The rows of Q, each of which is a configuration of the model.
-pub fn checked_rows<'a>(pool: &Pool, array: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<&'a [f64]>> {
+/// The entries of Q (n, r), each row of which is a configuration of the model.
+pub fn checked_entries(pool: &Pool, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
     let model = &pool.borrow_owner().loaded.model;
-    let rows = rows(array, model.rank())?;
-    for (row, q) in rows.iter().enumerate() {
+    let entries = entries(array, model.rank())?;
+    for (row, q) in entries.chunks_exact(model.rank()).enumerate() {
         model.check_coordinates(q).map_err(|error| refused(&error, &format!("Q[{row}]")))?;
     }
-    Ok(rows)
+    Ok(entries)
 }
 
 /// Answers every row of Q.
@@ -175,8 +180,8 @@ pub fn check_many(
     let model = &pool.borrow_owner().loaded.model;
     let limit = count(limit, "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX);
     let threads = pool::threads(threads)?;
-    let array = floats(Q, "Q")?;
-    let rows = rows(&array, model.rank())?;
+    let entries = entries(&floats(Q, "Q")?, model.rank())?;
+    let rows = rows(&entries, model.rank())?;
     let answers = run_borrowing(py, progress, "checking", |progress| {
         pool.with_first(|query| query.batch_at_most(&rows, limit, threads, progress))
     })?;
@@ -204,8 +209,9 @@ pub fn _core_seconds(
     one_by_one: bool,
 ) -> PyResult<(f64, Vec<f64>)> {
     let pool = &certificates.pool;
-    let array = floats(Q, "Q")?;
-    let rows = rows(&array, pool.borrow_owner().loaded.model.rank())?;
+    let rank = pool.borrow_owner().loaded.model.rank();
+    let entries = entries(&floats(Q, "Q")?, rank)?;
+    let rows = rows(&entries, rank)?;
     let measured = py.detach(|| {
         pool.with_first(|query| {
             let start = Instant::now();

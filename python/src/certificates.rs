@@ -74,24 +74,17 @@ impl Certificates {
         limit: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Answer> {
         let q = vector(q, "q")?;
-        let q = q.as_slice()?;
         let limit = match limit {
             Some(limit) => count(Some(limit), "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX),
             None => usize::MAX,
         };
-        let ask = |q: &[f64]| {
+        let ask = || {
             self.pool.ask(|query| {
-                let pairs = query.discrete_at_most(q, limit).map(<[_]>::to_vec)?;
+                let pairs = query.discrete_at_most(&q, limit).map(<[_]>::to_vec)?;
                 Ok(Answer::of(pairs, query.norm(), query.statistics()))
             })
         };
-        let found = if self.is_quick(q) {
-            ask(q)
-        } else {
-            // Others may write to the array meanwhile.
-            let q = q.to_vec();
-            answer(py, || ask(&q))?
-        };
+        let found = if self.is_quick(&q) { ask() } else { answer(py, ask)? };
         found.map_err(|error| refused(&error, "q"))
     }
 
@@ -109,7 +102,7 @@ impl Certificates {
     }
 
     fn continuous(&self, py: Python<'_>, q0: &Bound<'_, PyAny>, q1: &Bound<'_, PyAny>) -> PyResult<Impacts> {
-        let [q0, q1] = [copied(q0, "q0")?, copied(q1, "q1")?];
+        let [q0, q1] = [vector(q0, "q0")?, vector(q1, "q1")?];
         let found = answer(py, || {
             self.pool.ask(|query| {
                 let impacts = query.continuous(&q0, &q1)?.to_vec();
@@ -123,22 +116,21 @@ impl Certificates {
     }
 
     fn safe_scale(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<f64> {
-        let q = copied(q, "q")?;
+        let q = vector(q, "q")?;
         let scale = answer(py, || self.pool.ask(|query| query.safe_scale(&q)))?;
         scale.map_err(|error| refused(&error, "q"))
     }
 
     fn clamp<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let q = vector(q, "q")?;
-        let clamped = self.core().clamp(q.as_slice()?).map_err(|error| refused(&error, "q"))?;
+        let clamped = self.core().clamp(&q).map_err(|error| refused(&error, "q"))?;
         Ok(clamped.map(|clamped| line(py, clamped)))
     }
 
     fn norm(&self, q: &Bound<'_, PyAny>) -> PyResult<f64> {
         let q = vector(q, "q")?;
-        let q = q.as_slice()?;
-        self.model.get().loaded.model.check_coordinates(q).map_err(|error| refused(&error, "q"))?;
-        Ok(self.core().norm(q))
+        self.model.get().loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
+        Ok(self.core().norm(&q))
     }
 
     fn radius(&self, node: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -252,11 +244,6 @@ impl Certificates {
             self.metric()
         )
     }
-}
-
-/// One configuration that others may write to meanwhile.
-fn copied(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
-    Ok(vector(any, name)?.as_slice()?.to_vec())
 }
 
 /// What pickled certificates become.

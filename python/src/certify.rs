@@ -39,7 +39,7 @@ impl Typed<'_, '_> {
         let center = match self.center {
             None => None,
             Some(center) => {
-                let center = vector(center, "center")?.as_slice()?.to_vec();
+                let center = vector(center, "center")?;
                 model.check_coordinates(&center).map_err(|error| refused(&error, "center"))?;
                 Some(center)
             }

@@ -26,7 +26,7 @@ impl KineticQuery {
 #[pymethods]
 impl KineticQuery {
     fn check(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<Answer> {
-        let q = vector(q, "q")?.as_slice()?.to_vec();
+        let q = vector(q, "q")?;
         let found = answer(py, || {
             self.kinetic.ask(|query| {
                 let pairs = query.discrete(&q)?.to_vec();

@@ -13,7 +13,7 @@ use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertic
 
 use crate::answer::Reduced;
 use crate::arguments::{check_ending, path};
-use crate::arrays::{floats, integers, line, table, vector};
+use crate::arrays::{copied, floats, integers, line, table, vector};
 use crate::certify;
 use crate::errors::{file, kind, refused, room, value};
 
@@ -135,8 +135,7 @@ impl Model {
     /// Where the vertices are at q.
     fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let q = vector(q, "q")?;
-        let q = q.as_slice()?;
-        let positions = self.core().positions(q).map_err(|error| refused(&error, "q"))?;
+        let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
         table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
     }
 
@@ -295,9 +294,11 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
             "identity" => Metric::identity(rank),
             "energy" if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
             "energy" => {
-                return Err(value(
-                    "metric: 'energy' needs a model with its stiffness, such as sscc.modes.linear makes",
-                ));
+                return Err(value(format!(
+                    "metric: the model's own is '{}', not 'energy': that of a model with its stiffness, such as \
+                     sscc.modes.linear makes",
+                    model.metric().kind().name()
+                )));
             }
             other => {
                 return Err(value(format!(
@@ -309,7 +310,7 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
         }
     } else {
         let array = floats(any, "metric")?;
-        let entries = array.as_slice()?;
+        let entries = &copied(&array, "metric")?;
         let made = match *array.shape() {
             [n] if n == rank => Metric::from_weights(MetricKind::Given, entries),
             [n, m] if (n, m) == (rank, rank) => Metric::from_matrix(MetricKind::Given, rank, entries),

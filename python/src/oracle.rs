@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use sscc::MovingTriangle;
 use sscc_exact::first_contact;
 
-use crate::arrays::floats;
+use crate::arrays::{copied, floats};
 use crate::errors::value;
 
 /// The first time in [0, 1] at which two triangles have a point in common, rounded down; None if they never do.
@@ -18,7 +18,7 @@ pub fn _first_contact(py: Python<'_>, corners: &Bound<'_, PyAny>) -> PyResult<Op
     if corners.shape() != [2, 2, 3, 3] {
         return Err(value(format!("corners has shape {:?}: (2, 2, 3, 3) was expected", corners.shape())));
     }
-    let numbers = corners.as_slice()?;
+    let numbers = copied(&corners, "corners")?;
     if numbers.iter().any(|x| !x.is_finite()) {
         return Err(value("corners: every entry must be finite"));
     }

@@ -9,7 +9,7 @@ use sscc::{CertifyOptions, Error, Progress};
 
 use crate::arguments::count;
 use crate::arrays::{floats, table};
-use crate::batch::{Batch, checked_rows};
+use crate::batch::{Batch, checked_entries};
 use crate::certificates::Certificates;
 use crate::certify::Typed;
 use crate::errors::{kind, refused};
@@ -163,10 +163,9 @@ pub fn _configurations<'py>(
     certificates: &Certificates,
     Q: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let array = floats(Q, "Q")?;
-    let rows = checked_rows(&certificates.pool, &array)?;
+    let entries = checked_entries(&certificates.pool, &floats(Q, "Q")?)?;
     let rank = certificates.pool.borrow_owner().loaded.model.rank();
-    table(Q.py(), rank, rows.concat())
+    table(Q.py(), rank, entries)
 }
 
 /// The answers of many batches in a row, as one batch.

@@ -5,8 +5,11 @@ from __future__ import annotations
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
+import pytest
+
 import sscc
-from shapes import samples
+from shapes import samples, two_triangles
 
 THREADS = 8
 
@@ -41,6 +44,26 @@ def test_one_kinetic_query_serves_threads_in_turn(certs: sscc.Certificates) -> N
 
     with ThreadPoolExecutor(THREADS) as pool:
         assert list(pool.map(ask, range(THREADS))) == [expected] * THREADS
+
+
+def test_what_is_written_to_an_array_meanwhile_changes_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each row is answered as it was when the call began, whatever is written to the array before the work ends."""
+    vertices, faces, modes = two_triangles()
+    certs = sscc.Model(vertices, faces, modes).certify()
+    free, colliding = np.full((50, 1), 0.5), np.full((50, 1), -1.0)
+    all_free, all_colliding = certs.check_many(free), certs.check_many(colliding)
+    assert all_colliding.colliding.all() and not all_free.colliding.any()
+    qs = after = colliding.copy()
+
+    def overwrite(_progress: object, _label: str) -> None:
+        qs[:] = after
+
+    # The work begins after this function, on a thread that has the arguments of the call.
+    monkeypatch.setattr(sscc._progress, "start", overwrite)
+    for before, after, answers in [(colliding, free, all_colliding), (free, colliding, all_free)]:
+        qs[:] = before
+        assert certs.check_many(qs) == answers
+        assert np.array_equal(qs, after)
 
 
 def test_others_work_meanwhile(model: sscc.Model) -> None:
