@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use crate::file::{ending, read_whole};
+use crate::file::{ending, read_whole, unsupported};
 use crate::{FormatError, IoError, Place};
 
 /// The bytes before the coefficients.
@@ -34,8 +34,7 @@ pub struct Cubic {
 /// with its rank, that is 0, or a coefficient is not finite.
 pub fn read_cubic(path: &Path) -> Result<Cubic, IoError> {
     if ending(path) != "cub" {
-        let what = "reduced forces";
-        return Err(IoError::Unsupported { path: path.to_owned(), what, supported: ".cub" });
+        return Err(unsupported(path, "reduced forces", ".cub"));
     }
     parse_cubic(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -114,8 +113,12 @@ mod tests {
         let mut nan = file([2, 2, 3, 4], 18);
         nan[24..32].copy_from_slice(&f64::NAN.to_le_bytes());
         assert_eq!(message(&nan), "byte 24: a coefficient is NaN, not a finite number");
-        let wrong = read_cubic(Path::new("a.U")).unwrap_err().to_string();
-        assert_eq!(wrong, "a.U: unknown kind of reduced forces file; supported: .cub");
+        assert_eq!(read_cubic(Path::new("a.U")).unwrap_err().to_string(), "a.U: not found");
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.U");
+        std::fs::write(&path, nan).unwrap();
+        let wrong = read_cubic(&path).unwrap_err().to_string();
+        assert!(wrong.ends_with("a.U: unknown kind of reduced forces file; supported: .cub"), "{wrong}");
     }
 
     #[test]

@@ -64,6 +64,22 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     Ok(())
 }
 
+/// Refuses a path at which there is nothing.
+pub(crate) fn check_exists(path: &Path) -> Result<(), IoError> {
+    match fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(IoError::NotFound { path: path.to_owned() }),
+        _ => Ok(()),
+    }
+}
+
+/// The refusal of a file whose ending no reader of `what` knows. A file that does not exist is refused as missing.
+pub(crate) fn unsupported(path: &Path, what: &'static str, supported: &'static str) -> IoError {
+    match check_exists(path) {
+        Err(missing) => missing,
+        Ok(()) => IoError::Unsupported { path: path.to_owned(), what, supported },
+    }
+}
+
 /// The ending of a file name, in lower case, without its dot.
 pub(crate) fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()

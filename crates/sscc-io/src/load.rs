@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sscc::{Modes, ReducedModel, TriMesh};
 
-use crate::file::ending;
+use crate::file::{check_exists, ending};
 use crate::{IoError, ModelInfo, gltf, read_mesh, read_model, read_modes_for, read_npz_model};
 
 /// What beside the model's own file is needed.
@@ -57,6 +57,8 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
 /// other than glTF; when a file cannot be read or is malformed; when the modes are of another mesh.
 pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedModel, IoError> {
     let refused = |cause: &str| IoError::Request { path: path.to_owned(), cause: cause.into() };
+    // What is not there is told before what it should be.
+    check_exists(path)?;
     let format = ending(path);
     let is_gltf = matches!(format.as_str(), "glb" | "gltf");
     if options.mesh_name.is_some() && !is_gltf {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::file::{ending, read_whole};
+use crate::file::{ending, read_whole, unsupported};
 use crate::text::{Lines, decoded, number, without_comment};
 use crate::{FormatError, IoError, npy};
 
@@ -31,7 +31,7 @@ impl Rows {
 /// When the file is no `.npy`, cannot be read or is malformed, or the array is empty or of another dimension.
 pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
     if ending(path) != "npy" {
-        return Err(IoError::Unsupported { path: path.to_owned(), what: "trajectory", supported: ".npy" });
+        return Err(unsupported(path, "trajectory", ".npy"));
     }
     parse_rows(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -112,9 +112,11 @@ mod tests {
         npy::write_npy(&path, &[], &[1.0]).unwrap();
         assert!(read_rows(&path).is_err() && read_vector(&path).is_err());
         assert!(npy::write_npy(&path, &[2], &[1.0]).is_err());
-        assert!(
-            read_rows(Path::new("q.csv")).unwrap_err().to_string().contains("unknown kind of trajectory")
-        );
+        let other = directory.path().join("q.csv");
+        let message = || read_rows(&other).unwrap_err().to_string();
+        assert!(message().ends_with("q.csv: not found"));
+        std::fs::write(&other, "0 0\n").unwrap();
+        assert!(message().contains("unknown kind of trajectory"));
     }
 
     #[test]

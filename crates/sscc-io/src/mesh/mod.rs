@@ -14,7 +14,7 @@ use std::path::Path;
 
 use sscc::TriMesh;
 
-use crate::file::{ending, read_whole};
+use crate::file::{ending, read_whole, unsupported};
 use crate::{FormatError, IoError};
 
 pub(crate) use soup::Soup;
@@ -33,7 +33,7 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, IoError> {
 /// The same, with or without triangles.
 pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
     let Some(parse) = parser(path) else {
-        return Err(IoError::Unsupported { path: path.to_owned(), what: "mesh", supported: SUPPORTED });
+        return Err(unsupported(path, "mesh", SUPPORTED));
     };
     parse(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -75,6 +75,8 @@ mod tests {
         assert!(
             message("a.fbx", obj).ends_with("unknown kind of mesh file; supported: .obj, .off, .ply, .stl")
         );
+        let missing = read_mesh(&directory.path().join("b.fbx")).unwrap_err().to_string();
+        assert!(missing.ends_with("b.fbx: not found"));
         assert!(message("plain", obj).contains("supported: .obj"));
     }
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use sscc::{Modes, TriMesh};
 
-use crate::file::{ending, read_whole};
+use crate::file::{ending, read_whole, unsupported};
 use crate::{FormatError, IoError, npz};
 
 pub use frames::{Frames, read_frames};
@@ -50,9 +50,7 @@ pub fn read_modes(path: &Path, vertices: usize) -> Result<Modes, IoError> {
         "u" | "ulinear" | "unonlinear" | "urendering" => {
             |bytes: &[u8], vertices| vega::parse(bytes, vega::Precision::Double, vertices)
         }
-        _ => {
-            return Err(IoError::Unsupported { path: path.to_owned(), what: "modes", supported: SUPPORTED });
-        }
+        _ => return Err(unsupported(path, "modes", SUPPORTED)),
     };
     parse(&read_whole(path)?, vertices).map_err(|error| error.of(path))
 }
@@ -84,6 +82,8 @@ mod tests {
         assert_eq!(read_modes(&write("a.npy", &npy), 1).unwrap().rank(), 2);
         let message = |name, bytes| read_modes(&write(name, bytes), 1).unwrap_err().to_string();
         assert!(message("a.U", &vega).contains("rename it to end in .float"));
+        let missing = read_modes(&directory.path().join("b.csv"), 1).unwrap_err().to_string();
+        assert!(missing.ends_with("b.csv: not found"));
         assert!(message("a.npz", &npy).contains("unknown kind of modes file; supported: .npy, .U"));
     }
 }

@@ -20,7 +20,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::IoError;
-use crate::file::{ending, read_whole};
+use crate::file::{ending, read_whole, unsupported};
 
 /// The endings that [`read_solid`] knows.
 const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
@@ -82,10 +82,7 @@ pub fn read_solid(path: &Path) -> Result<Solid, IoError> {
         "msh" => gmsh::parse,
         "veg" => return vega::read(path),
         "node" | "ele" => return tetgen::read(path),
-        _ => {
-            let (path, what) = (path.to_owned(), "volumetric mesh");
-            return Err(IoError::Unsupported { path, what, supported: SUPPORTED });
-        }
+        _ => return Err(unsupported(path, "volumetric mesh", SUPPORTED)),
     };
     parse(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -106,7 +103,9 @@ mod tests {
         assert!(message("a.msh").contains("line 1: a gmsh file begins with"));
         assert!(message("a.veg").contains("line 1: a section"));
         assert!(message("a.stl").contains("unknown kind of volumetric mesh file; supported: .mesh (Medit)"));
-        let missing = read_solid(&directory.path().join("b.msh")).unwrap_err().to_string();
-        assert!(missing.ends_with("b.msh: not found"));
+        for name in ["b.msh", "b.stl"] {
+            let missing = read_solid(&directory.path().join(name)).unwrap_err().to_string();
+            assert!(missing.ends_with(&format!("{name}: not found")), "{missing}");
+        }
     }
 }
