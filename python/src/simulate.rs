@@ -1,7 +1,7 @@
 //! `sscc.simulate`: what is in Rust of it.
 
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::{Mutex, TryLockError};
 
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
@@ -40,8 +40,15 @@ pub fn _simulate(
         cache: folder(cache, "cache")?,
         threads: pool::threads(threads)?.map(|threads| threads as u32),
     };
-    let Ok(_only) = ONLY.try_lock() else {
-        return Err(PyRuntimeError::new_err("another simulation goes on in this process; wait for its end"));
+    let _only = match ONLY.try_lock() {
+        Ok(only) => only,
+        // One that panicked has ended.
+        Err(TryLockError::Poisoned(only)) => only.into_inner(),
+        Err(TryLockError::WouldBlock) => {
+            return Err(PyRuntimeError::new_err(
+                "another simulation goes on in this process; wait for its end",
+            ));
+        }
     };
     stop(false);
     let no = PyBool::new(py, false);

@@ -53,7 +53,7 @@ MODELS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"modes": put(U, (7, 1, 2), np.inf)}, ValueError, "modes: mode 2 of vertex 7 (both counted from 0)"),
     ({"modes": put(U, (7, 1, 2), 0).astype("c8")}, TypeError, "modes is an array of complex64"),
     ({"metric": "stiff"}, ValueError, "metric is 'stiff': 'energy', 'displacement'"),
-    ({"metric": "energy"}, ValueError, "metric: 'energy' needs a model with its stiffness"),
+    ({"metric": "energy"}, ValueError, "metric: the model's own is 'displacement', not 'energy'"),
     ({"metric": [1, 1]}, ValueError, "metric has shape [2]: (3,) or (3, 3) was expected"),
     ({"metric": [1, 0, 1]}, ValueError, "metric: metric weight 1 (counted from 0) is 0"),
     ({"metric": [1, 1e-300, 1]}, ValueError, "metric: the modes divided by the metric's scales reach"),
@@ -90,7 +90,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"weld": "on"}, TypeError, "weld is a str: True or False was expected"),
     ({"ignore_rest": 1}, TypeError, "ignore_rest is a int: True or False was expected"),
     ({"max_exceptions": -1}, ValueError, "max_exceptions is -1: a whole number of at least 0 was expected"),
-    ({"metric": "energy"}, ValueError, "metric: 'energy' needs a model with its stiffness"),
+    ({"metric": "energy"}, ValueError, "metric: the model's own is 'displacement', not 'energy'"),
     ({"progress": 3}, TypeError, "progress is a int: a function of one number"),
 ]
 

@@ -4,27 +4,42 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+/// A page of help with examples, one command a line. They are part of the template, so that they are never wrapped: what
+/// is copied from any terminal can be pasted into a shell. Everything else is wrapped at the terminal's width.
+macro_rules! with_examples {
+    ($($example:literal)+) => {
+        concat!(
+            "{before-help}{about-with-newline}\n{usage-heading} {usage}\n\n{all-args}\n\nExamples:",
+            $("\n  ", $example,)+
+            "{after-help}"
+        )
+    };
+}
+
 /// Proven self-collision detection for deformable models.
 ///
 /// Certify a model (a triangle mesh with its deformation modes) once; from then on ask whether the deformed
 /// shape x = p + U q collides with itself. "Free" is proven; "colliding" lists exactly the intersecting pairs of
 /// triangles that share no vertex.
 #[derive(Debug, Parser)]
-#[command(name = "sscc", version, propagate_version = true, after_help = EXAMPLES, max_term_width = 100)]
+#[command(
+    name = "sscc",
+    version,
+    propagate_version = true,
+    max_term_width = 100,
+    help_template = with_examples!(
+        "sscc demo --out demo"
+        "sscc certify demo/spring.model.safetensors -o spring.sscc.safetensors"
+        "sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors --trajectory demo/spring.npy"
+    ),
+    after_help = "Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a violation, 2 error, \
+        130 interrupted."
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
-
-const EXAMPLES: &str = "\
-Examples:
-  sscc demo --out demo
-  sscc certify demo/spring.model.safetensors -o spring.sscc.safetensors
-  sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors \\
-      --trajectory demo/spring.npy
-
-Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a\nviolation, 2 error, 130 interrupted.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -39,7 +54,7 @@ pub enum Command {
     Check(Check),
     /// Try to prove certificates wrong
     Audit(Audit),
-    /// Tell what is in a model, certificate or mesh file
+    /// Tell what is in a model, certificate, mesh or solid file
     Info(Info),
     /// Let the bodies of a scene move, fall and collide, and write their motion
     Simulate(Simulate),
@@ -51,7 +66,12 @@ pub enum Command {
 
 /// `sscc demo`
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  sscc demo\n  sscc demo --out demo")]
+#[command(
+    help_template = with_examples!(
+        "sscc demo"
+        "sscc demo --out demo"
+    )
+)]
 pub struct Demo {
     /// Also write the spring, its model, its certificates and the animation into this folder
     #[arg(long, value_name = "DIR")]
@@ -62,16 +82,18 @@ pub struct Demo {
 
 /// `sscc modes`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc modes bunny.obj -o bunny.model.safetensors --kind nonlinear --rank 30
-  sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial
-  sscc modes frames/ -o horse.model.safetensors --kind pca --rank 10
-  sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0
-
-A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not
-glued. Modes of solids are mass-orthonormal, and their metric is strain energy; without a solid (pca, or polynomial modes of a
-surface) it is displacement.")]
+#[command(
+    help_template = with_examples!(
+        "sscc modes bunny.obj -o bunny.model.safetensors --kind nonlinear --rank 30"
+        "sscc modes bunny.obj -o bunny.model.safetensors --kind polynomial"
+        "sscc modes frames/ -o horse.model.safetensors --kind pca --rank 10"
+        "sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0"
+    ),
+    after_help = "\
+A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not glued. \
+Modes of solids are mass-orthonormal, and their metric is strain energy; without a solid (pca, or polynomial modes of \
+a surface) it is displacement."
+)]
 pub struct Modes {
     /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele);
     /// for pca a folder of meshes with the same faces, the frames
@@ -221,12 +243,14 @@ pub enum Scheme {
 
 /// `sscc certify`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc certify bunny.model.safetensors -o bunny.sscc.safetensors
-  sscc certify bunny.model.safetensors -o small.sscc.safetensors --budget 64
-  sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper
-  sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png")]
+#[command(
+    help_template = with_examples!(
+        "sscc certify bunny.model.safetensors -o bunny.sscc.safetensors"
+        "sscc certify bunny.model.safetensors -o small.sscc.safetensors --budget 64"
+        "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
+        "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
+    )
+)]
 pub struct Certify {
     #[command(flatten)]
     pub model: Model,
@@ -245,17 +269,19 @@ pub struct Certify {
 
 /// `sscc check`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy
-  sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy --continuous
-  sscc check face.obj --modes face.U.float --method traditional --q=0.5,0,-1.25
-  sscc check head.glb --first --q=1,0,0
-  sscc check face.obj --modes targets/ --q=0,0.5 --pose smile.ply
-  sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'
-
-The metric and the other options come from the certificates; a flag that contradicts them is refused.
-Exit codes: 0 every q is free, 1 some q collides, 2 error.")]
+#[command(
+    help_template = with_examples!(
+        "sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy"
+        "sscc check spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy --continuous"
+        "sscc check face.obj --modes face.U.float --method traditional --q=0.5,0,-1.25"
+        "sscc check head.glb --first --q=1,0,0"
+        "sscc check face.obj --modes targets/ --q=0,0.5 --pose smile.ply"
+        "sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'"
+    ),
+    after_help = "\
+The metric and the other options come from the certificates; a flag that contradicts them is refused.\n\
+Exit codes: 0 every q is free, 1 some q collides, 2 error."
+)]
 pub struct Check {
     #[command(flatten)]
     pub model: Model,
@@ -318,11 +344,13 @@ pub enum Method {
 
 /// `sscc audit`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Example:
-  sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --samples 2000
-
-Exit codes: 0 nothing found, 1 a certificate promises too much, 2 error.")]
+#[command(
+    help_template = with_examples!(
+        "sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --samples 2000"
+    ),
+    after_help = "\
+Exit codes: 0 nothing found, 1 a certificate promises too much, 2 error."
+)]
 pub struct Audit {
     #[command(flatten)]
     pub model: Model,
@@ -343,10 +371,16 @@ pub struct Audit {
 
 /// `sscc info`
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  sscc info spring.sscc.safetensors\n  sscc info bunny.obj --json")]
+#[command(
+    help_template = with_examples!(
+        "sscc info spring.sscc.safetensors"
+        "sscc info bunny.obj --json"
+        "sscc info bar.veg"
+    )
+)]
 pub struct Info {
-    /// A model (*.model.safetensors, .glb, .gltf, .npz), certificates (*.sscc.safetensors) or a mesh (.obj, .off, .ply,
-    /// .stl)
+    /// A model (*.model.safetensors, .glb, .gltf, .npz), certificates (*.sscc.safetensors), a mesh (.obj, .off, .ply,
+    /// .stl) or a solid (.mesh, .veg, .msh, .node, .ele)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]
@@ -355,17 +389,19 @@ pub struct Info {
 
 /// `sscc simulate`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc simulate scenes/spring.toml --out spring
-  sscc simulate bunny16 --models models/ --out bunnies
-  sscc simulate bunny16 --models models/ --out bunnies --steps 500
-  sscc simulate my.toml --json
-
-The folder gets trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, of scenes with sound, sound.wav and\nsound_float.wav. \
-A simulation that was stopped or killed goes on by the same command, to the same bits.
-Scenes that come with the program: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.
-Exit codes: 0 done, 2 error or the motion diverged (what was simulated until then is written), 130 interrupted.")]
+#[command(
+    help_template = with_examples!(
+        "sscc simulate scenes/spring.toml --out spring"
+        "sscc simulate bunny16 --models models/ --out bunnies"
+        "sscc simulate bunny16 --models models/ --out bunnies --steps 500"
+        "sscc simulate my.toml --json"
+    ),
+    after_help = "\
+The folder gets trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, of scenes with sound, \
+sound.wav and sound_float.wav. A simulation that was stopped or killed goes on by the same command, to the same bits.\n\
+Scenes that come with the program: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.\n\
+Exit codes: 0 done, 2 error or the motion diverged (what was simulated until then is written), 130 interrupted."
+)]
 pub struct Simulate {
     /// The scene: a .toml file, or the name of one that comes with the program
     #[arg(value_name = "SCENE")]
@@ -394,15 +430,17 @@ pub struct Simulate {
 
 /// `sscc bench`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc bench --list
-  sscc bench amplitudes --models models/
-  sscc bench amplitudes --only spring --samples 4
-  sscc bench bunny128 --steps 50 --json
-
-All methods answer the same questions by turns, on one thread, and must list the same pairs.
-Exit codes: 0 done, 2 error, or two exact methods differ.")]
+#[command(
+    help_template = with_examples!(
+        "sscc bench --list"
+        "sscc bench amplitudes --models models/"
+        "sscc bench amplitudes --only spring --samples 4"
+        "sscc bench bunny128 --steps 50 --json"
+    ),
+    after_help = "\
+All methods answer the same questions by turns, on one thread, and must list the same pairs.\n\
+Exit codes: 0 done, 2 error, or two exact methods differ."
+)]
 pub struct Bench {
     /// What to measure; --list tells what there is
     #[arg(value_name = "SCENARIO", required_unless_present = "list")]
@@ -441,15 +479,17 @@ pub struct Bench {
 
 /// `sscc view`
 #[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  sscc view spring.model.safetensors --certificates spring.sscc.safetensors
-  sscc view head.glb --no-open --port 8080
-  sscc view demo/
-  sscc view spring.model.safetensors --compare-metrics
-
-The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C.
-The metric and the other options come from the certificates; a flag that contradicts them is refused.")]
+#[command(
+    help_template = with_examples!(
+        "sscc view spring.model.safetensors --certificates spring.sscc.safetensors"
+        "sscc view head.glb --no-open --port 8080"
+        "sscc view demo/"
+        "sscc view spring.model.safetensors --compare-metrics"
+    ),
+    after_help = "\
+The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C or SIGTERM.\n\
+The metric and the other options come from the certificates; a flag that contradicts them is refused."
+)]
 pub struct View {
     #[command(flatten)]
     pub model: Model,
@@ -493,6 +533,25 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    /// The examples of every page of help are commands that there are, with flags that there are.
+    #[test]
+    fn examples_are_parsed() {
+        let mut command = Cli::command();
+        command.build();
+        let mut pages = vec![command.render_long_help().to_string()];
+        pages.extend(command.get_subcommands_mut().map(|page| page.render_long_help().to_string()));
+        let mut count = 0;
+        for example in
+            pages.iter().flat_map(|page| page.lines()).filter_map(|line| line.strip_prefix("  sscc "))
+        {
+            let words = example.split(" | ").next().unwrap_or_default().split_whitespace();
+            let parsed = Cli::try_parse_from(["sscc"].into_iter().chain(words));
+            assert!(parsed.is_ok(), "sscc {example}: {}", parsed.unwrap_err());
+            count += 1;
+        }
+        assert!(count >= 30, "{count} examples");
     }
 
     #[test]

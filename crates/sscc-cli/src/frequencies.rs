@@ -10,13 +10,20 @@ use sscc_modes::symmetric_eigenvalues;
 const ROUNDING: f64 = 1e-12;
 
 /// Natural frequencies (Hz) of mass-orthonormal modes: of each mode where the stiffness is diagonal, else ascending.
-/// None where the model is not at rest: some eigenvalue is negative.
-pub fn frequencies(elasticity: &Elasticity) -> Option<Vec<f64>> {
+///
+/// # Errors
+/// When some eigenvalue is negative, as where the model is not at rest, or the eigenvalues are not found. The message
+/// says which.
+pub fn frequencies(elasticity: &Elasticity) -> Result<Vec<f64>, String> {
     let eigenvalues = match diagonal(elasticity) {
         Some(diagonal) => diagonal,
-        None => symmetric_eigenvalues(elasticity.rank(), elasticity.stiffness()).ok()?,
+        None => symmetric_eigenvalues(elasticity.rank(), elasticity.stiffness())
+            .map_err(|error| error.to_string())?,
     };
-    of(&eigenvalues, elasticity)
+    of(&eigenvalues, elasticity).ok_or_else(|| {
+        let least = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+        format!("the stiffness has the negative eigenvalue {least:e}")
+    })
 }
 
 /// The frequency of each mode; none where the stiffness is not diagonal, so that modes swing together.
@@ -56,6 +63,7 @@ mod tests {
         assert!((dense[0] * TAU - 1.0).abs() < 1e-12 && (dense[1] * TAU - 3.0_f64.sqrt()).abs() < 1e-12);
         // A rigid motion's 0 is rounded to either side; a buckled body is something else.
         assert_eq!(of(&[-1e-14, 0.0, 0.0, 1.0]).unwrap()[0], 0.0);
-        assert_eq!(of(&[1.0, 2.0, 2.0, 1.0]), None);
+        let buckled = of(&[1.0, 2.0, 2.0, 1.0]).unwrap_err();
+        assert!(buckled.starts_with("the stiffness has the negative eigenvalue -"), "{buckled}");
     }
 }

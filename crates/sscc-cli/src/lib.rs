@@ -3,9 +3,6 @@
 //! `args` holds what was typed, `commands` what it means; exit codes are decided here. What the Python package shares
 //! with the command is public: [`make`] and [`simulate`].
 
-// This is the one crate that prints.
-#![allow(clippy::print_stderr)]
-
 mod args;
 mod case;
 mod commands;
@@ -26,8 +23,6 @@ mod usage;
 use std::process::ExitCode;
 
 use clap::Parser;
-
-use output::ClosedPipe;
 
 /// What a command that ran to its end has to say by its exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,10 +48,8 @@ pub fn main() -> ExitCode {
     match commands::run(cli) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Found) => ExitCode::from(EXIT_FOUND),
-        // Whoever reads the output has left. Nothing more to say, but not everything was done either.
-        Err(error) if error.is::<ClosedPipe>() => ExitCode::from(EXIT_ERROR),
         Err(error) => {
-            eprintln!("error: {}", output::one_line(&format!("{error:#}")));
+            output::say(format_args!("error: {}", interrupt::message(&error)));
             ExitCode::from(if interrupt::happened() { EXIT_INTERRUPTED } else { EXIT_ERROR })
         }
     }

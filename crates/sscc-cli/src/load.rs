@@ -4,10 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::{Certificates, CertifyOptions, Metric, MetricKind, Neighbours, PairRule, ReducedModel, Scope};
-use sscc_io::{LoadOptions, LoadedModel};
+use sscc_io::{IoError, LoadOptions, LoadedModel};
 
+use crate::output::note;
 use crate::progress::Bar;
 use crate::{args, interrupt};
 
@@ -26,7 +27,9 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
         Some("identity") => Metric::identity(model.rank()),
         Some("energy") if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
         Some("energy") => bail!(
-            "--metric energy: the model has no stiffness; make it with sscc modes --kind linear or nonlinear, or give a file"
+            "--metric energy: the model's own metric is {}, not energy; make a model with its stiffness by sscc modes \
+             --kind linear or nonlinear, or give a file",
+            model.metric().kind().name()
         ),
         _ => {
             let numbers = sscc_io::read_matrix(wanted).with_context(
@@ -152,8 +155,13 @@ pub fn certificates_now(
     if (typed.scheme, typed.budget) == (None, None) {
         options.budget = 0;
     }
-    eprintln!("note: no --certificates given: computing them first (sscc certify keeps them in a file)");
+    note("no --certificates given: computing them first (sscc certify keeps them in a file)");
     certify(model, &files.path, &options)
+}
+
+/// An error about a file, with its name. Errors of readers and writers have it already.
+pub fn in_file(error: Error, path: &Path) -> Error {
+    if error.is::<IoError>() { error } else { error.context(path.display().to_string()) }
 }
 
 /// Reads certificates, and refuses those of another model, or other than the options typed say.

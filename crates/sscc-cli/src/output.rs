@@ -1,35 +1,27 @@
-//! Standard output: results only, and no panic when nobody reads them.
+//! Standard output: results only. Standard error: everything else. No panic when nobody reads them.
 
-use std::fmt::{self, Display, Write as _};
+use std::fmt::{Display, Write as _};
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, StdoutLock, Write};
 use std::path::Path;
 
 use anyhow::Context;
 use serde::Serialize;
 
-/// The reader of standard output has gone (`sscc ... | head`).
-#[derive(Debug)]
-pub struct ClosedPipe;
-
-impl Display for ClosedPipe {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("standard output was closed")
-    }
-}
-
-impl std::error::Error for ClosedPipe {}
-
 /// Standard output, by lines: at once when someone watches, else in blocks.
+///
+/// When its reader leaves (`sscc ... | head`), what follows is dropped without an error: files are still to be written,
+/// and the exit code is that of the answers. A command that only prints asks [`Output::is_closed`], and stops.
 pub struct Output {
     stdout: BufWriter<StdoutLock<'static>>,
     watched: bool,
+    closed: bool,
 }
 
 impl Output {
     /// Takes standard output.
     pub fn new() -> Self {
         let stdout = io::stdout().lock();
-        Self { watched: stdout.is_terminal(), stdout: BufWriter::new(stdout) }
+        Self { watched: stdout.is_terminal(), stdout: BufWriter::new(stdout), closed: false }
     }
 
     /// Whether standard output is a terminal.
@@ -37,10 +29,19 @@ impl Output {
         self.watched
     }
 
+    /// Whether the reader of standard output has left, as far as is known from what was written.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// Writes one line of text.
     pub fn line(&mut self, text: impl Display) -> anyhow::Result<()> {
+        if self.closed {
+            return Ok(());
+        }
         let written = writeln!(self.stdout, "{text}");
-        written.and_then(|()| if self.watched { self.stdout.flush() } else { Ok(()) }).or_else(refused)
+        let written = written.and_then(|()| if self.watched { self.stdout.flush() } else { Ok(()) });
+        self.note_closed(written)
     }
 
     /// Writes one JSON object on a line of its own. Numbers that are not finite become `null`.
@@ -49,16 +50,38 @@ impl Output {
     }
 
     /// Writes what is still held back.
+    pub fn flush(&mut self) -> anyhow::Result<()> {
+        if self.closed {
+            return Ok(());
+        }
+        let written = self.stdout.flush();
+        self.note_closed(written)
+    }
+
+    /// Writes what is still held back, for the last time.
     pub fn finish(mut self) -> anyhow::Result<()> {
-        self.stdout.flush().or_else(refused)
+        self.flush()
+    }
+
+    fn note_closed(&mut self, written: io::Result<()>) -> anyhow::Result<()> {
+        match written {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                self.closed = true;
+                Ok(())
+            }
+            written => written.context("standard output cannot be written"),
+        }
     }
 }
 
-fn refused(error: io::Error) -> anyhow::Result<()> {
-    match error.kind() {
-        ErrorKind::BrokenPipe => Err(ClosedPipe.into()),
-        _ => Err(error).context("standard output cannot be written"),
-    }
+/// A line on standard error. Nobody need read it: where it cannot be written, it is dropped.
+pub fn say(text: impl Display) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// A remark beside the result, on standard error.
+pub fn note(text: impl Display) {
+    say(format_args!("note: {text}"));
 }
 
 /// Text on one line, whatever is in it: errors name files, and files may have any name.

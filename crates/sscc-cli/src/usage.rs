@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 
 use crate::EXIT_ERROR;
-use crate::output::one_line;
+use crate::output::{one_line, say};
 
 /// Prints help and version as they are, and anything wrong with the command line as one line.
 pub fn report(error: &clap::Error) -> ExitCode {
@@ -20,7 +20,7 @@ pub fn report(error: &clap::Error) -> ExitCode {
             ExitCode::from(EXIT_ERROR)
         }
         _ => {
-            eprintln!("{}", one_line(&shortened(&error.to_string())));
+            say(one_line(&shortened(&error.to_string())));
             ExitCode::from(EXIT_ERROR)
         }
     }

@@ -83,6 +83,43 @@ fn files_that_are_no_models() {
     }
 }
 
+/// What is not there is told before what it should be, by every command and every reader.
+#[test]
+fn files_that_are_not_there() {
+    let directory = strips();
+    let folder = directory.path();
+    let modes = ["modes", "-o", "out.model.safetensors", "--kind"];
+    let certify = ["certify", "-o", "out.sscc.safetensors"];
+    for args in [
+        &["certify", "missing.xyz", "-o", "out.sscc.safetensors"][..],
+        &["certify", "missing.xyz", "-o", "out.sscc.safetensors", "--modes", "modes.npy"],
+        &["certify", "missing.xyz", "-o", "out.sscc.safetensors", "--mesh-name", "a"],
+        &["certify", "missing.glb", "-o", "out.sscc.safetensors", "--modes", "modes.npy"],
+        &[&certify[..], &[MESH, "--modes", "missing.xyz"]].concat(),
+        &[&certify[..], &[STRIPS, "--metric", "missing.xyz"]].concat(),
+        &[&certify[..], &[STRIPS, "--center", "missing.xyz"]].concat(),
+        &["check", "missing.xyz", "--q=0,0"],
+        &["check", STRIPS, "--trajectory", "missing.xyz"],
+        &["check", STRIPS, "--q=0,0", "--certificates", "missing.xyz"],
+        &["audit", "missing.xyz", "--certificates", CERTIFIED],
+        &["audit", STRIPS, "--certificates", "missing.xyz"],
+        &["info", "missing.xyz"],
+        &["info", "missing.veg"],
+        &["info", "missing"],
+        &["info", "missing.node"],
+        &[&modes[..], &["linear", "missing.xyz"]].concat(),
+        &[&modes[..], &["linear", "missing.veg", "--resolution", "3"]].concat(),
+        &[&modes[..], &["polynomial", "missing.xyz"]].concat(),
+        &[&modes[..], &["polynomial", "missing.obj", "--resolution", "3"]].concat(),
+        &[&modes[..], &["pca", "missing.xyz"]].concat(),
+        &[&modes[..], &["linear", MESH, "--fix", "missing.xyz"]].concat(),
+        &["view", "missing.xyz", "--no-open"],
+        &["simulate", "missing.xyz", "--cache", "cache"],
+    ] {
+        refused(folder, args, &["missing", ": not found"]);
+    }
+}
+
 #[test]
 fn meshes_that_are_not_there() {
     let directory = strips();
@@ -118,6 +155,7 @@ fn modes_that_do_not_fit() {
     write(folder, "other.U", [header(9, 1), vec![0; 72]].concat());
     write(folder, "empty.npy", "");
     write(folder, "text.npy", "0 0 0");
+    write(folder, "modes.csv", "0 0 0");
     write(folder, "huge.npy", {
         let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (4611686018427387904, 4), }\n";
         [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat()
@@ -190,7 +228,7 @@ fn metrics_that_do_not_fit() {
     }
     write_npy(&folder.join("inf.npy"), &[2], &[1.0, f64::INFINITY]).unwrap();
     for (metric, named) in [
-        ("energy", "--metric energy: the model has no stiffness; make it with sscc modes"),
+        ("energy", "--metric energy: the model's own metric is displacement, not energy; make a model"),
         ("missing.npy", "missing.npy: not found"),
         ("short", "short: the metric has 1 weights, the model has 2 modes"),
         ("zero", "zero: metric weight 1 (counted from 0) is 0: weights must be positive"),

@@ -21,12 +21,7 @@ const PARTS: &str = "self, inter_object, ground, penalty, dynamics, sound";
 /// Without real models, whatever the environment says; the cache is in the folder.
 fn bench(folder: &Path, args: &[&str]) -> Run {
     let args = [&["bench", "--cache", "cache"], args].concat();
-    let output = command(folder, &args).env_remove("SSCC_MODELS").output().unwrap();
-    Run {
-        code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Run::of(command(folder, &args).env_remove("SSCC_MODELS"))
 }
 
 /// Asserts that a report has all keys, with values that can be.

@@ -6,6 +6,7 @@ mod common;
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
 use std::process::Stdio;
 
 use common::{command, keys, sorted, sscc, strips};
@@ -305,6 +306,80 @@ fn modes_and_info() {
     assert_eq!(certificates["levels"][0]["min"], certificates["root_radius"]);
 }
 
+/// Two tetrahedra with a common face, in every format of solids.
+#[test]
+fn info_of_solids() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let vertices = "0 0 0|1 0 0|0 1 0|0 0 1|1 1 1";
+    let numbered = |first: usize| -> String {
+        vertices.split('|').enumerate().map(|(n, xyz)| format!("{} {xyz}\n", n + first)).collect()
+    };
+    let plain = vertices.replace('|', " 0\n");
+    fs::write(
+        folder.join("a.mesh"),
+        format!("MeshVersionFormatted 1\nDimension 3\nVertices 5\n{plain} 0\nTetrahedra 2\n1 2 3 4 7\n2 5 3 4 9\nEnd\n"),
+    )
+    .unwrap();
+    fs::write(
+        folder.join("a.msh"),
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n{}$EndNodes\n$Elements\n2\n\
+             1 4 2 7 1 1 2 3 4\n2 4 2 9 1 2 5 3 4\n$EndElements\n",
+            numbered(1)
+        ),
+    )
+    .unwrap();
+    fs::write(folder.join("a.node"), format!("5 3 0 0\n{}", numbered(0))).unwrap();
+    fs::write(folder.join("a.ele"), "2 4 1\n0 0 1 2 3 7\n1 1 4 2 3 9\n").unwrap();
+    fs::write(
+        folder.join("a.veg"),
+        format!(
+            "*VERTICES\n5 3 0 0\n{}*ELEMENTS\nTET\n2 4 0\n1 1 2 3 4\n2 2 5 3 4\n\
+             *MATERIAL steel\nENU, 7850, 2e11, 0.3\n*MATERIAL rubber\nENU, 1000, 1e6, 0.45\n\
+             *SET one\n1\n*SET two\n2\n*REGION\none, steel\n*REGION\ntwo, rubber\n",
+            numbered(1)
+        ),
+    )
+    .unwrap();
+    const KEYS: &str =
+        "kind, vertices, tetrahedra, cubes, materials, listed_triangles, lower, upper, boundary";
+    for file in ["a.mesh", "a.msh", "a.node", "a.ele", "a.veg"] {
+        let run = sscc(folder, &["info", file, "--json"]);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{file}: {run:?}");
+        let known = &run.json()[0];
+        assert_eq!(keys(known), sorted(KEYS), "{file}");
+        assert_eq!(known["kind"], json!("solid"));
+        let counts = ["vertices", "tetrahedra", "cubes"].map(|key| known[key].as_u64().unwrap());
+        assert_eq!(counts, [5, 2, 0], "{file}");
+        assert_eq!((&known["lower"], &known["upper"]), (&json!([0.0, 0.0, 0.0]), &json!([1.0, 1.0, 1.0])));
+        let boundary = ["triangles", "boundary_edges"].map(|key| known["boundary"][key].as_u64().unwrap());
+        assert_eq!(boundary, [6, 0], "{file}");
+        let elements: u64 =
+            known["materials"].as_array().unwrap().iter().map(|m| m["elements"].as_u64().unwrap()).sum();
+        assert_eq!(elements, 2, "{file}");
+        let text = sscc(folder, &["info", file]).stdout;
+        assert!(text.starts_with("solid          2 tetrahedra, 0 cubes, 5 vertices\n"), "{text}");
+        assert!(text.contains("\nbox            1.000 x 1.000 x 1.000\n"), "{text}");
+        assert!(
+            text.contains("\nsurface        6 triangles, 5 vertices (5 used), closed, manifold\n"),
+            "{text}"
+        );
+    }
+    let text = sscc(folder, &["info", "a.veg"]).stdout;
+    assert!(
+        text.contains("material       steel: youngs=200000000000,poisson=0.3,density=7850; 1 element\n"),
+        "{text}"
+    );
+    // What `sscc modes` would refuse is told, too.
+    fs::write(folder.join("flat.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 1 1 0\n").unwrap();
+    fs::write(folder.join("flat.ele"), "1 4 0\n0 0 1 2 3\n").unwrap();
+    let known = sscc(folder, &["info", "flat.node", "--json"]).json().remove(0);
+    assert_eq!(known["boundary"], Value::Null);
+    assert!(known["refusal"].as_str().unwrap().contains("tetrahedron 0 "), "{known}");
+    assert!(sscc(folder, &["info", "flat.ele"]).stdout.contains("\nsurface        refused: tetrahedron 0 "));
+}
+
 /// What a model made with its stiffness can do beyond others.
 #[test]
 fn elasticity() {
@@ -365,46 +440,70 @@ fn help_and_usage() {
     assert_eq!(sscc(folder.path(), &[] as &[&str]).code, Some(2));
 }
 
-#[test]
-fn a_closed_pipe_is_no_panic() {
-    let folder = strips();
-    sscc_io::write_npy(&folder.path().join("q.npy"), &[20_000, 2], &vec![0.1; 40_000]).unwrap();
-    let args = ["check", MODEL, "--certificates", CERTIFICATES, "--trajectory", "q.npy"];
-    let mut child =
-        command(folder.path(), &args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+/// The exit code, and what was said on standard error, when the reader leaves after the first line.
+fn read_one_line(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
+    let mut child = command(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = String::new();
     BufReader::with_capacity(64, child.stdout.take().unwrap()).read_line(&mut first).unwrap();
-    assert!(first.contains("free"), "{first}");
+    assert!(first.ends_with('\n'), "{args:?}: {first:?}");
     let mut stderr = String::new();
     child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
-    assert_eq!((child.wait().unwrap().code(), stderr.as_str()), (Some(2), ""));
+    (child.wait().unwrap().code(), stderr)
 }
 
+/// `sscc ... | head -1` ends quietly, with the exit code of the answers so far.
 #[test]
-#[cfg(unix)]
-fn an_interrupt_leaves_no_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("spring.model.safetensors");
-    let mesh = sscc_modes::shapes::spring();
-    let modes = sscc_modes::polynomial_modes(&mesh).unwrap();
-    let model = sscc::ReducedModel::new(mesh, modes).unwrap();
-    sscc_io::write_model(&path, &model, &sscc_io::ModelInfo::default()).unwrap();
-    let args = [
-        "certify",
-        "spring.model.safetensors",
-        "-o",
-        "spring.sscc.safetensors",
-        "--threads",
-        "1",
-        "--epsilon=0.001",
-    ];
-    let mut child =
-        command(folder.path(), &args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(700));
-    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(killed.unwrap().success());
-    let mut stderr = String::new();
-    child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
-    assert_eq!((child.wait().unwrap().code(), stderr.as_str()), (Some(130), "error: interrupted\n"));
-    assert_eq!(common::files(folder.path()), [path]);
+fn a_closed_pipe_ends_quietly() {
+    let directory = strips();
+    let folder = directory.path();
+    for (name, q) in [("free.npy", 0.1), ("colliding.npy", 1.0)] {
+        let rows = [q, 0.0].repeat(20_000);
+        sscc_io::write_npy(&folder.join(name), &[20_000, 2], &rows).unwrap();
+    }
+    for (trajectory, code) in [("free.npy", 0), ("colliding.npy", 1)] {
+        for way in [&[][..], &["--json"], &["--continuous"]] {
+            let args = ["check", MODEL, "--certificates", CERTIFICATES, "--trajectory", trajectory];
+            assert_eq!(
+                read_one_line(folder, &[&args, way].concat()),
+                (Some(code), String::new()),
+                "{trajectory} {way:?}"
+            );
+        }
+    }
+}
+
+/// A reader who has left before the first line changes neither the files that are written nor the exit code; one of
+/// standard error neither.
+#[test]
+fn nobody_need_read() {
+    let directory = strips();
+    let folder = directory.path();
+    let lies = {
+        let mut parts = sscc_io::read_certificates(&folder.join(CERTIFICATES)).unwrap().parts().clone();
+        parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 2.0);
+        parts.global_radius *= 2.0;
+        sscc::Certificates::from_parts(parts).unwrap()
+    };
+    sscc_io::write_certificates(&folder.join("lies.sscc.safetensors"), &lies).unwrap();
+    for (args, code) in [
+        (&["info", MODEL][..], 0),
+        (&["certify", MODEL, "-o", "new.sscc.safetensors"], 0),
+        (&["modes", "mesh.obj", "-o", "new.model.safetensors", "--kind", "polynomial"], 0),
+        (&["audit", MODEL, "--certificates", CERTIFICATES, "--samples", "50"], 0),
+        (&["audit", MODEL, "--certificates", "lies.sscc.safetensors", "--samples", "50"], 1),
+        // These say on standard error that certificates are computed first.
+        (&["check", MODEL, "--q=0,0"], 0),
+        (&["check", MODEL, "--q=1,0"], 1),
+        (&["check", "missing.obj", "--q=1,0"], 2),
+        (&["bench", "--list"], 0),
+        (&["--help"], 0),
+        (&["check"], 2),
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = command(folder, args);
+        command.stdout(writer.try_clone().unwrap()).stderr(writer);
+        assert_eq!(command.status().unwrap().code(), Some(code), "{args:?}");
+    }
+    assert!(folder.join("new.sscc.safetensors").is_file() && folder.join("new.model.safetensors").is_file());
 }

@@ -255,3 +255,100 @@ fn poses_that_cannot_be_written() {
         assert!(run.refusal().contains(named), "{run:?}");
     }
 }
+
+/// The last line of what `certify` says of the root's radius, and the note beside it.
+fn promise(folder: &Path, model: &[&str], args: &[&str]) -> (String, String) {
+    let run = sscc(folder, &[&["certify"], model, args, &["-o", "x.sscc.safetensors"]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let promise = run.stdout.lines().find(|line| line.starts_with("root radius")).unwrap().to_owned();
+    (promise, run.stderr)
+}
+
+/// Why a radius is 0 is asked, not guessed: two triangles one rounding apart collide nowhere, and no flag helps.
+#[test]
+fn what_nearly_touches_is_not_called_colliding() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let above = 1.0 + f64::EPSILON;
+    let face = |z: f64| format!("v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\n");
+    fs::write(folder.join("near.obj"), format!("{}{}f 1 2 3\nf 4 5 6\n", face(1.0), face(above))).unwrap();
+    let mode: Vec<f64> = (0..18).map(|row| if row >= 9 && row % 3 == 2 { 1.0 } else { 0.0 }).collect();
+    write_npy(&folder.join("near.npy"), &[18, 1], &mode).unwrap();
+    let model = ["near.obj", "--modes", "near.npy"];
+    for args in [&[][..], &["--ignore-rest"], &["--max-exceptions", "0"], &["--scheme", "paper"]] {
+        let report = certify(folder, &model, args, "x.sscc.safetensors");
+        assert_eq!((&report["root_radius"], &report["rest_collisions"]), (&json!(0.0), &json!(0)));
+        let (promise, note) = promise(folder, &model, args);
+        assert!(promise.contains("0: two triangles nearly touch at the centre"), "{promise}");
+        assert!(
+            note.starts_with("note: nothing else collides at the centre, but two of the triangles 0, 1 "),
+            "{note}"
+        );
+        assert!(!note.contains("--ignore-rest") && !note.contains("--max-exceptions"), "{note}");
+    }
+}
+
+/// A way out is recommended only where it is one.
+#[test]
+fn recommended_flags_help() {
+    let directory = strips();
+    let folder = directory.path();
+    let touching = touching(folder);
+    // Collides at rest, and there are too many for the flag: both ways help.
+    let (told, note) = promise(folder, &touching, &["--max-exceptions", "1"]);
+    assert!(
+        told.ends_with(
+            "0: the shape collides with itself at the centre; the parts that do not are certified"
+        )
+    );
+    assert!(note.contains("than may be exceptions (1)") && note.contains("raise --max-exceptions"), "{note}");
+    assert!(note.contains("--ignore-rest"), "{note}");
+    let (told, note) = promise(folder, &touching, &["--max-exceptions", "1", "--ignore-rest"]);
+    assert!(told.ends_with(": below it the whole shape is free, ignored pairs apart"), "{told}");
+    assert_eq!(note, "");
+    // Collides at the centre, and nothing does at rest: what collides at rest is nothing to leave out.
+    for given in [&[][..], &["--ignore-rest"]] {
+        let args = [&["--center=1,0", "--max-exceptions", "1"], given].concat();
+        let (told, note) = promise(folder, &[MODEL], &args);
+        assert!(told.contains("0: the shape collides with itself at the centre"), "{told}");
+        assert!(note.contains("raise --max-exceptions") && !note.contains("--ignore-rest"), "{note}");
+    }
+}
+
+/// Of a radius that nothing was held against the report says why.
+#[test]
+fn an_audit_says_why_it_measured_nothing() {
+    let directory = strips();
+    let folder = directory.path();
+    let root = |certify: &[&str], model: &[&str]| {
+        let run = sscc(folder, &[&["certify"], model, certify, &["-o", "x.sscc.safetensors"]].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let args = [&["audit"], model, &["--certificates", "x.sscc.safetensors", "--samples", "10"]].concat();
+        let run = sscc(folder, &args);
+        run.stdout.lines().find(|line| line.starts_with("  root ")).unwrap().to_owned()
+    };
+    let touching = touching(folder);
+    assert_eq!(root(&["--max-exceptions", "1"], &touching), "  root     - (the radius is 0)");
+    write_npy(&folder.join("still.npy"), &[72, 1], &[0.0; 72]).unwrap();
+    assert!(
+        root(&[], &["mesh.obj", "--modes", "still.npy"]).starts_with("  root     - (the radius is capped")
+    );
+}
+
+/// Vertices are called split where two of them are equal, whatever the file's name is.
+#[test]
+fn split_vertices_are_looked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let facet = |x: f64| {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(a, b)| format!("vertex {} {b} 0\n", a + x));
+        format!("facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n", corners.concat())
+    };
+    for (name, x, is_split) in [("apart.stl", 2.0, false), ("seam.stl", 1.0, true)] {
+        fs::write(folder.join(name), format!("solid\n{}{}endsolid\n", facet(0.0), facet(x))).unwrap();
+        let args = ["modes", name, "-o", "x.model.safetensors", "--kind", "polynomial"];
+        let run = sscc(folder, &args);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert_eq!(run.stderr.contains("certify it with --weld"), is_split, "{name}: {}", run.stderr);
+    }
+}

@@ -68,12 +68,7 @@ fn prepared(cache: &Path, folder: &Path, args: &[&str]) -> std::process::Command
 }
 
 fn simulate_with(cache: &Path, folder: &Path, args: &[&str]) -> Run {
-    let output = prepared(cache, folder, args).output().unwrap();
-    Run {
-        code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Run::of(&mut prepared(cache, folder, args))
 }
 
 fn simulate(folder: &Path, args: &[&str]) -> Run {
@@ -341,7 +336,7 @@ fn refusals() {
     fs::create_dir(folder.path().join("spring")).unwrap();
     for (args, named) in [
         (&["missing.toml"][..], "missing.toml: not found"),
-        (&["buny16"], "buny16: no such file; did you mean 'bunny16'?"),
+        (&["buny16"], "buny16: not found; did you mean 'bunny16'?"),
         // A folder of an earlier run is no scene.
         (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["scene.toml", "--steps", "0"], "--steps"),

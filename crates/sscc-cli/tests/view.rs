@@ -188,5 +188,8 @@ fn what_is_refused() {
         let name = option.split('=').next().unwrap();
         refused(&[".", option], &[name, "is for models"]);
     }
-    refused(&with(&["--compare-metrics"]), &["the model has no stiffness"]);
+    refused(
+        &with(&["--compare-metrics"]),
+        &["the model's own metric is displacement (diagonal), not a diagonal energy metric"],
+    );
 }

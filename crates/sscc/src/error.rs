@@ -149,7 +149,7 @@ pub enum Error {
     /// A job or a result of a computation in shards that cannot be used, or that could not be done.
     #[error("shards: {0}")]
     Shard(String),
-    /// Stopped by the caller.
-    #[error("cancelled")]
+    /// Stopped by the caller: to people an interrupt.
+    #[error("interrupted")]
     Cancelled,
 }

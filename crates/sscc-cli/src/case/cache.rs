@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use sscc::{ReducedModel, TriMesh};
 
 use crate::interrupt;
-use crate::output::one_line;
+use crate::output::{note, one_line};
 
 /// A folder of files that can be made again.
 pub struct Cache {
@@ -45,7 +45,7 @@ impl Cache {
         if path.exists() {
             match read(&path) {
                 Ok(found) => return Ok(found),
-                Err(error) => eprintln!("note: made anew: {}", one_line(&format!("{error:#}"))),
+                Err(error) => note(format_args!("made anew: {}", one_line(&format!("{error:#}")))),
             }
         }
         let made = make()?;

@@ -20,13 +20,14 @@ pub use recipe::{Begun, Kind, Recipe, SPRING_RINGS, Shape};
 /// # Errors
 /// When there is no such folder.
 pub fn models_folder(wanted: Option<&Path>) -> Result<Option<PathBuf>> {
-    let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty());
-    let folder = wanted.map(Path::to_owned).or(named.map(PathBuf::from));
-    if let Some(folder) = &folder {
-        let shown = folder.display();
-        ensure!(folder.is_dir(), "{shown}: no folder of models; leave out --models or SSCC_MODELS");
-    }
-    Ok(folder)
+    let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
+    let (folder, named_by) = match (wanted, named) {
+        (Some(wanted), _) => (wanted.to_owned(), "--models"),
+        (None, Some(named)) => (named, "the environment variable SSCC_MODELS"),
+        (None, None) => return Ok(None),
+    };
+    ensure!(folder.is_dir(), "{}: no folder of models; leave out {named_by}", folder.display());
+    Ok(Some(folder))
 }
 
 /// A model that queries can be made for.

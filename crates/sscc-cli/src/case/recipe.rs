@@ -14,6 +14,7 @@ use sscc_modes::{
 
 use super::cache::Key;
 use crate::commands::modes::{AskedMaterial, Source, elasticity, is_solid};
+use crate::load::in_file;
 use crate::progress::Bar;
 
 /// A free elastic body with modes.
@@ -91,7 +92,7 @@ impl Shape {
                     return Ok((Matter::Surface(read_mesh(path)?), name, None));
                 }
                 let whole = Source::read(path, None, material, &Bar::new("modes"));
-                let whole = whole.with_context(|| path.display().to_string())?;
+                let whole = whole.map_err(|error| in_file(error, path))?;
                 let replaced = whole.material().replaced.as_ref();
                 let note = replaced
                     .map(|replaced| format!("the scene's material goes before what {name} says: {replaced}"));

@@ -50,11 +50,17 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
             }
         }
         out.line("tightness (radius over the closest collision found; 1 is the best possible):")?;
-        let none = "- (radius 0 or capped, or no collision found)";
-        let shown = |value: Option<f64>| value.map_or(none.to_owned(), |v| format!("{v:.4}"));
-        out.line(format_args!("  root     {}", shown(found.root_tightness)))?;
-        out.line(format_args!("  median   {}", shown(found.tightness_median)))?;
-        out.line(format_args!("  least    {}", shown(found.tightness_min)))?;
+        let root = certificates.root_radius();
+        let no_root = match root {
+            r if r <= 0.0 => "the radius is 0",
+            r if r >= certificates.global_radius() => "the radius is capped: no larger one was asked for",
+            _ => "no collision was found",
+        };
+        let none = "no collision was found for a radius that is neither 0 nor capped";
+        let shown = |value: Option<f64>, why: &str| value.map_or(format!("- ({why})"), |v| format!("{v:.4}"));
+        out.line(format_args!("  root     {}", shown(found.root_tightness, no_root)))?;
+        out.line(format_args!("  median   {}", shown(found.tightness_median, none)))?;
+        out.line(format_args!("  least    {}", shown(found.tightness_min, none)))?;
     }
     out.finish()?;
     Ok(if found.violations.is_empty() { Outcome::Done } else { Outcome::Found })

@@ -3,15 +3,19 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, Result};
 use serde::Serialize;
-use sscc::{Certificates, CertifyOptions};
+use sscc::{Certificates, CertifyOptions, Query, ReducedModel};
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
 
 use crate::args::Certify;
-use crate::output::{Output, counted, grouped, length};
-use crate::{Outcome, interrupt, load, picture};
+use crate::interrupt::{self, Interrupt};
+use crate::output::{Output, counted, grouped, length, note};
+use crate::{Outcome, load, picture};
+
+/// Triangles that a note names.
+const LISTED: usize = 8;
 
 #[derive(Serialize)]
 struct Report {
@@ -71,12 +75,14 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
+    let unresolved = Unresolved::find(&model, &certificates, &options)?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
     } else {
         let metric = certificates.metric().kind().name();
-        for line in report.lines(metric, tree.limit(), &args.output) {
+        let promise = promise(&certificates, unresolved.as_ref());
+        for line in report.lines(metric, &promise, tree.limit(), &args.output) {
             out.line(line)?;
         }
         if let Some(path) = &args.picture {
@@ -84,23 +90,114 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         }
     }
     out.finish()?;
-    let notes = [note(&certificates, args.options.max_exceptions), picture.and_then(|drawn| drawn.note)];
-    for note in notes.into_iter().flatten() {
-        eprintln!("note: {note}");
-    }
+    let notes = [unresolved.map(|why| why.note()), picture.and_then(|drawn| drawn.note)];
+    notes.into_iter().flatten().for_each(note);
     Ok(Outcome::Done)
 }
 
-/// What to do about radii that promise nothing.
-fn note(certificates: &Certificates, most: Option<usize>) -> Option<String> {
-    let unresolved = certificates.root_radius() <= 0.0 && certificates.exceptions().is_empty();
-    let most = most.unwrap_or(CertifyOptions::default_exceptions(certificates.hierarchy().order().len()));
-    unresolved.then(|| {
-        format!(
-            "more pairs collide at the centre than may be exceptions ({most}): radii of parts that contain one are 0; \
-             raise --max-exceptions, or leave out for good what collides at rest with --ignore-rest"
-        )
-    })
+/// Why the root's radius is 0, as far as a query at the centre tells.
+enum Unresolved {
+    /// More pairs collide at the centre than may be exceptions (`most`).
+    Colliding {
+        most: usize,
+        /// Whether `--ignore-rest`, which was not typed, would leave few enough of them.
+        at_rest: bool,
+    },
+    /// No pair that counts collides there beside the exceptions, but some two triangles, both of this part of the
+    /// shape, are too close for any bound above 0.
+    TooClose { triangles: Vec<u32> },
+}
+
+impl Unresolved {
+    /// Asks for the pairs that collide at the centre; none where the radius is not 0.
+    fn find(
+        model: &ReducedModel,
+        certificates: &Certificates,
+        options: &CertifyOptions,
+    ) -> Result<Option<Self>> {
+        if certificates.root_radius() > 0.0 {
+            return Ok(None);
+        }
+        let mut query = Query::new(model, certificates)?.cancelled_by(&Interrupt);
+        let center = certificates.center();
+        let mut others = query.discrete(center)?.to_vec();
+        others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
+        if others.is_empty() {
+            return Ok(Some(Self::TooClose { triangles: smallest_unresolved(certificates) }));
+        }
+        let default = CertifyOptions::default_exceptions(model.mesh().faces().len());
+        let most = options.max_exceptions.unwrap_or(default);
+        let at_rest = query.discrete(&vec![0.0; model.rank()])?;
+        let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
+        Ok(Some(Self::Colliding { most, at_rest: !options.ignore_rest && left <= most }))
+    }
+
+    /// What to do about it.
+    fn note(&self) -> String {
+        match self {
+            Self::Colliding { most, at_rest } => {
+                let ignore = if *at_rest {
+                    ", or leave out for good what collides at rest with --ignore-rest"
+                } else {
+                    ""
+                };
+                format!(
+                    "more pairs collide at the centre than may be exceptions ({most}): radii of parts that contain one \
+                     are 0; raise --max-exceptions{ignore}"
+                )
+            }
+            Self::TooClose { triangles } => format!(
+                "nothing else collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
+                 radius above 0 could be proven for them: radii of parts that contain both are 0; move these apart, or \
+                 take another --center",
+                listed(triangles)
+            ),
+        }
+    }
+}
+
+/// The triangles of the smallest node with the radius 0. Nodes within small ones are left out: they only repeat its
+/// radius.
+fn smallest_unresolved(certificates: &Certificates) -> Vec<u32> {
+    let hierarchy = certificates.hierarchy();
+    let nodes = hierarchy.nodes();
+    let mut is_own = vec![true; nodes.len()];
+    for (n, node) in nodes.iter().enumerate() {
+        let is_searched_whole = n != 0 && node.is_small();
+        let of_children = is_own[n] && !is_searched_whole;
+        node.children().for_each(|child| is_own[child as usize] = of_children);
+    }
+    let unresolved = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
+    let smallest = (0..nodes.len()).filter(unresolved).min_by_key(|n| nodes[*n].triangle_count);
+    let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// Numbers of triangles in words, not too many.
+fn listed(triangles: &[u32]) -> String {
+    let shown: Vec<String> = triangles.iter().take(LISTED).map(u32::to_string).collect();
+    let more =
+        if triangles.len() > LISTED { format!(", ... ({} in all)", triangles.len()) } else { String::new() };
+    shown.join(", ") + &more
+}
+
+/// What the root's radius says.
+fn promise(certificates: &Certificates, unresolved: Option<&Unresolved>) -> String {
+    let exceptions = !certificates.exceptions().is_empty();
+    let ignored = !certificates.rule().ignored().is_empty();
+    match (unresolved, exceptions, ignored) {
+        (Some(Unresolved::Colliding { .. }), ..) => {
+            "the shape collides with itself at the centre; the parts that do not are certified".into()
+        }
+        (Some(Unresolved::TooClose { .. }), ..) => {
+            "two triangles nearly touch at the centre; the parts without both are certified".into()
+        }
+        (None, false, false) => "below it the whole shape is free".into(),
+        (None, true, false) => "below it the whole shape is free, exceptions apart".into(),
+        (None, false, true) => "below it the whole shape is free, ignored pairs apart".into(),
+        (None, true, true) => "below it the whole shape is free, exceptions and ignored pairs apart".into(),
+    }
 }
 
 /// Up to where pairs are resolved, if they are.
@@ -109,13 +206,7 @@ fn pairs_up_to(limit: f64) -> String {
 }
 
 impl Report {
-    fn lines(&self, metric: &str, pair_limit: f64, output: &Path) -> Vec<String> {
-        let promise = match (self.root_radius > 0.0, self.exceptions) {
-            (true, 0) => "below it the whole shape is free",
-            (true, _) => "below it the whole shape is free, exceptions apart",
-            (false, _) => "the shape collides with itself at the centre; the parts that do not are certified",
-        };
-        let promise = format!("root radius    {}: {promise}", length(self.root_radius));
+    fn lines(&self, metric: &str, promise: &str, pair_limit: f64, output: &Path) -> Vec<String> {
         let exceptions = match self.exceptions {
             0 => "none".to_owned(),
             n => format!("{}, tested in every query", counted(n as u64, "pair")),
@@ -136,7 +227,7 @@ impl Report {
             format!("metric         {metric}"),
             format!("at rest        {} collide", counted(self.rest_collisions, "pair")),
             format!("exceptions     {exceptions}"),
-            promise,
+            format!("root radius    {}: {promise}", length(self.root_radius)),
             format!("resolved up to {}{}", length(self.global_radius), pairs_up_to(pair_limit)),
             format!("written        {} ({} bytes)", output.display(), grouped(self.bytes as u64)),
         ]

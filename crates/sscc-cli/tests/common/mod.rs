@@ -13,6 +13,7 @@ use tempfile::TempDir;
 /// What a run came to.
 #[derive(Debug)]
 pub struct Run {
+    pub args: Vec<String>,
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
@@ -27,25 +28,38 @@ pub fn command(folder: &Path, args: &[impl AsRef<OsStr>]) -> Command {
 
 /// Runs the command in a folder.
 pub fn sscc(folder: &Path, args: &[impl AsRef<OsStr>]) -> Run {
-    let output = command(folder, args).output().unwrap();
-    Run {
-        code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Run::of(&mut command(folder, args))
 }
 
 impl Run {
+    /// Runs a command to its end.
+    pub fn of(command: &mut Command) -> Self {
+        let output = command.output().unwrap();
+        Self {
+            args: command.get_args().map(|arg| arg.to_string_lossy().into_owned()).collect(),
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
     /// The JSON objects on standard output, one on each line.
     pub fn json(&self) -> Vec<Value> {
         self.stdout.lines().map(|line| serde_json::from_str(line).expect(line)).collect()
     }
 
-    /// Asserts exit code 2, nothing on standard output, one line on standard error; gives that line.
+    /// Asserts exit code 2, nothing on standard output, one line on standard error that names each file once at the
+    /// most; gives that line.
     pub fn refusal(&self) -> &str {
         assert_eq!((self.code, self.stdout.as_str()), (Some(2), ""), "{self:?}");
         let message = self.stderr.strip_suffix('\n').unwrap();
         assert!(message.starts_with("error: ") && !message.contains(['\n', '\r']), "{message}");
+        // What has an ending is a file; a name that is nothing but an ending is also part of other words.
+        let is_file = |value: &&str| Path::new(value).extension().is_some() && !value.starts_with('.');
+        let values = self.args.iter().map(|arg| arg.split_once('=').map_or(arg.as_str(), |(_, value)| value));
+        for file in values.filter(is_file) {
+            assert!(message.matches(file).count() <= 1, "'{file}' more than once: {message}");
+        }
         message
     }
 }

@@ -36,6 +36,9 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
             reports.push(Report::new(name, share, &case, &measured, 1, None));
         }
         session.print(&reports, out)?;
+        if session.is_over(out) {
+            break;
+        }
     }
     Ok(mismatches)
 }

@@ -81,6 +81,10 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         } else {
             report.lines().into_iter().try_for_each(|line| out.line(line))?;
         }
+        out.flush()?;
+        if session.is_over(out) {
+            break;
+        }
     }
     Ok(mismatches)
 }

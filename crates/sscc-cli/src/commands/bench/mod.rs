@@ -133,9 +133,17 @@ impl Session<'_> {
     fn print(&self, reports: &[Report], out: &mut Output) -> anyhow::Result<()> {
         reports.iter().for_each(|report| self.rows.add(report));
         if self.args.json.json {
-            return reports.iter().try_for_each(|report| out.json(report));
+            reports.iter().try_for_each(|report| out.json(report))?;
+        } else {
+            Table::of(reports).lines().into_iter().try_for_each(|line| out.line(line))?;
         }
-        Table::of(reports).lines().into_iter().try_for_each(|line| out.line(line))
+        // What comes next takes long.
+        out.flush()
+    }
+
+    /// Whether nobody waits for more: the reader of standard output has left, and no page is to be written.
+    fn is_over(&self, out: &Output) -> bool {
+        out.is_closed() && self.args.report.is_none()
     }
 }
 

@@ -12,7 +12,7 @@ use super::report::{Report, Whole};
 use super::sample::{half_diagonal, largest_displacement};
 use super::scenario::PaperTable;
 use super::strata::{Stratum, blocks};
-use crate::output::{Output, one_line};
+use crate::output::{Output, note, one_line};
 use crate::progress::Bar;
 use crate::scene::Scene;
 use crate::simulation::{History, Log, Meter, PARTS, Prepared, Ran, run};
@@ -35,11 +35,18 @@ pub fn run_all(
         let report = one(session, name, text).with_context(|| (*name).to_owned())?;
         session.print(std::slice::from_ref(&report), out)?;
         reports.push(report);
+        if session.is_over(out) {
+            return Ok(mismatches(&reports));
+        }
     }
     if !session.args.json.json {
         paper::lines(table, &reports).into_iter().try_for_each(|line| out.line(line))?;
     }
-    Ok(reports.iter().map(|report| report.mismatches).sum())
+    Ok(mismatches(&reports))
+}
+
+fn mismatches(reports: &[Report]) -> usize {
+    reports.iter().map(|report| report.mismatches).sum()
 }
 
 fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
@@ -94,7 +101,7 @@ fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Resul
     let simulate = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &Meter::new()));
     let Ran { history, failure, .. } = match simulate(false) {
         Err(error) if Log::is_begun(&folder) => {
-            eprintln!("note: simulated anew: {}", one_line(&format!("{error:#}")));
+            note(format_args!("simulated anew: {}", one_line(&format!("{error:#}"))));
             simulate(true)?
         }
         ran => ran?,

@@ -160,6 +160,10 @@ impl Checking {
                 out.line(answer.line())?;
             }
             sscc::Progress::report(&bar, index + 1, questions);
+            // Nobody reads the other answers: the exit code is that of those so far.
+            if out.is_closed() {
+                break;
+            }
         }
         drop(bar);
         if !self.json && questions > 1 {

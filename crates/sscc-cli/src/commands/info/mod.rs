@@ -3,6 +3,7 @@
 mod certified;
 mod meshes;
 mod model;
+mod solid;
 mod surface;
 
 use std::path::Path;
@@ -14,10 +15,12 @@ use sscc_io::{IoError, LoadOptions, LoadedModel, load_model_with, read_certifica
 
 use crate::Outcome;
 use crate::args::Info;
+use crate::commands::modes::is_solid;
 use crate::output::Output;
 use certified::Certified;
 use meshes::Meshes;
 use model::Model;
+use solid::Solid;
 use surface::Surface;
 
 /// What was found.
@@ -25,6 +28,7 @@ use surface::Surface;
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Report {
     Mesh(Surface),
+    Solid(Solid),
     Model(Model),
     Certificates(Certified),
     Gltf(Meshes),
@@ -51,6 +55,7 @@ impl Report {
                 let LoadedModel { model, info, .. } = load_model_with(path, &LoadOptions::default())?;
                 return Ok(Self::Model(Model::of(&model, info)));
             }
+            _ if is_solid(path) => return Ok(Self::Solid(Solid::of(path)?)),
             _ => return Ok(Self::Mesh(Surface::of(&read_mesh(path)?))),
         }
         // Content decides; the name only says which error is told when it is neither.
@@ -69,6 +74,7 @@ impl Report {
     fn lines(&self) -> Vec<String> {
         match self {
             Self::Mesh(surface) => surface.lines(),
+            Self::Solid(solid) => solid.lines(),
             Self::Model(model) => model.lines(),
             Self::Certificates(certified) => certified.lines(),
             Self::Gltf(meshes) => meshes.lines(),

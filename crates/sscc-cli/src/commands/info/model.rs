@@ -26,6 +26,9 @@ pub struct Model {
     /// Natural frequencies, of a file with a stiffness that has some.
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
+    /// Why a model with a stiffness has none.
+    #[serde(skip)]
+    no_frequencies: String,
     units: String,
     provenance: String,
     /// The digest that certificates by the defaults would have.
@@ -34,6 +37,7 @@ pub struct Model {
 
 impl Model {
     pub fn of(model: &ReducedModel, info: ModelInfo) -> Self {
+        let frequencies = info.elasticity.as_ref().map(frequencies);
         Self {
             surface: Surface::of(model.mesh()),
             rank: model.rank(),
@@ -41,7 +45,8 @@ impl Model {
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
             nonlinear: info.elasticity.as_ref().map(|known| matches!(known, Elasticity::Nonlinear(_))),
-            frequencies_hz: info.elasticity.as_ref().and_then(frequencies),
+            no_frequencies: frequencies.as_ref().and_then(|f| f.as_ref().err()).cloned().unwrap_or_default(),
+            frequencies_hz: frequencies.and_then(Result::ok),
             units: info.units,
             provenance: info.provenance,
             digest: hexadecimal(Digest::of(model, &Scope::of(model))),
@@ -75,7 +80,7 @@ impl Model {
                 let more = if all.len() > SHOWN { ", ..." } else { "" };
                 format!("frequencies    {}{more} Hz ({forces} forces)", shown.join(", "))
             }
-            None => format!("frequencies    none: the stiffness has a negative eigenvalue ({forces} forces)"),
+            None => format!("frequencies    none: {} ({forces} forces)", self.no_frequencies),
         })
     }
 }

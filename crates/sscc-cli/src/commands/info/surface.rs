@@ -42,7 +42,8 @@ impl Surface {
         }
     }
 
-    pub fn lines(&self) -> Vec<String> {
+    /// Its triangles and vertices in words, and how they hang together.
+    pub fn form(&self) -> String {
         let [triangles, vertices, used] =
             [self.triangles, self.vertices, self.used_vertices].map(|n| grouped(n as u64));
         let form = match (self.boundary_edges, self.non_manifold_edges) {
@@ -51,10 +52,19 @@ impl Surface {
             (b, 0) => format!("open ({b} boundary edges), manifold"),
             (b, n) => format!("open ({b} boundary edges), {n} edges of more than two triangles"),
         };
-        let size: Vec<String> = self.lower.iter().zip(self.upper).map(|(l, u)| length(u - l)).collect();
+        format!("{triangles} triangles, {vertices} vertices ({used} used), {form}")
+    }
+
+    pub fn lines(&self) -> Vec<String> {
         vec![
-            format!("mesh           {triangles} triangles, {vertices} vertices ({used} used), {form}"),
-            format!("box            {}", size.join(" x ")),
+            format!("mesh           {}", self.form()),
+            format!("box            {}", size(&self.lower, &self.upper)),
         ]
     }
+}
+
+/// The sides of a box for people.
+pub fn size(lower: &[f64; 3], upper: &[f64; 3]) -> String {
+    let sides: Vec<String> = lower.iter().zip(upper).map(|(l, u)| length(u - l)).collect();
+    sides.join(" x ")
 }

@@ -8,9 +8,11 @@ use sscc_modes::{
     polynomial_solid_modes,
 };
 
+use super::fix::Fix;
 use super::source::Source;
-use super::{AskedMaterial, Made, POLYNOMIALS_ARE_FREE, fix, name};
+use super::{AskedMaterial, Made, POLYNOMIALS_ARE_FREE, name};
 use crate::args::{self, ModesKind};
+use crate::output::note;
 use crate::progress::Bar;
 
 /// Modes, if no number is given.
@@ -22,12 +24,13 @@ pub fn make(args: &args::Modes) -> Result<Made> {
         bail!(POLYNOMIALS_ARE_FREE);
     }
     let asked = args.material.as_deref().map(AskedMaterial::parse).transpose()?.unwrap_or_default();
+    let fix = args.fix.as_deref().map(Fix::parse).transpose()?;
     let bar = Bar::new("modes");
     let source = Source::read(&args.source, args.resolution, &asked, &bar)?;
     if let Some(replaced) = &source.material().replaced {
-        eprintln!("note: --material goes before what the file says: {replaced}");
+        note(format_args!("--material goes before what the file says: {replaced}"));
     }
-    let fixed = fix::vertices(args.fix.as_deref(), &source)?;
+    let fixed = fix.map_or_else(|| Ok(Vec::new()), |fix| fix.vertices(&source))?;
     of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, name(args), &bar)
 }
 

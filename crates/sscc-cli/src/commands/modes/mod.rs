@@ -6,6 +6,8 @@ mod material;
 mod pca;
 mod source;
 
+use std::cmp::Ordering;
+
 use anyhow::{Context, Result, bail};
 use serde::Serialize;
 use sscc::{Metric, Modes, ReducedModel, TriMesh};
@@ -13,7 +15,7 @@ use sscc_io::{Elasticity, ModelInfo, read_mesh, write_model};
 use sscc_modes::polynomial_modes;
 
 use crate::args::{self, ModesKind};
-use crate::output::{Output, counted, grouped, length};
+use crate::output::{Output, counted, grouped, length, note};
 use crate::{Outcome, interrupt, load};
 pub use elastic::{elasticity, of_solid};
 pub use material::AskedMaterial;
@@ -94,9 +96,9 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     let made = match args.kind {
         ModesKind::Polynomial if !asks_for_solid(args) => surface_polynomials(args)?,
         ModesKind::Pca => pca::make(args)?,
-        _ => elastic::make(args).with_context(in_source)?,
+        _ => elastic::make(args).map_err(|error| load::in_file(error, &args.source))?,
     };
-    let (is_split, elements, degrees_of_freedom) = (made.is_split, made.elements, made.degrees_of_freedom);
+    let (elements, degrees_of_freedom) = (made.elements, made.degrees_of_freedom);
     let (frequencies, components) = (made.frequencies.clone(), made.components.clone());
     let (model, info) = made.into_model().with_context(in_source)?;
     interrupt::check()?;
@@ -140,11 +142,23 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         out.line(format_args!("written: {}", args.output.display()))?;
     }
     out.finish()?;
-    let file = report.components.as_ref().map_or(&args.source, |components| &components.first);
-    if is_split || sscc_io::splits_vertices(file) {
-        eprintln!("note: vertices are split along seams: certify it with --weld");
+    if has_equal_vertices(&model) {
+        note("some vertices have equal positions and modes, as along seams: certify it with --weld");
     }
     Ok(Outcome::Done)
+}
+
+/// Whether `--weld` would join two vertices that triangles have.
+fn has_equal_vertices(model: &ReducedModel) -> bool {
+    let of = |v: u32| {
+        let position = std::iter::once(&model.mesh().rest_positions()[v as usize]);
+        position.chain(model.modes().of_vertex(v)).flat_map(|x| x.to_array())
+    };
+    let mut used = model.mesh().used_vertices().to_vec();
+    // No number of a model is NaN.
+    let compare = |a: &u32, b: &u32| of(*a).partial_cmp(of(*b)).unwrap_or(Ordering::Equal);
+    used.sort_by(compare);
+    used.windows(2).any(|pair| compare(&pair[0], &pair[1]) == Ordering::Equal)
 }
 
 /// Whether polynomial modes shall know the stiffness of a solid.

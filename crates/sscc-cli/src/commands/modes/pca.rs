@@ -1,7 +1,5 @@
 //! Principal components of an animation.
 
-use std::path::PathBuf;
-
 use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 use sscc_io::read_frames;
@@ -18,9 +16,6 @@ pub struct Components {
     /// The share of the variance that all modes together explain.
     pub explained: f64,
     pub deviations: Vec<f64>,
-    /// The file of the first frame, whose format tells whether its vertices are split.
-    #[serde(skip)]
-    pub first: PathBuf,
 }
 
 pub fn make(args: &args::Modes) -> Result<Made> {
@@ -39,12 +34,8 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     let pca = pca_modes(&frames.mesh, &frames.positions, rank, &bar).with_context(|| shown.to_string())?;
     drop(bar);
     let count = frames.paths.len();
-    let components = Components {
-        frames: count,
-        explained: pca.shares.iter().sum(),
-        deviations: pca.deviations,
-        first: frames.paths[0].clone(),
-    };
+    let components =
+        Components { frames: count, explained: pca.shares.iter().sum(), deviations: pca.deviations };
     Ok(Made {
         is_split: false,
         mesh: pca.mesh,

@@ -10,6 +10,8 @@ use sscc_modes::{Boundary, Embedded, Solid, tets_within};
 
 use super::material::{AskedMaterial, Origin};
 
+use crate::output::note;
+
 /// A solid with a surface.
 pub enum Source {
     /// Around a surface.
@@ -53,14 +55,14 @@ impl Source {
             let cells = resolution.map(|cells| cells as usize);
             return Self::around(read_mesh(path)?, cells, material, progress);
         }
+        let file = read_solid(path)?;
         if resolution.is_some() {
             bail!("--resolution is for surfaces: this file brings its own elements");
         }
-        let file = read_solid(path)?;
         let within = tets_within(&file.tets, &file.surface);
         let left_out = within.iter().filter(|within| !**within).count();
         if left_out > 0 {
-            eprintln!("note: {left_out} tetrahedra outside the surface that the file lists are left out");
+            note(format_args!("{left_out} tetrahedra outside the surface that the file lists are left out"));
         }
         let kept: Vec<usize> = (0..file.tets.len()).filter(|t| within[*t]).collect();
         let tets: Vec<[u32; 4]> = kept.iter().map(|t| file.tets[*t]).collect();

@@ -82,7 +82,7 @@ fn simulate(
         Ok(costs) => (costs, None),
         Err(error) => (Vec::new(), Some(error)),
     };
-    let failure = failure.or(unmeasured).map(|error| format!("{error:#}"));
+    let failure = failure.or(unmeasured).map(|error| interrupt::message(&error));
     let page =
         Page { scene, prepared: &prepared, history: &history, summary: &summary, traditional, failure };
     let (files, unwritten) = write(folder, &page);
@@ -125,7 +125,7 @@ fn read(path: &Path) -> Result<Scene> {
         // A name alone may be meant for a scene that comes with the program.
         None if path.extension().is_none() && !path.exists() => {
             let meant = nearest(&path.display().to_string(), SHIPPED.iter().map(|(name, _)| *name));
-            bail!("{}: no such file; did you mean '{}'?", path.display(), meant.unwrap_or_default())
+            bail!("{}: not found; did you mean '{}'?", path.display(), meant.unwrap_or_default())
         }
         _ => Scene::read(path),
     }

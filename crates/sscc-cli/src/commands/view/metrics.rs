@@ -18,10 +18,13 @@ const RANKS: [usize; 6] = [1, 5, 10, 20, 40, 80];
 pub fn compare(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
     let model = &loaded.model;
     let energy = model.metric();
-    if energy.kind() != MetricKind::Energy || energy.dense_factor().is_some() {
+    let form = if energy.dense_factor().is_some() { "dense" } else { "diagonal" };
+    if (energy.kind(), form) != (MetricKind::Energy, "diagonal") {
         bail!(
-            "--compare-metrics: {}: the model has no stiffness; make it with sscc modes --kind linear or nonlinear",
-            path.display()
+            "--compare-metrics: {}: the model's own metric is {} ({form}), not a diagonal energy metric; make a model \
+             with its stiffness by sscc modes --kind linear or nonlinear",
+            path.display(),
+            energy.kind().name()
         );
     }
     let rank = model.rank();

@@ -10,7 +10,7 @@ use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Report, Scene, Server};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
-use crate::output::{Output, file_name};
+use crate::output::{Output, file_name, note};
 use crate::{Outcome, frequencies, load};
 
 /// The report in a folder of `simulate` or `demo`.
@@ -124,8 +124,8 @@ fn announce(args: &View, server: &Server) -> Result<()> {
     if args.no_open {
         return Ok(());
     }
-    if open::that_detached(&address).is_err() {
-        eprintln!("note: no browser was found: open the address above in one");
+    if let Err(error) = open::that_detached(&address) {
+        note(format_args!("no browser was opened: {error}; open the address above in one"));
     }
     Ok(())
 }

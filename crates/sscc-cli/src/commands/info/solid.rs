@@ -1,0 +1,113 @@
+//! What is known of a solid.
+
+use std::path::Path;
+
+use anyhow::Result;
+use glam::DVec3;
+use serde::Serialize;
+use sscc_io::{IoError, read_solid};
+use sscc_modes::Material as Stated;
+
+use super::surface::{Surface, size};
+use crate::commands::modes::Source;
+use crate::output::{counted, grouped, one_line};
+use crate::progress::Bar;
+
+/// Materials that are told to people; the JSON has all.
+const SHOWN: usize = 8;
+
+#[derive(Serialize)]
+pub struct Solid {
+    vertices: usize,
+    tetrahedra: usize,
+    cubes: usize,
+    materials: Vec<Material>,
+    /// Triangles that the file lists beside the elements.
+    listed_triangles: usize,
+    lower: [f64; 3],
+    upper: [f64; 3],
+    /// The surface of the elements, which `sscc modes` gives modes to; none where it would refuse them.
+    boundary: Option<Surface>,
+    /// Why it would.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refusal: Option<String>,
+}
+
+/// A material, and its share of the elements. Numbers that the file does not state are null.
+#[derive(Serialize)]
+struct Material {
+    name: String,
+    elements: usize,
+    youngs_modulus: Option<f64>,
+    poisson_ratio: Option<f64>,
+    density: Option<f64>,
+}
+
+impl Solid {
+    pub fn of(path: &Path) -> Result<Self, IoError> {
+        let file = read_solid(path)?;
+        let mut elements = vec![0; file.materials.len()];
+        file.element_material.iter().for_each(|material| elements[*material as usize] += 1);
+        let material = |(material, elements): (&sscc_io::Material, usize)| Material {
+            name: material.name.clone(),
+            elements,
+            youngs_modulus: material.youngs_modulus,
+            poisson_ratio: material.poisson_ratio,
+            density: material.density,
+        };
+        let surface = Source::read(path, None, Stated::default(), &Bar::new("surface"));
+        let (boundary, refusal) = match surface {
+            Ok(source) => (Some(Surface::of(source.mesh())), None),
+            Err(error) => (None, Some(format!("{error:#}"))),
+        };
+        let points = || file.vertices.iter().copied();
+        Ok(Self {
+            vertices: file.vertices.len(),
+            tetrahedra: file.tets.len(),
+            cubes: file.cubes.len(),
+            materials: file.materials.iter().zip(elements).map(material).collect(),
+            listed_triangles: file.surface.len(),
+            lower: points().reduce(DVec3::min).unwrap_or_default().to_array(),
+            upper: points().reduce(DVec3::max).unwrap_or_default().to_array(),
+            boundary,
+            refusal,
+        })
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let [tetrahedra, cubes, vertices, listed] =
+            [self.tetrahedra, self.cubes, self.vertices, self.listed_triangles].map(|n| grouped(n as u64));
+        let mut lines =
+            vec![format!("solid          {tetrahedra} tetrahedra, {cubes} cubes, {vertices} vertices")];
+        lines.extend(self.materials.iter().take(SHOWN).map(Material::line));
+        if self.materials.len() > SHOWN {
+            lines.push(format!(
+                "               ... and {} more; --json lists all",
+                self.materials.len() - SHOWN
+            ));
+        }
+        lines.push(format!("box            {}", size(&self.lower, &self.upper)));
+        lines.push(match &self.boundary {
+            Some(surface) => format!("surface        {}", surface.form()),
+            None => {
+                format!("surface        refused: {}", one_line(self.refusal.as_deref().unwrap_or_default()))
+            }
+        });
+        lines.push(format!("listed faces   {listed} triangles"));
+        lines
+    }
+}
+
+impl Material {
+    fn line(&self) -> String {
+        let stated =
+            [("youngs", self.youngs_modulus), ("poisson", self.poisson_ratio), ("density", self.density)];
+        let stated: Vec<String> = stated
+            .into_iter()
+            .filter_map(|(name, value)| value.map(|value| format!("{name}={value}")))
+            .collect();
+        let stated = if stated.is_empty() { "no numbers stated".to_owned() } else { stated.join(",") };
+        let name = one_line(&self.name);
+        format!("material       {name}: {stated}; {}", counted(self.elements as u64, "element"))
+    }
+}
