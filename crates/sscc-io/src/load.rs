@@ -197,7 +197,10 @@ mod tests {
         assert!(named.ends_with("leave out --mesh-name"), "{named}");
         for own in ["a.npz", "b.glb", "b.gltf"] {
             let modes = path("a.npy");
-            assert!(message(own, LoadOptions::new(Some(&modes), None)).ends_with("leave out --modes"));
+            let refused = || message(own, LoadOptions::new(Some(&modes), None));
+            assert!(path(own).exists() || refused().ends_with(&format!("{own}: not found")));
+            std::fs::write(path(own), "x").unwrap();
+            assert!(refused().ends_with("leave out --modes"));
         }
         assert!(splits_vertices(Path::new("a.STL")) && splits_vertices(Path::new("a.glb")));
         assert!(!splits_vertices(Path::new("a.obj")));
