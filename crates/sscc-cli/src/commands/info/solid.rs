@@ -6,10 +6,9 @@ use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
 use sscc_io::{IoError, read_solid};
-use sscc_modes::Material as Stated;
 
 use super::surface::{Surface, size};
-use crate::commands::modes::Source;
+use crate::commands::modes::{AskedMaterial, Source};
 use crate::output::{counted, grouped, one_line};
 use crate::progress::Bar;
 
@@ -55,7 +54,7 @@ impl Solid {
             poisson_ratio: material.poisson_ratio,
             density: material.density,
         };
-        let surface = Source::read(path, None, Stated::default(), &Bar::new("surface"));
+        let surface = Source::read(path, None, &AskedMaterial::default(), &Bar::new("surface"));
         let (boundary, refusal) = match surface {
             Ok(source) => (Some(Surface::of(source.mesh())), None),
             Err(error) => (None, Some(format!("{error:#}"))),
