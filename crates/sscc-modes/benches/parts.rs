@@ -1,4 +1,5 @@
-//! What queries and certificates are made of, on the embedded elastic spring: `cargo bench -p sscc-modes`.
+//! What queries and certificates are made of, on the embedded elastic spring: `cargo bench -p sscc-modes --bench
+//! parts`.
 
 use divan::{Bencher, black_box};
 use glam::DVec3;
