@@ -24,7 +24,7 @@ fn wait_for_handlers(child: &Child) {
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"))?;
         Some(u64::from_str_radix(caught.trim(), 16).unwrap() & BOTH == BOTH)
     };
-    for _ in 0..3000 {
+    for _ in 0..500 {
         match is_listening() {
             Some(true) => return,
             Some(false) => sleep(Duration::from_millis(10)),
