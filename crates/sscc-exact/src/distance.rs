@@ -39,7 +39,7 @@ pub fn squared_distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> BigRa
     least.expect("vertices have a distance")
 }
 
-/// The distance of two moving triangles at time `t`: rounded once, from the exact square.
+/// The distance of two moving triangles at time `t`, rounded from the exact square.
 pub fn distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> f64 {
     let squared = squared_distance(x, y, t);
     // Squares of small numbers have no double near them: the root is taken of the number times a power of four.

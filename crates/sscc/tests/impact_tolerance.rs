@@ -83,11 +83,11 @@ fn size(x: &MovingTriangle, y: &MovingTriangle) -> f64 {
 /// Whether the time listed, if any, is one at which the two are within the tolerance.
 fn is_within_tolerance(x: &MovingTriangle, y: &MovingTriangle, tolerance: f64) -> bool {
     impact_triangle_triangle(x, y, tolerance)
-        .is_none_or(|t| distance(x, y, t) <= size(x, y) * tolerance.max(1e-13) * (1.0 + 1e-9))
+        .is_none_or(|t| distance(x, y, t) <= size(x, y) * (tolerance.max(6e-14) + 1e-15))
 }
 
 #[test]
-fn what_is_listed_is_within_the_tolerance() {
+fn times_of_impact_are_within_the_tolerance() {
     let mut listed = [0; KINDS.len()];
     let cases = 100;
     for case in 0..cases {
@@ -96,6 +96,9 @@ fn what_is_listed_is_within_the_tolerance() {
         let found = impact_triangle_triangle(&x, &y, Impact::TOLERANCE);
         assert!(is_within_tolerance(&x, &y, Impact::TOLERANCE), "case {case}, {kind:?}: {found:?}");
         listed[case % KINDS.len()] += usize::from(found.is_some());
+        for tolerance in [0.0, 1e-15] {
+            assert!(is_within_tolerance(&x, &y, tolerance), "case {case}, {kind:?} at {tolerance}");
+        }
     }
     assert!(listed.iter().all(|n| *n >= 2 && *n < cases / KINDS.len()), "{listed:?} of {cases}");
 }
@@ -164,4 +167,37 @@ fn what_touches_at_the_end_is_listed() {
         let found = impact_triangle_triangle(&still, &falling, Impact::TOLERANCE);
         assert!(found.is_some(), "case {case}: {face:?}");
     }
+}
+
+/// The closest features of this pair of segments are undecided in rounded numbers, while other features have a gap of a
+/// few units in the last place.
+#[test]
+fn tolerances_below_rounding_do_not_end_the_search_early() {
+    let v = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let x = MovingTriangle {
+        t0: [
+            v(-0.1907448245801957, 0.9256470542548139, 0.9114161446222993),
+            v(-0.5487552826942179, -0.1271054168354524, -0.21741067016141025),
+            v(-0.1907448245801957, 0.9256470542548139, 0.9114161446222993),
+        ],
+        t1: [
+            v(-6.370234616071897, -1.5973964283573123, -2.1579011704603435),
+            v(-5.018062506543551, -1.5085708241459501, -2.9791501153804893),
+            v(-6.370234616071476, -1.5973964283573714, -2.1579011704601556),
+        ],
+    };
+    let y = MovingTriangle {
+        t0: [
+            v(-0.19074482464749204, 0.9256470542087879, 0.9114161446865666),
+            v(-0.5487552827615143, -0.12710541688147833, -0.2174106700971429),
+            v(0.16493219884177196, 1.97153789893494, 2.0328855009199795),
+        ],
+        t1: [
+            v(-6.370234616108316, -1.597396428274924, -2.1579011705117175),
+            v(-5.018062506580039, -1.5085708240632354, -2.979150115431044),
+            v(-7.713593548824641, -1.6856430885550853, -1.3420049602423139),
+        ],
+    };
+    assert!(is_within_tolerance(&x, &y, 0.0));
+    assert_eq!(impact_triangle_triangle(&x, &y, Impact::TOLERANCE), None);
 }

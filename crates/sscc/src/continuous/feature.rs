@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::MovingTriangle;
 use super::number::{Bounded, Dyadic, Number};
 
-/// The largest degree of a gap.
+/// The largest degree of a polynomial: that of a gap along the direction perpendicular to an edge.
 const DEGREE: usize = 4;
 
 /// A polynomial on an interval of time: Bernstein coefficients times their binomials.
@@ -83,15 +83,16 @@ impl Feature {
 
 impl Following {
     /// Whether the direction provably separates both triangles all the time from `t` to `s`: by the signs of
-    /// coefficients, which are exact where it matters.
+    /// coefficients, which are decided exactly where rounding leaves them undecided.
     pub(super) fn separates(&self, x: &MovingTriangle, y: &MovingTriangle, t: f64, s: f64) -> bool {
         let rounded = Corners::<Bounded>::between(x, y, t, s).separated_along(self);
         rounded.unwrap_or_else(|| Corners::<Dyadic>::between(x, y, t, s).separated_along(self) == Some(true))
     }
 }
 
-/// The direction between two features along which the two triangles are farthest apart, or nearly so, at time `t`. None
-/// when their distance is at most `tolerance`: it is the widest gap along the direction of any pair of features.
+/// A direction between two features along which the two triangles are farther apart than `tolerance` at time `t`: of those
+/// for which rounded numbers prove this the one with the widest gap, else the one that exact numbers find. None when
+/// their distance is at most `tolerance`, up to 1e-14 of it: the distance is the widest gap of all pairs of features.
 pub(super) fn farther_than(
     tolerance: f64,
     x: &MovingTriangle,
@@ -103,14 +104,14 @@ pub(super) fn farther_than(
     if let Some(found) = rounded.farther_than(tolerance, &gaps) {
         return Some(found);
     }
-    let mut open: Vec<Feature> =
+    let mut undecided: Vec<Feature> =
         gaps.iter().filter(|gap| gap.upper > tolerance).map(|gap| gap.feature).collect();
-    if open.is_empty() {
+    if undecided.is_empty() {
         return None;
     }
-    open.dedup();
+    undecided.dedup();
     let exact = Corners::<Dyadic>::at(x, y, t);
-    let gaps: Vec<Gap> = open.into_iter().flat_map(|feature| exact.gaps(feature)).collect();
+    let gaps: Vec<Gap> = undecided.into_iter().flat_map(|feature| exact.gaps(feature)).collect();
     exact.farther_than(tolerance, &gaps)
 }
 
@@ -127,7 +128,7 @@ impl<T: Number> Form<T> {
         form
     }
 
-    /// Of two polynomials of the same degree.
+    /// Combines the coefficients of two polynomials of the same degree.
     fn map2(&self, other: &Self, f: impl Fn(&T, &T) -> T) -> Self {
         debug_assert_eq!(self.degree, other.degree);
         let mut result = self.clone();
@@ -214,9 +215,9 @@ impl<T: Number> Corners<T> {
         let n = self.direction(feature);
         let square = dot(&n, &n);
         let vertices = self.gaps_of_vertices(&n).map(|gap| gap.coefficients[0].clone());
-        let least = |gaps: &[T]| gaps[1..].iter().fold(gaps[0].clone(), |least, gap| least.least(gap));
+        let minimum = |gaps: &[T]| gaps[1..].iter().fold(gaps[0].clone(), |least, gap| least.minimum(gap));
         let opposite = vertices.each_ref().map(|gap| T::zero().minus(gap));
-        [(false, least(&vertices)), (true, least(&opposite))].map(|(reversed, gap)| {
+        [(false, minimum(&vertices)), (true, minimum(&opposite))].map(|(reversed, gap)| {
             let [lower, upper] = gap.over_root(&square.coefficients[0]);
             Gap { feature, reversed, lower, upper }
         })
@@ -233,7 +234,7 @@ impl<T: Number> Corners<T> {
     }
 
     /// Whether all gaps along a direction are positive during the interval, by their coefficients. None where the error
-    /// bounds leave that open.
+    /// bounds leave that undecided.
     fn separated_along(&self, direction: &Following) -> Option<bool> {
         let mut all = Some(true);
         for gap in self.gaps_of_vertices(&self.direction(direction.feature)) {

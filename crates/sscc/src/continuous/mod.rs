@@ -5,7 +5,7 @@
 //!
 //! **What "no" promises:** the shapes have no point in common at any t in [0, 1]. Never a miss.
 //! **How wrong a "yes" may be:** it comes with a time before which the shapes do not meet, and at that time their
-//! distance is at most the given tolerance (no less than about 1e-13 of their size, see [`impact_triangle_triangle`]).
+//! distance is at most the given share of their size (no less than 6e-14, see [`impact_triangle_triangle`]).
 //!
 //! # The method
 //!
@@ -14,7 +14,7 @@
 //! linear or quadratic polynomial is positive on an interval where its Bernstein coefficients there are. So a single
 //! direction, or the two between which it turns, proves a whole interval of time free, for all pairs of corners, hence
 //! for the hulls: faces, edges and vertices at once ([`separation`]). A direction that is perpendicular to two moving
-//! features is a polynomial of t of degree 2 or 3, and proves as much for as long as these two are closest, however narrow
+//! features is a polynomial of t of degree 1 to 3, and proves as much for as long as these two are closest, however narrow
 //! the gap is ([`feature`]). What remains is to advance from t = 0 to 1 in as few intervals as possible ([`advance`]).
 //!
 //! The usual tests, 6 of a vertex and a face and 9 of two edges, each by subdivision of (t, u, v) (Wang et al. 2021,

@@ -1,6 +1,6 @@
 //! Two kinds of numbers for the same predicates: rounded ones that carry an error bound, and exact ones.
 //!
-//! A predicate is evaluated with [`Bounded`] numbers first; where their error bound leaves its sign open, it is
+//! A predicate is evaluated with [`Bounded`] numbers first; where their error bound leaves its sign undecided, it is
 //! evaluated again with [`Dyadic`] ones. This is the usual filter of exact predicates, with the error bound computed
 //! beside the value instead of proven for one expression.
 
@@ -9,7 +9,7 @@ use num_bigint::{BigInt, Sign};
 
 use crate::intersect::decode;
 
-/// What a polynomial predicate needs of a number.
+/// The arithmetic of polynomial predicates.
 pub(super) trait Number: Clone {
     /// Zero.
     fn zero() -> Self;
@@ -29,23 +29,22 @@ pub(super) trait Number: Clone {
     /// The product.
     fn times(&self, other: &Self) -> Self;
 
-    /// The lesser of two numbers.
-    fn least(&self, other: &Self) -> Self;
+    /// The smaller of two numbers.
+    fn minimum(&self, other: &Self) -> Self;
 
-    /// Whether the number is above 0; none if the error bound leaves this open.
+    /// Whether the number is above 0; none if the error bound leaves this undecided.
     fn is_positive(&self) -> Option<bool>;
 
     /// Lower and upper bound of `self / sqrt(square)`: their rounding is a few units in the last place beside the error
-    /// bounds of both numbers. The lower bound of a number that is not provably positive is 0; a square that may be 0
-    /// leaves both open (0 and infinity).
+    /// bounds of both numbers. The lower bound of a number that is not provably positive is 0; where the square may be 0
+    /// the bounds are 0 and infinity.
     fn over_root(&self, square: &Self) -> [f64; 2];
 
     /// A vector of the same direction, rounded.
     fn direction(n: &[Self; 3]) -> DVec3;
 }
 
-/// A double and a bound on its difference from the number that it stands for. An overflow makes the error infinite or
-/// NaN, and so leaves the sign open.
+/// A double and a bound on its difference from the number that it stands for. An overflow makes the error bound infinite.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounded {
     value: f64,
@@ -58,11 +57,12 @@ const U: f64 = f64::EPSILON / 2.0;
 impl Bounded {
     /// A result that was rounded once, `value`, whose operands account for the error `error`. That sum of positive terms
     /// was itself rounded at most four times, each time by at most `u` of it; `8 u` covers these roundings and those
-    /// of this line. What underflows, here, there or in the result, is less than 2^-1070 in all.
+    /// of this line. Underflow adds less than 2^-1070 in all.
     #[inline]
     fn rounded(value: f64, error: f64) -> Self {
         let rounding = right_or!(U, BoundedExact, 0.0) * value.abs();
-        Self { value, error: (error + rounding) * (1.0 + 8.0 * U) + f64::MIN_POSITIVE }
+        let error = (error + rounding) * (1.0 + 8.0 * U) + f64::MIN_POSITIVE;
+        if error.is_finite() { Self { value, error } } else { Self { value: 0.0, error: f64::INFINITY } }
     }
 }
 
@@ -95,9 +95,10 @@ impl Number for Bounded {
         Self::rounded(self.value * other.value, error)
     }
 
-    /// Neither number changes by more than its error, so the lesser one changes by no more than the larger error.
+    /// Neither number differs from its value by more than its error, so their minimum differs by no more than the larger
+    /// error.
     #[inline]
-    fn least(&self, other: &Self) -> Self {
+    fn minimum(&self, other: &Self) -> Self {
         Self { value: self.value.min(other.value), error: self.error.max(other.error) }
     }
 
@@ -116,7 +117,7 @@ impl Number for Bounded {
         let root = |square: f64| square.max(0.0).sqrt();
         let lower = (self.value - self.error).max(0.0) / root(square.value + square.error) * (1.0 - 8.0 * U);
         let upper = (self.value + self.error).max(0.0) / root(square.value - square.error) * (1.0 + 8.0 * U);
-        // NaN, of 0 / 0 or of what overflows, is open, too.
+        // 0 / 0 and infinity / infinity are NaN: nothing is known then.
         [if lower.is_finite() { lower } else { 0.0 }, if upper >= 0.0 { upper } else { f64::INFINITY }]
     }
 
@@ -133,8 +134,7 @@ pub(super) struct Dyadic {
 }
 
 impl Dyadic {
-    /// The mantissa's leading 60 bits and the exponent that belongs to them: rounded towards zero, by less than 2^-58
-    /// of the number.
+    /// The mantissa's leading 60 bits, rounded to a double, and the exponent that belongs to them.
     fn leading(&self) -> (f64, i64) {
         let excess = self.mantissa.bits().saturating_sub(60);
         let leading = i64::try_from(self.mantissa.magnitude() >> excess).unwrap_or(i64::MAX) as f64;
@@ -179,7 +179,7 @@ impl Number for Dyadic {
         Self { mantissa: &self.mantissa * &other.mantissa, exponent: self.exponent + other.exponent }
     }
 
-    fn least(&self, other: &Self) -> Self {
+    fn minimum(&self, other: &Self) -> Self {
         if self.minus(other).mantissa.sign() == Sign::Minus { self } else { other }.clone()
     }
 
@@ -255,7 +255,7 @@ mod tests {
                 let (x, y, z) =
                     (Bounded::difference(c, d), Dyadic::difference(c, d), rational(c) - rational(d));
                 numbers = match random(5) {
-                    4 => (numbers.0.least(&x), numbers.1.least(&y), numbers.2.min(z)),
+                    4 => (numbers.0.minimum(&x), numbers.1.minimum(&y), numbers.2.min(z)),
                     0 => (numbers.0.plus(&x), numbers.1.plus(&y), numbers.2 + z),
                     1 => (numbers.0.minus(&x), numbers.1.minus(&y), numbers.2 - z),
                     2 => (numbers.0.times(&x), numbers.1.times(&y), numbers.2 * z),

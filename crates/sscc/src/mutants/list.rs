@@ -106,4 +106,6 @@ mutants! {
     FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.
     SmallPairsNotEnlarged: CaughtBy("impact_tolerance the_tolerance_holds_at_every_size");
+    /// Tolerances of continuous tests may be below what rounding leaves of gaps.
+    ToleranceBelowRounding: CaughtBy("impact_tolerance tolerances_below_rounding_do_not_end_the_search_early");
 }
