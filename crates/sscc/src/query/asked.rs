@@ -31,8 +31,12 @@ impl Asked<'_> {
     /// The pair tree, if this method uses it and it is complete at this norm: then a pair that it does not hold is
     /// certified.
     pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&PairTree> {
-        let is_within = |limit| right_or!(norm < limit, TreeLimitReached, norm <= limit);
-        self.used_certificates().map(|parts| &parts.pair_tree).filter(|tree| is_within(tree.limit()))
+        let tree = self.used_certificates().map(|parts| &parts.pair_tree);
+        right_or!(
+            tree.filter(|tree| norm < tree.limit()),
+            TreeLimitReached,
+            tree.filter(|tree| norm <= tree.limit())
+        )
     }
 
     /// Whether the root's certificate alone proves that nothing collides at this norm, exceptions apart. Like all radii
@@ -40,8 +44,12 @@ impl Asked<'_> {
     /// rounded up by more than nothing, so that equality would do no harm.)
     #[inline]
     pub(super) fn root_certifies(&self, norm: f64) -> bool {
-        let is_within = |radius| right_or!(norm < radius, RootRadiusReached, norm <= radius);
-        self.used_certificates().is_some_and(|parts| is_within(parts.node_radii[0]))
+        let parts = self.used_certificates();
+        right_or!(
+            parts.is_some_and(|parts| norm < parts.node_radii[0]),
+            RootRadiusReached,
+            parts.is_some_and(|parts| norm <= parts.node_radii[0])
+        )
     }
 
     /// The pairs that this query must test by itself: those of the certificates it uses.

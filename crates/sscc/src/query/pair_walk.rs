@@ -4,7 +4,7 @@ use super::asked::{Asked, Ends};
 use super::finder::Finder;
 use super::found::Found;
 use crate::PairTree;
-use crate::certificates::{PairEntry, child_pairs};
+use crate::certificates::child_pairs;
 
 /// Between two looks at whether the query was cancelled.
 const STEPS: u32 = 1024;
@@ -12,11 +12,12 @@ const STEPS: u32 = 1024;
 /// The place of a node against itself.
 const NODE: u32 = u32::MAX;
 
-/// Whether the radius of a stored pair has been passed: equality is no proof.
-#[inline]
-fn is_entry_passed(entry: PairEntry, norm: f64) -> bool {
-    let radius = f64::from(entry.radius);
-    right_or!(radius <= norm, TreeRadiusReached, radius < norm)
+/// Whether the radius of a stored pair has been passed: equality is no proof. A macro, because a function in its place made
+/// queries that open few pairs slower.
+macro_rules! is_entry_passed {
+    ($entry:expr, $norm:expr) => {
+        right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)
+    };
 }
 
 impl<F: Found<E>, const E: usize> Finder<F, E> {
@@ -56,13 +57,19 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
         let node = asked.hierarchy.nodes()[n as usize];
         let radii = asked.used_certificates().map_or(&[][..], |parts| &parts.node_radii);
-        let is_passed = |radius| right_or!(radius <= ends.norm, TreeNodeRadiusReached, radius < ends.norm);
-        let is_open = |child: &u32| radii.get(*child as usize).is_none_or(|radius| is_passed(*radius));
+        let is_open = |child: &u32| {
+            let radius = radii.get(*child as usize);
+            right_or!(
+                radius.is_none_or(|radius| ends.norm >= *radius),
+                TreeNodeRadiusReached,
+                radius.is_none_or(|radius| ends.norm > *radius)
+            )
+        };
         self.walk.extend(node.children().filter(is_open).map(|child| (child, child, NODE)));
         let mut pairs = child_pairs(&node).enumerate();
         for (place, entry) in tree.of_node(n) {
             if let Some((_, (a, b))) = pairs.find(|(which, _)| *which == entry.which() as usize)
-                && is_entry_passed(entry, ends.norm)
+                && is_entry_passed!(entry, ends.norm)
             {
                 self.walk.push((a, b, place));
             }
@@ -89,7 +96,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         self.statistics.opened += 1;
         if let Some(split) = asked.hierarchy.split_large(n, m) {
             for (place, entry) in tree.below(place) {
-                if is_entry_passed(entry, ends.norm) {
+                if is_entry_passed!(entry, ends.norm) {
                     let (a, b) = split.pair(entry.which());
                     self.walk.push((a, b, place));
                 }

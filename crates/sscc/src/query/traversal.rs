@@ -39,8 +39,12 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Lines 1 to 14: a node against itself.
     fn intra(&mut self, asked: &Asked<'_>, n: u32, ends: &Ends<'_, E>) {
         let certificates = asked.used_certificates();
-        let is_within = |radius| right_or!(ends.norm < radius, NodeRadiusReached, ends.norm <= radius);
-        if certificates.is_some_and(|c| is_within(c.node_radii[n as usize])) || self.culled_by_normals(n) {
+        let certified = right_or!(
+            certificates.is_some_and(|c| ends.norm < c.node_radii[n as usize]),
+            NodeRadiusReached,
+            certificates.is_some_and(|c| ends.norm <= c.node_radii[n as usize])
+        );
+        if certified || self.culled_by_normals(n) {
             return;
         }
         self.statistics.opened += 1;
