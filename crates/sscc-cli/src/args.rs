@@ -114,7 +114,7 @@ pub struct Modes {
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
     /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of
-    /// youngs=E,poisson=NU,density=RHO; it goes before what a solid's file says [default: that, else
+    /// youngs=E,poisson=NU,density=RHO; it overrides what a solid's file states [default: that, else
     /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,

@@ -160,7 +160,7 @@ fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
         assert_eq!(run.code, Some(0), "{run:?}");
         (frequencies(&run.json()[0]), run.stderr, provenance(folder))
     };
-    let note = |numbers: &str| format!("note: --material goes before what the file says: {numbers}\n");
+    let note = |numbers: &str| format!("note: --material overrides what the file states: {numbers}\n");
     let (own, silent, told) = run("two.veg", None);
     assert_eq!(silent, "");
     assert!(told.ends_with(", materials of the file"), "{told}");

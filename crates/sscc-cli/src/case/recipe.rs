@@ -95,7 +95,7 @@ impl Shape {
                 let whole = whole.map_err(|error| in_file(error, path))?;
                 let replaced = whole.material().replaced.as_ref();
                 let note = replaced
-                    .map(|replaced| format!("the scene's material goes before what {name} says: {replaced}"));
+                    .map(|replaced| format!("the scene's material overrides what {name} states: {replaced}"));
                 return Ok((Matter::Solid(Box::new(whole)), name, note));
             }
             Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(nothing, None);
         let (stiff, note, of_stiff) = first(AskedMaterial { youngs: Some(4e6), ..Default::default() });
         assert!((stiff / own - 4.0).abs() < 1e-9, "{own} {stiff}");
-        let said = "the scene's material goes before what soft.veg says: youngs=4e6";
+        let said = "the scene's material overrides what soft.veg states: youngs=4e6";
         assert_eq!(note.as_deref(), Some(said));
         assert_ne!(key, of_stiff);
     }

@@ -62,8 +62,8 @@ pub(super) fn advance(
 }
 
 /// Towards a contact the direction of the closest points, kept as it is, converges as Newton's method does; along a
-/// narrow gap that turns only the turning one makes headway, which is tried where the first does not bring the two much
-/// closer.
+/// narrow gap that turns only a direction that turns, too, advances far. It is tried where the first does not bring the two
+/// much closer.
 fn advance_by_rounded_directions(pair: &Separation, tolerance: f64) -> Advance {
     let (mut t, mut step) = (0.0, 1.0);
     let mut here = Closest::at(pair, t);

@@ -188,7 +188,7 @@ impl<T: Number> Corners<T> {
 
     /// The direction of a pair of features. Where it contains a vertex and no face, the direction is that from x to y.
     fn direction(&self, feature: Feature) -> [Form<T>; 3] {
-        let between = |i: usize, j: usize| subtract(&self.0[3 + j], &self.0[i]);
+        let between = |i: usize, j: usize| subtract(&self.0[Y + j], &self.0[X + i]);
         let perpendicular = |d: [Form<T>; 3], e: [Form<T>; 3]| {
             let (square, along) = (dot(&e, &e), dot(&d, &e));
             std::array::from_fn(|k| d[k].times(&square).minus(&e[k].times(&along)))

@@ -8,17 +8,17 @@
 mutants! {
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
     KineticBallAtCentre: CaughtBy("kinetic radii_are_crossed_inside_a_ball");
-    /// Positions about a centre are as if they were rounded at rest alone, not on the way to the centre.
+    /// The rounding bound of positions about a centre omits the displacement of the centre.
     RestErrorWithoutCentre: CaughtBy("rounding positions_about_a_centre_are_rounded_on_the_way_there");
     /// Kinetic margins grant the rounding at rest alone, not that at z.
     MarginErrorAtRest: CaughtBy("rounding kinetic_margins_know_that_positions_far_from_rest_are_rounded");
     /// Radii of the pair tree are rounded to the nearest single-precision number.
     RadiusToNearest: CaughtBy("rounding radii_in_single_precision_are_no_larger");
-    /// Under a dense metric positions are as if |A| rounded them, not |A||S||S^-1|.
+    /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
     DenseRateOfModesAlone: CaughtBy("rounding dense_metrics_see_what_their_modes_cancel");
     /// Of a dense metric, products that cancel are not rounded up.
     DenseProductsExact: CaughtBy("lib metric::norm::tests::norm_is_at_least_the_exact_one");
-    /// The inverse of the factor of a dense metric is as if it were exact.
+    /// The rounding bound of a dense metric omits the error of the inverse of its factor.
     DenseInverseExact: CaughtBy("lib metric::triangular::tests::growth_is_at_least_the_exact_one");
     /// |z| is not rounded up.
     NormToNearest: CaughtBy("lib metric::norm::tests::norm_is_at_least_the_exact_one");
@@ -26,25 +26,25 @@ mutants! {
     NormUpToNearest: CaughtBy("lib bounds::rounding_tests::roots_are_rounded_up_and_quotients_down");
     /// Quotients of bounds are not rounded down.
     QuotientToNearest: CaughtBy("lib bounds::rounding_tests::roots_are_rounded_up_and_quotients_down");
-    /// A separating direction forgets how positions at rest are rounded.
+    /// The bound along a separating direction omits the rounding error of rest positions (e0).
     DirectionWithoutRestError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_positions_at_rest_are_rounded");
-    /// A separating direction forgets how motion is rounded.
+    /// The bound along a separating direction omits the rounding error of motion (e1).
     DirectionWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
-    /// The bound of two nodes forgets how positions at rest are rounded.
+    /// The bound of two nodes omits the rounding error of rest positions (e0).
     ClusterWithoutRestError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_positions_at_rest_are_rounded");
-    /// The bound of two nodes forgets how motion is rounded.
+    /// The bound of two nodes omits the rounding error of motion (e1).
     ClusterWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
-    /// What the affine map of a node leaves over is as if it were exact.
+    /// The affine residual of a node omits its rounding error.
     ClusterFitExact: CaughtBy("lib bounds::cluster::tests::residuals_hold_what_the_fit_has_rounded");
-    /// Norms from the Gram matrix of two nodes are as if it were exact.
+    /// Norms from the Gram matrix of two nodes omit its rounding error.
     ClusterProductsExact: CaughtBy("lib bounds::cluster::tests::corners_that_cancel_keep_their_rate");
-    /// The affine bound forgets how motion is rounded.
+    /// The affine bound omits the rounding error of motion (e1).
     AffineWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
-    /// What an affine map of two triangles leaves over is as if it were exact.
+    /// The affine residual of two triangles omits its rounding error.
     AffineResidualExact: CaughtBy("lib bounds::affine::tests::residuals_hold_what_rounding_moves_corners_by");
-    /// Rates on a cone of directions are as if their Gram matrix were exact.
+    /// Closing rates on a cone of directions omit the rounding error of their Gram matrix.
     ConeExact: CaughtBy("lib bounds::cone::tests::rates_that_cancel_are_not_too_small");
-    /// Safe scales forget that positions on the way are rounded.
+    /// Safe scales omit the rounding error of positions along the line.
     PathExact: CaughtBy("rounding safe_scales_end_before_rounding_closes_a_gap");
     /// A |z| that equals the root's radius is certified.
     RootRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
@@ -66,15 +66,15 @@ mutants! {
     TouchingIsFree: CaughtBy("intersect edges_that_touch");
     /// Triangles are told apart in single precision with half of the slack.
     ApartSlackHalved: CaughtBy("lib query::apart::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
-    /// The contour test forgets all rounding.
+    /// The contour test omits its rounding bound.
     ContourExact: CaughtBy("lib query::contour::tests::rounding_separates_nothing_that_touches");
-    /// The contour test forgets that coordinates were rounded.
+    /// The contour test omits the rounding error of coordinates.
     ContourCoordinatesExact: CaughtBy("lib query::contour::tests::rounding_separates_nothing_that_touches");
-    /// The contour test forgets that products are rounded.
+    /// The contour test omits the rounding error of products.
     ContourProductsExact: Covered("the second term of the error is large enough for products, too");
-    /// Boxes forget that positions are rounded.
+    /// Boxes omit the rounding error of positions.
     BoxesNotWidened: CaughtBy("lib query::bd_tree::tests::boxes_contain_all_computed_positions");
-    /// Positions in single precision are as if they were not quantized.
+    /// The error bound of positions in single precision omits quantization.
     CoarseSharesExact: CaughtBy("lib query::rough::tests::positions_are_as_near_as_they_say");
     /// Boxes of triangles in single precision are not widened by the error of positions.
     CoarseTrianglesNotWidened: CaughtBy("rounding what_touches_exactly_is_met_in_single_precision");
@@ -92,15 +92,15 @@ mutants! {
     BallVerticesHalfAsFar: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
     /// Nodes go half as far in a kinetic ball.
     BallNodesHalfAsFar: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
-    /// A kinetic ball forgets that positions are rounded.
+    /// A kinetic ball omits the rounding error of positions.
     BallExact: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
-    /// The way that z has gone is not rounded up.
+    /// The path length of z is not rounded up.
     WayToNearest: CaughtBy("lib query::kinetic::front::tests::the_way_is_never_short");
     /// A margin that is used up exactly still holds.
     MarginReached: Covered("the end of a margin has been rounded down");
-    /// Gaps of moving triangles along a direction are as if they were exact.
+    /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("impact_tolerance what_touches_at_the_end_is_listed");
-    /// Numbers that carry an error bound forget their own rounding.
+    /// The error bound of a rounded number omits its own rounding.
     BoundedExact: CaughtBy("lib continuous::number::tests::both_kinds_agree_with_rational_arithmetic");
     /// Pairs that rounded directions do not settle are listed at the time reached.
     FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");

@@ -12,8 +12,8 @@ const STEPS: u32 = 1024;
 /// The place of a node against itself.
 const NODE: u32 = u32::MAX;
 
-/// Whether the radius of a stored pair has been passed: equality is no proof. A macro, because a function in its place made
-/// queries that open few pairs slower.
+/// Whether `|z|` has reached the radius of a stored pair: equality is no proof. A macro keeps the plain comparison of the
+/// release build; with functions and closures here queries that open few pairs took up to 1.13 times as long.
 macro_rules! is_entry_passed {
     ($entry:expr, $norm:expr) => {
         right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)

@@ -28,7 +28,7 @@ pub fn make(args: &args::Modes) -> Result<Made> {
     let bar = Bar::new("modes");
     let source = Source::read(&args.source, args.resolution, &asked, &bar)?;
     if let Some(replaced) = &source.material().replaced {
-        note(format!("--material goes before what the file says: {replaced}"));
+        note(format!("--material overrides what the file states: {replaced}"));
     }
     let fixed = fix.map_or_else(|| Ok(Vec::new()), |fix| fix.vertices(&source))?;
     of_solid(args.kind, args.rank.map(|rank| rank as usize), source, &fixed, name(args), &bar)

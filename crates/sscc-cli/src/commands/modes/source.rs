@@ -44,7 +44,7 @@ impl Source {
         Ok(Self::Around { mesh, embedded, material: Origin::new(material, &[]) })
     }
 
-    /// From a file. A material that is asked for goes before those of the file.
+    /// From a file. The material given on the command line overrides those of the file.
     pub fn read(
         path: &Path,
         resolution: Option<u32>,
