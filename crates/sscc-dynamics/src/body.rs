@@ -276,7 +276,7 @@ impl<'a> Body<'a> {
     }
 
     /// Puts the posed shape where the body is; gives a box around it.
-    pub(crate) fn place(&mut self) -> Result<(DVec3, DVec3), DynamicsError> {
+    pub(crate) fn place(&mut self) -> Result<sscc::Aabb, DynamicsError> {
         let pose = self.pose();
         Ok(self.posed.place(&self.q, &pose)?)
     }

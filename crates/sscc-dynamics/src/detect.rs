@@ -1,7 +1,6 @@
 //! Collisions between bodies: boxes over bodies first, then tree against tree, down to triangles.
 
-use glam::DVec3;
-use sscc::Pair;
+use sscc::{Aabb, Pair};
 
 use crate::DynamicsError;
 use crate::body::Body;
@@ -17,7 +16,7 @@ struct Meeting {
 /// What collides between bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
-    boxes: Vec<(DVec3, DVec3)>,
+    boxes: Vec<Aabb>,
     /// Bodies by the lower end of their boxes along x.
     order: Vec<usize>,
     candidates: Vec<[usize; 2]>,
@@ -39,7 +38,7 @@ impl Neighbours {
             self.boxes.push(body.place()?);
         }
         self.sweep();
-        let Some(around) = self.boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else {
+        let Some(around) = self.boxes.iter().copied().reduce(|a, b| a.union(&b)) else {
             return Ok(());
         };
         for &[a, b] in &self.candidates {
@@ -59,15 +58,14 @@ impl Neighbours {
         // Bodies are added at the end, and the order of the last step is nearly right.
         self.order.retain(|n| *n < boxes.len());
         self.order.extend(self.order.len()..boxes.len());
-        self.order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x).then(a.cmp(b)));
+        self.order.sort_by(|a, b| boxes[*a].lower.x.total_cmp(&boxes[*b].lower.x).then(a.cmp(b)));
         self.candidates.clear();
         for (i, &a) in self.order.iter().enumerate() {
             for &b in &self.order[i + 1..] {
-                if boxes[b].0.x > boxes[a].1.x {
+                if boxes[b].lower.x > boxes[a].upper.x {
                     break;
                 }
-                let apart = boxes[a].0.cmpgt(boxes[b].1) | boxes[b].0.cmpgt(boxes[a].1);
-                if !apart.any() {
+                if !boxes[a].is_disjoint(&boxes[b]) {
                     self.candidates.push([a.min(b), a.max(b)]);
                 }
             }

@@ -1,6 +1,7 @@
 //! The ground: a plane, and which vertices are near it.
 
 use glam::DVec3;
+use sscc::Aabb;
 
 use crate::DynamicsError;
 use crate::body::Body;
@@ -82,7 +83,7 @@ impl NearGround {
         let step = if step.is_finite() { step } else { 0.0 };
         let near = (STEPS * step).max(LEAST * shape.radius());
         self.vertices.clear();
-        let (lower, upper) = body.place()?;
+        let Aabb { lower, upper } = body.place()?;
         let lowest =
             ground.normal.dot((lower + upper) * 0.5) - ground.normal.abs().dot((upper - lower) * 0.5);
         let clear = lowest - ground.height - skin;

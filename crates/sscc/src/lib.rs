@@ -255,16 +255,14 @@ mod mutants;
 mod audit;
 mod bounds;
 mod certificates;
-mod continuous;
+mod detect;
 mod error;
+mod filter;
+mod geometry;
 pub mod hierarchy;
-mod intersect;
 pub mod limits;
-mod mesh;
-mod metric;
 mod model;
-mod modes;
-mod pairs;
+mod posed;
 mod progress;
 mod query;
 mod threads;
@@ -273,13 +271,13 @@ pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
 };
-pub use continuous::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub use error::Error;
-pub use intersect::{intersect_beyond_vertex, intersect_triangle_triangle};
-pub use mesh::TriMesh;
-pub use metric::{Metric, MetricKind, vertex_areas};
-pub use model::ReducedModel;
-pub use modes::{Modes, deformed_position};
-pub use pairs::{Neighbours, Pair, PairRule};
+pub use filter::{Neighbours, Pair, PairRule};
+pub use geometry::{
+    Aabb, MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face,
+    intersect_beyond_vertex, intersect_triangle_triangle,
+};
+pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
+pub use posed::{Pose, PosedShape};
 pub use progress::Progress;
-pub use query::{Answer, Impact, KineticQuery, Method, Pose, PosedShape, Query, Statistics};
+pub use query::{Answer, Impact, KineticQuery, Method, Query, Statistics};

@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use super::random::Random;
-use crate::bounds::ScaledModel;
-use crate::pairs::PairFilter;
+use crate::filter::PairFilter;
+use crate::model::ScaledModel;
 use crate::{Pair, ReducedModel, Scope};
 
 /// A configuration at which two points of two triangles meet, up to rounding.

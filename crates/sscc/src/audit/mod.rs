@@ -14,8 +14,8 @@ mod minimum;
 mod random;
 mod tightness;
 
-use crate::bounds::ScaledModel;
-use crate::pairs::PairFilter;
+use crate::filter::PairFilter;
+use crate::model::ScaledModel;
 use crate::threads::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 

@@ -15,9 +15,9 @@
 use glam::{DMat3, DVec3};
 
 use super::cone::cone_rate;
-use super::direction::TrianglePair;
-use super::lanes::{LANES, dot, padded, squared_distance};
-use super::scaled::{GapError, UP, norm_up, radius};
+use super::separating_direction::TrianglePair;
+use crate::model::rows::{LANES, dot, padded, squared_distance};
+use crate::model::{GapError, UP, norm_up, radius};
 
 /// The affine map of some points' modes, what it leaves over, and how fast it moves points apart; owns its memory.
 pub(crate) struct AffineFit {

@@ -5,10 +5,10 @@
 use glam::DVec3;
 
 use super::affine::AffineFit;
-use super::direction::{point_bound, rest_distance};
-use super::lanes::project;
-use super::min_norm::nearest_to_origin;
-use super::scaled::{ScaledModel, direction};
+use super::separating_direction::{point_bound, rest_distance};
+use crate::geometry::nearest_to_origin;
+use crate::model::rows::project;
+use crate::model::{ScaledModel, direction};
 
 /// The vertices of two leaves (or of one, twice) and what is known between them; owns its memory.
 pub(crate) struct LeafPair<'a> {

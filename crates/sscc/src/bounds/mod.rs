@@ -6,27 +6,22 @@
 //! any heuristic in any precision; only the last evaluation is rounded with care.
 
 mod affine;
-mod cluster;
 mod cone;
-mod contact;
-mod direction;
-mod lanes;
+mod contact_estimate;
 mod leaf_pair;
-mod min_norm;
-mod path;
+mod line;
+mod node_pair;
 #[cfg(test)]
 mod reference;
 #[cfg(test)]
 mod rounding_tests;
-mod scaled;
+mod separating_direction;
 #[cfg(test)]
 mod tests;
 mod triangle_pair;
 
-pub(crate) use cluster::{ClusterBounds, ClusterScratch, cluster_pair};
-pub(crate) use direction::{TrianglePair, direction_bound};
 pub(crate) use leaf_pair::LeafPair;
-pub(crate) use min_norm::nearest_to_origin;
-pub(crate) use path::Path;
-pub(crate) use scaled::{DOWN, GapError, ScaledModel, direction, norm_up};
+pub(crate) use line::{MovingAabb, Path};
+pub(crate) use node_pair::{ClusterBounds, ClusterScratch, cluster_pair};
+pub(crate) use separating_direction::{TrianglePair, direction_bound};
 pub(crate) use triangle_pair::{PairRefiner, Target};

@@ -4,10 +4,10 @@
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::lanes::{dot, padded};
 use super::reference::Random;
-use super::scaled::{norm_up, quotient_down};
 use super::tests::{all_bounds, cluster_bound};
+use crate::model::rows::{dot, padded};
+use crate::model::{norm_up, quotient_down};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
 /// A number in exact arithmetic.

@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use super::affine::{AffineFit, StrainGram, affine_bound};
 use super::cone::cone_rate;
-use super::direction::{TrianglePair, direction_bound, rest_distance};
-use super::min_norm::nearest_to_origin;
 use super::reference::{Pair, Random};
-use super::scaled::direction;
-use super::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, ScaledModel, Target, cluster_pair};
+use super::separating_direction::{TrianglePair, direction_bound, rest_distance};
+use super::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, Target, cluster_pair};
+use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, Node};
+use crate::model::{ScaledModel, direction};
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
 /// Room for the rounding of the search for the true minimum.

@@ -9,12 +9,12 @@ use std::collections::BinaryHeap;
 use glam::{DMat3, DVec3};
 
 use super::affine::{AffineFit, affine_bound};
-use super::contact::first_contact;
-use super::direction::{TrianglePair, direction_bound, rest_distance};
-use super::lanes::{add_scaled, dot, gram, project};
+use super::contact_estimate::first_contact;
 use super::leaf_pair::is_near;
-use super::min_norm::nearest_to_origin;
-use super::scaled::{ScaledModel, direction};
+use super::separating_direction::{TrianglePair, direction_bound, rest_distance};
+use crate::geometry::nearest_to_origin;
+use crate::model::rows::{add_scaled, dot, gram, project};
+use crate::model::{ScaledModel, direction};
 
 /// Triangles are halved at most this often in each direction, so corner weights stay exact.
 const DEPTH: u8 = 20;
@@ -161,7 +161,7 @@ impl<'a> PairRefiner<'a> {
             }
             // Halve the part whose modes vary more, so that both shrink alike.
             let spread = |corners: &[&[f64]; 3], depth: u8| {
-                let d = |a: usize, b: usize| super::lanes::squared_distance(corners[a], corners[b]);
+                let d = |a: usize, b: usize| crate::model::rows::squared_distance(corners[a], corners[b]);
                 d(0, 1).max(d(1, 2)).max(d(0, 2)) * 0.25_f64.powi(i32::from(depth))
             };
             let split_x = spread(&whole.modes_x, part.depth_x) >= spread(&whole.modes_y, part.depth_y);

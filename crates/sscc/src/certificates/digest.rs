@@ -1,7 +1,7 @@
 //! The digest of everything that certificates speak of.
 
 use super::Scope;
-use crate::pairs::weld_classes;
+use crate::filter::weld_classes;
 use crate::{Neighbours, ReducedModel};
 
 /// BLAKE3 of faces, f64 positions, f64 modes, and everything in the certificates' [`Scope`]. Certificates whose

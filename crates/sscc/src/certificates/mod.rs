@@ -1,26 +1,22 @@
 //! Certificates: radii in q-space within which parts of a model provably do not collide with themselves
 //! (paper, sections 4 and 5).
 
+mod build;
 mod digest;
-mod global;
-mod grow;
 mod pair_tree;
-mod precompute;
+mod remote;
 mod scope;
-mod search;
-mod shards;
-mod task;
 
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
+pub(crate) use build::node_radii::{child_pairs, within_small};
+pub(crate) use build::search::{ROUGH, Search};
 pub use digest::Digest;
 pub use pair_tree::PairTree;
 pub(crate) use pair_tree::{Entry as PairEntry, roots_of};
-pub(crate) use precompute::{child_pairs, within_small};
+pub use remote::{BUILD, RunJobs, ShardWorker};
 pub use scope::Scope;
-pub(crate) use search::{ROUGH, Search};
-pub use shards::{BUILD, RunJobs, ShardWorker};
 
 /// How certificates are computed.
 #[derive(Clone, Debug)]
@@ -125,7 +121,7 @@ impl Certificates {
         options: &CertifyOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        precompute::compute(model, options, progress).map(|parts| Self { parts })
+        build::node_radii::compute(model, options, progress).map(|parts| Self { parts })
     }
 
     /// Takes certificates from their parts, as read from a file whose integrity has been checked.

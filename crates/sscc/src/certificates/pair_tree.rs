@@ -20,7 +20,7 @@ const START: u32 = (1 << WHICH) - 1;
 const NOTHING: u32 = u32::MAX;
 
 /// The most entries: as many as links can name.
-pub(super) const MOST_ENTRIES: usize = START as usize;
+pub(in crate::certificates) const MOST_ENTRIES: usize = START as usize;
 
 /// A pair of nodes that may collide below the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// `which`: the child of the node that is split, or the place among the pairs of children of one node.
-    pub(super) fn new(radius: f32, start: usize, which: usize, last: bool) -> Self {
+    pub(in crate::certificates) fn new(radius: f32, start: usize, which: usize, last: bool) -> Self {
         let link = start as u32 | (which as u32) << WHICH | if last { LAST } else { 0 };
         Self { radius, link }
     }
@@ -55,7 +55,7 @@ impl Entry {
 }
 
 /// A radius in single precision, rounded down.
-pub(super) fn round_down(radius: f64) -> f32 {
+pub(in crate::certificates) fn round_down(radius: f64) -> f32 {
     let rounded = radius as f32;
     let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
     let rounded = if is_above { rounded.next_down() } else { rounded };
@@ -115,7 +115,7 @@ impl PairTree {
         self.entries[place]
     }
 
-    pub(super) fn new(limit: f64, starts: Vec<u32>, entries: Vec<Entry>) -> Self {
+    pub(in crate::certificates) fn new(limit: f64, starts: Vec<u32>, entries: Vec<Entry>) -> Self {
         Self { limit, starts, entries }
     }
 

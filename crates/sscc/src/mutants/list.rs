@@ -17,11 +17,11 @@ mutants! {
     /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
     DenseRateOfModesAlone: CaughtBy("rounding dense_metrics_see_what_their_modes_cancel");
     /// Of a dense metric, products that cancel are not rounded up.
-    DenseProductsExact: CaughtBy("lib metric::norm::tests::norm_is_at_least_the_exact_one");
+    DenseProductsExact: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// The rounding bound of a dense metric omits the error of the inverse of its factor.
-    DenseInverseExact: CaughtBy("lib metric::triangular::tests::growth_is_at_least_the_exact_one");
+    DenseInverseExact: CaughtBy("lib model::metric::triangular::tests::growth_is_at_least_the_exact_one");
     /// |z| is not rounded up.
-    NormToNearest: CaughtBy("lib metric::norm::tests::norm_is_at_least_the_exact_one");
+    NormToNearest: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// Norms in bounds are not rounded up.
     NormUpToNearest: CaughtBy("lib bounds::rounding_tests::roots_are_rounded_up_and_quotients_down");
     /// Quotients of bounds are not rounded down.
@@ -35,9 +35,9 @@ mutants! {
     /// The bound of two nodes omits the rounding error of motion (e1).
     ClusterWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
     /// The affine residual of a node omits its rounding error.
-    ClusterFitExact: CaughtBy("lib bounds::cluster::tests::residuals_hold_what_the_fit_has_rounded");
+    ClusterFitExact: CaughtBy("lib bounds::node_pair::tests::residuals_hold_what_the_fit_has_rounded");
     /// Norms from the Gram matrix of two nodes omit its rounding error.
-    ClusterProductsExact: CaughtBy("lib bounds::cluster::tests::corners_that_cancel_keep_their_rate");
+    ClusterProductsExact: CaughtBy("lib bounds::node_pair::tests::corners_that_cancel_keep_their_rate");
     /// The affine bound omits the rounding error of motion (e1).
     AffineWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
     /// The affine residual of two triangles omits its rounding error.
@@ -101,7 +101,7 @@ mutants! {
     /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("impact_tolerance what_touches_at_the_end_is_listed");
     /// The error bound of a rounded number omits its own rounding.
-    BoundedExact: CaughtBy("lib continuous::number::tests::both_kinds_agree_with_rational_arithmetic");
+    BoundedExact: CaughtBy("lib geometry::ccd::number::tests::both_kinds_agree_with_rational_arithmetic");
     /// Pairs that rounded directions do not settle are listed at the time reached.
     FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.

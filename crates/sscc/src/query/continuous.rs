@@ -1,7 +1,7 @@
 //! Continuous queries: which pairs of triangles meet between two configurations, and when (paper, section 7).
 
 use super::Query;
-use super::finder::Finder;
+use crate::detect::search::Finder;
 use crate::{Error, Pair};
 
 /// Two triangles that meet on the way.

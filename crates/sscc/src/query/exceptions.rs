@@ -1,16 +1,16 @@
 //! Exceptions: pairs that no radius speaks of, tested exactly in every query, whatever else is skipped.
 
-use super::aabb::{around, disjoint};
-use super::asked::{Asked, Ends};
-use super::finder::Finder;
-use super::found::Found;
+use crate::detect::narrow_phase::Found;
+use crate::detect::search::Finder;
+use crate::geometry::Aabb;
+use crate::query::context::{Asked, Ends};
 
 /// Boxes compared between two looks at whether the query was cancelled.
 const BOXES: u64 = 1024;
 
 impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds the exceptions that count.
-    pub(super) fn test_exceptions(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
+    pub(crate) fn test_exceptions(&mut self, asked: &Asked<'_>, ends: &Ends<'_, E>) {
         for &pair in right_or!(asked.exceptions(), ExceptionsForgotten, &[]) {
             if self.is_full() {
                 return;
@@ -23,7 +23,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             if self.statistics.box_tests.is_multiple_of(BOXES) {
                 self.look(asked);
             }
-            if disjoint(&around(&x), &around(&y)) {
+            if Aabb::of_swept_triangle(&x).is_disjoint(&Aabb::of_swept_triangle(&y)) {
                 continue;
             }
             self.count_test(asked);

@@ -1,51 +1,31 @@
 //! Queries: which pairs of triangles collide at q (paper, Algorithm 1).
 
-mod aabb;
-mod apart;
-mod asked;
 mod batch;
-mod bd_tree;
-mod between;
-mod boxes;
-mod brute_force;
-mod clusters;
+pub(crate) mod context;
 mod continuous;
-mod contour;
 mod exceptions;
-mod finder;
-mod found;
-mod frame;
-mod kinetic;
-mod motion;
-mod near;
-mod never;
-mod normal_cones;
-mod pack;
-mod pair_walk;
-mod posed;
-mod positions;
-mod rough;
+pub(crate) mod kinetic;
+mod node_pair;
+mod pair_tree_traversal;
+pub(crate) mod root_region;
 mod safe_scale;
-mod tables;
 mod traversal;
-mod vertices;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::detect::search::Finder;
+use crate::detect::tables::Tables;
+use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
-use crate::metric::check_scaled_modes;
-use crate::pairs::PairFilter;
+use crate::model::check_scaled_modes;
 use crate::{Certificates, Error, Pair, PairRule, Progress, ReducedModel, Scope};
-use asked::{Asked, Ends};
-use finder::Finder;
-use near::Near;
-use tables::Tables;
+use context::{Asked, Ends};
+use root_region::Near;
 
 pub use batch::Answer;
 pub use continuous::Impact;
 pub use kinetic::KineticQuery;
-pub use posed::{Pose, PosedShape};
 
 /// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,13 +73,13 @@ pub struct Statistics {
 /// [`deformed_position`](crate::deformed_position), have a point in common.
 #[derive(Clone)]
 pub struct Query<'a> {
-    asked: Asked<'a>,
+    pub(crate) asked: Asked<'a>,
     /// Holds the last answer, of continuous queries the pairs.
-    discrete: Finder<Pair, 1>,
+    pub(crate) discrete: Finder<Pair, 1>,
     /// Made by the first continuous query.
     continuous: Option<Box<Finder<Impact, 2>>>,
     norm: f64,
-    near: Near,
+    pub(crate) near: Near,
     /// Scratch for `q - center`; empty where the centre is 0.
     offset: Vec<f64>,
 }

@@ -6,9 +6,9 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::Query;
-use super::aabb::{Aabb, triangle_box};
-use crate::bounds::Path;
+use crate::bounds::{MovingAabb, Path};
 use crate::certificates::{PairEntry, child_pairs};
+use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, Error, Pair, PairTree};
 
@@ -196,29 +196,27 @@ impl Eq for Entry {}
 
 /// For each node and each triangle the box of its vertices at the centre and that of their velocities.
 struct PathBoxes {
-    nodes: Vec<(Aabb, Aabb)>,
-    triangles: Vec<(Aabb, Aabb)>,
+    nodes: Vec<MovingAabb>,
+    triangles: Vec<MovingAabb>,
 }
 
 impl PathBoxes {
     fn new(path: &Path, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
-        let boxes = |face: &[u32; 3]| {
-            let of = |all: &[DVec3]| triangle_box(face.map(|v| all[v as usize]));
-            (of(&path.positions), of(&path.velocities))
+        let of_face = |face: &[u32; 3]| {
+            let of = |all: &[DVec3]| Aabb::of_triangle(face.map(|v| all[v as usize]));
+            MovingAabb { positions: of(&path.positions), velocities: of(&path.velocities) }
         };
-        let triangles: Vec<(Aabb, Aabb)> = faces.iter().map(boxes).collect();
-        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let mut nodes = vec![(empty, empty); hierarchy.nodes().len()];
-        let join = |a: Aabb, b: Aabb| (a.0.min(b.0), a.1.max(b.1));
-        let both = |a: (Aabb, Aabb), b: &(Aabb, Aabb)| (join(a.0, b.0), join(a.1, b.1));
+        let triangles: Vec<MovingAabb> = faces.iter().map(of_face).collect();
+        let mut nodes = vec![MovingAabb::EMPTY; hierarchy.nodes().len()];
+        let union = |all: MovingAabb, next: &MovingAabb| all.union(next);
         for n in (0..nodes.len()).rev() {
             let node = &hierarchy.nodes()[n];
             nodes[n] = if node.is_leaf() {
                 let of = |t: &u32| &triangles[*t as usize];
-                hierarchy.triangles(node).iter().map(of).fold((empty, empty), both)
+                hierarchy.triangles(node).iter().map(of).fold(MovingAabb::EMPTY, union)
             } else {
                 let children = node.children().start as usize..node.children().end as usize;
-                nodes[children].iter().fold((empty, empty), both)
+                nodes[children].iter().fold(MovingAabb::EMPTY, union)
             };
         }
         Self { nodes, triangles }

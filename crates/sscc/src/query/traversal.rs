@@ -2,12 +2,12 @@
 //!
 //! What is compared is always one box with up to eight at once; on the stack are pairs of nodes whose boxes overlap.
 
-use super::asked::{Asked, Ends};
-use super::finder::Finder;
-use super::found::Found;
-use super::pack::{LANES, Lanes};
 use crate::Pair;
 use crate::certificates::child_pairs;
+use crate::detect::narrow_phase::Found;
+use crate::detect::packet::{LANES, Lanes};
+use crate::detect::search::Finder;
+use crate::query::context::{Asked, Ends};
 
 /// Between two looks at whether the query was cancelled. A step takes at most about 10 microseconds, tests of triangles
 /// apart, between which it looks, too.
@@ -17,7 +17,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     /// Adds all that is found between two nodes, or within one; of nodes within a cluster, all of the
     /// cluster. On the stack, `(n, n)` stands for a node against itself, `(n, m)` for two nodes without common
     /// triangles.
-    pub(super) fn traverse(&mut self, asked: &Asked<'_>, (n, m): Pair, ends: &Ends<'_, E>) {
+    pub(crate) fn traverse(&mut self, asked: &Asked<'_>, (n, m): Pair, ends: &Ends<'_, E>) {
         let clusters = &self.boxes.tables.clusters;
         let start = [n, m].map(|n| clusters.of_node(n).map_or(n, |cluster| clusters.node(cluster)));
         start.iter().for_each(|n| self.boxes.enclose(*n, ends));
@@ -97,7 +97,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     }
 
     /// A cluster against itself.
-    pub(super) fn cluster_within(&mut self, asked: &Asked<'_>, cluster: u32, ends: &Ends<'_, E>) {
+    pub(crate) fn cluster_within(&mut self, asked: &Asked<'_>, cluster: u32, ends: &Ends<'_, E>) {
         self.boxes.open_cluster(cluster, ends);
         for i in 0..self.boxes.tables.clusters.blocks(cluster).len() {
             self.statistics.box_tests += LANES as u64;
@@ -110,7 +110,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
     }
 
     /// Two clusters.
-    pub(super) fn clusters_between(&mut self, asked: &Asked<'_>, (a, b): Pair, ends: &Ends<'_, E>) {
+    pub(crate) fn clusters_between(&mut self, asked: &Asked<'_>, (a, b): Pair, ends: &Ends<'_, E>) {
         self.statistics.opened += 1;
         // The one with the lower blocks first.
         let (a, b) = (a.min(b), a.max(b));

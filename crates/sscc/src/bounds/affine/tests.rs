@@ -4,9 +4,9 @@ use num_rational::BigRational;
 
 use super::super::reference::Random;
 use super::super::rounding_tests::exact;
-use super::super::scaled::ScaledModel;
 use super::super::triangle_pair::{WHOLE, Weights, quarters, sub_pair};
 use super::*;
+use crate::model::ScaledModel;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
 /// Corners of small parts of triangles far from the origin are rounded by more than the modes. Where all turns about

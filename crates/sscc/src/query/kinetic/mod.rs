@@ -5,21 +5,20 @@
 //! the gap over the rate at which it can close. While z stays in the ball a query looks only at the pairs whose margin
 //! is used up, and at those that collide or nearly do.
 
-mod ball;
-mod front;
-mod margin;
-mod pace;
+mod active_pairs;
+mod ball_radius;
+mod safe_distance;
 
-use super::asked::Ends;
-use super::finder::Finder;
 use super::{Query, Statistics};
-use crate::bounds::ScaledModel;
-use crate::metric::check_scaled_modes;
+use crate::detect::ball::Ball;
+use crate::detect::search::Finder;
+use crate::model::ScaledModel;
+use crate::model::check_scaled_modes;
+use crate::query::context::Ends;
 use crate::{Certificates, Error, Pair, Progress, ReducedModel};
-pub(super) use ball::Ball;
-use front::Front;
-use margin::Margins;
-use pace::{MOST, Pace};
+use active_pairs::Front;
+use ball_radius::{MOST, Pace};
+use safe_distance::Margins;
 
 /// A ball of fewer steps does not pay: its search costs two or three plain ones.
 const LEAST_STEPS: f64 = 8.0;
@@ -256,4 +255,4 @@ fn up(sum: f64) -> f64 {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

@@ -5,23 +5,23 @@ use glam::DVec3;
 use super::*;
 use crate::{CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, TriMesh};
 
-pub(in crate::query) struct Random(pub(in crate::query) u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     /// In [-1, 1).
-    pub(in crate::query) fn signed(&mut self) -> f64 {
+    pub(crate) fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
     }
 
-    pub(in crate::query) fn vector(&mut self) -> DVec3 {
+    pub(crate) fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
 }
 
 /// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
 /// metric that is not diagonal.
-pub(super) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
+pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
     let half = 2 + case as u32 % 4;
     let gap = 0.05 + 0.5 * random.signed().abs();
     let p: Vec<DVec3> = (0..2 * (half + 2))

@@ -1,0 +1,197 @@
+//! The tree against what truly collides.
+
+use glam::DVec3;
+
+use crate::certificates::child_pairs;
+use crate::hierarchy::Hierarchy;
+use crate::{
+    Certificates, CertifyOptions, Method, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
+};
+
+/// A strip of 2 x `quads` triangles bent to an open ring, with smooth modes: its ends meet, and its middle.
+pub(in crate::certificates) fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
+    let angle = |i: usize| 5.6 * i as f64 / quads as f64;
+    let positions: Vec<DVec3> = (0..=quads)
+        .flat_map(|i| [0.0, 0.4].map(|y| DVec3::new(angle(i).cos(), y + 0.1 * angle(i), angle(i).sin())))
+        .collect();
+    let faces =
+        (0..quads as u32).map(|i| 2 * i).flat_map(|i| [[i, i + 1, i + 2], [i + 1, i + 3, i + 2]]).collect();
+    let mode = |p: &DVec3, k: usize| {
+        let (a, b) = (seed + k as f64, seed * 0.7 + 2.0 * k as f64);
+        DVec3::new(
+            p.x * a.sin() + p.z * p.x * b.cos(),
+            p.x * p.z * a.cos(),
+            p.z * b.sin() + p.x * p.x * a.cos(),
+        )
+    };
+    let displacements = positions.iter().flat_map(|p| (0..rank).map(move |k| mode(p, k))).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
+}
+
+fn certify(model: &ReducedModel, budget: usize) -> Certificates {
+    Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
+}
+
+/// All pairs of triangles that the tree does not certify at this norm: within a small node, or between two with an
+/// entry that has been passed, as have all above it.
+fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
+    let mut open = Vec::new();
+    let mut add = |n: u32, m: u32| {
+        let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
+        open.extend(x.iter().flat_map(|a| y.iter().map(|b| (*a.min(b), *a.max(b)))));
+    };
+    for (n, node) in hierarchy.nodes().iter().enumerate() {
+        if node.is_leaf() || hierarchy.is_whole(n as u32) {
+            add(n as u32, n as u32);
+            continue;
+        }
+        let pairs: Vec<(u32, u32)> = child_pairs(node).collect();
+        let mut stack: Vec<_> =
+            tree.of_node(n as u32).map(|(at, e)| (at, e, pairs[e.which() as usize])).collect();
+        while let Some((at, entry, (n, m))) = stack.pop() {
+            if f64::from(entry.radius) > norm {
+                continue;
+            }
+            match hierarchy.split_large(n, m) {
+                None => add(n, m),
+                Some(split) => stack.extend(tree.below(at).map(|(at, e)| (at, e, split.pair(e.which())))),
+            }
+        }
+    }
+    open.sort_unstable();
+    open
+}
+
+/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth.
+#[test]
+fn below_the_limit_whatever_collides_is_open() {
+    let (mut collided, mut lowered) = (0, 0);
+    // The last two have no room for some rounds that are tried.
+    let large = [(8, 2, 1200), (9, 3, 900)];
+    let small = [(0, 4), (1, 8), (2, 2), (3, 512), (4, 4096), (5, 4), (6, 512), (7, 2)];
+    for (case, budget, quads) in
+        small.map(|(case, budget)| (case, budget, 120 + 15 * case)).into_iter().chain(large)
+    {
+        let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
+        let certificates = certify(&model, budget);
+        assert_eq!(Certificates::from_parts(certificates.parts().clone()).err(), None);
+        let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
+        lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
+        let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+        for i in 0..if quads < 300 { 120 } else { 10 } {
+            let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
+            let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
+            // Just below the limit, and well below.
+            let share = if i % 2 == 0 { 0.999_999 } else { 0.3 + 0.1 * (i % 7) as f64 };
+            let z: Vec<f64> = z.iter().map(|z| z / length * tree.limit() * share).collect();
+            let q = model.metric().unscaled(&z);
+            let norm = certificates.norm(&q);
+            assert!(norm <= tree.limit());
+            if norm == tree.limit() {
+                continue;
+            }
+            let open = open_pairs(hierarchy, tree, norm);
+            for pair in brute.discrete(&q).unwrap() {
+                collided += 1;
+                assert!(open.binary_search(pair).is_ok(), "case {case}: {pair:?} at {norm}");
+            }
+        }
+    }
+    assert!(collided > 150, "{collided}");
+    assert!(lowered >= 2, "{lowered}");
+}
+
+/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from growing it,
+/// above from a search among what growing has left open.
+#[test]
+fn no_node_is_free_where_two_of_its_triangles_meet() {
+    let (mut below, mut above) = (0, 0);
+    for (case, budget, quads) in [(0, 2, 400), (1, 3, 500), (2, 16, 400), (3, 2, 600), (4, 0, 400)] {
+        let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
+        let certificates = certify(&model, budget);
+        let (hierarchy, limit) = (certificates.hierarchy(), certificates.parts().pair_tree.limit());
+        let mut place = vec![0; hierarchy.order().len()];
+        hierarchy.order().iter().enumerate().for_each(|(at, t)| place[*t as usize] = at as u32);
+        let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+        for i in 0..60 {
+            let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
+            let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
+            let share = (1 + i % 12) as f64 / 12.0 * certificates.global_radius() / length;
+            let q = model.metric().unscaled(&z.iter().map(|z| z * share).collect::<Vec<_>>());
+            let norm = certificates.norm(&q);
+            *(if norm < limit { &mut below } else { &mut above }) += 1;
+            let mut pairs: Vec<[u32; 2]> =
+                brute.discrete(&q).unwrap().iter().map(|(a, b)| [*a, *b]).collect();
+            pairs.iter_mut().flatten().for_each(|t| *t = place[*t as usize]);
+            for (n, node) in hierarchy.nodes().iter().enumerate() {
+                let range = node.first_triangle..node.first_triangle + node.triangle_count;
+                let meets = pairs.iter().any(|pair| pair.iter().all(|place| range.contains(place)));
+                assert!(
+                    !meets || certificates.node_radius(n as u32) <= norm,
+                    "case {case}: node {n} at {norm}"
+                );
+            }
+        }
+    }
+    assert!(below > 50 && above > 50, "{below} {above}");
+}
+
+/// The radius is 1 wherever it comes from: a search from the beginning, what growing has left open, what it has
+/// bounded.
+#[test]
+fn the_root_is_as_close_as_asked_for() {
+    // Two parallel strips at a distance of 1, which the mode takes away.
+    let positions: Vec<DVec3> =
+        (0..800).map(|i| DVec3::new((i / 2 % 200) as f64, (i % 2) as f64, (i / 400) as f64)).collect();
+    let faces = (0..798).filter(|i| i % 400 < 398).map(|i| [i, i + 1, i + 2]).collect();
+    let displacements = positions.iter().map(|p| DVec3::NEG_Z * p.z).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, displacements).unwrap()).unwrap();
+    let limits = [0, 1, 64].map(|budget| {
+        let certificates = certify(&model, budget);
+        let root = certificates.root_radius();
+        assert!((0.9..=1.0).contains(&root), "{budget}: {root}");
+        certificates.parts().pair_tree.limit()
+    });
+    assert!(limits[0] == 0.0 && 0.0 < limits[1] && limits[1] < 0.9 && 1.0 < limits[2], "{limits:?}");
+}
+
+/// Would fail where a parent is bounded better than its children and that is not pushed down.
+#[test]
+fn radii_never_fall_towards_the_leaves() {
+    let mut checked = 0;
+    for (case, budget) in [(0, 64), (1, 64), (2, 512)] {
+        let model = ring(240, 4, 1.7 + case as f64);
+        let certificates = certify(&model, budget);
+        let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
+        assert!(tree.len() * 8 <= budget * 480);
+        for n in 0..hierarchy.nodes().len() as u32 {
+            let of_node = f64::from(super::round_down(certificates.node_radius(n)));
+            let mut stack: Vec<_> = tree.of_node(n).map(|(at, entry)| (at, entry, of_node)).collect();
+            while let Some((at, entry, above)) = stack.pop() {
+                let radius = f64::from(entry.radius);
+                assert!(above <= radius && radius < tree.limit());
+                checked += 1;
+                if entry.start() != 0 {
+                    stack.extend(tree.below(at).map(|(at, entry)| (at, entry, radius)));
+                }
+            }
+        }
+    }
+    assert!(checked > 300, "{checked}");
+}
+
+#[test]
+fn threads_grow_the_same_tree() {
+    for (quads, budget) in [(240, 4), (240, 64), (900, 3)] {
+        let model = ring(quads, 4, 0.9);
+        let on = |threads| {
+            let options = CertifyOptions { budget, threads: Some(threads), ..Default::default() };
+            Certificates::compute(&model, &options, &()).unwrap().parts().clone()
+        };
+        let one = on(1);
+        assert!(!one.pair_tree.is_empty());
+        assert!(one == on(3));
+    }
+}

@@ -1,0 +1,165 @@
+//! Sharded certificates against those of one process.
+
+use super::*;
+use crate::certificates::build::pair_tree_builder::tests::ring;
+use crate::{Metric, MetricKind, PairRule};
+
+fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Result<Certificates, Error> {
+    let worker = ShardWorker::new(model, options, &()).unwrap();
+    let mut run = |jobs: Vec<Vec<u8>>| jobs.iter().map(|job| worker.run(job, &())).collect();
+    Certificates::compute_in_shards(model, options, shards, &mut run, &())
+}
+
+/// All jobs of a model, and their results.
+fn jobs(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Vec<(Vec<u8>, Vec<u8>)> {
+    let worker = ShardWorker::new(model, options, &()).unwrap();
+    let mut all = Vec::new();
+    let mut run = |jobs: Vec<Vec<u8>>| {
+        let results = jobs.iter().map(|job| worker.run(job, &())).collect::<Result<Vec<_>, _>>()?;
+        all.extend(jobs.into_iter().zip(results.clone()));
+        Ok(results)
+    };
+    Certificates::compute_in_shards(model, options, shards, &mut run, &()).unwrap();
+    all
+}
+
+/// Would fail where a result depended on the tasks before it in the same job, or were put in another order.
+#[test]
+fn any_number_of_shards_gives_the_same_certificates() {
+    let center = Some(vec![0.01, -0.02, 0.0, 0.01]);
+    for (case, options) in [
+        CertifyOptions::default(),
+        CertifyOptions { budget: 0, ..Default::default() },
+        CertifyOptions { budget: 400, epsilon: 0.03, ..Default::default() },
+        CertifyOptions {
+            budget: 4,
+            center,
+            rule: PairRule::new(Default::default(), true),
+            ..Default::default()
+        },
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let model = ring(300, 4, 0.9 + case as f64);
+        let local = Certificates::compute(&model, &options, &()).unwrap();
+        assert!(local.parts().node_radii.len() > 20);
+        for shards in [1, 2, 7, 1000] {
+            assert!(sharded(&model, &options, shards).unwrap() == local, "case {case}, {shards} shards");
+        }
+    }
+}
+
+/// Models of a few triangles, whose root is a leaf or small.
+#[test]
+fn small_models_have_shards_too() {
+    for quads in [2, 4, 9, 40] {
+        let model = ring(quads, 2, 0.4);
+        let options = CertifyOptions::default();
+        let local = Certificates::compute(&model, &options, &()).unwrap();
+        assert!(sharded(&model, &options, 3).unwrap() == local, "{quads} quads");
+    }
+}
+
+#[test]
+fn results_of_other_models_options_and_jobs_are_refused() {
+    let model = ring(200, 3, 0.9);
+    let options = CertifyOptions::default();
+    let refusal = |worker: &ShardWorker| {
+        let mut run = |jobs: Vec<Vec<u8>>| jobs.iter().map(|job| worker.run(job, &())).collect();
+        Certificates::compute_in_shards(&model, &options, 4, &mut run, &()).unwrap_err().to_string()
+    };
+    let mut scales = model.metric().scales();
+    scales[0] *= 2.0;
+    let weights: Vec<f64> = scales.iter().map(|s| s * s).collect();
+    let metric = Some(Metric::from_weights(MetricKind::Given, &weights).unwrap());
+    for (model, options) in [
+        (ring(200, 3, 0.901), options.clone()),
+        (ring(202, 3, 0.9), options.clone()),
+        (ring(200, 3, 0.9), CertifyOptions { epsilon: 0.11, ..options.clone() }),
+        (ring(200, 3, 0.9), CertifyOptions { metric, ..options.clone() }),
+    ] {
+        let worker = ShardWorker::new(&model, &options, &()).unwrap();
+        assert!(refusal(&worker).contains("a job is of another model"), "{}", refusal(&worker));
+    }
+    // Results of the right model that are swapped.
+    let worker = ShardWorker::new(&model, &options, &()).unwrap();
+    let mut swapped = |jobs: Vec<Vec<u8>>| jobs.iter().rev().map(|job| worker.run(job, &())).collect();
+    let error = Certificates::compute_in_shards(&model, &options, 4, &mut swapped, &()).unwrap_err();
+    assert_eq!(error.to_string(), "shards: a result is of another job");
+    let mut fewer = |_: Vec<Vec<u8>>| Ok(Vec::new());
+    let error = Certificates::compute_in_shards(&model, &options, 4, &mut fewer, &()).unwrap_err();
+    assert_eq!(error.to_string(), "shards: 0 results came back for 4 jobs");
+    let error = Certificates::compute_in_shards(&model, &options, 0, &mut fewer, &()).unwrap_err();
+    assert_eq!(error.to_string(), "shards is 0: it must be at least 1");
+}
+
+/// Every flipped byte and every truncation of jobs and results; and bytes under a right seal that make no sense.
+#[test]
+fn damaged_bytes_are_answered_with_an_error() {
+    let model = ring(100, 3, 0.9);
+    let options = CertifyOptions::default();
+    let worker = ShardWorker::new(&model, &options, &()).unwrap();
+    let all = jobs(&model, &options, 3);
+    for (job, result) in [&all[0], &all[all.len() - 1]] {
+        for (what, bytes) in [("a job", job), ("a result", result)] {
+            for at in 0..bytes.len() {
+                let mut flipped = bytes.clone();
+                flipped[at] ^= 1 << (at % 8);
+                assert!(worker.key.open(what, &flipped).is_err());
+                assert!(worker.key.open(what, &bytes[..at]).is_err());
+            }
+        }
+    }
+    let mut refused = 0;
+    for (job, result) in &all {
+        let body = worker.key.open("a job", job).unwrap();
+        for at in (0..body.len()).step_by(1 + body.len() / 97) {
+            let mut changed = body.to_vec();
+            changed[at] ^= 0x80;
+            // What is a job after all may be done; nothing may panic.
+            refused += usize::from(Job::read(&worker.prepared.hierarchy, &changed).is_none());
+            let _ = Job::read(&worker.prepared.hierarchy, &body[..at]);
+        }
+        let result = &worker.key.open("a result", result).unwrap()[32..];
+        match Job::read(&worker.prepared.hierarchy, body).unwrap() {
+            Job::Grow(_, pairs) => {
+                for at in 0..result.len() {
+                    let mut changed = result.to_vec();
+                    changed[at] ^= 0x83;
+                    let read = read_grown(&worker.prepared.hierarchy, &pairs, &changed);
+                    refused += usize::from(read.is_none());
+                    assert!(read_grown(&worker.prepared.hierarchy, &pairs, &result[..at]).is_none());
+                }
+            }
+            Job::Radii(_, tasks) => {
+                for at in 0..result.len() {
+                    assert!(read_radii(tasks.len(), &result[..at]).is_none());
+                }
+                let mut negative = result.to_vec();
+                negative[7] |= 0x80;
+                refused += usize::from(read_radii(tasks.len(), &negative).is_none());
+                negative[..8].copy_from_slice(&f64::NAN.to_le_bytes());
+                assert!(read_radii(tasks.len(), &negative).is_none());
+            }
+        }
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+/// A cancelled computation ends with the error, whoever works.
+#[test]
+fn shards_can_be_cancelled() {
+    struct Stopped;
+    impl Progress for Stopped {
+        fn report(&self, _done: usize, _total: usize) {}
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let model = ring(200, 3, 0.9);
+    let options = CertifyOptions::default();
+    let worker = ShardWorker::new(&model, &options, &()).unwrap();
+    let (job, _) = &jobs(&model, &options, 2)[0];
+    assert_eq!(worker.run(job, &Stopped), Err(Error::Cancelled));
+}

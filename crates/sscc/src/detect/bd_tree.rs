@@ -1,0 +1,247 @@
+//! The BD-tree (James and Pai 2004): boxes that follow q at a cost of O(r) each, without touching vertices.
+
+use glam::{DVec3, Vec4};
+use rayon::prelude::*;
+
+use crate::ReducedModel;
+use crate::detect::packet::Box32;
+use crate::detect::quantization::{Motion, Units};
+use crate::geometry::Aabb;
+use crate::hierarchy::{Hierarchy, Node};
+
+/// Components of a mean and a growth.
+const SHARES: usize = 6;
+
+/// For the nodes that have one, how their box moves and grows with q:
+/// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
+#[derive(Default)]
+pub(crate) struct BdTree {
+    rank: usize,
+    /// For each node its place in the lists below, or `u32::MAX`.
+    places: Vec<u32>,
+    /// `(c, h)`
+    rest: Vec<(DVec3, DVec3)>,
+    /// `[place * rank + mode] = (mean, growth)`
+    rates: Vec<(DVec3, DVec3)>,
+    /// The same in shares, `[(place * (rank + 1) + mode) * 6 + component]`, as [`Units`] tells; and one more entry.
+    shares: Vec<i16>,
+}
+
+impl BdTree {
+    /// For the root and all other nodes that are wanted.
+    pub(crate) fn new(
+        model: &ReducedModel,
+        hierarchy: &Hierarchy,
+        units: &Units,
+        is_wanted: impl Fn(u32) -> bool + Sync,
+    ) -> Self {
+        let (mesh, modes) = (model.mesh(), model.modes());
+        let rank = modes.rank();
+        let node_rates = |node: &Node| {
+            let vertices = hierarchy.vertices(node, mesh.faces());
+            let Aabb { lower, upper } =
+                Aabb::of_points(vertices.iter().map(|&v| mesh.rest_positions()[v as usize]));
+            let centre = lower * 0.5 + upper * 0.5;
+            let rest = (centre, (upper - centre).max(centre - lower));
+            let mut rates = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); rank];
+            for &v in &vertices {
+                for ((least, greatest), u) in rates.iter_mut().zip(modes.of_vertex(v)) {
+                    *least = least.min(*u);
+                    *greatest = greatest.max(*u);
+                }
+            }
+            for rate in &mut rates {
+                let mean = rate.0 * 0.5 + rate.1 * 0.5;
+                *rate = (mean, (rate.1 - mean).max(mean - rate.0));
+            }
+            (rest, rates)
+        };
+        let has = |n: usize| n == 0 || is_wanted(n as u32);
+        let nodes = hierarchy.nodes().par_iter().enumerate();
+        let all: Vec<_> = nodes.filter(|(n, _)| has(*n)).map(|(_, node)| node_rates(node)).collect();
+        let mut next = 0..;
+        let place = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
+        let places = (0..hierarchy.nodes().len()).map(place).collect();
+        let mut shares: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * SHARES + 1);
+        for ((centre, half), rates) in &all {
+            let means = units.shares(*centre, rates.iter().map(|rate| rate.0));
+            let growths = units.shares_of_growth(*half, rates.iter().map(|rate| rate.1));
+            means.zip(growths).for_each(|(m, g)| shares.extend([m, g].as_flattened()));
+        }
+        shares.push(0);
+        let rest = all.iter().map(|(rest, _)| *rest).collect();
+        let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
+        Self { rank, places, rest, rates, shares }
+    }
+
+    /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
+    /// where the node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last
+    /// place of the shape's reach.
+    pub(crate) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
+        let place = self.places[node as usize] as usize;
+        (place < self.rest.len()).then(|| self.at_place(place, q, margin))
+    }
+
+    /// The same in single precision, mapped to the frame of the motion.
+    pub(crate) fn rough<const E: usize>(&self, node: u32, motion: &Motion<E>) -> Option<Box32> {
+        let place = self.places[node as usize] as usize;
+        if place >= self.rest.len() {
+            return None;
+        }
+        let (mut centre, mut half) = (motion.shift, Vec4::ZERO);
+        let start = place * (self.rank + 1) * SHARES;
+        let shares = &self.shares[start..][..(self.rank + 1) * SHARES + 1];
+        for (k, (factors, largest)) in motion.factors.iter().zip(&motion.largest).enumerate() {
+            // The fourth components are of what follows.
+            let of_mode = &shares[k * SHARES..][..SHARES + 1];
+            let vector =
+                |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
+            let (mean, growth) = (vector(0), vector(3));
+            for end in 0..E {
+                centre[end] += mean * factors[end];
+            }
+            // No less than at either end, since rounding is monotone; where a step is short, hardly more.
+            half += growth * *largest;
+        }
+        // The error of the centre, and that of the half.
+        let half = half + Vec4::splat(right_or!(2.0 * motion.margin, CoarseNodesNotWidened, 0.0));
+        let ends = centre.map(|centre| Box32 { lower: centre - half, upper: centre + half });
+        ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtOneEnd, a))
+    }
+
+    /// The same for the whole shape.
+    pub(crate) fn root<const E: usize>(&self, q: [&[f64]; E], margin: DVec3) -> Aabb {
+        self.at_place(0, q, margin)
+    }
+
+    fn at_place<const E: usize>(&self, place: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
+        let mut boxes = [self.rest[place]; E];
+        let rates = &self.rates[place * self.rank..][..self.rank];
+        let q = q.map(|q| &q[..rates.len()]);
+        for (k, (mean, growth)) in rates.iter().enumerate() {
+            for ((centre, half), q) in boxes.iter_mut().zip(q) {
+                *centre += *mean * q[k];
+                *half += *growth * q[k].abs();
+            }
+        }
+        let ends = boxes
+            .map(|(centre, half)| Aabb { lower: centre - (half + margin), upper: centre + (half + margin) });
+        let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtOneEnd, a);
+        ends.into_iter().reduce(join).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::frame::Frame;
+    use crate::detect::vertices::Vertices;
+    use crate::detect::volumes::margin;
+    use crate::{Modes, TriMesh};
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
+    }
+
+    /// A wavy strip far from the origin, with modes of very different sizes.
+    fn model(rank: usize, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> =
+            (0..202).map(|i| DVec3::new(1e3 + (i / 2) as f64, (i % 2) as f64, random(state))).collect();
+        let faces = (0..200).map(|i| [i, i + 1, i + 2]).collect();
+        let displacements = (0..202 * rank)
+            .map(|i| {
+                DVec3::new(random(state), random(state), random(state)) * 10.0_f64.powi(i as i32 % 7 - 3)
+            })
+            .collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
+    }
+
+    /// From one q to another, of all sizes and directions.
+    #[test]
+    fn boxes_contain_the_positions_at_both_ends() {
+        let (mut state, mut rough) = (8, 0);
+        for case in 0..300 {
+            let rank = [1, 2, 7, 30][case % 4];
+            let model = model(rank, &mut state);
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
+            let units = Units::new(&model, &vertices);
+            let tree = BdTree::new(&model, &hierarchy, &units, |_| true);
+            let size = 10.0_f64.powi(case as i32 % 7 - 4);
+            let mut random_q = || -> Vec<f64> { (0..rank).map(|_| random(&mut state) * size).collect() };
+            let ends = [random_q(), random_q()];
+            let ends = [&ends[0][..], &ends[1][..]];
+            let reach = ends.iter().map(|q| model.check_coordinates(q).unwrap()).fold(0.0, f64::max);
+            let rounding = margin(reach, rank);
+            let frame = Frame::of(tree.root(ends, DVec3::splat(rounding)));
+            let mut motion = Motion::default();
+            if !units.begin(&mut motion, ends, &frame, rounding) {
+                continue;
+            }
+            rough += 1;
+            for (n, node) in hierarchy.nodes().iter().enumerate() {
+                let mapped = tree.rough(n as u32, &motion).unwrap();
+                let Aabb { lower, upper } = tree.at(n as u32, ends, DVec3::splat(rounding)).unwrap();
+                for v in hierarchy.vertices(node, model.mesh().faces()) {
+                    for q in ends {
+                        let x = model.position(v, q);
+                        assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "case {case}");
+                        let x = frame.map(x);
+                        let inside = x.cmpge(mapped.lower) & x.cmple(mapped.upper);
+                        assert_eq!(inside.bitmask() & 0b111, 0b111, "case {case}");
+                    }
+                }
+            }
+        }
+        assert!(rough > 100, "{rough}");
+    }
+
+    #[test]
+    fn boxes_contain_all_computed_positions() {
+        let mut state = 5;
+        for rank in [1, 2, 7, 30] {
+            let model = model(rank, &mut state);
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
+            let units = Units::new(&model, &vertices);
+            let tree = BdTree::new(&model, &hierarchy, &units, |n| !hierarchy.nodes()[n as usize].is_leaf());
+            let (mut checked, mut rough, mut wide) = (0, 0, 0.0_f32);
+            for case in 0..200 {
+                let size = 10.0_f64.powi(case % 25 - 12);
+                let q: Vec<f64> = (0..rank).map(|_| random(&mut state) * size).collect();
+                let reach = model.check_coordinates(&q).unwrap();
+                let rounding = margin(reach, rank);
+                let frame = Frame::of(tree.root([&q], DVec3::splat(rounding)));
+                let mut motion = Motion::default();
+                let is_rough = units.begin(&mut motion, [&q], &frame, rounding);
+                rough += usize::from(is_rough);
+                for (n, node) in hierarchy.nodes().iter().enumerate() {
+                    let Some(Aabb { lower, upper }) = tree.at(n as u32, [&q], DVec3::splat(rounding)) else {
+                        assert!(n != 0 && node.is_leaf() && tree.rough(n as u32, &motion).is_none());
+                        continue;
+                    };
+                    let mapped = tree.rough(n as u32, &motion).filter(|_| is_rough);
+                    for v in hierarchy.vertices(node, model.mesh().faces()) {
+                        let x = model.position(v, &q);
+                        assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "rank {rank}, case {case}");
+                        checked += 1;
+                        if let Some(mapped) = &mapped {
+                            let x = frame.map(x);
+                            let inside = x.cmpge(mapped.lower) & x.cmple(mapped.upper);
+                            assert_eq!(inside.bitmask() & 0b111, 0b111, "rank {rank}, case {case}");
+                        }
+                    }
+                    // Hardly larger than in double precision.
+                    if let Some(mapped) = mapped {
+                        let larger = (frame.map(lower) - mapped.lower).max(mapped.upper - frame.map(upper));
+                        wide = wide.max(larger.truncate().max_element() / motion.margin);
+                    }
+                }
+            }
+            assert!(checked > 10_000 && rough > 50 && wide < 4.0, "{checked} {rough} {wide}");
+        }
+    }
+}

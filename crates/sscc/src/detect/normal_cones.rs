@@ -1,0 +1,172 @@
+//! Normal cones (Volino and Magnenat-Thalmann 1994), the comparator of the paper's section 7.
+//!
+//! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
+//! directions: the corners and the face centres of a cube. That alone is approximate. It is a proof with the *contour
+//! test*: the patch is one oriented manifold with a single boundary, and the boundary, projected along the direction,
+//! does not meet itself. Then the projection is one to one: a point off all projected edges is covered as often as the
+//! boundary winds around it, which for a simple curve is once or never. Two points of the patch on the same spot would
+//! be both on the boundary, where it would meet itself, or one of them would be an inner point: around it the patch
+//! covers all, and near the other one some of that a second time.
+
+use glam::DVec3;
+
+use crate::detect::contour::{ROUNDING, is_simple};
+use crate::detect::volumes::Boxes;
+use crate::hierarchy::Hierarchy;
+use crate::query::Method;
+
+/// A direction, and two linear functions that together project along it.
+struct Direction {
+    v: DVec3,
+    onto: [DVec3; 2],
+}
+
+const fn face(v: DVec3, a: DVec3, b: DVec3) -> Direction {
+    Direction { v, onto: [a, b] }
+}
+
+const fn corner(x: f64, y: f64, z: f64) -> Direction {
+    Direction { v: DVec3::new(x, y, z), onto: [DVec3::new(x, -y, 0.0), DVec3::new(0.0, y, -z)] }
+}
+
+/// Face centres and corners of a cube.
+const DIRECTIONS: [Direction; 14] = [
+    face(DVec3::X, DVec3::Y, DVec3::Z),
+    face(DVec3::NEG_X, DVec3::Y, DVec3::Z),
+    face(DVec3::Y, DVec3::Z, DVec3::X),
+    face(DVec3::NEG_Y, DVec3::Z, DVec3::X),
+    face(DVec3::Z, DVec3::X, DVec3::Y),
+    face(DVec3::NEG_Z, DVec3::X, DVec3::Y),
+    corner(1.0, 1.0, 1.0),
+    corner(1.0, 1.0, -1.0),
+    corner(1.0, -1.0, 1.0),
+    corner(1.0, -1.0, -1.0),
+    corner(-1.0, 1.0, 1.0),
+    corner(-1.0, 1.0, -1.0),
+    corner(-1.0, -1.0, 1.0),
+    corner(-1.0, -1.0, -1.0),
+];
+
+/// The normals of all nodes down to clusters at the current q.
+#[derive(Clone)]
+pub(crate) struct NormalCones {
+    /// Whether a node's boundary is tested; else collisions may be missed.
+    is_exact: bool,
+    /// For each node the directions on whose positive side all of its normals are, one bit each.
+    positive: Vec<u16>,
+    /// Scratch: a projected boundary, and an order of its edges.
+    projected: Vec<[f64; 2]>,
+    order: Vec<u32>,
+}
+
+impl NormalCones {
+    /// None for a method without them.
+    pub(crate) fn new(nodes: usize, method: Method) -> Option<Self> {
+        let is_exact = method == Method::NormalCones;
+        (is_exact || method == Method::NormalConesApprox).then(|| Self {
+            is_exact,
+            positive: vec![0; nodes],
+            projected: Vec::new(),
+            order: Vec::new(),
+        })
+    }
+
+    /// Makes normals current; all positions are.
+    pub(crate) fn update<const E: usize>(&mut self, hierarchy: &Hierarchy, boxes: &Boxes<E>) {
+        let clusters = &boxes.tables.clusters;
+        for (n, node) in hierarchy.nodes().iter().enumerate().rev() {
+            self.positive[n] = match clusters.of_node(n as u32) {
+                Some(cluster) if clusters.node(cluster) == n as u32 => {
+                    let blocks = clusters.blocks(cluster);
+                    let places = clusters.places(blocks.start).start..clusters.places(blocks.end - 1).end;
+                    let corners = clusters.corners()[places].iter();
+                    corners.fold(!0, |all, corners| all & positive_sides(boxes.corners(*corners)[0]))
+                }
+                // Asked for with its cluster.
+                Some(_) => 0,
+                None => node.children().fold(!0, |all, child| all & self.positive[child as usize]),
+            };
+        }
+    }
+
+    /// Whether a node need not be tested against itself.
+    pub(crate) fn culls<const E: usize>(&mut self, n: u32, boxes: &Boxes<E>) -> bool {
+        let positive = self.positive[n as usize];
+        if positive == 0 || !self.is_exact {
+            return positive != 0;
+        }
+        let boundary = boxes.tables.contours.of_node(n);
+        DIRECTIONS.iter().enumerate().filter(|(k, _)| positive >> k & 1 != 0).any(|(_, direction)| {
+            self.projected.clear();
+            let positions = boundary.iter().map(|v| boxes.corners([*v; 3])[0][0]);
+            self.projected.extend(positions.map(|x| direction.onto.map(|f| f.dot(x))));
+            is_simple(&self.projected, &mut self.order)
+        })
+    }
+}
+
+/// The directions on whose positive side the normal of a triangle certainly is.
+fn positive_sides([a, b, c]: [DVec3; 3]) -> u16 {
+    let (e, f) = (b - a, c - a);
+    let normal = e.cross(f);
+    let (x, y) = (e.abs(), f.abs());
+    let size = DVec3::new(x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x);
+    let bits = DIRECTIONS.iter().enumerate().map(|(k, direction)| {
+        // Up to six products may underflow.
+        let error = ROUNDING * size.dot(direction.v.abs()) + f64::MIN_POSITIVE;
+        u16::from(normal.dot(direction.v) > error) << k
+    });
+    bits.fold(0, |all, bit| all | bit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_are_sorted_by_side() {
+        let up = positive_sides([DVec3::ZERO, DVec3::X, DVec3::Y]);
+        for (k, direction) in DIRECTIONS.iter().enumerate() {
+            assert_eq!(up >> k & 1 == 1, direction.v.z > 0.0);
+            assert!(direction.onto.iter().all(|f| f.dot(direction.v) == 0.0));
+            assert!(direction.onto[0].cross(direction.onto[1]).length() > 0.5);
+        }
+        assert_eq!(positive_sides([DVec3::ZERO, DVec3::X, DVec3::X * 2.0]), 0);
+        assert_eq!(positive_sides([DVec3::splat(1.0 / 3.0); 3]), 0);
+        assert_eq!(positive_sides([DVec3::ZERO, DVec3::X * 1e-200, DVec3::Y * 1e-200]), 0);
+    }
+
+    /// Needles whose normals are all rounding, against integers.
+    #[test]
+    fn certain_sides_are_right() {
+        let mut seed = 7_u64;
+        let mut number = move |size: i64| {
+            seed = seed.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (seed >> 12) as i64 % (2 * size + 1) - size
+        };
+        let (mut certain, mut open) = (0, 0);
+        for case in 0..20_000 {
+            let noise = 1 << (case % 20);
+            let mut vector = |size| [(); 3].map(|()| number(size));
+            let (a, along, off) = (vector(1 << 51), vector(1 << 50), vector(noise));
+            let corners = [0, 1, 3].map(|t: i64| {
+                std::array::from_fn::<i64, 3, _>(|i| a[i] + t * along[i] + if t == 3 { off[i] } else { 0 })
+            });
+            let sides = positive_sides(corners.map(|p| DVec3::from_array(p.map(|x| x as f64))));
+            let [e, f] = [1, 2].map(|j| {
+                std::array::from_fn::<i128, 3, _>(|i| i128::from(corners[j][i]) - i128::from(corners[0][i]))
+            });
+            for (k, direction) in DIRECTIONS.iter().enumerate() {
+                let v = direction.v.to_array().map(|x| x as i128);
+                let side: i128 = (0..3)
+                    .map(|i| v[i] * (e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3]))
+                    .sum();
+                let is_certain = sides >> k & 1 == 1;
+                assert!(side > 0 || !is_certain, "{corners:?}");
+                certain += usize::from(is_certain);
+                open += usize::from(side > 0 && !is_certain);
+            }
+        }
+        assert!(certain > 50_000 && open > 1000, "{certain} {open}");
+    }
+}

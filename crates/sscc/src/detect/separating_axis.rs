@@ -1,0 +1,159 @@
+//! Whether triangles are apart, in single precision: most of those whose boxes overlap are.
+
+use glam::{Vec3A, Vec4};
+
+/// Whether two triangles certainly have no point in common at either end, nor on the straight way between: a direction
+/// separates them at both. Coordinates are within [-1, 1] up to `margin`, by which they may be wrong along each axis.
+#[inline]
+pub(crate) fn are_apart<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], margin: f32) -> bool {
+    if !margin.is_finite() {
+        return false;
+    }
+    let origin: [Vec4; E] = std::array::from_fn(|end| x[0][end]);
+    let [a, b] =
+        [x, y].map(|t| t.map(|ends| std::array::from_fn(|end| Vec3A::from_vec4(ends[end] - origin[end]))));
+    let edges = |t: &[[Vec3A; E]; 3]| [t[1][0] - t[0][0], t[2][0] - t[1][0], t[0][0] - t[2][0]];
+    let (e, f) = (edges(&a), edges(&b));
+    let (m, n) = (e[0].cross(e[1]), f[0].cross(f[1]));
+    let between = (b[0][0] + b[1][0] + b[2][0]) - (a[0][0] + a[1][0] + a[2][0]);
+    // What separates most often comes first: one of the other is in the way of neighbours in a smooth surface.
+    Directions::new([between, m, n, m.cross(n)]).separate(&a, &b, margin)
+        || Directions::new([e[0].cross(m), e[1].cross(m), e[2].cross(m), f[0].cross(n)])
+            .separate(&a, &b, margin)
+        || Directions::new([f[1].cross(n), f[2].cross(n), e[0].cross(f[0]), e[1].cross(f[1])])
+            .separate(&a, &b, margin)
+}
+
+/// Four directions side by side.
+struct Directions {
+    axes: [Vec4; 3],
+}
+
+impl Directions {
+    #[inline]
+    fn new(all: [Vec3A; 4]) -> Self {
+        Self { axes: [0, 1, 2].map(|axis| Vec4::from_array(all.map(|v| v[axis]))) }
+    }
+
+    /// Whether one of them has all of one triangle before all of the other, at each end, by more than what positions
+    /// and sums are wrong by. In units of |d| (the sum over axes): positions 2 margins; differences, products and sums
+    /// about 20 units of 2^-24, where a margin is at least 14.
+    #[inline]
+    fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], margin: f32) -> bool {
+        let [x, y, z] = self.axes;
+        // What underflows is far less than the last.
+        let margins = right_or!(4.0, ApartSlackHalved, 2.0) * margin;
+        let slack = (x.abs() + y.abs() + z.abs()) * margins + f32::MIN_POSITIVE;
+        let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
+        let mut apart = [u32::MAX; 2];
+        for end in 0..E {
+            let [a, b] = [a, b].map(|t| t.map(|ends| along(ends[end])));
+            let least = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);
+            let most = |t: &[Vec4; 3]| t[0].max(t[1]).max(t[2]);
+            apart[0] &= (least(&a) - most(&b)).cmpgt(slack).bitmask();
+            apart[1] &= (least(&b) - most(&a)).cmpgt(slack).bitmask();
+        }
+        apart[0] | apart[1] != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::query::kinetic::tests::Random;
+    use crate::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
+
+    /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a
+    /// few margins apart or within each other, or farther.
+    #[test]
+    fn only_what_is_apart_is_said_to_be() {
+        let random = &mut Random(5);
+        let (mut apart, mut missed, mut met) = (0, 0, 0);
+        for case in 0..200_000 {
+            let size = 10.0_f64.powi(-(case % 7));
+            let place = random.vector() * (0.9 - 0.5 * size);
+            let margin = [1e-6, 1e-5, 1e-3][case as usize % 3];
+            let mut a = [(); 3].map(|()| place + random.vector() * size * 0.3);
+            let mut b = [(); 3].map(|()| place + random.vector() * size * 0.3);
+            match case % 5 {
+                // A common corner, or an edge and a corner on it.
+                0 => b[0] = a[1],
+                1 => b[0] = a[0] * 0.25 + a[1] * 0.75,
+                // In one plane, side by side.
+                2 => b = [a[1], a[2], a[1] + a[2] - a[0]],
+                // Needles and points.
+                3 => a[2] = a[0] + (a[1] - a[0]) * random.signed(),
+                _ => {}
+            }
+            let gap = random.vector() * margin * [0.0, 3.0, 10.0, 1e3][case as usize / 3 % 4];
+            b = b.map(|x| x + gap);
+            let mut wrong = |t: [DVec3; 3]| {
+                t.map(|x| {
+                    let off = random.vector() * (margin - 1e-7);
+                    [(x + off).as_vec3().extend(f32::NAN)]
+                })
+            };
+            let said = are_apart(&wrong(a), &wrong(b), margin as f32);
+            let meet = intersect_triangle_triangle(&a, &b);
+            assert!(!(said && meet), "case {case}: {a:?} {b:?}");
+            apart += usize::from(said);
+            missed += usize::from(!said && !meet && margin < 1e-4 * size);
+            met += usize::from(meet);
+        }
+        assert!(apart > 20_000 && missed < apart / 8 && met > 20_000, "{apart} {missed} {met}");
+    }
+
+    /// Triangles with a common corner on both sides of the plane of one of them, each moved away from the other by all of
+    /// the margin: along the normal that uses up what positions may be wrong by, and sums are rounded as well.
+    #[test]
+    fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
+        let random = &mut Random(9);
+        // Exact in single precision, as are the margins and what they move.
+        let grid = |x: DVec3| (x * 2.0_f64.powi(20)).round() / 2.0_f64.powi(20);
+        let mut used = 0;
+        for case in 0..20_000 {
+            let margin = 2.0_f64.powi([-20, -19, -16][case % 3]);
+            let a = [(); 3].map(|()| grid(random.vector() * 0.4));
+            let normal = (a[1] - a[0]).cross(a[2] - a[0]);
+            let [b, c] = [(); 2].map(|()| grid(random.vector() * 0.4));
+            if normal.dot(b - a[0]) <= 0.0 || normal.dot(c - a[0]) <= 0.0 {
+                continue;
+            }
+            let b = [a[case / 3 % 3], b, c];
+            assert!(intersect_triangle_triangle(&a, &b));
+            let away = normal.signum() * margin;
+            let moved = |t: [DVec3; 3], by: DVec3| t.map(|x| [(x + by).as_vec3().extend(f32::NAN)]);
+            assert!(!are_apart(&moved(a, -away), &moved(b, away), margin as f32), "case {case}: {a:?} {b:?}");
+            used += 1;
+        }
+        assert!(used > 4000, "{used}");
+    }
+
+    /// The same on the way from one place to another.
+    #[test]
+    fn only_what_stays_apart_on_the_way_is_said_to() {
+        let random = &mut Random(6);
+        let (mut apart, mut met) = (0, 0);
+        for case in 0..20_000 {
+            let size = [0.5, 0.1, 0.02][case % 3];
+            let place = random.vector() * 0.4;
+            let mut triangle = || {
+                let [a, b] = [(); 2].map(|()| place + random.vector() * 0.3 * size);
+                [a, b].map(|middle| [(); 3].map(|()| middle + random.vector() * 0.2 * size))
+            };
+            let [a, b] = [triangle(), triangle()];
+            let mapped = |ends: &[[DVec3; 3]; 2]| {
+                [0, 1, 2].map(|corner| [0, 1].map(|end| ends[end][corner].as_vec3().extend(f32::NAN)))
+            };
+            let said = are_apart(&mapped(&a), &mapped(&b), 1e-6);
+            let [x, y] = [a, b].map(|[t0, t1]| MovingTriangle { t0, t1 });
+            let meet = impact_triangle_triangle(&x, &y, 1e-12).is_some();
+            assert!(!(said && meet), "case {case}: {a:?} {b:?}");
+            apart += usize::from(said);
+            met += usize::from(meet);
+        }
+        assert!(apart > 3000 && met > 3000, "{apart} {met}");
+    }
+}

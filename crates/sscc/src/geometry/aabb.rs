@@ -1,0 +1,54 @@
+//! Axis-aligned bounding boxes in double precision.
+
+use glam::DVec3;
+
+/// An axis-aligned bounding box (model unit). Both ends belong to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Aabb {
+    /// The smallest coordinate along each axis.
+    pub lower: DVec3,
+    /// The largest coordinate along each axis.
+    pub upper: DVec3,
+}
+
+impl Aabb {
+    /// Contains no point; the union with another box is that box.
+    pub const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
+
+    /// The smallest box around points; [`Aabb::EMPTY`] for none.
+    pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |all, p| Self { lower: all.lower.min(p), upper: all.upper.max(p) })
+    }
+
+    /// The box of a triangle.
+    #[inline]
+    pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+        Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
+    }
+
+    /// The swept box of a triangle: around its corners at all `E` ends of a motion.
+    #[inline]
+    pub(crate) fn of_swept_triangle<const E: usize>(corners: &[[DVec3; 3]; E]) -> Self {
+        corners.map(Self::of_triangle).into_iter().reduce(|a, b| a.union(&b)).unwrap_or_default()
+    }
+
+    /// The smallest box that contains both.
+    #[inline]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
+    }
+
+    /// Whether the boxes have no point in common. Boxes with NaN are never disjoint.
+    #[inline]
+    pub fn is_disjoint(&self, other: &Self) -> bool {
+        (self.lower.cmpgt(other.upper) | other.lower.cmpgt(self.upper)).any()
+    }
+
+    /// The middle of the box.
+    #[inline]
+    pub fn center(&self) -> DVec3 {
+        self.lower * 0.5 + self.upper * 0.5
+    }
+}

@@ -1,0 +1,132 @@
+//! A reduced deformable model: mesh, modes and a default metric.
+
+use glam::DVec3;
+
+use crate::model::check_scaled_modes;
+use crate::{Error, Metric, Modes, TriMesh, deformed_position, limits};
+
+/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric that certificates use
+/// unless they are given another.
+#[derive(Clone, Debug)]
+pub struct ReducedModel {
+    mesh: TriMesh,
+    modes: Modes,
+    metric: Metric,
+    /// Largest magnitude of a rest coordinate.
+    rest_reach: f64,
+    /// For each mode, the largest magnitude of an entry.
+    mode_reach: Vec<f64>,
+}
+
+impl ReducedModel {
+    /// Joins a mesh and its modes, with the displacement metric.
+    ///
+    /// # Errors
+    /// When the modes are for another number of vertices, or so small or large that no proof holds.
+    pub fn new(mesh: TriMesh, modes: Modes) -> Result<Self, Error> {
+        let metric = Metric::displacement(&mesh, &modes);
+        Self::with_metric(mesh, modes, metric)
+    }
+
+    /// Joins a mesh, its modes and a default metric.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::new`], and when the metric has another rank than the modes.
+    pub fn with_metric(mesh: TriMesh, modes: Modes, metric: Metric) -> Result<Self, Error> {
+        let vertices = mesh.rest_positions().len();
+        if modes.vertices() != vertices {
+            return Err(Error::VertexCount { modes: modes.vertices(), mesh: vertices });
+        }
+        check_scaled_modes(&mesh, &modes, &metric)?;
+        let rest_reach = mesh.rest_positions().iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+        let mut mode_reach = vec![0.0_f64; modes.rank()];
+        for (i, u) in modes.displacements().iter().enumerate() {
+            let reach = &mut mode_reach[i % modes.rank()];
+            *reach = reach.max(u.abs().max_element());
+        }
+        Ok(Self { mesh, modes, metric, rest_reach, mode_reach })
+    }
+
+    /// The mesh at rest.
+    pub fn mesh(&self) -> &TriMesh {
+        &self.mesh
+    }
+
+    /// The deformation modes.
+    pub fn modes(&self) -> &Modes {
+        &self.modes
+    }
+
+    /// The default metric.
+    pub fn metric(&self) -> &Metric {
+        &self.metric
+    }
+
+    /// Number of modes r.
+    pub fn rank(&self) -> usize {
+        self.modes.rank()
+    }
+
+    /// Where vertex `vertex` is at `q` (model unit): see [`deformed_position`].
+    pub fn position(&self, vertex: u32, q: &[f64]) -> DVec3 {
+        deformed_position(self.mesh.rest_positions()[vertex as usize], self.modes.of_vertex(vertex), q)
+    }
+
+    /// All deformed positions at `q` (V, model unit).
+    ///
+    /// # Errors
+    /// When q has the wrong length, an entry is not finite, or vertices would leave the range of numbers.
+    pub fn positions(&self, q: &[f64]) -> Result<Vec<DVec3>, Error> {
+        self.check_coordinates(q)?;
+        Ok((0..self.mesh.rest_positions().len() as u32).map(|v| self.position(v, q)).collect())
+    }
+
+    /// An upper bound (up to rounding) of every `|p| + sum_k |U_k q_k|`.
+    pub(crate) fn reach(&self, q: &[f64]) -> f64 {
+        self.rest_reach + self.moved(q)
+    }
+
+    /// An upper bound (up to rounding) of every `sum_k |U_k q_k|`. Not finite where an entry of q is not.
+    #[inline]
+    pub(crate) fn moved(&self, q: &[f64]) -> f64 {
+        // Four sums side by side.
+        let mut lanes = [0.0; 4];
+        let (reaches, rest) = self.mode_reach.as_chunks::<4>();
+        let (coordinates, last) = q.as_chunks::<4>();
+        for (u, x) in reaches.iter().zip(coordinates) {
+            for i in 0..4 {
+                lanes[i] += u[i] * x[i].abs();
+            }
+        }
+        let last: f64 = rest.iter().zip(last).map(|(u, x)| u * x.abs()).sum();
+        (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last
+    }
+
+    /// An upper bound (up to rounding) of every `|U_k q_k|` of one mode.
+    pub(crate) fn moved_by(&self, k: usize, q_k: f64) -> f64 {
+        self.mode_reach[k] * q_k.abs()
+    }
+
+    /// Refuses a q that is no configuration of this model; else gives the reach of the shape at q, an upper
+    /// bound of every `|p| + sum_k |U_k q_k|` (up to rounding), from which error terms are made.
+    ///
+    /// # Errors
+    /// When q has the wrong length, an entry is not finite, or the reach is beyond [`limits::LARGEST`].
+    pub fn check_coordinates(&self, q: &[f64]) -> Result<f64, Error> {
+        if q.len() != self.rank() {
+            return Err(Error::CoordinatesLength { found: q.len(), rank: self.rank() });
+        }
+        let reach = self.reach(q);
+        if !reach.is_finite() {
+            let index = q.iter().position(|x| !x.is_finite());
+            let refused = |index| Error::CoordinatesValue { index, value: q[index] };
+            return Err(index.map_or(Error::CoordinatesRange, refused));
+        }
+        // Rounding may carry a position a little beyond the exact reach.
+        let rounding = 1.0 + (2 * q.len() + 8) as f64 * f64::EPSILON;
+        if reach * rounding > limits::LARGEST {
+            return Err(Error::CoordinatesRange);
+        }
+        Ok(reach)
+    }
+}
