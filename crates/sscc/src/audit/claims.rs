@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::random::Random;
-use crate::certificates::{child_pairs, roots_of};
+use crate::certificates::roots_of;
 use crate::{CertificateParts, Pair};
 
 /// No pair of triangles between two nodes, or within one where both are the same, collides below the radius.
@@ -51,7 +51,8 @@ impl<'a> Claims<'a> {
     /// What is claimed of the pairs of the root's children beside the pair tree.
     pub(super) fn root_pairs(&self) -> impl Iterator<Item = Claim> {
         let radii = self.parts.root_pair_radii.iter();
-        child_pairs(&self.parts.hierarchy.nodes()[0])
+        self.parts.hierarchy.nodes()[0]
+            .child_pairs()
             .zip(radii)
             .map(|(nodes, &radius)| Claim { nodes, radius })
     }
@@ -139,7 +140,7 @@ impl<'a> Claims<'a> {
         // And from there down the pairs of nodes that hold one each.
         let mut pair = (a, b);
         let mut siblings: Vec<_> = {
-            let all: Vec<Pair> = child_pairs(&nodes[n as usize]).collect();
+            let all: Vec<Pair> = nodes[n as usize].child_pairs().collect();
             tree.of_node(n).map(|(place, entry)| (place, all[entry.which() as usize])).collect()
         };
         loop {

@@ -6,7 +6,7 @@ use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Minimum};
 use super::random::Random;
 use crate::bounds::ClusterBounds;
-use crate::certificates::{ROUGH, Search, child_pairs, within_small};
+use crate::certificates::{ROUGH, Search};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -55,7 +55,7 @@ pub(super) fn measure(
     let mut measured = vec![claims.node(0)];
     measured.extend(claims.root_pairs());
     let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));
-    let within_small = within_small(&parts.hierarchy);
+    let within_small = parts.hierarchy.nodes_within_buckets();
     let own: Vec<u32> = (1..nodes.len() as u32).filter(|n| !within_small[*n as usize]).collect();
     measured.extend(spread(own.len(), NODES).map(|at| claims.node(own[at])));
     measured.extend(spread(claims.stored_len(), STORED).map(|place| claims.stored(place)));
@@ -82,7 +82,7 @@ pub(super) fn measure(
                 if node.is_leaf() || parts.hierarchy.is_whole(n) {
                     search.within(n, cap);
                 } else {
-                    search.between(child_pairs(node), cap);
+                    search.between(node.child_pairs(), cap);
                 }
             }
             search.hottest()

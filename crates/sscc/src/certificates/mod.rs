@@ -10,7 +10,6 @@ mod scope;
 use crate::hierarchy::Hierarchy;
 use crate::{Error, Metric, Pair, PairRule, Progress, ReducedModel};
 
-pub(crate) use build::node_radii::{child_pairs, within_small};
 pub(crate) use build::search::{ROUGH, Search};
 pub use digest::Digest;
 pub use pair_tree::PairTree;

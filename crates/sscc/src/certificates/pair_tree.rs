@@ -7,7 +7,7 @@
 //! nothing.
 
 use crate::Pair;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, Node};
 
 /// A link's flag: no sibling follows.
 const LAST: u32 = 1 << 31;
@@ -66,7 +66,7 @@ pub(in crate::certificates) fn round_down(radius: f64) -> f32 {
 /// whole.
 pub(crate) fn roots_of(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
     let node = (!hierarchy.is_whole(n)).then(|| &hierarchy.nodes()[n as usize]);
-    node.into_iter().flat_map(super::child_pairs)
+    node.into_iter().flat_map(Node::child_pairs)
 }
 
 /// The pairs of nodes that may collide below a limit.

@@ -60,6 +60,12 @@ impl Node {
         self.first_child..self.first_child + self.child_count
     }
 
+    /// All pairs of its children, in the order (0, 1), (0, 2), ..., (2, 3).
+    pub(crate) fn child_pairs(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let children = self.children();
+        children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
+    }
+
     /// Whether queries look at the node as a whole: it has at most 64 triangles.
     pub fn is_small(&self) -> bool {
         self.triangle_count as usize <= SMALL
@@ -232,6 +238,15 @@ impl Hierarchy {
     /// and not the root, whose pairs of children have radii of their own.
     pub(crate) fn is_whole(&self, n: u32) -> bool {
         n != 0 && self.nodes[n as usize].is_small()
+    }
+
+    /// For each node whether it lies below one that is searched as a whole.
+    pub(crate) fn nodes_within_buckets(&self) -> Vec<bool> {
+        let mut within = vec![false; self.nodes.len()];
+        for node in (0..within.len()).filter(|n| self.is_whole(*n as u32)).map(|n| &self.nodes[n]) {
+            node.children().for_each(|child| within[child as usize] = true);
+        }
+        within
     }
 
     /// The same as far as the certified pair tree goes: none where both are small.

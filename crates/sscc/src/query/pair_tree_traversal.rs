@@ -1,7 +1,6 @@
 //! Algorithm 1 by the certified pair tree: only pairs whose radius has been passed are looked at.
 
 use crate::PairTree;
-use crate::certificates::child_pairs;
 use crate::detect::narrow_phase::Found;
 use crate::detect::search::Finder;
 use crate::query::context::{Asked, Ends};
@@ -66,7 +65,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             )
         };
         self.walk.extend(node.children().filter(is_open).map(|child| (child, child, NODE)));
-        let mut pairs = child_pairs(&node).enumerate();
+        let mut pairs = node.child_pairs().enumerate();
         for (place, entry) in tree.of_node(n) {
             if let Some((_, (a, b))) = pairs.find(|(which, _)| *which == entry.which() as usize)
                 && is_entry_passed!(entry, ends.norm)

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Query;
 use crate::bounds::{MovingAabb, Path};
-use crate::certificates::{PairEntry, child_pairs};
+use crate::certificates::PairEntry;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, Error, Pair, PairTree};
@@ -99,7 +99,7 @@ impl Query<'_> {
                     let stored = tree.map(|tree| tree.of_node(n));
                     self.certified_pairs(tree, stored.into_iter().flatten())
                 };
-                for (which, (pair, (place, bound))) in child_pairs(&node_n).zip(certified).enumerate() {
+                for (which, (pair, (place, bound))) in node_n.child_pairs().zip(certified).enumerate() {
                     let radii =
                         self.asked.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
                     let bound = radii.map_or(bound, |radii| bound.max(self.scale(radii[which])));

@@ -3,7 +3,6 @@
 //! What is compared is always one box with up to eight at once; on the stack are pairs of nodes whose boxes overlap.
 
 use crate::Pair;
-use crate::certificates::child_pairs;
 use crate::detect::narrow_phase::Found;
 use crate::detect::packet::{LANES, Lanes};
 use crate::detect::search::Finder;
@@ -56,7 +55,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         let node = asked.hierarchy.nodes()[n as usize];
         self.stack.extend(node.children().map(|child| (child, child)));
         // Only the root's children have certificates as pairs.
-        for (pair, (a, b)) in child_pairs(&node).enumerate() {
+        for (pair, (a, b)) in node.child_pairs().enumerate() {
             let is_within =
                 |radius| right_or!(ends.norm < radius, RootPairRadiusReached, ends.norm <= radius);
             let certified = n == 0 && certificates.is_some_and(|c| is_within(c.root_pair_radii[pair]));

@@ -10,7 +10,7 @@ use crate::certificates::build::search::Precision;
 use crate::certificates::build::task::{Here, NodeTask, Prepared, Solver};
 use crate::certificates::pair_tree::Entry;
 use crate::certificates::{CertificateParts, CertifyOptions, PairTree};
-use crate::hierarchy::{Hierarchy, Node};
+use crate::hierarchy::Node;
 use crate::threads::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
@@ -85,7 +85,7 @@ struct Work<'a> {
 impl<'a> Work<'a> {
     fn new(prepared: &'a Prepared, grove: &'a Grove, progress: &'a dyn Progress) -> Self {
         let nodes = prepared.hierarchy.nodes();
-        let (count, pairs) = (nodes.len(), child_pairs(&nodes[0]).count());
+        let (count, pairs) = (nodes.len(), nodes[0].child_pairs().count());
         let tally = Tally::new(progress, 2 * (count + pairs));
         Self { prepared, grove, tally, nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] }
     }
@@ -98,7 +98,7 @@ impl<'a> Work<'a> {
     fn pass(&mut self, precision: Precision, below: f64, solver: &mut dyn Solver) -> Result<f64, Error> {
         let hierarchy = &self.prepared.hierarchy;
         let nodes = hierarchy.nodes();
-        let within_small = within_small(hierarchy);
+        let within_small = hierarchy.nodes_within_buckets();
         let mut upper = f64::INFINITY;
         let mut take = |radius: &mut f64, (better, met): (f64, f64)| {
             *radius = radius.max(better);
@@ -113,7 +113,7 @@ impl<'a> Work<'a> {
             self.tally.add(level.len() - wanted.len());
             let task = |at: usize| {
                 let node = &nodes[wanted[at]];
-                self.task(precision, wanted[at], 0..child_pairs(node).count(), self.least_child(node))
+                self.task(precision, wanted[at], 0..node.child_pairs().count(), self.least_child(node))
             };
             let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
             wanted.into_iter().zip(found).for_each(|(n, found)| take(&mut self.nodes[n], found));
@@ -152,7 +152,7 @@ impl<'a> Work<'a> {
         }
         let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {
             Some(pair) if at == 0 => pair..pair + 1,
-            _ => 0..child_pairs(&nodes[at]).count(),
+            _ => 0..nodes[at].child_pairs().count(),
         };
         // Farther away than that there is hardly any.
         let cap = self.prepared.global_radius.min(4.0 * self.nodes[0]);
@@ -178,7 +178,7 @@ impl<'a> Work<'a> {
             return NodeTask { node, cap, enough: cap, pairs: Vec::new() };
         }
         let Some(frontier) = self.grove.frontier(hierarchy, node, which.clone(), cap) else {
-            let pairs = child_pairs(parent).skip(which.start).take(which.len());
+            let pairs = parent.child_pairs().skip(which.start).take(which.len());
             return NodeTask { node, cap, enough: cap, pairs: pairs.map(|pair| (pair, 0.0)).collect() };
         };
         let Frontier { radius, open, bounded } = frontier;
@@ -192,21 +192,6 @@ impl<'a> Work<'a> {
             Precision::Full => NodeTask { node, cap, enough: cap, pairs: [open, bounded].concat() },
         }
     }
-}
-
-/// For each node whether it lies in one that is searched as a whole.
-pub(crate) fn within_small(hierarchy: &Hierarchy) -> Vec<bool> {
-    let mut within = vec![false; hierarchy.nodes().len()];
-    for node in (0..within.len()).filter(|n| hierarchy.is_whole(*n as u32)).map(|n| &hierarchy.nodes()[n]) {
-        node.children().for_each(|child| within[child as usize] = true);
-    }
-    within
-}
-
-/// All pairs of children, in the order (0,1), (0,2), ..., (2,3).
-pub(crate) fn child_pairs(node: &Node) -> impl Iterator<Item = (u32, u32)> {
-    let children = node.children();
-    children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
 }
 
 /// Steps between two reports.

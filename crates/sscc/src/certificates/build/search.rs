@@ -5,7 +5,6 @@ use std::collections::BinaryHeap;
 
 use crate::Progress;
 use crate::bounds::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, Target, cluster_pair};
-use crate::certificates::child_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
@@ -262,7 +261,7 @@ impl<'a> Search<'a> {
         if node.is_leaf() {
             self.open_leaves(n, n, 0.0);
         } else {
-            child_pairs(node).for_each(|(a, b)| self.consider(a, b, 0.0));
+            node.child_pairs().for_each(|(a, b)| self.consider(a, b, 0.0));
         }
         let radius = self.run();
         if radius >= least {

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use crate::certificates::child_pairs;
 use crate::hierarchy::Hierarchy;
 use crate::{
     Certificates, CertifyOptions, Method, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
@@ -46,7 +45,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
             add(n as u32, n as u32);
             continue;
         }
-        let pairs: Vec<(u32, u32)> = child_pairs(node).collect();
+        let pairs: Vec<(u32, u32)> = node.child_pairs().collect();
         let mut stack: Vec<_> =
             tree.of_node(n as u32).map(|(at, e)| (at, e, pairs[e.which() as usize])).collect();
         while let Some((at, entry, (n, m))) = stack.pop() {
