@@ -259,18 +259,22 @@ mod detect;
 mod error;
 mod filter;
 mod geometry;
+mod heap;
 pub mod hierarchy;
 pub mod limits;
 mod model;
 mod posed;
 mod progress;
 mod query;
+#[cfg(test)]
+mod test_models;
 mod threads;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
 };
+pub use detect::Impact;
 pub use error::Error;
 pub use filter::{Neighbours, Pair, PairRule};
 pub use geometry::{
@@ -280,4 +284,4 @@ pub use geometry::{
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};
 pub use progress::Progress;
-pub use query::{Answer, Impact, KineticQuery, Method, Query, Statistics};
+pub use query::{Answer, KineticQuery, Method, Query, Statistics};

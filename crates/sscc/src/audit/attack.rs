@@ -83,7 +83,7 @@ impl Attack<'_> {
         let claim = self.claim(sample, &mut random);
         let q = self.just_inside(claim, sample, &mut random)?;
         let query = if claim.nodes == (0, 0) { whole } else { part };
-        let pairs = query.discrete_between(claim.nodes.0, claim.nodes.1, &q).ok()?.to_vec();
+        let pairs = query.discrete_between(claim.nodes, &q).ok()?.to_vec();
         let norm = query.norm();
         Some(pairs.into_iter().find_map(|faces| self.claims.violation(faces, norm, &q)))
     }

@@ -1,38 +1,38 @@
-//! The BD-tree (James and Pai 2004): boxes that follow q at a cost of O(r) each, without touching vertices.
+//! The BD-tree (James and Pai 2004): AABBs that follow q at a cost of O(r) each, without touching vertices.
 
 use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
+use super::packet::AabbF32;
+use super::quantization::{CoarseMotion, Quantization};
 use crate::ReducedModel;
-use crate::detect::packet::Box32;
-use crate::detect::quantization::{Motion, Units};
 use crate::geometry::Aabb;
 use crate::hierarchy::{Hierarchy, Node};
 
 /// Components of a mean and a growth.
-const SHARES: usize = 6;
+const COMPONENTS: usize = 6;
 
-/// For the nodes that have one, how their box moves and grows with q:
+/// For the nodes that have a box, how it moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 #[derive(Default)]
 pub(crate) struct BdTree {
     rank: usize,
-    /// For each node its place in the lists below, or `u32::MAX`.
-    places: Vec<u32>,
+    /// For each node its index in the lists below; `u32::MAX` for none.
+    indices: Vec<u32>,
     /// `(c, h)`
     rest: Vec<(DVec3, DVec3)>,
-    /// `[place * rank + mode] = (mean, growth)`
+    /// `[index * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
-    /// The same in shares, `[(place * (rank + 1) + mode) * 6 + component]`, as [`Units`] tells; and one more entry.
-    shares: Vec<i16>,
+    /// The same, quantized: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; and one more entry.
+    quantized: Vec<i16>,
 }
 
 impl BdTree {
-    /// For the root and all other nodes that are wanted.
+    /// The boxes of the root and of all other nodes for which `is_wanted` holds.
     pub(crate) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,
-        units: &Units,
+        quantization: &Quantization,
         is_wanted: impl Fn(u32) -> bool + Sync,
     ) -> Self {
         let (mesh, modes) = (model.mesh(), model.modes());
@@ -60,40 +60,40 @@ impl BdTree {
         let nodes = hierarchy.nodes().par_iter().enumerate();
         let all: Vec<_> = nodes.filter(|(n, _)| has(*n)).map(|(_, node)| node_rates(node)).collect();
         let mut next = 0..;
-        let place = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
-        let places = (0..hierarchy.nodes().len()).map(place).collect();
-        let mut shares: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * SHARES + 1);
+        let index = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
+        let indices = (0..hierarchy.nodes().len()).map(index).collect();
+        let mut quantized: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * COMPONENTS + 1);
         for ((centre, half), rates) in &all {
-            let means = units.shares(*centre, rates.iter().map(|rate| rate.0));
-            let growths = units.shares_of_growth(*half, rates.iter().map(|rate| rate.1));
-            means.zip(growths).for_each(|(m, g)| shares.extend([m, g].as_flattened()));
+            let means = quantization.quantize(*centre, rates.iter().map(|rate| rate.0));
+            let growths = quantization.quantize_extents(*half, rates.iter().map(|rate| rate.1));
+            means.zip(growths).for_each(|(m, g)| quantized.extend([m, g].as_flattened()));
         }
-        shares.push(0);
+        quantized.push(0);
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
-        Self { rank, places, rest, rates, shares }
+        Self { rank, indices, rest, rates, quantized }
     }
 
     /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
     /// where the node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last
     /// place of the shape's reach.
     pub(crate) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
-        let place = self.places[node as usize] as usize;
-        (place < self.rest.len()).then(|| self.at_place(place, q, margin))
+        let index = self.indices[node as usize] as usize;
+        (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision, mapped to the frame of the motion.
-    pub(crate) fn rough<const E: usize>(&self, node: u32, motion: &Motion<E>) -> Option<Box32> {
-        let place = self.places[node as usize] as usize;
-        if place >= self.rest.len() {
+    /// The same in single precision, in the frame of the motion.
+    pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
+        let index = self.indices[node as usize] as usize;
+        if index >= self.rest.len() {
             return None;
         }
         let (mut centre, mut half) = (motion.shift, Vec4::ZERO);
-        let start = place * (self.rank + 1) * SHARES;
-        let shares = &self.shares[start..][..(self.rank + 1) * SHARES + 1];
+        let start = index * (self.rank + 1) * COMPONENTS;
+        let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + 1];
         for (k, (factors, largest)) in motion.factors.iter().zip(&motion.largest).enumerate() {
-            // The fourth components are of what follows.
-            let of_mode = &shares[k * SHARES..][..SHARES + 1];
+            // The fourth components belong to what follows.
+            let of_mode = &quantized[k * COMPONENTS..][..COMPONENTS + 1];
             let vector =
                 |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
             let (mean, growth) = (vector(0), vector(3));
@@ -104,19 +104,19 @@ impl BdTree {
             half += growth * *largest;
         }
         // The error of the centre, and that of the half.
-        let half = half + Vec4::splat(right_or!(2.0 * motion.margin, CoarseNodesNotWidened, 0.0));
-        let ends = centre.map(|centre| Box32 { lower: centre - half, upper: centre + half });
+        let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
+        let ends = centre.map(|centre| AabbF32 { lower: centre - half, upper: centre + half });
         ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtOneEnd, a))
     }
 
     /// The same for the whole shape.
     pub(crate) fn root<const E: usize>(&self, q: [&[f64]; E], margin: DVec3) -> Aabb {
-        self.at_place(0, q, margin)
+        self.at_index(0, q, margin)
     }
 
-    fn at_place<const E: usize>(&self, place: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
-        let mut boxes = [self.rest[place]; E];
-        let rates = &self.rates[place * self.rank..][..self.rank];
+    fn at_index<const E: usize>(&self, index: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
+        let mut boxes = [self.rest[index]; E];
+        let rates = &self.rates[index * self.rank..][..self.rank];
         let q = q.map(|q| &q[..rates.len()]);
         for (k, (mean, growth)) in rates.iter().enumerate() {
             for ((centre, half), q) in boxes.iter_mut().zip(q) {
@@ -135,8 +135,8 @@ impl BdTree {
 mod tests {
     use super::*;
     use crate::detect::frame::Frame;
-    use crate::detect::vertices::Vertices;
-    use crate::detect::volumes::margin;
+    use crate::detect::vertex_motion::rounding_bound;
+    use crate::detect::vertex_store::VertexStore;
     use crate::{Modes, TriMesh};
 
     /// Fixed pseudo-random numbers in [-1, 1).
@@ -162,28 +162,28 @@ mod tests {
     /// From one q to another, of all sizes and directions.
     #[test]
     fn boxes_contain_the_positions_at_both_ends() {
-        let (mut state, mut rough) = (8, 0);
+        let (mut state, mut coarse) = (8, 0);
         for case in 0..300 {
             let rank = [1, 2, 7, 30][case % 4];
             let model = model(rank, &mut state);
             let hierarchy = Hierarchy::build(&model, model.metric());
-            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
-            let units = Units::new(&model, &vertices);
-            let tree = BdTree::new(&model, &hierarchy, &units, |_| true);
+            let vertices = VertexStore::new(&model, &(0..202).collect::<Vec<u32>>());
+            let quantization = Quantization::new(&model, &vertices);
+            let tree = BdTree::new(&model, &hierarchy, &quantization, |_| true);
             let size = 10.0_f64.powi(case as i32 % 7 - 4);
             let mut random_q = || -> Vec<f64> { (0..rank).map(|_| random(&mut state) * size).collect() };
             let ends = [random_q(), random_q()];
             let ends = [&ends[0][..], &ends[1][..]];
             let reach = ends.iter().map(|q| model.check_coordinates(q).unwrap()).fold(0.0, f64::max);
-            let rounding = margin(reach, rank);
-            let frame = Frame::of(tree.root(ends, DVec3::splat(rounding)));
-            let mut motion = Motion::default();
-            if !units.begin(&mut motion, ends, &frame, rounding) {
+            let rounding = rounding_bound(reach, rank);
+            let frame = Frame::around(tree.root(ends, DVec3::splat(rounding)));
+            let mut motion = CoarseMotion::default();
+            if !quantization.begin(&mut motion, ends, &frame, rounding) {
                 continue;
             }
-            rough += 1;
+            coarse += 1;
             for (n, node) in hierarchy.nodes().iter().enumerate() {
-                let mapped = tree.rough(n as u32, &motion).unwrap();
+                let mapped = tree.coarse(n as u32, &motion).unwrap();
                 let Aabb { lower, upper } = tree.at(n as u32, ends, DVec3::splat(rounding)).unwrap();
                 for v in hierarchy.vertices(node, model.mesh().faces()) {
                     for q in ends {
@@ -196,7 +196,7 @@ mod tests {
                 }
             }
         }
-        assert!(rough > 100, "{rough}");
+        assert!(coarse > 100, "{coarse}");
     }
 
     #[test]
@@ -205,25 +205,26 @@ mod tests {
         for rank in [1, 2, 7, 30] {
             let model = model(rank, &mut state);
             let hierarchy = Hierarchy::build(&model, model.metric());
-            let vertices = Vertices::new(&model, &(0..202).collect::<Vec<u32>>());
-            let units = Units::new(&model, &vertices);
-            let tree = BdTree::new(&model, &hierarchy, &units, |n| !hierarchy.nodes()[n as usize].is_leaf());
-            let (mut checked, mut rough, mut wide) = (0, 0, 0.0_f32);
+            let vertices = VertexStore::new(&model, &(0..202).collect::<Vec<u32>>());
+            let quantization = Quantization::new(&model, &vertices);
+            let tree =
+                BdTree::new(&model, &hierarchy, &quantization, |n| !hierarchy.nodes()[n as usize].is_leaf());
+            let (mut checked, mut coarse, mut wide) = (0, 0, 0.0_f32);
             for case in 0..200 {
                 let size = 10.0_f64.powi(case % 25 - 12);
                 let q: Vec<f64> = (0..rank).map(|_| random(&mut state) * size).collect();
                 let reach = model.check_coordinates(&q).unwrap();
-                let rounding = margin(reach, rank);
-                let frame = Frame::of(tree.root([&q], DVec3::splat(rounding)));
-                let mut motion = Motion::default();
-                let is_rough = units.begin(&mut motion, [&q], &frame, rounding);
-                rough += usize::from(is_rough);
+                let rounding = rounding_bound(reach, rank);
+                let frame = Frame::around(tree.root([&q], DVec3::splat(rounding)));
+                let mut motion = CoarseMotion::default();
+                let is_coarse = quantization.begin(&mut motion, [&q], &frame, rounding);
+                coarse += usize::from(is_coarse);
                 for (n, node) in hierarchy.nodes().iter().enumerate() {
                     let Some(Aabb { lower, upper }) = tree.at(n as u32, [&q], DVec3::splat(rounding)) else {
-                        assert!(n != 0 && node.is_leaf() && tree.rough(n as u32, &motion).is_none());
+                        assert!(n != 0 && node.is_leaf() && tree.coarse(n as u32, &motion).is_none());
                         continue;
                     };
-                    let mapped = tree.rough(n as u32, &motion).filter(|_| is_rough);
+                    let mapped = tree.coarse(n as u32, &motion).filter(|_| is_coarse);
                     for v in hierarchy.vertices(node, model.mesh().faces()) {
                         let x = model.position(v, &q);
                         assert!(x.cmpge(lower).all() && x.cmple(upper).all(), "rank {rank}, case {case}");
@@ -237,11 +238,11 @@ mod tests {
                     // Hardly larger than in double precision.
                     if let Some(mapped) = mapped {
                         let larger = (frame.map(lower) - mapped.lower).max(mapped.upper - frame.map(upper));
-                        wide = wide.max(larger.truncate().max_element() / motion.margin);
+                        wide = wide.max(larger.truncate().max_element() / motion.error);
                     }
                 }
             }
-            assert!(checked > 10_000 && rough > 50 && wide < 4.0, "{checked} {rough} {wide}");
+            assert!(checked > 10_000 && coarse > 50 && wide < 4.0, "{checked} {coarse} {wide}");
         }
     }
 }

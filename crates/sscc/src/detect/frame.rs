@@ -1,4 +1,4 @@
-//! Coordinates in single precision that keep their order.
+//! The frame of a query: coordinates in single precision that keep the order of those in double precision.
 
 use glam::{DVec3, Vec4};
 
@@ -10,7 +10,7 @@ use crate::geometry::Aabb;
 /// axis: it subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and
 /// every one of these steps is monotone. So where one mapped box ends strictly before another one begins, the exact
 /// boxes do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap,
-/// far from the centre (a shape of size 1 at 1e8) or below the smallest numbers.
+/// far from the centre (a shape of size 1 at 1e8) or below the smallest normal numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Frame {
     center: DVec3,
@@ -19,7 +19,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// The frame in which this box (its corners in any order) becomes about [-1, 1] along its longest side.
-    pub(crate) fn of(Aabb { lower, upper }: Aabb) -> Self {
+    pub(crate) fn around(Aabb { lower, upper }: Aabb) -> Self {
         let half = (upper * 0.5 - lower * 0.5).abs().max_element();
         // A finite scale, so that 0 times it is a number.
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).min(f64::MAX) }
@@ -30,9 +30,9 @@ impl Frame {
         self.scale
     }
 
-    /// How far along an axis mapped points may be from those of real numbers, where the box of the frame contains all
-    /// points; `rounding` is how far these are from them. At least 14 units of 2^-24.
-    pub(crate) fn wrong_by(&self, rounding: f64) -> f32 {
+    /// An upper bound, along each axis, of the distance from a mapped point to its exact image, where the box of the
+    /// frame contains all points. `rounding` bounds the error of the points themselves. At least 14 units of 2^-24.
+    pub(crate) fn error_bound(&self, rounding: f64) -> f32 {
         let unit = f64::from(f32::EPSILON) / 2.0;
         (16.0 * unit + 4.1 * rounding * self.scale) as f32
     }
@@ -42,7 +42,7 @@ impl Frame {
         (x - self.center) * self.scale
     }
 
-    /// The mapped point; its fourth component means nothing. All of them are finite.
+    /// The mapped point; its fourth component is unused. All components are finite.
     #[inline]
     pub(crate) fn map(&self, x: DVec3) -> Vec4 {
         let y = self.linear(x).as_vec3();
@@ -72,7 +72,7 @@ mod tests {
         for (i, center) in sizes.into_iter().enumerate() {
             for half in sizes.into_iter().flat_map(|half| [half, -half]) {
                 let center = if i % 2 == 0 { center } else { -center };
-                let frame = Frame::of(Aabb {
+                let frame = Frame::around(Aabb {
                     lower: DVec3::splat(center - half),
                     upper: DVec3::splat(center + half),
                 });
@@ -87,8 +87,10 @@ mod tests {
     #[test]
     fn its_own_box_is_told_apart_finely() {
         for (center, half) in [(0.0, 1.0), (1e-200, 1e-210), (-1e50, 1e45), (0.0, 1e-300)] {
-            let frame =
-                Frame::of(Aabb { lower: DVec3::splat(center - half), upper: DVec3::splat(center + half) });
+            let frame = Frame::around(Aabb {
+                lower: DVec3::splat(center - half),
+                upper: DVec3::splat(center + half),
+            });
             let at = |t: f64| frame.map(DVec3::splat(center + half * t)).x;
             assert!((at(1.0) - 1.0).abs() < 1e-3 && (at(-1.0) + 1.0).abs() < 1e-3, "{center} {half}");
             assert!(at(0.5) < at(0.5 + 1e-5), "{center} {half}");

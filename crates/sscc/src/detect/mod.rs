@@ -1,20 +1,35 @@
-//! The detector: broad phase, narrow phase and the methods that use no certificates.
+//! The detector: which triangles of a deforming mesh collide, found without certificates.
+//!
+//! The broad phase ([`broad_phase`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed where
+//! it looks (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64 triangles
+//! ([`buckets`]), whose boxes are compared eight at a time ([`packet`]). The narrow phase ([`narrow_phase`]) is exact. Where
+//! vertices come from is a static parameter ([`vertex_motion`]).
+//!
+//! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here; what certificates cull is
+//! in [`query`](crate::Query), by the same tests of nodes and buckets.
 
-pub(crate) mod adjacency;
-pub(crate) mod ball;
-pub(crate) mod bd_tree;
-pub(crate) mod brute_force;
+mod adjacency_masks;
+pub(crate) mod ball_motion;
+mod bd_tree;
+mod boundary;
+pub(crate) mod broad_phase;
+mod brute_force;
+pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
-pub(crate) mod coarse;
-pub(crate) mod contour;
-pub(crate) mod frame;
+mod coarse_vertices;
+mod colliding_pairs;
+pub(crate) mod context;
+mod exact_positions;
+mod frame;
+pub(crate) mod layout;
 pub(crate) mod narrow_phase;
+pub(crate) mod node_volumes;
 pub(crate) mod normal_cones;
 pub(crate) mod packet;
-pub(crate) mod positions;
-pub(crate) mod quantization;
-pub(crate) mod search;
-pub(crate) mod separating_axis;
-pub(crate) mod tables;
-pub(crate) mod vertices;
-pub(crate) mod volumes;
+mod quantization;
+mod traversal;
+pub(crate) mod vertex_motion;
+mod vertex_store;
+
+pub(crate) use colliding_pairs::colliding_pairs;
+pub use narrow_phase::Impact;

@@ -1,4 +1,5 @@
-//! Normal cones (Volino and Magnenat-Thalmann 1994), the comparator of the paper's section 7.
+//! Normal cones (Volino and Magnenat-Thalmann 1994), the comparator of the paper's section 7: proofs that a patch of the
+//! surface does not collide with itself.
 //!
 //! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
 //! directions: the corners and the face centres of a cube. That alone is approximate. It is a proof with the *contour
@@ -10,10 +11,9 @@
 
 use glam::DVec3;
 
-use crate::detect::contour::{ROUNDING, is_simple};
-use crate::detect::volumes::Boxes;
+use super::boundary::{ROUNDING, is_simple};
+use super::node_volumes::NodeVolumes;
 use crate::hierarchy::Hierarchy;
-use crate::query::Method;
 
 /// A direction, and two linear functions that together project along it.
 struct Direction {
@@ -47,10 +47,10 @@ const DIRECTIONS: [Direction; 14] = [
     corner(-1.0, -1.0, -1.0),
 ];
 
-/// The normals of all nodes down to clusters at the current q.
+/// The normals of all nodes down to buckets at the current q.
 #[derive(Clone)]
 pub(crate) struct NormalCones {
-    /// Whether a node's boundary is tested; else collisions may be missed.
+    /// Whether the contour test is made; without it collisions may be missed.
     is_exact: bool,
     /// For each node the directions on whose positive side all of its normals are, one bit each.
     positive: Vec<u16>,
@@ -60,45 +60,39 @@ pub(crate) struct NormalCones {
 }
 
 impl NormalCones {
-    /// None for a method without them.
-    pub(crate) fn new(nodes: usize, method: Method) -> Option<Self> {
-        let is_exact = method == Method::NormalCones;
-        (is_exact || method == Method::NormalConesApprox).then(|| Self {
-            is_exact,
-            positive: vec![0; nodes],
-            projected: Vec::new(),
-            order: Vec::new(),
-        })
+    /// Cones of so many nodes.
+    pub(crate) fn new(nodes: usize, is_exact: bool) -> Self {
+        Self { is_exact, positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
     }
 
-    /// Makes normals current; all positions are.
-    pub(crate) fn update<const E: usize>(&mut self, hierarchy: &Hierarchy, boxes: &Boxes<E>) {
-        let clusters = &boxes.tables.clusters;
+    /// Makes normals current; all exact positions are.
+    pub(super) fn update<const E: usize>(&mut self, hierarchy: &Hierarchy, volumes: &NodeVolumes<E>) {
+        let buckets = &volumes.layout.buckets;
         for (n, node) in hierarchy.nodes().iter().enumerate().rev() {
-            self.positive[n] = match clusters.of_node(n as u32) {
-                Some(cluster) if clusters.node(cluster) == n as u32 => {
-                    let blocks = clusters.blocks(cluster);
-                    let places = clusters.places(blocks.start).start..clusters.places(blocks.end - 1).end;
-                    let corners = clusters.corners()[places].iter();
-                    corners.fold(!0, |all, corners| all & positive_sides(boxes.corners(*corners)[0]))
+            self.positive[n] = match buckets.of_node(n as u32) {
+                Some(bucket) if buckets.node(bucket) == n as u32 => {
+                    let packets = buckets.packets(bucket);
+                    let slots = buckets.slots(packets.start).start..buckets.slots(packets.end - 1).end;
+                    let corners = buckets.corners()[slots].iter();
+                    corners.fold(!0, |all, corners| all & positive_sides(volumes.corners(*corners)[0]))
                 }
-                // Asked for with its cluster.
+                // Visited with its bucket.
                 Some(_) => 0,
                 None => node.children().fold(!0, |all, child| all & self.positive[child as usize]),
             };
         }
     }
 
-    /// Whether a node need not be tested against itself.
-    pub(crate) fn culls<const E: usize>(&mut self, n: u32, boxes: &Boxes<E>) -> bool {
+    /// Whether the normals prove that a node does not collide with itself.
+    pub(super) fn proves_free<const E: usize>(&mut self, n: u32, volumes: &NodeVolumes<E>) -> bool {
         let positive = self.positive[n as usize];
         if positive == 0 || !self.is_exact {
             return positive != 0;
         }
-        let boundary = boxes.tables.contours.of_node(n);
+        let boundary = volumes.layout.boundaries.of_node(n);
         DIRECTIONS.iter().enumerate().filter(|(k, _)| positive >> k & 1 != 0).any(|(_, direction)| {
             self.projected.clear();
-            let positions = boundary.iter().map(|v| boxes.corners([*v; 3])[0][0]);
+            let positions = boundary.iter().map(|v| volumes.corners([*v; 3])[0][0]);
             self.projected.extend(positions.map(|x| direction.onto.map(|f| f.dot(x))));
             is_simple(&self.projected, &mut self.order)
         })

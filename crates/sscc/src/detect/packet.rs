@@ -1,31 +1,31 @@
-//! Eight boxes side by side, so that one box is compared with all of them at once.
+//! Aabb8ets: eight boxes side by side, so that one box is compared with all of them at once.
 //!
-//! [`Vec4`] is one SSE2 (or NEON) register, which every 64-bit processor of the kind has: nothing has to be chosen at
-//! run time.
+//! [`Vec4`] is one SSE2 or NEON register. Every x86-64 and AArch64 processor has those, so no instruction set is chosen
+//! at run time.
 
 use glam::Vec4;
 
-/// Boxes in a pack.
+/// Boxes in a packet.
 pub(crate) const LANES: usize = 8;
 
 /// A box in the single-precision coordinates of a [`Frame`](crate::detect::frame::Frame): lower and upper corner; the fourth
 /// components mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Box32 {
+pub(crate) struct AabbF32 {
     pub(crate) lower: Vec4,
     pub(crate) upper: Vec4,
 }
 
-impl Box32 {
+impl AabbF32 {
     /// Contains nothing, and overlaps no box with finite corners.
     pub(crate) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
     /// Contains everything.
     pub(crate) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
 
-    /// The box of three points, around all the places where each is.
+    /// The box of a triangle whose corners are at `E` ends of a motion.
     #[inline]
-    pub(crate) fn around<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
+    pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
             let first = Self { lower: ends[0], upper: ends[0] };
             let others = right_or!(&ends[1..], SweptTrianglesAtOneEnd, &ends[..0]);
@@ -47,38 +47,38 @@ impl Box32 {
         apart.bitmask() & 0b111 == 0
     }
 
-    /// The least box that contains both.
+    /// The smallest box that contains both.
     #[inline]
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 }
 
-/// Up to eight boxes: for each axis the lower and the upper ends of all.
+/// Up to eight boxes: for each axis the lower and the upper ends of all lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
-pub(crate) struct Pack {
+pub(crate) struct Aabb8 {
     lower: [[f32; LANES]; 3],
     upper: [[f32; LANES]; 3],
 }
 
-impl Pack {
-    /// Eight empty boxes.
+impl Aabb8 {
+    /// A packet of empty boxes.
     pub(crate) const EMPTY: Self =
         Self { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3] };
 
-    /// Puts a box in one of the lanes.
+    /// Sets the box of one lane.
     #[inline]
-    pub(crate) fn set(&mut self, lane: usize, b: &Box32) {
+    pub(crate) fn set(&mut self, lane: usize, b: &AabbF32) {
         for axis in 0..3 {
             self.lower[axis][lane] = b.lower[axis];
             self.upper[axis][lane] = b.upper[axis];
         }
     }
 
-    /// Which of the eight overlap a box: bit i for lane i.
+    /// The lanes whose box overlaps a given one.
     #[inline]
-    pub(crate) fn overlapping(&self, other: &Box32) -> Lanes {
+    pub(crate) fn overlapping(&self, other: &AabbF32) -> Lanes {
         let (lower, upper) = (other.lower, other.upper);
         self.compare(
             [lower.x, lower.y, lower.z].map(Vec4::splat),
@@ -86,7 +86,7 @@ impl Pack {
         )
     }
 
-    /// Which of the eight overlap one of another pack.
+    /// The lanes whose box overlaps that of one lane of another packet.
     #[inline]
     pub(crate) fn overlapping_lane(&self, other: &Self, lane: usize) -> Lanes {
         self.compare(
@@ -108,7 +108,7 @@ impl Pack {
     }
 }
 
-/// One bit for each lane of a pack; as an iterator, the numbers of those that are set.
+/// A set of lanes: bit i for lane i. As an iterator, the numbers of its lanes, ascending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Lanes(pub(crate) u32);
 
@@ -138,11 +138,11 @@ mod tests {
         for _ in 0..2000 {
             let mut one = || {
                 let [a, b] = [(); 2].map(|()| Vec4::new(random(), random(), random(), random()));
-                Box32::around([[a], [b], [b]])
+                AabbF32::of_triangle([[a], [b], [b]])
             };
-            let boxes: [Box32; 5] = std::array::from_fn(|_| one());
-            let mut pack = Pack::EMPTY;
-            boxes.iter().enumerate().for_each(|(lane, b)| pack.set(lane, b));
+            let boxes: [AabbF32; 5] = std::array::from_fn(|_| one());
+            let mut packet = Aabb8::EMPTY;
+            boxes.iter().enumerate().for_each(|(lane, b)| packet.set(lane, b));
             let other = one();
             let mut expected = 0;
             for (lane, b) in boxes.iter().enumerate() {
@@ -150,14 +150,14 @@ mod tests {
                     |axis: usize| b.lower[axis] <= other.upper[axis] && other.lower[axis] <= b.upper[axis];
                 expected |= u32::from((0..3).all(meet)) << lane;
             }
-            assert_eq!(pack.overlapping(&other), Lanes(expected));
+            assert_eq!(packet.overlapping(&other), Lanes(expected));
             for (lane, b) in boxes.iter().enumerate() {
-                assert_eq!(pack.overlapping_lane(&pack, lane), pack.overlapping(b));
+                assert_eq!(packet.overlapping_lane(&packet, lane), packet.overlapping(b));
             }
             assert_eq!(Lanes(expected).map(|lane| 1 << lane).sum::<u32>(), expected);
             overlaps += expected.count_ones();
         }
         assert!((1000..9000).contains(&overlaps), "{overlaps}");
-        assert_eq!(Pack::EMPTY.overlapping(&Box32::ALL), Lanes(0));
+        assert_eq!(Aabb8::EMPTY.overlapping(&AabbF32::ALL), Lanes(0));
     }
 }

@@ -1,53 +1,53 @@
-//! How a shape moves in single precision, with a bound of the error.
+//! Coarse motion: displacements quantized to 16 bits, moved in single precision, with a bound of the error.
 //!
-//! A quarter of the bytes of double precision, and four vertices side by side.
+//! That takes a quarter of the bytes of double precision, and moves four vertices side by side.
 
 use glam::{DVec3, Vec4};
 
+use super::frame::Frame;
+use super::vertex_store::VertexStore;
 use crate::ReducedModel;
-use crate::detect::frame::Frame;
-use crate::detect::vertices::Vertices;
 use crate::geometry::Aabb;
 
-/// The rest pose is one more mode, the first, whose coordinate is 1. Displacements are given as shares of the largest
-/// one by the same mode, in 16 bits: a quarter of what double precision takes.
+/// How displacements are quantized: as multiples of the largest displacement by the same mode. The rest pose is one more
+/// mode, the first, whose coordinate is 1.
 #[derive(Default)]
-pub(crate) struct Units {
-    /// The middle of the rest pose, and the largest distance from it along an axis.
+pub(crate) struct Quantization {
+    /// The centre of the rest pose's box, and the largest distance from it along an axis.
     center: DVec3,
     half: f64,
     /// The largest displacement by each mode.
     sizes: Vec<f64>,
 }
 
-/// A share of 1.
+/// The quantized value of the largest displacement.
 const WHOLE: f64 = 32767.0;
 
-/// A larger error, in the coordinates of the frame, is not worth the time that it saves.
-const WORST_MARGIN: f64 = 1.0 / 2048.0;
+/// With a larger error bound, in the coordinates of the frame, exact positions are used: too many boxes would overlap.
+const MAX_ERROR: f64 = 1.0 / 2048.0;
 
-/// What shares are multiplied by in a query.
+/// The factors of quantized displacements in one query.
 #[derive(Clone)]
-pub(crate) struct Motion<const E: usize> {
-    /// Where the middle of the rest pose is in the frame.
+pub(crate) struct CoarseMotion<const E: usize> {
+    /// The centre of the rest pose in the frame.
     pub(crate) shift: [Vec4; E],
-    /// For each mode the same number in all lanes.
+    /// For each mode its factor, the same in all lanes.
     pub(crate) factors: Vec<[Vec4; E]>,
-    /// For each mode the larger magnitude of both ends.
+    /// For each mode the larger magnitude of its factors at both ends.
     pub(crate) largest: Vec<Vec4>,
-    /// How far along an axis positions may be from the exact ones, mapped to the frame.
-    pub(crate) margin: f32,
+    /// An upper bound, along each axis, of the distance from coarse positions to the exact ones mapped to the frame.
+    pub(crate) error: f32,
 }
 
-impl<const E: usize> Default for Motion<E> {
+impl<const E: usize> Default for CoarseMotion<E> {
     fn default() -> Self {
-        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), largest: Vec::new(), margin: f32::INFINITY }
+        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), largest: Vec::new(), error: f32::INFINITY }
     }
 }
 
-impl Units {
-    pub(crate) fn new(model: &ReducedModel, vertices: &Vertices) -> Self {
-        let at_rest = (0..vertices.count() as u32).map(|place| vertices.rest(place));
+impl Quantization {
+    pub(crate) fn new(model: &ReducedModel, vertices: &VertexStore) -> Self {
+        let at_rest = (0..vertices.count() as u32).map(|index| vertices.rest(index));
         let Aabb { lower, upper } =
             if vertices.count() == 0 { Aabb::default() } else { Aabb::of_points(at_rest) };
         let center = lower * 0.5 + upper * 0.5;
@@ -55,39 +55,39 @@ impl Units {
         Self { center, half, sizes: (0..model.rank()).map(|k| model.moved_by(k, 1.0)).collect() }
     }
 
-    /// The shares of a place at rest and its displacements.
-    pub(crate) fn shares<'t>(
+    /// Quantizes a rest position and its displacements by each mode.
+    pub(crate) fn quantize<'t>(
         &'t self,
         rest: DVec3,
         modes: impl Iterator<Item = DVec3> + 't,
     ) -> impl Iterator<Item = [i16; 3]> + 't {
-        self.shares_of_growth(rest - self.center, modes)
+        self.quantize_extents(rest - self.center, modes)
     }
 
-    /// The same of half the extent of something at rest, and by how much it grows.
-    pub(crate) fn shares_of_growth<'t>(
+    /// Quantizes half extents at rest and their growth by each mode.
+    pub(crate) fn quantize_extents<'t>(
         &'t self,
         rest: DVec3,
         modes: impl Iterator<Item = DVec3> + 't,
     ) -> impl Iterator<Item = [i16; 3]> + 't {
-        let share = |(u, size): (DVec3, f64)| {
+        let quantized = |(u, size): (DVec3, f64)| {
             let u = if size > 0.0 { u / size * WHOLE } else { DVec3::ZERO };
             u.to_array().map(|x| x.round() as i16)
         };
-        std::iter::once((rest, self.half)).chain(modes.zip(self.sizes.iter().copied())).map(share)
+        std::iter::once((rest, self.half)).chain(modes.zip(self.sizes.iter().copied())).map(quantized)
     }
 
-    /// Takes up a query in a frame whose box contains all positions; `rounding` is how far computed positions may be
-    /// from those of real numbers. False where single precision would not do.
+    /// Sets the factors of a query in a frame whose box contains all positions; `rounding` bounds the error of exact
+    /// positions. False if the error bound would exceed [`MAX_ERROR`]: then the query must use exact positions.
     ///
     /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
     /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
     /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d).
-    /// Shares are off by half a unit, all of them by d / (2 WHOLE). A sum of the larger magnitudes of two ends is at most
+    /// Quantization is off by half a unit, for all modes together by d / (2 WHOLE). A sum of the larger magnitudes of two ends is at most
     /// 2 d, and none of its terms is less than at either end.
     pub(crate) fn begin<const E: usize>(
         &self,
-        motion: &mut Motion<E>,
+        motion: &mut CoarseMotion<E>,
         q: [&[f64]; E],
         frame: &Frame,
         rounding: f64,
@@ -114,9 +114,9 @@ impl Units {
         };
         let quantized = right_or!(most / (2.0 * WHOLE), CoarseSharesExact, 0.0);
         let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + quantized;
-        let margin = 1.1 * rounded + 4.0 * rounding * scale;
+        let error = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];
-        motion.margin = (margin * (1.0 + 1e-6)) as f32;
-        margin <= WORST_MARGIN
+        motion.error = (error * (1.0 + 1e-6)) as f32;
+        error <= MAX_ERROR
     }
 }

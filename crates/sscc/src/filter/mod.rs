@@ -4,9 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use crate::hierarchy::Hierarchy;
-use crate::query::colliding_pairs;
-use crate::{Error, ReducedModel, TriMesh, intersect_beyond_vertex, intersect_triangle_triangle};
+use crate::{ReducedModel, TriMesh, intersect_beyond_vertex, intersect_triangle_triangle};
 
 /// Two triangles, the lower number first.
 pub type Pair = (u32, u32);
@@ -63,16 +61,6 @@ impl PairRule {
         self.ignored.sort_unstable();
         self.ignored.dedup();
         self
-    }
-
-    /// The same rule, which also ignores the pairs that collide at rest (q = 0).
-    ///
-    /// # Errors
-    /// When they are more than 2^24.
-    pub fn ignoring_rest(self, model: &ReducedModel) -> Result<Self, Error> {
-        let hierarchy = Hierarchy::build(model, model.metric());
-        let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
-        Ok(self.ignoring(pairs))
     }
 
     /// The pairs that never count, sorted.

@@ -65,37 +65,37 @@ mutants! {
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("intersect edges_that_touch");
     /// Triangles are told apart in single precision with half of the slack.
-    ApartSlackHalved: CaughtBy("lib query::apart::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
+    ApartSlackHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
     /// The contour test omits its rounding bound.
-    ContourExact: CaughtBy("lib query::contour::tests::rounding_separates_nothing_that_touches");
+    ContourExact: CaughtBy("lib detect::boundary::tests::rounding_separates_nothing_that_touches");
     /// The contour test omits the rounding error of coordinates.
-    ContourCoordinatesExact: CaughtBy("lib query::contour::tests::rounding_separates_nothing_that_touches");
+    ContourCoordinatesExact: CaughtBy("lib detect::boundary::tests::rounding_separates_nothing_that_touches");
     /// The contour test omits the rounding error of products.
     ContourProductsExact: Covered("the second term of the error is large enough for products, too");
     /// Boxes omit the rounding error of positions.
-    BoxesNotWidened: CaughtBy("lib query::bd_tree::tests::boxes_contain_all_computed_positions");
+    BoxesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// The error bound of positions in single precision omits quantization.
-    CoarseSharesExact: CaughtBy("lib query::rough::tests::positions_are_as_near_as_they_say");
+    CoarseSharesExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
     CoarseTrianglesNotWidened: CaughtBy("rounding what_touches_exactly_is_met_in_single_precision");
     /// Boxes of nodes in single precision are not widened by their error.
-    CoarseNodesNotWidened: CaughtBy("lib query::bd_tree::tests::boxes_contain_all_computed_positions");
+    CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// The boxes of triangles on the way from one q to another are those at its start.
     SweptTrianglesAtOneEnd: CaughtBy("pair_walk walks_find_what_brute_force_finds");
     /// The boxes of nodes on the way from one q to another are those at its start.
-    SweptNodesAtOneEnd: CaughtBy("lib query::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
+    SweptNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The boxes in single precision of nodes on the way from one q to another are those at its start.
-    SweptCoarseNodesAtOneEnd: CaughtBy("lib query::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
+    SweptCoarseNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The norm of the way from one q to another is that of its end.
     SweptNormAtOneEnd: CaughtBy("continuous times_of_simple_motions");
     /// Vertices go half as far in a kinetic ball.
-    BallVerticesHalfAsFar: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
+    BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// Nodes go half as far in a kinetic ball.
-    BallNodesHalfAsFar: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
+    BallNodesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// A kinetic ball omits the rounding error of positions.
-    BallExact: CaughtBy("lib query::kinetic::ball::tests::vertices_stay_in_the_ball");
+    BallExact: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// The path length of z is not rounded up.
-    WayToNearest: CaughtBy("lib query::kinetic::front::tests::the_way_is_never_short");
+    WayToNearest: CaughtBy("lib query::kinetic::active_pairs::tests::the_travelled_distance_is_never_short");
     /// A margin that is used up exactly still holds.
     MarginReached: Covered("the end of a margin has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.

@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Query, Statistics};
+use super::query::Query;
+use super::statistics::Statistics;
 use crate::threads::on_threads;
 use crate::{Error, Pair, Progress};
 

@@ -1,31 +1,41 @@
-//! The pairs between two nodes alone.
+//! The colliding pairs of a node pair, found without certificates: for audits.
 
-use super::{Method, Query};
-use crate::detect::buckets::CLUSTER;
+use super::method::Method;
+use super::query::Query;
+use crate::detect::buckets::BUCKET;
+use crate::detect::vertex_motion::Deformed;
 use crate::hierarchy::Node;
 use crate::{Certificates, Error, Pair};
 
 impl Query<'_> {
-    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node
-    /// (n = m), exceptions left out, found without certificates: for audits.
-    pub(crate) fn discrete_between(&mut self, n: u32, m: u32, q: &[f64]) -> Result<&[Pair], Error> {
-        debug_assert_ne!(self.asked.method, Method::Certified);
-        let ends = self.begin([q], usize::MAX)?;
-        let (asked, finder) = (&self.asked, &mut self.discrete);
-        finder.boxes.update(&asked.hierarchy, &ends);
-        finder.traverse(asked, (n, m), &ends);
-        finder.outcome()?;
-        let exceptions = asked.certificates.map_or(&[][..], Certificates::exceptions);
-        let [x, y] = [n, m].map(|n| &asked.hierarchy.nodes()[n as usize]);
-        let has = |node: &Node, t| {
-            node.triangle_count as usize > CLUSTER || asked.hierarchy.triangles(node).contains(&t)
-        };
-        finder.found.retain(|pair| {
-            let (i, j) = *pair;
-            exceptions.binary_search(pair).is_err() && (has(x, i) && has(y, j) || has(x, j) && has(y, i))
+    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
+    /// but exceptions, found without certificates.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub(crate) fn discrete_between(&mut self, (n, m): Pair, q: &[f64]) -> Result<&[Pair], Error> {
+        debug_assert_ne!(self.context.method, Method::Certified);
+        self.begin(usize::MAX);
+        let configuration = self.measure(q)?;
+        self.norm = configuration.norm;
+        let (context, narrow) = (&self.context, &mut self.discrete.narrow);
+        let (detect, broad) = (&context.detect, &mut self.discrete.certified.broad);
+        let motion = Deformed::new([q], configuration.reach);
+        broad.begin_volumes(detect, &motion);
+        broad.traverse(detect, (n, m), &motion, narrow);
+        broad.end(narrow)?;
+        let exceptions = context.certificates.map_or(&[][..], Certificates::exceptions);
+        let hierarchy = &detect.hierarchy;
+        let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
+        let contains =
+            |node: &Node, t| node.triangle_count as usize > BUCKET || hierarchy.triangles(node).contains(&t);
+        narrow.0.found.retain(|pair| {
+            let (a, b) = *pair;
+            let is_between = contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a);
+            is_between && exceptions.binary_search(pair).is_err()
         });
-        finder.found.sort_unstable();
-        Ok(&finder.found)
+        narrow.0.found.sort_unstable();
+        Ok(&narrow.0.found)
     }
 }
 
@@ -55,7 +65,7 @@ mod tests {
         let query = |method| Query::without_certificates(&model, Scope::of(&model), method).unwrap();
         let all = query(Method::BruteForce).discrete(&[0.5]).unwrap().to_vec();
         let mut queries = [query(Method::Traditional), query(Method::BdTree)];
-        let hierarchy = queries[0].asked.hierarchy.clone();
+        let hierarchy = queries[0].context.detect.hierarchy.clone();
         let mut found = 0;
         for (n, x) in hierarchy.nodes().iter().enumerate() {
             for (m, y) in hierarchy.nodes().iter().enumerate().skip(n) {
@@ -67,7 +77,7 @@ mod tests {
                 let mut expected = all.clone();
                 expected.retain(|&(i, j)| has(x, i) && has(y, j) || has(x, j) && has(y, i));
                 for query in &mut queries {
-                    assert_eq!(query.discrete_between(n as u32, m as u32, &[0.5]).unwrap(), expected);
+                    assert_eq!(query.discrete_between((n as u32, m as u32), &[0.5]).unwrap(), expected);
                 }
                 found += usize::from(!expected.is_empty());
             }

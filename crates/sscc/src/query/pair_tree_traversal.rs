@@ -1,103 +1,94 @@
-//! Algorithm 1 by the certified pair tree: only pairs whose radius has been passed are looked at.
+//! The traversal of the certified pair tree: only node pairs whose radius is reached are opened.
+//!
+//! Every path down the tree comes through one pair of buckets, or one bucket, because the larger node is split first.
+//! There the traversal ends (docs/notes/2026-11-23-pair-tree-traversal.md).
 
-use crate::PairTree;
-use crate::detect::narrow_phase::Found;
-use crate::detect::search::Finder;
-use crate::query::context::{Asked, Ends};
+use crate::detect::broad_phase::BroadPhase;
+use crate::detect::context::Context;
+use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::vertex_motion::VertexMotion;
+use crate::{Pair, PairTree};
 
-/// Between two looks at whether the query was cancelled.
-const STEPS: u32 = 1024;
+/// Nodes and node pairs still to be visited.
+#[derive(Clone, Default)]
+pub(super) struct PairTreeStack(Vec<Visit>);
 
-/// The place of a node against itself.
+/// A node `(n, n)` or a node pair `(n, m)` whose radius is reached.
+#[derive(Clone, Copy)]
+struct Visit {
+    nodes: Pair,
+    /// The entry of a node pair in the tree; [`NODE`] for a node.
+    entry: u32,
+}
+
+/// The entry of a node.
 const NODE: u32 = u32::MAX;
 
 /// Whether `|z|` has reached the radius of a stored pair: equality is no proof. A macro keeps the plain comparison of the
-/// release build; with functions and closures here queries that open few pairs took up to 1.13 times as long.
-macro_rules! is_entry_passed {
+/// release build, see docs/notes/2026-11-23-pair-tree-traversal.md.
+macro_rules! is_entry_reached {
     ($entry:expr, $norm:expr) => {
         right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)
     };
 }
 
-impl<F: Found<E>, const E: usize> Finder<F, E> {
-    /// Adds all that is found, exceptions apart. On the stack, `(n, n, NODE)` stands for a node against itself, `(n, m,
-    /// place)` for two nodes without common triangles; their radii have been passed.
-    ///
-    /// Every way down comes through one pair of clusters, or one cluster, because the larger node is split first. There
-    /// the walk ends. Following it down to leaves, and moving only their vertices, was tried: where more than a few
-    /// pairs of leaves are open, it takes longer than all blocks of the clusters, and where there are few, not
-    /// noticeably less.
-    pub(crate) fn walk_pairs(&mut self, asked: &Asked<'_>, tree: &PairTree, ends: &Ends<'_, E>) {
-        self.walk.clear();
-        self.walk.push((0, 0, NODE));
-        let mut steps = 0_u32;
-        while let Some((n, m, place)) = self.walk.pop() {
-            steps = steps.wrapping_add(1);
-            if steps.is_multiple_of(STEPS) {
-                self.look(asked);
+/// Finds all hits but exceptions at a norm below the tree's limit. `node_radii`: the radii of all nodes.
+#[expect(clippy::too_many_arguments, reason = "all of them are read in the innermost loop")]
+pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
+    broad: &mut BroadPhase<E>,
+    PairTreeStack(stack): &mut PairTreeStack,
+    context: &Context<'_>,
+    tree: &PairTree,
+    node_radii: &[f64],
+    norm: f64,
+    motion: &M,
+    narrow: &mut N,
+) {
+    stack.clear();
+    stack.push(Visit { nodes: (0, 0), entry: NODE });
+    while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
+        if !broad.continues(context, narrow) {
+            break;
+        }
+        let buckets = &broad.volumes.layout.buckets;
+        if entry == NODE {
+            broad.counters.opened += 1;
+            if let Some(bucket) = buckets.of_node(n) {
+                broad.test_bucket(context, bucket, motion, narrow);
+                continue;
             }
-            if self.is_full() {
-                break;
+            let node = context.hierarchy.nodes()[n as usize];
+            let is_reached = |child: &u32| {
+                let radius = node_radii[*child as usize];
+                right_or!(norm >= radius, TreeNodeRadiusReached, norm > radius)
+            };
+            let children = node.children().filter(is_reached);
+            stack.extend(children.map(|child| Visit { nodes: (child, child), entry: NODE }));
+            let mut pairs = node.child_pairs().enumerate();
+            for (place, stored) in tree.of_node(n) {
+                if let Some((_, nodes)) = pairs.find(|(which, _)| *which == stored.which() as usize)
+                    && is_entry_reached!(stored, norm)
+                {
+                    stack.push(Visit { nodes, entry: place });
+                }
             }
-            if place == NODE {
-                self.walk_within(asked, tree, n, ends);
-            } else {
-                self.walk_between(asked, tree, (n, m, place), ends);
-            }
+            continue;
         }
-    }
-
-    /// A node against itself, whose own radius has been passed.
-    fn walk_within(&mut self, asked: &Asked<'_>, tree: &PairTree, n: u32, ends: &Ends<'_, E>) {
-        self.statistics.opened += 1;
-        if let Some(cluster) = self.boxes.tables.clusters.of_node(n) {
-            self.cluster_within(asked, cluster, ends);
-            return;
+        broad.counters.box_tests += 1;
+        [n, m].iter().for_each(|n| broad.volumes.enclose(*n, motion));
+        if !broad.volumes.node(n).overlaps(broad.volumes.node(m)) {
+            continue;
         }
-        let node = asked.hierarchy.nodes()[n as usize];
-        let radii = asked.used_certificates().map_or(&[][..], |parts| &parts.node_radii);
-        let is_open = |child: &u32| {
-            let radius = radii.get(*child as usize);
-            right_or!(
-                radius.is_none_or(|radius| ends.norm >= *radius),
-                TreeNodeRadiusReached,
-                radius.is_none_or(|radius| ends.norm > *radius)
-            )
-        };
-        self.walk.extend(node.children().filter(is_open).map(|child| (child, child, NODE)));
-        let mut pairs = node.child_pairs().enumerate();
-        for (place, entry) in tree.of_node(n) {
-            if let Some((_, (a, b))) = pairs.find(|(which, _)| *which == entry.which() as usize)
-                && is_entry_passed!(entry, ends.norm)
-            {
-                self.walk.push((a, b, place));
-            }
+        let buckets = &broad.volumes.layout.buckets;
+        if let [Some(a), Some(b)] = [n, m].map(|n| buckets.of_node(n)) {
+            broad.test_bucket_pair(context, (a, b), motion, narrow);
+            continue;
         }
-    }
-
-    /// Two nodes.
-    fn walk_between(
-        &mut self,
-        asked: &Asked<'_>,
-        tree: &PairTree,
-        (n, m, place): (u32, u32, u32),
-        ends: &Ends<'_, E>,
-    ) {
-        self.statistics.box_tests += 1;
-        [n, m].iter().for_each(|n| self.boxes.enclose(*n, ends));
-        if !self.boxes.node(n).overlaps(self.boxes.node(m)) {
-            return;
-        }
-        if let [Some(a), Some(b)] = [n, m].map(|n| self.boxes.tables.clusters.of_node(n)) {
-            self.clusters_between(asked, (a, b), ends);
-            return;
-        }
-        self.statistics.opened += 1;
-        if let Some(split) = asked.hierarchy.split_large(n, m) {
-            for (place, entry) in tree.below(place) {
-                if is_entry_passed!(entry, ends.norm) {
-                    let (a, b) = split.pair(entry.which());
-                    self.walk.push((a, b, place));
+        broad.counters.opened += 1;
+        if let Some(split) = context.hierarchy.split_large(n, m) {
+            for (place, stored) in tree.below(entry) {
+                if is_entry_reached!(stored, norm) {
+                    stack.push(Visit { nodes: split.pair(stored.which()), entry: place });
                 }
             }
         }

@@ -1,14 +1,14 @@
 //! How far the shape can go towards q: the largest certified scale, found through the tree.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::Query;
+use super::query::Query;
 use crate::bounds::{MovingAabb, Path};
 use crate::certificates::PairEntry;
 use crate::geometry::Aabb;
+use crate::heap::MinFirst;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, Error, Pair, PairTree};
 
@@ -25,40 +25,42 @@ impl Query<'_> {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
-        self.begin([q], usize::MAX)?;
-        let path = Path::new(self.asked.model, &self.asked.scope.center, q);
-        let global = self.asked.certificates.map_or(f64::INFINITY, Certificates::global_radius);
+        self.begin(usize::MAX);
+        self.norm = self.measure(q)?.norm;
+        let path = Path::new(self.context.detect.model, &self.context.scope.center, q);
+        let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(path.farthest) * DOWN;
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
-        let boxes = PathBoxes::new(&path, &self.asked.hierarchy, self.asked.model.mesh().faces());
-        for &(x, y) in self.asked.certificates.map_or(&[][..], Certificates::exceptions) {
-            if self.asked.progress.is_cancelled() {
+        let boxes =
+            PathBoxes::new(&path, &self.context.detect.hierarchy, self.context.detect.model.mesh().faces());
+        for &(x, y) in self.context.certificates.map_or(&[][..], Certificates::exceptions) {
+            if self.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             best = best.min(self.follow(&path, (x, y), 0.0, best));
         }
-        let tree = self.asked.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
+        let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
         let mut waiting = BinaryHeap::new();
-        waiting.push(Entry { lower: self.certified_scale(0), n: 0, m: 0, place: NONE });
+        waiting.push(MinFirst { key: self.certified_scale(0), tie: (0, 0), item: NONE });
         // Always what could meet first: everything is followed only a little farther than all others are free.
-        while let Some(Entry { lower, n, m, place }) = waiting.pop() {
+        while let Some(MinFirst { key: lower, tie: (n, m), item: place }) = waiting.pop() {
             if lower >= best {
                 break;
             }
-            if self.asked.progress.is_cancelled() {
+            if self.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            self.discrete.statistics.opened += 1;
+            self.statistics.opened += 1;
             let mut consider = |(n, m): Pair, place: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
                 if lower < best {
-                    waiting.push(Entry { lower, n, m, place });
+                    waiting.push(MinFirst { key: lower, tie: (n, m), item: place });
                 }
             };
-            let [node_n, node_m] = [n, m].map(|n| self.asked.hierarchy.nodes()[n as usize]);
-            let hierarchy = &self.asked.hierarchy;
+            let [node_n, node_m] = [n, m].map(|n| self.context.detect.hierarchy.nodes()[n as usize]);
+            let hierarchy = &self.context.detect.hierarchy;
             if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
                 let ends = place == UNKNOWN || (place != NONE && hierarchy.split_large(n, m).is_none());
                 let certified = if ends {
@@ -72,7 +74,7 @@ impl Query<'_> {
                 }
             } else if node_n.is_leaf() {
                 let goal = (lower * AHEAD).max(best * LEAST).min(best);
-                let triangles = |node| self.asked.hierarchy.triangles(node);
+                let triangles = |node| self.context.detect.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
                     let box_x = &boxes.triangles[x as usize];
@@ -81,9 +83,9 @@ impl Query<'_> {
                     }
                     let first = if n == m { i + 1 } else { 0 };
                     for &y in &triangles(&node_m)[first..] {
-                        self.discrete.statistics.box_tests += 1;
+                        self.statistics.box_tests += 1;
                         if path.boxes_apart(box_x, &boxes.triangles[y as usize]) < goal {
-                            self.discrete.statistics.triangle_tests += 1;
+                            self.statistics.triangle_tests += 1;
                             best = best.min(self.follow(&path, (x, y), lower, goal.min(best)));
                         }
                     }
@@ -93,7 +95,7 @@ impl Query<'_> {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);
                 }
-                let certified = if self.asked.hierarchy.is_whole(n) {
+                let certified = if self.context.detect.hierarchy.is_whole(n) {
                     [(UNKNOWN, 0.0); MOST_SIBLINGS]
                 } else {
                     let stored = tree.map(|tree| tree.of_node(n));
@@ -101,19 +103,19 @@ impl Query<'_> {
                 };
                 for (which, (pair, (place, bound))) in node_n.child_pairs().zip(certified).enumerate() {
                     let radii =
-                        self.asked.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
+                        self.context.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
                     let bound = radii.map_or(bound, |radii| bound.max(self.scale(radii[which])));
                     consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
                 }
             }
         }
-        self.discrete.statistics.complete = true;
+        self.statistics.complete = true;
         Ok(best)
     }
 
     /// The scale up to which a node's own radius certifies it.
     fn certified_scale(&self, node: u32) -> f64 {
-        self.asked.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
+        self.context.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
     }
 
     /// For each of some siblings its place in the pair tree and the scale up to which it is certified, where these are
@@ -139,10 +141,10 @@ impl Query<'_> {
     /// Follows two triangles that do not collide before `t`: infinite when they do not before `goal`, or do not count;
     /// else a scale below which they do not, about where they meet.
     fn follow(&self, path: &Path, (x, y): Pair, t: f64, goal: f64) -> f64 {
-        if self.asked.filter.leaves_out(x, y) {
+        if self.context.detect.filter.leaves_out(x, y) {
             return f64::INFINITY;
         }
-        let hulls = self.asked.filter.hulls(x, y);
+        let hulls = self.context.detect.filter.hulls(x, y);
         hulls.map(|(x, y)| path.follow(x, y, t, goal)).fold(f64::INFINITY, f64::min)
     }
 }
@@ -164,35 +166,6 @@ const UNKNOWN: u32 = u32::MAX - 1;
 
 /// The pairs of the four children that a node has at most.
 const MOST_SIBLINGS: usize = 6;
-
-/// A node against itself (n = m), or two nodes, and a scale below which they do not collide.
-struct Entry {
-    lower: f64,
-    n: u32,
-    m: u32,
-    place: u32,
-}
-
-/// Smallest scale first; then by number, so that the order is always the same.
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower).then_with(|| (other.n, other.m).cmp(&(self.n, self.m)))
-    }
-}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Entry {}
 
 /// For each node and each triangle the box of its vertices at the centre and that of their velocities.
 struct PathBoxes {

@@ -13,11 +13,11 @@ use crate::certificates::build::node_radii::Tally;
 use crate::certificates::build::pair_tree_builder::{Grown, Round, expand};
 use crate::certificates::build::search::{Precision, ROUGH, Search};
 use crate::certificates::{CertifyOptions, Digest, Scope, build::global_radius::global_radius};
+use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
 use crate::model::check_scaled_modes;
-use crate::query::colliding_pairs;
 use crate::{Error, Pair, Progress, ReducedModel};
 
 /// What every task needs to know. Made of the model and the options alone: the same in every process.

@@ -1,158 +1,140 @@
-//! What stands.
+//! Active pairs: the pairs that can collide in the current ball, each with the time at which it must be tested again.
+//!
+//! Time is the distance that z has travelled, which is never shorter than the distance between two of its positions.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::up;
 use crate::Pair;
+use crate::heap::MinFirst;
 use crate::model::DOWN;
 
-/// Pairs whose margins are remembered, for each that a search finds.
-const MOST_KNOWN: usize = 8;
+/// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
+const MAX_REMEMBERED: usize = 8;
 
-/// All pairs that can meet in the ball; the margins of the others are larger.
-///
-/// Places of z are told by the way that it has gone, which is never shorter than a distance between two of them.
+/// A pair that stays apart until z has travelled as far as its key; the next to expire comes first, equal ones by their
+/// triangles.
+pub(super) type SafePair = MinFirst<Pair>;
+
+/// All pairs that can collide in the ball; the safe distances of the others are larger than the ball.
 #[derive(Debug, Default)]
-pub(crate) struct Front {
-    /// The way that z has gone since the last jump, rounded up.
-    pub(crate) way: f64,
-    /// The way at which the ball may be left; 0: there is none.
+pub(super) struct ActivePairs {
+    /// The distance that z has travelled since the last jump, rounded up.
+    pub(super) travelled: f64,
+    /// The travelled distance at which z may leave the ball; 0: there is no ball.
     end: f64,
-    /// An upper bound of the reach of the shape in the ball.
+    /// An upper bound of the magnitude of every term of every position in the ball.
     reach: f64,
-    /// Queries that it answered.
-    pub(crate) steps: u64,
-    /// Pairs that stay apart for a while.
-    pub(crate) apart: BinaryHeap<Standing>,
+    /// Queries that were answered in the ball.
+    pub(super) steps: u64,
+    /// Pairs within their safe distance.
+    pub(super) safe: BinaryHeap<SafePair>,
     /// Pairs that are tested in every step.
-    pub(crate) hot: Vec<Pair>,
-    /// Margins of pairs that earlier searches found, sorted by pair, and scratch for them: most pairs are found again.
-    pub(crate) known: Vec<Standing>,
-    known_next: Vec<Standing>,
+    pub(super) tested: Vec<Pair>,
+    /// Safe pairs that earlier searches found, sorted by pair, and scratch for them: a search finds most pairs again.
+    pub(super) remembered: Vec<SafePair>,
+    next_remembered: Vec<SafePair>,
 }
 
-impl Front {
-    /// Goes a step.
-    pub(crate) fn go(&mut self, step: f64) {
-        self.way = right_or!(up(self.way + step), WayToNearest, self.way + step);
+impl ActivePairs {
+    /// z moves by a step.
+    pub(super) fn advance(&mut self, step: f64) {
+        self.travelled = right_or!(up(self.travelled + step), WayToNearest, self.travelled + step);
     }
 
-    /// Begins to stand: in a ball of this radius around where z is.
-    pub(crate) fn begin(&mut self, radius: f64, reach: f64) {
-        (self.end, self.reach, self.steps) = (self.after(radius), reach, 0);
+    /// Begins a ball of this radius around the current z.
+    pub(super) fn begin_ball(&mut self, radius: f64, reach: f64) {
+        (self.end, self.reach, self.steps) = (self.travelled_after(radius), reach, 0);
     }
 
-    /// No longer stands.
-    pub(crate) fn end(&mut self) {
+    /// Ends the ball.
+    pub(super) fn leave_ball(&mut self) {
         self.end = 0.0;
     }
 
-    /// The way at which z may be as far from here as that, rounded down.
-    fn after(&self, distance: f64) -> f64 {
-        (self.way + distance * DOWN) * DOWN
+    /// The travelled distance at which z may be that far from here, rounded down.
+    fn travelled_after(&self, distance: f64) -> f64 {
+        (self.travelled + distance * DOWN) * DOWN
     }
 
-    /// Keeps a pair that stays apart until z is so far from here; false where that is too near, after rounding.
-    pub(crate) fn keep(&mut self, pair: Pair, margin: f64) -> bool {
-        let until = self.after(margin);
-        if until <= self.way {
+    /// Stores a pair with its safe distance; false if that vanishes in rounding.
+    pub(super) fn store(&mut self, pair: Pair, distance: f64) -> bool {
+        let until = self.travelled_after(distance);
+        if until <= self.travelled {
             return false;
         }
         if until < self.end {
-            self.apart.push(Standing { until, pair });
+            self.safe.push(SafePair::new(until, pair));
         } else if self.steps == 0 {
-            self.known_next.push(Standing { until, pair });
+            self.next_remembered.push(SafePair::new(until, pair));
         }
         true
     }
 
-    /// A pair whose margin is used up, if there is one.
+    /// Removes and returns a pair whose safe distance is used up; none if there is none.
     #[inline]
-    pub(crate) fn expired(&mut self) -> Option<Pair> {
-        // Equality would be a proof here, too: `until` has been rounded down, the way up.
-        let until = self.apart.peek()?.until;
-        if right_or!(until > self.way, MarginReached, until >= self.way) {
+    pub(super) fn next_expired(&mut self) -> Option<Pair> {
+        // Equality would be a proof here, too: the key was rounded down, the travelled distance up.
+        let until = self.safe.peek()?.key;
+        if right_or!(until > self.travelled, MarginReached, until >= self.travelled) {
             return None;
         }
-        self.apart.pop().map(|standing| standing.pair)
+        self.safe.pop().map(|safe| safe.tie)
     }
 
-    /// A query has been answered.
-    pub(crate) fn answered(&mut self) {
+    /// Ends a step.
+    pub(super) fn end_step(&mut self) {
         if self.steps == 0 {
-            std::mem::swap(&mut self.known, &mut self.known_next);
-            self.known.sort_unstable_by_key(|known| known.pair);
+            std::mem::swap(&mut self.remembered, &mut self.next_remembered);
+            self.remembered.sort_unstable_by_key(|safe| safe.tie);
         }
         self.steps += 1;
     }
 
     /// Forgets everything: z has jumped.
-    pub(crate) fn jump(&mut self) {
-        (self.way, self.end) = (0.0, 0.0);
-        self.known.clear();
+    pub(super) fn forget(&mut self) {
+        (self.travelled, self.end) = (0.0, 0.0);
+        self.remembered.clear();
     }
 
-    /// Whether z is in the ball, and the shape's reach as was granted.
-    pub(crate) fn stands(&self, reach: f64) -> bool {
-        self.way < self.end && reach <= self.reach
+    /// Whether z is in the ball, and the reach of the shape at most that in it.
+    pub(super) fn is_in_ball(&self, reach: f64) -> bool {
+        self.travelled < self.end && reach <= self.reach
     }
 
     /// Whether there is a ball.
-    pub(crate) fn has_begun(&self) -> bool {
+    pub(super) fn has_ball(&self) -> bool {
         self.end > 0.0
     }
 
-    /// Takes what a search found, sorted: gives those pairs to `work` that are not known to stay apart in the ball.
-    pub(crate) fn take(&mut self, found: &[Pair], work: &mut Vec<Pair>) {
-        self.apart.clear();
-        self.hot.clear();
-        work.clear();
-        if self.known.len() > MOST_KNOWN * found.len() + 1024 {
-            self.known.clear();
+    /// Takes the pairs that a search found, sorted: puts those on `pending` that are not remembered to stay apart in the
+    /// ball.
+    pub(super) fn take(&mut self, found: &[Pair], pending: &mut Vec<Pair>) {
+        self.safe.clear();
+        self.tested.clear();
+        pending.clear();
+        if self.remembered.len() > MAX_REMEMBERED * found.len() + 1024 {
+            self.remembered.clear();
         }
-        let mut known = self.known.iter().copied().filter(|known| known.until > self.way).peekable();
-        self.known_next.clear();
+        let mut remembered =
+            self.remembered.iter().copied().filter(|safe| safe.key > self.travelled).peekable();
+        self.next_remembered.clear();
         for pair in found {
-            while let Some(earlier) = known.next_if(|known| known.pair < *pair) {
-                self.known_next.push(earlier);
+            while let Some(earlier) = remembered.next_if(|safe| safe.tie < *pair) {
+                self.next_remembered.push(earlier);
             }
-            match known.next_if(|known| known.pair == *pair) {
-                Some(known) if known.until >= self.end => self.known_next.push(known),
-                _ => work.push(*pair),
+            match remembered.next_if(|safe| safe.tie == *pair) {
+                Some(safe) if safe.key >= self.end => self.next_remembered.push(safe),
+                _ => pending.push(*pair),
             }
         }
-        self.known_next.extend(known);
+        self.next_remembered.extend(remembered);
     }
 }
 
-/// Two triangles that stay apart until z has gone so far.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing {
-    pub(crate) until: f64,
-    pub(crate) pair: Pair,
+/// A rounded sum of two numbers that are not negative, rounded up.
+pub(super) fn up(sum: f64) -> f64 {
+    sum * (1.0 + 4.0 * f64::EPSILON)
 }
-
-/// The first to fall is the largest; then by its triangles, so that every run goes the same way.
-impl Ord for Standing {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.until.total_cmp(&self.until).then_with(|| other.pair.cmp(&self.pair))
-    }
-}
-
-impl PartialOrd for Standing {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Standing {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Standing {}
 
 #[cfg(test)]
 mod tests {
@@ -160,61 +142,61 @@ mod tests {
 
     use super::*;
 
-    /// The way against the sum of its steps in exact arithmetic.
+    /// The travelled distance against the sum of its steps in exact arithmetic.
     #[test]
-    fn the_way_is_never_short() {
+    fn the_travelled_distance_is_never_short() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
-        let (mut front, mut sum) = (Front::default(), exact(0.0));
+        let (mut active, mut sum) = (ActivePairs::default(), exact(0.0));
         for i in 0..500 {
             let step = f64::from(i * i % 37 + 1).sqrt() * 0.1_f64.powi(i % 7);
-            front.go(step);
+            active.advance(step);
             sum += exact(step);
-            assert!(exact(front.way) >= sum, "{i}");
+            assert!(exact(active.travelled) >= sum, "{i}");
         }
     }
 
     #[test]
-    fn pairs_fall_in_order_and_never_late() {
-        let mut front = Front::default();
-        let mut work = Vec::new();
-        front.begin(8.0, 1.0);
-        front.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut work);
-        assert_eq!(work, [(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)]);
-        for (pair, margin) in work.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
-            front.keep(*pair, margin);
+    fn pairs_expire_in_order_and_never_late() {
+        let mut active = ActivePairs::default();
+        let mut pending = Vec::new();
+        active.begin_ball(8.0, 1.0);
+        active.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
+        assert_eq!(pending, [(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)]);
+        for (pair, margin) in pending.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
+            active.store(*pair, margin);
         }
-        // Of what rounding eats up, nothing stands.
-        front.go(1.0);
-        assert!(!front.keep((0, 5), 1e-18) && !front.keep((0, 5), 0.0));
-        front.answered();
-        assert_eq!(front.expired(), Some((0, 5)));
-        assert_eq!(front.expired(), None);
-        front.go(0.5);
-        assert_eq!(front.expired(), None);
+        // A distance that vanishes in rounding is none.
+        active.advance(1.0);
+        assert!(!active.store((0, 5), 1e-18) && !active.store((0, 5), 0.0));
+        active.end_step();
+        assert_eq!(active.next_expired(), Some((0, 5)));
+        assert_eq!(active.next_expired(), None);
+        active.advance(0.5);
+        assert_eq!(active.next_expired(), None);
         // A margin used up exactly no longer holds.
-        front.go(0.5);
-        assert_eq!(front.expired(), Some((0, 2)));
-        front.go(5.0);
-        assert_eq!(front.expired(), Some((0, 1)));
-        assert!(front.has_begun() && front.stands(1.0) && !front.stands(1.1));
-        front.go(1.0);
-        assert!(!front.stands(1.0));
+        active.advance(0.5);
+        assert_eq!(active.next_expired(), Some((0, 2)));
+        active.advance(5.0);
+        assert_eq!(active.next_expired(), Some((0, 1)));
+        assert!(active.has_ball() && active.is_in_ball(1.0) && !active.is_in_ball(1.1));
+        active.advance(1.0);
+        assert!(!active.is_in_ball(1.0));
         // In the next ball (8 to 12) one of the others is known to stay apart; one only up to 9.
-        front.end();
-        front.begin(4.0, 1.0);
-        front.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut work);
-        assert_eq!(work, [(0, 2), (0, 3), (1, 2)]);
-        work.drain(..).for_each(|pair| assert!(front.keep(pair, 50.0)));
-        front.answered();
-        front.go(3.0);
-        front.begin(4.0, 1.0);
-        front.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut work);
-        assert_eq!(work, [(0, 1)]);
+        active.leave_ball();
+        active.begin_ball(4.0, 1.0);
+        active.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        assert_eq!(pending, [(0, 2), (0, 3), (1, 2)]);
+        pending.drain(..).for_each(|pair| assert!(active.store(pair, 50.0)));
+        active.end_step();
+        active.advance(3.0);
+        active.begin_ball(4.0, 1.0);
+        active.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        assert_eq!(pending, [(0, 1)]);
         // After a jump nothing is known.
-        front.jump();
-        assert!(!front.has_begun());
-        front.begin(4.0, 1.0);
-        front.take(&[(0, 4)], &mut work);
-        assert_eq!(work, [(0, 4)]);
+        active.forget();
+        assert!(!active.has_ball());
+        active.begin_ball(4.0, 1.0);
+        active.take(&[(0, 4)], &mut pending);
+        assert_eq!(pending, [(0, 4)]);
     }
 }

@@ -1,5 +1,5 @@
-//! How far z may go before two triangles that are apart can meet: the separating-direction bound of certificates (see
-//! `bounds/direction.rs`), about the current z in the place of rest.
+//! Safe distances: how far z may move before two triangles that are apart can collide. This is the separating-direction
+//! bound of certificates ([`direction_bound`]) about the current z instead of the centre.
 
 use glam::DVec3;
 
@@ -9,60 +9,61 @@ use crate::filter::PairFilter;
 use crate::geometry::nearest_to_origin;
 use crate::model::{GapError, ScaledModel, direction};
 
-/// Margins are at most so many times the norm that they are measured at.
-const FAR: f64 = 2.0;
+/// Safe distances are at most this many times the norm of the z about which they are computed.
+const MAX_NORMS: f64 = 2.0;
 
-/// Measures margins. Holds the model in scaled coordinates.
-pub(crate) struct Margins {
+/// Computes safe distances, from the model in scaled coordinates.
+pub(super) struct SafeDistances {
     model: ScaledModel,
     error: GapError,
-    /// No margin is larger: the error is granted that far.
-    most: f64,
+    /// No distance is larger: the rounding bound holds that far.
+    largest: f64,
     projections: Vec<f64>,
 }
 
-impl Margins {
-    pub(crate) fn new(model: ScaledModel) -> Self {
-        Self { error: model.error.within(0.0), most: 0.0, projections: vec![0.0; 6 * model.row], model }
+impl SafeDistances {
+    pub(super) fn new(model: ScaledModel) -> Self {
+        Self { error: model.error.within(0.0), largest: 0.0, projections: vec![0.0; 6 * model.row], model }
     }
 
-    /// From now on margins are about z of at most this norm.
-    pub(crate) fn within(&mut self, norm: f64) {
-        self.most = FAR * norm;
-        self.error = self.model.error.within((1.0 + FAR) * norm);
+    /// Safe distances are about z of at most this norm from now on.
+    pub(super) fn begin(&mut self, norm: f64) {
+        self.largest = MAX_NORMS * norm;
+        self.error = self.model.error.within((1.0 + MAX_NORMS) * norm);
     }
 
-    /// Of two triangles, whose corners are at these computed positions: while z has moved by less, they stay apart.
-    pub(crate) fn triangles(&mut self, filter: &PairFilter, pair: Pair, at: [[DVec3; 3]; 2]) -> f64 {
+    /// The safe distance of two triangles whose corners are at these computed positions: they stay apart until z has moved
+    /// by it.
+    pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
-        let mut margin = self.most;
+        let mut distance = self.largest;
         for (i, j) in filter.hulls_of_corners(pair.0, pair.1) {
-            let modes =
-                |which: usize, corners: [usize; 3]| corners.map(|i| self.model.modes(faces[which][i]));
+            let modes = |which: usize, hull: [usize; 3]| hull.map(|i| self.model.modes(faces[which][i]));
             let pair = TrianglePair {
-                x: i.map(|i| at[0][i]),
-                y: j.map(|j| at[1][j]),
+                x: i.map(|i| corners[0][i]),
+                y: j.map(|j| corners[1][j]),
                 modes_x: modes(0, i),
                 modes_y: modes(1, j),
             };
             let differences = pair.differences();
             let Some(n) = direction(nearest_to_origin(&differences).point) else { return 0.0 };
-            margin = margin.min(direction_bound(&pair, &differences, n, &self.error, &mut self.projections));
+            distance =
+                distance.min(direction_bound(&pair, &differences, n, &self.error, &mut self.projections));
         }
-        margin
+        distance
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::query::kinetic::tests::{Random, strips};
+    use crate::test_models::{Random, strips};
     use crate::{Neighbours, PairRule, Scope};
 
     /// Nothing meets within a margin: looked for at random, and towards where corners come closer fastest. And margins
     /// are not much too small: many are reached up to a tenth.
     #[test]
-    fn nothing_meets_within_a_margin() {
+    fn nothing_collides_within_a_safe_distance() {
         let (mut measured, mut reached) = (0, 0);
         for case in 0..600 {
             let random = &mut Random(case as u64 + 1);
@@ -72,15 +73,16 @@ mod tests {
             let center = (0..rank).map(|_| if case % 5 == 0 { random.signed() } else { 0.0 }).collect();
             let scope = Scope { center, rule: rule.clone(), ..Scope::of(&model) };
             let filter = PairFilter::new(&model, &rule);
-            let mut margins = Margins::new(ScaledModel::new(&model, &scope.metric, &scope.center));
-            margins.within(30.0);
+            let mut distances = SafeDistances::new(ScaledModel::new(&model, &scope.metric, &scope.center));
+            distances.begin(30.0);
             let q: Vec<f64> = scope.center.iter().map(|c| c + random.signed() * 0.7).collect();
             let corners = |t: u32, q: &[f64]| model.mesh().faces()[t as usize].map(|v| model.position(v, q));
             let pairs: Vec<Pair> = (0..half).flat_map(|a| (half..2 * half).map(move |b| (a, b))).collect();
             for pair in pairs.into_iter().step_by(2) {
-                let margin =
-                    margins.triangles(&filter, pair, [corners(pair.0, &q), corners(pair.1, &q)]).min(50.0);
-                if margin == 0.0 {
+                let distance = distances
+                    .of_triangles(&filter, pair, [corners(pair.0, &q), corners(pair.1, &q)])
+                    .min(50.0);
+                if distance == 0.0 {
                     continue;
                 }
                 measured += 1;
@@ -108,9 +110,9 @@ mod tests {
                     };
                     if length > 0.0 {
                         for share in [0.3, 0.7, 0.9, 0.99, 1.0 - 1e-9] {
-                            assert!(!meets(&step(margin * share)), "case {case}, margin {margin}");
+                            assert!(!meets(&step(distance * share)), "case {case}, distance {distance}");
                         }
-                        near |= [1.05, 1.1, 1.2, 1.5, 2.0].iter().any(|share| meets(&step(margin * share)));
+                        near |= [1.05, 1.1, 1.2, 1.5, 2.0].iter().any(|share| meets(&step(distance * share)));
                     }
                 }
                 reached += usize::from(near);

@@ -2,56 +2,12 @@
 
 use glam::DVec3;
 
-use super::*;
-use crate::{CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, TriMesh};
-
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    /// In [-1, 1).
-    pub(crate) fn signed(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
-        (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
-    }
-
-    pub(crate) fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-}
-
-/// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
-/// metric that is not diagonal.
-pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
-    let half = 2 + case as u32 % 4;
-    let gap = 0.05 + 0.5 * random.signed().abs();
-    let p: Vec<DVec3> = (0..2 * (half + 2))
-        .map(|i| {
-            let (i, side) = (i % (half + 2), f64::from(i / (half + 2)));
-            DVec3::new(f64::from(i) * 0.3, f64::from(i % 2) * 0.5, side * gap) + random.vector() * 0.05
-        })
-        .collect();
-    let strip = |first: u32| (0..half).map(move |i| [first + i, first + i + 1, first + i + 2]);
-    // In one piece every third time.
-    let second = if case.is_multiple_of(3) { half } else { half + 2 };
-    let faces: Vec<[u32; 3]> = strip(0).chain(strip(second)).collect();
-    let rank = 1 + case % 4;
-    let ways: Vec<[DVec3; 3]> =
-        (0..rank).map(|_| [random.vector(), random.vector(), random.vector()]).collect();
-    let noise = 0.1 * random.signed().max(0.0);
-    let modes = p.iter().flat_map(|x| {
-        ways.iter().map(|[w, u, v]| *w * x.dot(*u) + *v + random.vector() * noise).collect::<Vec<_>>()
-    });
-    let modes = Modes::new(rank, modes.collect()).unwrap();
-    let mesh = TriMesh::new(p, faces).unwrap();
-    let mut factor = vec![0.0; rank * rank];
-    for i in 0..rank {
-        (i..rank).for_each(|j| {
-            factor[i * rank + j] = if i == j { 1.0 + random.signed() * 0.5 } else { random.signed() }
-        });
-    }
-    let metric = Metric::from_factor(MetricKind::Given, rank, factor).unwrap();
-    (ReducedModel::with_metric(mesh, modes, metric).unwrap(), half)
-}
+use super::kinetic_query::KineticQuery;
+use crate::test_models::Random;
+use crate::{
+    Certificates, CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, Query,
+    ReducedModel, TriMesh,
+};
 
 /// Two wavy sheets one above the other, in one piece with a third one between them every second time; modes bring them
 /// together, tilt, bend and shear them.
@@ -129,25 +85,25 @@ impl Pairing<'_> {
     fn ask(&mut self, z: &[f64], random: &mut Random, seen: &mut Seen) {
         let scope = &self.certificates.parts().scope;
         let q: Vec<f64> = scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
-        self.kinetic.pace.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
-        self.kinetic.pace.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
-        self.kinetic.pace.plain = self.kinetic.pace.plain.max(1_000_000);
-        let stood = self.kinetic.front.has_begun();
-        let apart = self.kinetic.front.apart.len();
+        self.kinetic.control.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
+        self.kinetic.control.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
+        self.kinetic.control.plain_cost = self.kinetic.control.plain_cost.max(1_000_000);
+        let stood = self.kinetic.active.has_ball();
+        let apart = self.kinetic.active.safe.len();
         let expected = self.oracle.discrete(&q).unwrap();
         let found = self.kinetic.discrete(&q).unwrap();
         assert_eq!(found, expected);
         let begins = !self.colliding && !found.is_empty();
         self.colliding = !found.is_empty();
-        let front = &self.kinetic.front;
+        let active = &self.kinetic.active;
         seen.steps += 1;
         seen.root_certified_within += usize::from(stood && self.kinetic.statistics().root_certified);
-        if front.steps == 1 && front.has_begun() {
+        if active.steps == 1 && active.has_ball() {
             seen.balls += 1;
-            seen.known += front.known.len();
+            seen.known += active.remembered.len();
             self.norm = self.kinetic.norm();
-        } else if stood && front.has_begun() {
-            seen.expired += apart.saturating_sub(front.apart.len());
+        } else if stood && active.has_ball() {
+            seen.expired += apart.saturating_sub(active.safe.len());
             seen.begun += usize::from(begins);
             let root = self.certificates.root_radius();
             seen.begun_beyond += usize::from(begins && self.norm < 1.02 * root);
@@ -222,13 +178,13 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                     pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
                 }
                 // Towards a pair that stands.
-                let Some(standing) = pairing.kinetic.front.apart.peek().copied() else { continue };
+                let Some(standing) = pairing.kinetic.active.safe.peek().copied() else { continue };
                 if random.signed() < 0.8 {
                     continue;
                 }
                 seen.aimed += 1;
-                let margin = standing.until - pairing.kinetic.front.way;
-                let [a, b] = [standing.pair.0, standing.pair.1]
+                let margin = standing.key - pairing.kinetic.active.travelled;
+                let [a, b] = [standing.tie.0, standing.tie.1]
                     .map(|f| model.mesh().faces()[f as usize][(random.signed().abs() * 3.0) as usize % 3]);
                 let q: Vec<f64> =
                     scope.metric.unscaled(&z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
@@ -280,20 +236,20 @@ fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
     };
     for t in [2.0, -3.0, 1.5, -2.0] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.front.has_begun() && !kinetic.pace.has_paid);
+        assert!(!kinetic.active.has_ball() && !kinetic.control.has_paid);
     }
-    kinetic.pace.plain = 1_000_000;
+    kinetic.control.plain_cost = 1_000_000;
     for i in 0..40 {
         kinetic.discrete(&q(-2.0 + f64::from(i) * 1e-6)).unwrap();
     }
-    assert!(kinetic.front.has_begun());
+    assert!(kinetic.active.has_ball());
     kinetic.discrete(&q(2.0)).unwrap();
-    assert!(kinetic.front.has_begun());
+    assert!(kinetic.active.has_ball());
     kinetic.discrete(&q(2.0 + 1e-6)).unwrap();
-    assert_eq!(kinetic.front.steps, 2);
+    assert_eq!(kinetic.active.steps, 2);
     // A ball of two steps tells nothing, however dear plain queries were.
     for t in [-2.0, 2.0, -1.5] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.front.has_begun());
+        assert!(!kinetic.active.has_ball());
     }
 }

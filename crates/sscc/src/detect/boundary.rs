@@ -1,46 +1,47 @@
-//! Boundaries of patches of the surface, and the contour test: whether one, projected to a plane, meets itself.
+//! Boundaries of nodes as patches of the surface, and the contour test: whether a boundary, projected to a plane, intersects
+//! itself.
 
+use super::vertex_store::VertexStore;
 use crate::TriMesh;
-use crate::detect::vertices::Vertices;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 
-/// Rounding of a sum of two products of differences, as a share of the sum of their magnitudes: each difference and
+/// Rounding bound of a sum of two products of differences, relative to the sum of their magnitudes: each difference and
 /// product is rounded once, and they are added up.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The boundaries of nodes.
 #[derive(Default)]
-pub(crate) struct Contours {
-    /// For each node where its boundary starts, and the end.
+pub(crate) struct NodeBoundaries {
+    /// For each node the start of its boundary, and the end of all.
     starts: Vec<u32>,
     vertices: Vec<u32>,
 }
 
-impl Contours {
-    /// Of the nodes for which `is_asked` holds; each vertex by its place.
+impl NodeBoundaries {
+    /// The boundaries of the nodes for which `is_wanted` holds; each vertex by its index in the layout.
     pub(crate) fn new(
         mesh: &TriMesh,
         hierarchy: &Hierarchy,
         filter: &PairFilter,
-        places: &Vertices,
-        is_asked: impl Fn(u32) -> bool,
+        store: &VertexStore,
+        is_wanted: impl Fn(u32) -> bool,
     ) -> Self {
         // A class may be named after a vertex that no triangle has.
-        let mut place_of_class = vec![0; filter.class_count()];
+        let mut index_of_class = vec![0; filter.class_count()];
         for (t, face) in mesh.faces().iter().enumerate() {
             let classes = filter.classes(t as u32);
             classes
                 .iter()
                 .zip(face)
-                .for_each(|(class, v)| place_of_class[*class as usize] = places.place(*v));
+                .for_each(|(class, v)| index_of_class[*class as usize] = store.index_of(*v));
         }
         let (mut starts, mut vertices) = (vec![0], Vec::new());
         for (n, node) in hierarchy.nodes().iter().enumerate() {
-            if is_asked(n as u32) {
+            if is_wanted(n as u32) {
                 let faces = hierarchy.triangles(node).iter().map(|t| filter.classes(*t));
                 let boundary = single_boundary(faces).unwrap_or_default();
-                vertices.extend(boundary.into_iter().map(|class| place_of_class[class as usize]));
+                vertices.extend(boundary.into_iter().map(|class| index_of_class[class as usize]));
             }
             starts.push(vertices.len() as u32);
         }

@@ -1,34 +1,35 @@
-//! What is known of every q that the root's certificate covers.
+//! The ball that the root's certificate covers: every q in it is valid, so that a query need not check it.
 
+use super::context::QueryContext;
 use crate::limits;
-use crate::query::context::Asked;
 
-/// A ball about the centre in which every q is a configuration of the model: nothing else need be asked of it.
+/// A ball about the centre in which every q is a configuration of the model.
 #[derive(Clone, Copy)]
-pub(crate) struct Near {
+pub(super) struct RootBall {
     /// At most the root's radius; 0 where there is no such ball.
-    pub(crate) radius: f64,
-    /// An upper bound of the shape's reach in it.
-    pub(crate) reach: f64,
+    pub(super) radius: f64,
+    /// An upper bound of the magnitude of every term of every position at any q in it.
+    pub(super) reach: f64,
 }
 
 /// Covers a few roundings for each mode.
 const UP: f64 = 1.0 + 1e-9;
 
-impl Near {
-    pub(crate) fn new(asked: &Asked<'_>) -> Self {
-        let (model, scope) = (asked.model, &asked.scope);
-        let nowhere = Self { radius: 0.0, reach: 0.0 };
-        let Some(parts) = asked.used_certificates().filter(|_| scope.metric.dense_factor().is_none()) else {
-            return nowhere;
+impl RootBall {
+    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+        let (model, scope) = (context.detect.model, &context.scope);
+        let none = Self { radius: 0.0, reach: 0.0 };
+        let Some(parts) = context.used_certificates().filter(|_| scope.metric.dense_factor().is_none())
+        else {
+            return none;
         };
-        // A mode's share of the motion where all of |z| is its own.
+        // How far a mode alone moves vertices at |z| = 1.
         let unit = |(k, scale): (usize, f64)| model.moved_by(k, UP / scale);
         let rate = scope.metric.scales().into_iter().enumerate().map(unit).map(|x| x * x).sum::<f64>().sqrt();
         let radius = parts.node_radii[0];
         let reach = (model.reach(&scope.center) + radius * rate) * UP;
-        // Not where it is no number, either.
-        if reach * UP <= limits::LARGEST { Self { radius, reach } } else { nowhere }
+        // NaN must fail this test, too.
+        if reach * UP <= limits::LARGEST { Self { radius, reach } } else { none }
     }
 }
 
@@ -51,28 +52,28 @@ mod tests {
     }
 
     #[test]
-    fn no_q_that_is_near_reaches_farther() {
+    fn no_q_in_the_ball_reaches_farther() {
         for center in [vec![0.0; 3], vec![1e-3, -2e-5, 1e-7]] {
             let model = model(vec![1.0, 1e3, 3e6]);
             let options = CertifyOptions { center: Some(center.clone()), ..CertifyOptions::default() };
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let query = Query::new(&model, &certificates).unwrap();
-            assert_eq!(query.near.radius, certificates.root_radius());
+            assert_eq!(query.root_ball.radius, certificates.root_radius());
             let mut largest = 0.0_f64;
             for i in 0..1000 {
                 let z: Vec<f64> = (0..3).map(|k| (f64::from(i) * (k as f64 + 1.3)).sin()).collect();
                 let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
-                let z: Vec<f64> = z.iter().map(|z| z / length * query.near.radius).collect();
+                let z: Vec<f64> = z.iter().map(|z| z / length * query.root_ball.radius).collect();
                 let d = model.metric().unscaled(&z);
                 let q: Vec<f64> = center.iter().zip(d).map(|(c, d)| c + d).collect();
                 largest = largest.max(model.reach(&q));
             }
-            assert!(largest <= query.near.reach && largest > 0.7 * query.near.reach, "{largest}");
+            assert!(largest <= query.root_ball.reach && largest > 0.7 * query.root_ball.reach, "{largest}");
         }
     }
 
     #[test]
-    fn a_q_that_is_none_is_refused() {
+    fn invalid_q_are_refused() {
         let model = model(vec![1.0, 1e3, 3e6]);
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         let mut query = Query::new(&model, &certificates).unwrap();

@@ -1,12 +1,12 @@
-//! Whether triangles are apart, in single precision: most of those whose boxes overlap are.
+//! A separating-axis test in single precision, which rejects most triangle pairs whose boxes overlap.
 
 use glam::{Vec3A, Vec4};
 
-/// Whether two triangles certainly have no point in common at either end, nor on the straight way between: a direction
-/// separates them at both. Coordinates are within [-1, 1] up to `margin`, by which they may be wrong along each axis.
+/// Whether two triangles certainly have no point in common at either end, nor on the straight lines between: one direction
+/// separates them at both. Coordinates are within [-1, 1], up to `error`, the bound of their error along each axis.
 #[inline]
-pub(crate) fn are_apart<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], margin: f32) -> bool {
-    if !margin.is_finite() {
+pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
+    if !error.is_finite() {
         return false;
     }
     let origin: [Vec4; E] = std::array::from_fn(|end| x[0][end]);
@@ -16,12 +16,12 @@ pub(crate) fn are_apart<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], 
     let (e, f) = (edges(&a), edges(&b));
     let (m, n) = (e[0].cross(e[1]), f[0].cross(f[1]));
     let between = (b[0][0] + b[1][0] + b[2][0]) - (a[0][0] + a[1][0] + a[2][0]);
-    // What separates most often comes first: one of the other is in the way of neighbours in a smooth surface.
-    Directions::new([between, m, n, m.cross(n)]).separate(&a, &b, margin)
+    // The directions that separate most often come first.
+    Directions::new([between, m, n, m.cross(n)]).separate(&a, &b, error)
         || Directions::new([e[0].cross(m), e[1].cross(m), e[2].cross(m), f[0].cross(n)])
-            .separate(&a, &b, margin)
+            .separate(&a, &b, error)
         || Directions::new([f[1].cross(n), f[2].cross(n), e[0].cross(f[0]), e[1].cross(f[1])])
-            .separate(&a, &b, margin)
+            .separate(&a, &b, error)
 }
 
 /// Four directions side by side.
@@ -35,15 +35,15 @@ impl Directions {
         Self { axes: [0, 1, 2].map(|axis| Vec4::from_array(all.map(|v| v[axis]))) }
     }
 
-    /// Whether one of them has all of one triangle before all of the other, at each end, by more than what positions
-    /// and sums are wrong by. In units of |d| (the sum over axes): positions 2 margins; differences, products and sums
-    /// about 20 units of 2^-24, where a margin is at least 14.
+    /// Whether one of them has all of one triangle before all of the other, at each end, by more than the error of
+    /// positions and sums. In units of |d| (the sum over axes): positions 2 errors; differences, products and sums about 20
+    /// units of 2^-24, where the error bound is at least 14.
     #[inline]
-    fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], margin: f32) -> bool {
+    fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
-        // What underflows is far less than the last.
-        let margins = right_or!(4.0, ApartSlackHalved, 2.0) * margin;
-        let slack = (x.abs() + y.abs() + z.abs()) * margins + f32::MIN_POSITIVE;
+        // Underflow is far less than the last term.
+        let errors = right_or!(4.0, ApartSlackHalved, 2.0) * error;
+        let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut apart = [u32::MAX; 2];
         for end in 0..E {
@@ -62,7 +62,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::query::kinetic::tests::Random;
+    use crate::test_models::Random;
     use crate::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
 
     /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a
@@ -95,7 +95,7 @@ mod tests {
                     [(x + off).as_vec3().extend(f32::NAN)]
                 })
             };
-            let said = are_apart(&wrong(a), &wrong(b), margin as f32);
+            let said = are_separated(&wrong(a), &wrong(b), margin as f32);
             let meet = intersect_triangle_triangle(&a, &b);
             assert!(!(said && meet), "case {case}: {a:?} {b:?}");
             apart += usize::from(said);
@@ -125,7 +125,10 @@ mod tests {
             assert!(intersect_triangle_triangle(&a, &b));
             let away = normal.signum() * margin;
             let moved = |t: [DVec3; 3], by: DVec3| t.map(|x| [(x + by).as_vec3().extend(f32::NAN)]);
-            assert!(!are_apart(&moved(a, -away), &moved(b, away), margin as f32), "case {case}: {a:?} {b:?}");
+            assert!(
+                !are_separated(&moved(a, -away), &moved(b, away), margin as f32),
+                "case {case}: {a:?} {b:?}"
+            );
             used += 1;
         }
         assert!(used > 4000, "{used}");
@@ -147,7 +150,7 @@ mod tests {
             let mapped = |ends: &[[DVec3; 3]; 2]| {
                 [0, 1, 2].map(|corner| [0, 1].map(|end| ends[end][corner].as_vec3().extend(f32::NAN)))
             };
-            let said = are_apart(&mapped(&a), &mapped(&b), 1e-6);
+            let said = are_separated(&mapped(&a), &mapped(&b), 1e-6);
             let [x, y] = [a, b].map(|[t0, t1]| MovingTriangle { t0, t1 });
             let meet = impact_triangle_triangle(&x, &y, 1e-12).is_some();
             assert!(!(said && meet), "case {case}: {a:?} {b:?}");

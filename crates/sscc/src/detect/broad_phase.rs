@@ -1,0 +1,193 @@
+//! One search after the other: the broad phase with its volumes, its stack and its counters.
+//!
+//! A search begins, visits nodes and node pairs ([`traversal`](super::traversal), or a traversal of a higher layer by the
+//! same tests), tests buckets ([`bucket_pair`](super::bucket_pair)) and hands triangle pairs whose boxes overlap to its
+//! [`NarrowPhase`].
+
+use std::sync::Arc;
+
+use super::context::Context;
+use super::layout::Layout;
+use super::narrow_phase::NarrowPhase;
+use super::node_volumes::NodeVolumes;
+use super::normal_cones::NormalCones;
+use super::vertex_motion::VertexMotion;
+use crate::filter::Relation;
+use crate::geometry::Aabb;
+use crate::{Error, Pair};
+
+/// Triangle tests between two checks whether the search was cancelled: one test may take a millisecond.
+const TESTS_PER_CHECK: u64 = 64;
+
+/// Nodes visited between two checks. A visit takes at most about 10 microseconds, triangle tests apart.
+const VISITS_PER_CHECK: u32 = 1024;
+
+/// Boxes of single triangles compared between two checks.
+const BOXES_PER_CHECK: u64 = 1024;
+
+/// What a search cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counters {
+    /// Nodes and node pairs that were opened.
+    pub(crate) opened: u64,
+    /// Pairs of boxes compared.
+    pub(crate) box_tests: u64,
+    /// Pairs of triangles tested exactly.
+    pub(crate) triangle_tests: u64,
+}
+
+/// Volumes and scratch memory of searches with `E` ends.
+#[derive(Clone)]
+pub(crate) struct BroadPhase<const E: usize> {
+    pub(crate) volumes: NodeVolumes<E>,
+    /// Of methods that use them, at one configuration.
+    pub(super) cones: Option<NormalCones>,
+    /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
+    pub(super) stack: Vec<Pair>,
+    visits: u32,
+    is_cancelled: bool,
+    pub(crate) counters: Counters,
+}
+
+impl<const E: usize> BroadPhase<E> {
+    /// Lazy searches compute boxes where they look, others refit all of them first. Cones are those of the method, if it
+    /// uses any.
+    pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool, cones: Option<NormalCones>) -> Self {
+        Self {
+            volumes: NodeVolumes::new(layout, is_lazy),
+            cones: cones.filter(|_| E == 1),
+            stack: Vec::new(),
+            visits: 0,
+            is_cancelled: false,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Resets the counters.
+    #[inline]
+    pub(crate) fn begin(&mut self) {
+        self.is_cancelled = false;
+        self.counters = Counters::default();
+    }
+
+    /// Starts a search: all boxes are those of this motion from now on.
+    pub(crate) fn begin_volumes(&mut self, context: &Context<'_>, motion: &impl VertexMotion<E>) {
+        self.volumes.begin(&context.hierarchy, motion);
+        if let Some(cones) = &mut self.cones {
+            cones.update(&context.hierarchy, &self.volumes);
+        }
+    }
+
+    /// Checks whether the search was cancelled: then it ends like one whose limit is reached.
+    pub(crate) fn check_cancelled<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) {
+        if context.progress.is_cancelled() {
+            self.is_cancelled = true;
+            narrow.hits().stop();
+        }
+    }
+
+    /// Counts a visit of a node, and checks now and then. False if the search is to end.
+    #[inline]
+    pub(crate) fn continues<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
+        self.visits = self.visits.wrapping_add(1);
+        if self.visits.is_multiple_of(VISITS_PER_CHECK) {
+            self.check_cancelled(context, narrow);
+        }
+        !narrow.hits().is_full()
+    }
+
+    /// Counts a test of two triangles, and checks now and then.
+    #[inline]
+    pub(super) fn count_triangle_test<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) {
+        self.counters.triangle_tests += 1;
+        if self.counters.triangle_tests.is_multiple_of(TESTS_PER_CHECK) {
+            self.check_cancelled(context, narrow);
+        }
+    }
+
+    /// The end of a search.
+    ///
+    /// # Errors
+    /// When it was cancelled; then there are no hits.
+    pub(crate) fn end<N: NarrowPhase<E>>(&mut self, narrow: &mut N) -> Result<(), Error> {
+        if !self.is_cancelled {
+            return Ok(());
+        }
+        narrow.hits().found.clear();
+        Err(Error::Cancelled)
+    }
+
+    /// Tests two triangles whose boxes overlap.
+    #[inline]
+    pub(crate) fn test_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        a: TriangleCorners,
+        b: TriangleCorners,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        if self.is_cancelled {
+            return;
+        }
+        let (a, b) = if a.triangle < b.triangle { (a, b) } else { (b, a) };
+        let pair = (a.triangle, b.triangle);
+        let relation = context.filter.relation(pair.0, pair.1);
+        if relation == Relation::Adjacent {
+            return;
+        }
+        self.count_triangle_test(context, narrow);
+        [a, b].iter().for_each(|t| self.volumes.move_corners(t.vertices, motion));
+        let [a, b] = [a, b].map(|t| self.volumes.corners(t.vertices));
+        if let Some(hit) = N::test(&context.filter, relation, pair, &a, &b)
+            && !context.filter.leaves_out(pair.0, pair.1)
+            && !context.is_exception(pair)
+            && !narrow.hits().is_full()
+        {
+            narrow.hits().found.push(hit);
+        }
+    }
+
+    /// Tests the exceptions, one by one.
+    pub(crate) fn test_exceptions<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        for &pair in right_or!(context.exceptions, ExceptionsForgotten, &[]) {
+            if narrow.hits().is_full() {
+                return;
+            }
+            let [a, b] = [pair.0, pair.1].map(|t| {
+                let vertices = self.triangle(context, t).vertices;
+                self.volumes.move_corners(vertices, motion);
+                self.volumes.corners(vertices)
+            });
+            self.counters.box_tests += 1;
+            if self.counters.box_tests.is_multiple_of(BOXES_PER_CHECK) {
+                self.check_cancelled(context, narrow);
+            }
+            if Aabb::of_swept_triangle(&a).is_disjoint(&Aabb::of_swept_triangle(&b)) {
+                continue;
+            }
+            self.count_triangle_test(context, narrow);
+            let relation = context.filter.relation(pair.0, pair.1);
+            let hit = N::test(&context.filter, relation, pair, &a, &b);
+            narrow.hits().found.extend(hit);
+        }
+    }
+
+    /// A triangle of the mesh with the indices of its vertices in the layout.
+    pub(crate) fn triangle(&self, context: &Context<'_>, triangle: u32) -> TriangleCorners {
+        let face = context.model.mesh().faces()[triangle as usize];
+        TriangleCorners { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }
+    }
+}
+
+/// A triangle and its vertices, by their indices in the layout.
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleCorners {
+    pub(crate) triangle: u32,
+    pub(crate) vertices: [u32; 3],
+}

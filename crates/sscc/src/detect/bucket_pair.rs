@@ -1,0 +1,110 @@
+//! Tests of a bucket against itself and of two buckets: packets of boxes against packets, down to triangle pairs.
+
+use super::broad_phase::{BroadPhase, TriangleCorners};
+use super::context::Context;
+use super::narrow_phase::NarrowPhase;
+use super::node_volumes::BucketSlot;
+use super::packet::{LANES, Lanes};
+use super::vertex_motion::VertexMotion;
+use crate::Pair;
+
+/// A packet: its bucket and its lane there.
+#[derive(Clone, Copy)]
+struct BucketLane {
+    bucket: u32,
+    lane: usize,
+}
+
+impl<const E: usize> BroadPhase<E> {
+    /// Tests a bucket against itself.
+    pub(crate) fn test_bucket<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        bucket: u32,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        self.volumes.open_bucket(bucket, motion);
+        for i in 0..self.volumes.layout.buckets.packets(bucket).len() {
+            self.counters.box_tests += LANES as u64;
+            let packets = self.volumes.packets(bucket);
+            let later = packets.overlapping_lane(packets, i).0 >> i << i;
+            for j in Lanes(later) {
+                let [first, second] = [i, j as usize].map(|lane| BucketLane { bucket, lane });
+                self.test_packet_pair(context, first, second, motion, narrow);
+            }
+        }
+    }
+
+    /// Tests two buckets.
+    pub(crate) fn test_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        (n, m): Pair,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        self.counters.opened += 1;
+        // Masks of adjacency are stored with the packet of the lower number.
+        let (n, m) = (n.min(m), n.max(m));
+        [n, m].iter().for_each(|bucket| self.volumes.open_bucket(*bucket, motion));
+        let [x, y] = [n, m].map(|bucket| *self.volumes.node(self.volumes.layout.buckets.node(bucket)));
+        self.counters.box_tests += 1;
+        if !x.overlaps(&y) {
+            return;
+        }
+        self.counters.box_tests += LANES as u64;
+        for i in self.volumes.packets(n).overlapping(&y) {
+            self.counters.box_tests += LANES as u64;
+            for j in self.volumes.packets(m).overlapping_lane(self.volumes.packets(n), i as usize) {
+                let first = BucketLane { bucket: n, lane: i as usize };
+                let second = BucketLane { bucket: m, lane: j as usize };
+                self.test_packet_pair(context, first, second, motion, narrow);
+            }
+        }
+    }
+
+    /// Tests two packets whose boxes overlap, the second not before the first, or one packet against itself.
+    #[inline]
+    fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        x: BucketLane,
+        y: BucketLane,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        let buckets = &self.volumes.layout.buckets;
+        let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
+        // Most triangles of a packet stay clear of the whole other packet.
+        let rows = self.volumes.triangles(first).overlapping_lane(self.volumes.packets(y.bucket), y.lane);
+        let columns =
+            self.volumes.triangles(second).overlapping_lane(self.volumes.packets(x.bucket), x.lane).0;
+        self.counters.box_tests += 2 * LANES as u64;
+        let masked = buckets.adjacency.masked_pairs(first, second);
+        let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
+        for row in rows {
+            let open = columns & !(masked >> (LANES as u32 * row)) as u32;
+            if open == 0 {
+                continue;
+            }
+            self.counters.box_tests += LANES as u64;
+            let overlapping =
+                self.volumes.triangles(second).overlapping_lane(self.volumes.triangles(first), row as usize);
+            for column in Lanes(overlapping.0 & open) {
+                let slots = [start_x + row as usize, start_y + column as usize];
+                let [a, b] = [(x, slots[0]), (y, slots[1])]
+                    .map(|(packet, slot)| BucketSlot { bucket: packet.bucket, slot });
+                if self.volumes.are_separated(a, b) {
+                    continue;
+                }
+                let buckets = &self.volumes.layout.buckets;
+                let [a, b] = slots.map(|slot| TriangleCorners {
+                    triangle: buckets.triangle(slot),
+                    vertices: buckets.corners()[slot],
+                });
+                self.test_triangles(context, a, b, motion, narrow);
+            }
+        }
+    }
+}

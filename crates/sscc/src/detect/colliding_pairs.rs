@@ -1,0 +1,55 @@
+//! The colliding pairs at one configuration by the traditional method: for what certificates leave out.
+
+use std::borrow::Cow;
+
+use super::broad_phase::BroadPhase;
+use super::context::Context;
+use super::layout::Needs;
+use super::narrow_phase::DiscreteHits;
+use super::vertex_motion::Deformed;
+use crate::hierarchy::Hierarchy;
+use crate::{Error, Pair, PairRule, Progress, ReducedModel};
+
+/// A mesh with more colliding pairs than this at rest (128 MiB of them) is no surface that anybody would deform.
+const MAX_PAIRS: usize = 1 << 24;
+
+/// All colliding pairs at q, sorted.
+///
+/// # Errors
+/// When q is no configuration of the model, there are more than 2^24 pairs, or `progress` cancels.
+pub(crate) fn colliding_pairs(
+    model: &ReducedModel,
+    hierarchy: &Hierarchy,
+    rule: &PairRule,
+    q: &[f64],
+    progress: &dyn Progress,
+) -> Result<Vec<Pair>, Error> {
+    let reach = model.check_coordinates(q)?;
+    let context = Context::new(model, Cow::Borrowed(hierarchy), rule, &[], Some(Needs::REFIT));
+    let context = Context { progress, ..context };
+    let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
+    let mut narrow = DiscreteHits::default();
+    let motion = Deformed::new([q], reach);
+    narrow.0.begin(MAX_PAIRS);
+    broad.begin_volumes(&context, &motion);
+    broad.traverse(&context, (0, 0), &motion, &mut narrow);
+    broad.end(&mut narrow)?;
+    if !narrow.0.is_complete() {
+        return Err(Error::TooManyCollisions { most: MAX_PAIRS });
+    }
+    let mut pairs = narrow.0.found;
+    pairs.sort_unstable();
+    Ok(pairs)
+}
+
+impl PairRule {
+    /// The same rule, which also ignores the pairs that collide at rest (q = 0).
+    ///
+    /// # Errors
+    /// When they are more than 2^24.
+    pub fn ignoring_rest(self, model: &ReducedModel) -> Result<Self, Error> {
+        let hierarchy = Hierarchy::build(model, model.metric());
+        let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
+        Ok(self.ignoring(pairs))
+    }
+}

@@ -1,0 +1,80 @@
+//! Exact positions of vertices in one search, each computed at most once.
+
+use glam::{DVec3, Vec4};
+
+use super::frame::Frame;
+use super::layout::Layout;
+use super::vertex_motion::VertexMotion;
+use crate::geometry::Aabb;
+
+/// Positions in double precision and in the frame, each with the number of the search for which it is current.
+#[derive(Clone)]
+pub(crate) struct ExactPositions<const E: usize> {
+    search: u32,
+    frame: Frame,
+    exact: Vec<[DVec3; E]>,
+    mapped: Vec<[Vec4; E]>,
+    searches: Vec<u32>,
+}
+
+impl<const E: usize> ExactPositions<E> {
+    pub(crate) fn new(count: usize) -> Self {
+        Self {
+            search: 0,
+            frame: Frame::default(),
+            exact: vec![[DVec3::ZERO; E]; count],
+            mapped: vec![[Vec4::ZERO; E]; count],
+            searches: vec![0; count],
+        }
+    }
+
+    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `whole` chooses the
+    /// frame.
+    pub(crate) fn begin(&mut self, search: u32, whole: Aabb) {
+        if search == 1 {
+            self.searches.fill(0);
+        }
+        self.search = search;
+        self.frame = Frame::around(whole);
+    }
+
+    /// Moves all vertices.
+    pub(crate) fn move_all(&mut self, layout: &Layout, motion: &impl VertexMotion<E>) {
+        self.searches.fill(self.search);
+        // Four vertices side by side were no faster: this waits for memory.
+        for (v, (x, mapped)) in self.exact.iter_mut().zip(&mut self.mapped).enumerate() {
+            *x = motion.positions(layout, v as u32);
+            *mapped = x.map(|x| self.frame.map(x));
+        }
+    }
+
+    /// Moves a vertex that has not been moved in this search.
+    #[inline]
+    pub(crate) fn move_vertex(&mut self, layout: &Layout, vertex: u32, motion: &impl VertexMotion<E>) {
+        let i = vertex as usize;
+        if self.searches[i] != self.search {
+            self.exact[i] = motion.positions(layout, vertex);
+            self.mapped[i] = self.exact[i].map(|x| self.frame.map(x));
+            self.searches[i] = self.search;
+        }
+    }
+
+    /// The positions of three moved vertices, at each end.
+    #[inline]
+    pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
+        let corners = vertices.map(|v| &self.exact[v as usize]);
+        std::array::from_fn(|end| corners.map(|x| x[end]))
+    }
+
+    /// The same in the frame, corner by corner.
+    #[inline]
+    pub(crate) fn mapped(&self, vertices: [u32; 3]) -> [[Vec4; E]; 3] {
+        vertices.map(|v| self.mapped[v as usize])
+    }
+
+    /// The frame of this search.
+    #[inline]
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+}

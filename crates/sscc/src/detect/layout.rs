@@ -1,0 +1,71 @@
+//! The model as the detector reads it: everything that does not depend on q, shared by all searches and their clones.
+
+use super::bd_tree::BdTree;
+use super::boundary::NodeBoundaries;
+use super::buckets::Buckets;
+use super::coarse_vertices::CoarseVertices;
+use super::quantization::Quantization;
+use super::vertex_store::VertexStore;
+use crate::ReducedModel;
+use crate::filter::PairFilter;
+use crate::hierarchy::Hierarchy;
+
+/// What the searches of a detector need beside vertices and buckets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Needs {
+    /// BD-tree AABBs of all nodes down to buckets; else of the root alone.
+    pub(crate) bd_tree: bool,
+    /// Quantized vertices; without them boxes are computed from exact positions.
+    pub(crate) coarse: bool,
+    /// The boundaries of nodes, for the contour test of normal cones.
+    pub(crate) boundaries: bool,
+}
+
+impl Needs {
+    /// For searches that compute boxes only where they look.
+    pub(crate) const LAZY: Self = Self { bd_tree: true, coarse: true, boundaries: false };
+
+    /// For searches that refit all boxes first.
+    pub(crate) const REFIT: Self = Self { bd_tree: false, coarse: true, boundaries: false };
+
+    /// For searches that refit all boxes and compute normals, from exact positions.
+    pub(crate) const NORMALS: Self = Self { bd_tree: false, coarse: false, boundaries: true };
+}
+
+/// Vertices, buckets, and what [`Needs`] names.
+#[derive(Default)]
+pub(crate) struct Layout {
+    pub(crate) vertices: VertexStore,
+    pub(crate) quantization: Quantization,
+    pub(crate) coarse: CoarseVertices,
+    pub(crate) buckets: Buckets,
+    pub(crate) bd_tree: BdTree,
+    pub(crate) boundaries: NodeBoundaries,
+}
+
+impl Layout {
+    pub(crate) fn new(
+        model: &ReducedModel,
+        hierarchy: &Hierarchy,
+        filter: &PairFilter,
+        needs: Needs,
+    ) -> Self {
+        let mut buckets = Buckets::new(model.mesh(), hierarchy, filter);
+        let vertices = VertexStore::new(model, buckets.all_vertices());
+        buckets.renumber(|v| vertices.index_of(v));
+        let is_visited = |n| buckets.of_node(n).is_none_or(|bucket| buckets.node(bucket) == n);
+        let quantization = Quantization::new(model, &vertices);
+        let bd_tree = BdTree::new(model, hierarchy, &quantization, |n| needs.bd_tree && is_visited(n));
+        let boundaries = if needs.boundaries {
+            NodeBoundaries::new(model.mesh(), hierarchy, filter, &vertices, is_visited)
+        } else {
+            NodeBoundaries::default()
+        };
+        let coarse = if needs.coarse {
+            CoarseVertices::new(&quantization, &buckets, &vertices)
+        } else {
+            CoarseVertices::default()
+        };
+        Self { vertices, quantization, coarse, buckets, bd_tree, boundaries }
+    }
+}

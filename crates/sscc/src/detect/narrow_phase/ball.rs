@@ -1,0 +1,32 @@
+//! The narrow phase of kinetic searches: triangles that may collide at some configuration in a ball.
+
+use glam::DVec3;
+
+use super::{Hits, NarrowPhase};
+use crate::Pair;
+use crate::filter::{PairFilter, Relation};
+use crate::geometry::Aabb;
+
+/// The pairs whose boxes overlap; the two ends are the lowest and the highest coordinates of each corner in the ball.
+#[derive(Clone, Default)]
+pub(crate) struct BallHits(pub(crate) Hits<Pair>);
+
+impl NarrowPhase<2> for BallHits {
+    type Hit = Pair;
+
+    #[inline]
+    fn test(
+        _: &PairFilter,
+        _: Relation,
+        pair: Pair,
+        a: &[[DVec3; 3]; 2],
+        b: &[[DVec3; 3]; 2],
+    ) -> Option<Pair> {
+        (!Aabb::of_swept_triangle(a).is_disjoint(&Aabb::of_swept_triangle(b))).then_some(pair)
+    }
+
+    #[inline]
+    fn hits(&mut self) -> &mut Hits<Pair> {
+        &mut self.0
+    }
+}

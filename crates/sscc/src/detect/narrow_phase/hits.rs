@@ -1,0 +1,43 @@
+//! The hits of one search, up to a limit.
+
+/// Hits, and whether the limit stopped the search.
+#[derive(Clone)]
+pub(crate) struct Hits<T> {
+    pub(crate) found: Vec<T>,
+    limit: usize,
+    is_full: bool,
+}
+
+impl<T> Default for Hits<T> {
+    fn default() -> Self {
+        Self { found: Vec::new(), limit: usize::MAX, is_full: false }
+    }
+}
+
+impl<T> Hits<T> {
+    /// Forgets all hits and starts a search for at most `limit` of them.
+    #[inline]
+    pub(crate) fn begin(&mut self, limit: usize) {
+        self.found.clear();
+        self.limit = limit;
+        self.is_full = false;
+    }
+
+    /// Whether the limit is reached. Called where there is something left to test: the answer is incomplete then.
+    #[inline]
+    pub(crate) fn is_full(&mut self) -> bool {
+        self.is_full |= self.found.len() >= self.limit;
+        self.is_full
+    }
+
+    /// Whether the limit never stopped the search.
+    #[inline]
+    pub(crate) fn is_complete(&self) -> bool {
+        !self.is_full
+    }
+
+    /// Ends the search as soon as it asks whether the limit is reached.
+    pub(crate) fn stop(&mut self) {
+        self.limit = 0;
+    }
+}

@@ -1,0 +1,275 @@
+//! Bounding volumes of nodes, buckets, packets and triangles in one search, each computed at most once.
+//!
+//! All are AABBs in the single precision of a [`Frame`](super::frame::Frame). Where a search has two ends, a box contains
+//! both, hence the straight lines between them. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
+//! 2004), computed where the traversal looks. A bucket gets tight boxes, from its vertices, when it is opened: BD-tree AABBs
+//! of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel or not. The
+//! traditional method refits everything first.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec4};
+
+use super::exact_positions::ExactPositions;
+use super::layout::Layout;
+use super::narrow_phase::are_separated;
+use super::packet::{Aabb8, AabbF32};
+use super::quantization::CoarseMotion;
+use super::vertex_motion::VertexMotion;
+use crate::geometry::Aabb;
+use crate::hierarchy::Hierarchy;
+
+/// The boxes of one search and the positions from which they are computed. Each entry has the number of the search for
+/// which it is current.
+#[derive(Clone)]
+pub(crate) struct NodeVolumes<const E: usize> {
+    pub(crate) layout: Arc<Layout>,
+    is_lazy: bool,
+    search: u32,
+    positions: ExactPositions<E>,
+    /// Whether boxes of triangles are computed from coarse positions.
+    is_coarse: bool,
+    motion: CoarseMotion<E>,
+    coarse: Vec<[Vec4; E]>,
+    /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
+    corner_error: f32,
+    /// The box of each node that is a bucket or larger.
+    nodes: Vec<AabbF32>,
+    node_searches: Vec<u32>,
+    /// The boxes of the children of each node larger than a bucket.
+    children: Vec<Aabb8>,
+    children_searches: Vec<u32>,
+    /// The boxes of the packets of each bucket.
+    packets: Vec<Aabb8>,
+    packets_searches: Vec<u32>,
+    /// The boxes of the triangles of each packet.
+    triangles: Vec<Aabb8>,
+}
+
+impl<const E: usize> NodeVolumes<E> {
+    /// Lazy volumes are computed where a traversal looks, others all at the start of each search.
+    pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool) -> Self {
+        let (nodes, buckets) = (layout.buckets.node_count(), layout.buckets.count());
+        Self {
+            layout: Arc::clone(layout),
+            is_lazy,
+            search: 0,
+            positions: ExactPositions::new(layout.vertices.count()),
+            is_coarse: false,
+            motion: CoarseMotion::default(),
+            coarse: layout.coarse.new_positions(),
+            corner_error: f32::INFINITY,
+            nodes: vec![AabbF32::EMPTY; nodes],
+            node_searches: vec![0; nodes],
+            children: vec![Aabb8::EMPTY; nodes],
+            children_searches: vec![0; nodes],
+            packets: vec![Aabb8::EMPTY; buckets],
+            packets_searches: vec![0; buckets],
+            triangles: vec![Aabb8::EMPTY; layout.buckets.packet_count()],
+        }
+    }
+
+    /// Starts a new search: forgets all boxes, or, where they are not lazy, refits all of them.
+    pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
+        let layout = Arc::clone(&self.layout);
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 {
+            [&mut self.node_searches, &mut self.children_searches, &mut self.packets_searches]
+                .into_iter()
+                .for_each(|searches| searches.fill(0));
+            self.search = 1;
+        }
+        self.positions.begin(self.search, motion.whole(&layout));
+        let (frame, rounding) = (self.positions.frame(), motion.rounding());
+        let coarse_motion = &mut self.motion;
+        self.is_coarse = !layout.coarse.is_empty()
+            && motion
+                .coarse_coordinates()
+                .is_some_and(|q| layout.quantization.begin(coarse_motion, q, frame, rounding));
+        self.corner_error = if !M::HAS_ERROR_BOUND {
+            f32::INFINITY
+        } else if self.is_coarse {
+            self.motion.error
+        } else {
+            frame.error_bound(rounding)
+        };
+        if !self.is_lazy {
+            self.refit(&layout, hierarchy, motion);
+        }
+    }
+
+    /// Computes all boxes from all vertices, bottom-up.
+    fn refit<M: VertexMotion<E>>(&mut self, layout: &Layout, hierarchy: &Hierarchy, motion: &M) {
+        if !self.is_coarse {
+            self.positions.move_all(layout, motion);
+        }
+        for bucket in 0..layout.buckets.count() as u32 {
+            self.refit_bucket(bucket, motion);
+        }
+        for n in (0..hierarchy.nodes().len() as u32).rev() {
+            if layout.buckets.of_node(n).is_none() {
+                let union = self.gather_children(hierarchy, n);
+                self.set_node(n, union);
+            }
+        }
+    }
+
+    /// The box of a node that has been enclosed, or whose parent or bucket has been opened.
+    #[inline]
+    pub(crate) fn node(&self, n: u32) -> &AabbF32 {
+        &self.nodes[n as usize]
+    }
+
+    /// The boxes of the children of an open node.
+    #[inline]
+    pub(crate) fn children(&self, n: u32) -> &Aabb8 {
+        &self.children[n as usize]
+    }
+
+    /// The boxes of the packets of an open bucket.
+    #[inline]
+    pub(crate) fn packets(&self, bucket: u32) -> &Aabb8 {
+        &self.packets[bucket as usize]
+    }
+
+    /// The boxes of the triangles of a packet of an open bucket.
+    #[inline]
+    pub(crate) fn triangles(&self, packet: usize) -> &Aabb8 {
+        &self.triangles[packet]
+    }
+
+    /// Makes the boxes of the children of a node larger than a bucket current.
+    #[inline]
+    pub(crate) fn open_node<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, n: u32, motion: &M) {
+        if self.children_searches[n as usize] != self.search {
+            let children = hierarchy.nodes()[n as usize].children();
+            children.for_each(|child| self.enclose(child, motion));
+            self.gather_children(hierarchy, n);
+        }
+    }
+
+    /// Makes all boxes within a bucket current.
+    #[inline]
+    pub(crate) fn open_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
+        if self.packets_searches[bucket as usize] != self.search {
+            if !self.is_coarse {
+                let layout = &*self.layout;
+                let vertices = layout.buckets.vertices(bucket).iter();
+                vertices.for_each(|&v| self.positions.move_vertex(layout, v, motion));
+            }
+            self.refit_bucket(bucket, motion);
+        }
+    }
+
+    /// Makes the box of a node current that is a bucket or larger.
+    #[inline]
+    pub(crate) fn enclose<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
+        if self.node_searches[n as usize] != self.search {
+            if self.is_coarse
+                && let Some(aabb) = self.layout.bd_tree.coarse(n, &self.motion)
+            {
+                self.set_node(n, aabb.widened(self.slack(n, motion)));
+                return;
+            }
+            let frame = self.positions.frame();
+            // A node without a box of its own overlaps everything.
+            let aabb = motion.node_box(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
+                AabbF32 { lower: frame.map(lower), upper: frame.map(upper) }
+            });
+            self.set_node(n, aabb);
+        }
+    }
+
+    /// Computes all boxes of a bucket; where exact positions are needed, its vertices have been moved.
+    fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
+        let Layout { buckets, coarse, .. } = &*self.layout;
+        let n = buckets.node(bucket);
+        let mut by = Vec4::ZERO;
+        if self.is_coarse {
+            coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
+            by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
+        }
+        let mut whole = AabbF32::EMPTY;
+        for (lane, packet) in buckets.packets(bucket).enumerate() {
+            let mut union = AabbF32::EMPTY;
+            for (i, slot) in buckets.slots(packet).enumerate() {
+                let triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
+                self.triangles[packet].set(i, &triangle);
+                union = union.union(&triangle);
+            }
+            self.packets[bucket as usize].set(lane, &union);
+            whole = whole.union(&union);
+        }
+        self.packets_searches[bucket as usize] = self.search;
+        self.set_node(n, whole);
+    }
+
+    /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
+    #[inline]
+    fn slack<M: VertexMotion<E>>(&self, n: u32, motion: &M) -> Vec4 {
+        motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
+            let slack = slack * (self.positions.frame().scale() * (1.0 + 1e-5));
+            // Finite, as all corners of boxes are that contain something.
+            slack.as_vec3().extend(0.0).min(Vec4::MAX)
+        })
+    }
+
+    #[inline]
+    fn set_node(&mut self, n: u32, aabb: AabbF32) {
+        self.nodes[n as usize] = aabb;
+        self.node_searches[n as usize] = self.search;
+    }
+
+    /// Gathers the current boxes of a node's children in its packet, and returns their union.
+    fn gather_children(&mut self, hierarchy: &Hierarchy, n: u32) -> AabbF32 {
+        let mut union = AabbF32::EMPTY;
+        for (lane, child) in hierarchy.nodes()[n as usize].children().enumerate() {
+            let child = &self.nodes[child as usize];
+            self.children[n as usize].set(lane, child);
+            union = union.union(child);
+        }
+        self.children_searches[n as usize] = self.search;
+        union
+    }
+
+    /// Whether two triangles certainly have no point in common, as far as single precision can tell. Each is given by an
+    /// open bucket and a slot of it.
+    #[inline]
+    pub(crate) fn are_separated(&self, a: BucketSlot, b: BucketSlot) -> bool {
+        are_separated(
+            &self.mapped_corners(a.bucket, a.slot),
+            &self.mapped_corners(b.bucket, b.slot),
+            self.corner_error,
+        )
+    }
+
+    /// The corners of the triangle in a slot of a bucket, in the frame.
+    #[inline]
+    fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
+        let Layout { buckets, coarse, .. } = &*self.layout;
+        if self.is_coarse {
+            coarse.corners(bucket, slot, &self.coarse)
+        } else {
+            self.positions.mapped(buckets.corners()[slot])
+        }
+    }
+
+    /// Moves three vertices to their exact positions.
+    #[inline]
+    pub(crate) fn move_corners<M: VertexMotion<E>>(&mut self, vertices: [u32; 3], motion: &M) {
+        vertices.iter().for_each(|&v| self.positions.move_vertex(&self.layout, v, motion));
+    }
+
+    /// The exact positions of three moved vertices, at each end.
+    #[inline]
+    pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
+        self.positions.corners(vertices)
+    }
+}
+
+/// A slot and the bucket that it belongs to.
+#[derive(Clone, Copy)]
+pub(crate) struct BucketSlot {
+    pub(crate) bucket: u32,
+    pub(crate) slot: usize,
+}

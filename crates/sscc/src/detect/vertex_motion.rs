@@ -1,0 +1,89 @@
+//! Where vertices come from in one search: the sources of positions and boxes that the detector is generic over.
+//!
+//! A search has `E` ends: one configuration (1), or the start and the end of a motion (2). Sources are dispatched
+//! statically: positions deformed by modes ([`Deformed`]), all positions in a ball of configurations
+//! ([`BallMotion`](super::ball_motion::BallMotion)), and deformed positions in the world
+//! ([`PosedMotion`](crate::posed)).
+
+use glam::DVec3;
+
+use super::layout::Layout;
+use crate::geometry::Aabb;
+
+/// Positions and boxes at the `E` ends of a search.
+pub(crate) trait VertexMotion<const E: usize> {
+    /// Whether mapped positions are within a known bound of the exact ones, so that triangles can be separated in single
+    /// precision.
+    const HAS_ERROR_BOUND: bool;
+
+    /// An upper bound, along each axis, of the rounding error of positions and of boxes in double precision.
+    fn rounding(&self) -> f64;
+
+    /// A box around about all positions, which chooses the [`Frame`](super::frame::Frame). Any box is right.
+    fn whole(&self, layout: &Layout) -> Aabb;
+
+    /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
+    fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
+
+    /// How much farther than coarse positions at these coordinates the vertices of a node may be, along each axis.
+    fn coarse_slack(&self, node: u32) -> Option<DVec3>;
+
+    /// The exact positions of a vertex, by its index in the layout.
+    fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E];
+
+    /// A box around all positions of a node's vertices, computed without them; none for a node that has no such box.
+    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb>;
+}
+
+/// Positions deformed by the modes: at q, or on straight lines from one q to another.
+#[derive(Clone, Copy)]
+pub(crate) struct Deformed<'q, const E: usize> {
+    q: [&'q [f64]; E],
+    rounding: f64,
+}
+
+impl<'q, const E: usize> Deformed<'q, E> {
+    /// `reach`: an upper bound of the magnitude of every term of every position, at each end.
+    pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
+        Self { q, rounding: rounding_bound(reach, q[0].len()) }
+    }
+}
+
+impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
+    const HAS_ERROR_BOUND: bool = true;
+
+    #[inline]
+    fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
+    #[inline]
+    fn whole(&self, layout: &Layout) -> Aabb {
+        layout.bd_tree.root(self.q, DVec3::splat(self.rounding))
+    }
+
+    #[inline]
+    fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
+        Some(self.q)
+    }
+
+    #[inline]
+    fn coarse_slack(&self, _node: u32) -> Option<DVec3> {
+        None
+    }
+
+    #[inline]
+    fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E] {
+        layout.vertices.position(vertex, self.q)
+    }
+
+    #[inline]
+    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+        layout.bd_tree.at(node, self.q, DVec3::splat(self.rounding))
+    }
+}
+
+/// What rounding can add to a BD-tree box and to positions: well above the 2 (r + 1) roundings of each.
+pub(crate) fn rounding_bound(reach: f64, rank: usize) -> f64 {
+    right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
+}

@@ -1,0 +1,45 @@
+//! Where a shape is in the world.
+
+use glam::{DMat3, DVec3};
+
+use crate::geometry::Aabb;
+
+/// Where a shape is: `x -> rotation x + translation`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Any matrix; for a rigid motion a rotation.
+    pub rotation: DMat3,
+    /// Added after it (model unit).
+    pub translation: DVec3,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self { rotation: DMat3::IDENTITY, translation: DVec3::ZERO }
+    }
+}
+
+impl Pose {
+    /// The position in the world of a point of the shape: products and sums in f64, in a fixed order, none fused.
+    #[inline]
+    pub fn apply(&self, x: DVec3) -> DVec3 {
+        self.rotation * x + self.translation
+    }
+
+    /// A box around the world positions of all points of a box; `rounding` bounds the rounding error.
+    #[inline]
+    pub(super) fn enclose(&self, Aabb { lower, upper }: Aabb, rounding: f64) -> Aabb {
+        let [x, y, z] = [self.rotation.x_axis, self.rotation.y_axis, self.rotation.z_axis].map(DVec3::abs);
+        let half = (upper - lower) * 0.5;
+        let half = x * half.x + y * half.y + z * half.z + DVec3::splat(rounding);
+        let center = self.apply(lower * 0.5 + upper * 0.5);
+        Aabb { lower: center - half, upper: center + half }
+    }
+
+    /// An upper bound (up to rounding) of every sum of magnitudes where a coordinate of the shape is at most `reach`.
+    pub(super) fn reach(&self, reach: f64) -> f64 {
+        let r = &self.rotation;
+        let row = r.x_axis.abs() + r.y_axis.abs() + r.z_axis.abs();
+        row.max_element() * reach + self.translation.abs().max_element()
+    }
+}

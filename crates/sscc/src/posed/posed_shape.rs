@@ -1,0 +1,319 @@
+//! A shape in the world, tested against others: BD-trees in their own axes, rotated and moved.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+
+use super::pose::Pose;
+use super::posed_motion::PosedMotion;
+use crate::detect::context::Context;
+use crate::detect::layout::{Layout, Needs};
+use crate::detect::node_volumes::NodeVolumes;
+use crate::detect::vertex_motion::VertexMotion;
+use crate::geometry::Aabb;
+use crate::{Certificates, Error, Pair, ReducedModel, intersect_triangle_triangle, limits};
+
+/// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
+/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
+/// repeated calls allocate nothing; clones share what does not change.
+#[derive(Clone)]
+pub struct PosedShape<'a> {
+    context: Context<'a>,
+    volumes: NodeVolumes<1>,
+    motion: PosedMotion,
+    /// Whether the volumes are those of this motion.
+    is_current: bool,
+    stack: Vec<Pair>,
+}
+
+impl<'a> PosedShape<'a> {
+    /// A shape at q = 0 in its own axes. Of the certificates only the hierarchy is used.
+    ///
+    /// # Errors
+    /// When the certificates were computed for another model.
+    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+        certificates.check_model(model)?;
+        let hierarchy = Cow::Borrowed(certificates.hierarchy());
+        let context = Context::new(model, hierarchy, certificates.rule(), &[], Some(Needs::LAZY));
+        let volumes = NodeVolumes::new(&context.layout, true);
+        let q = vec![0.0; model.rank()];
+        let reach = model.check_coordinates(&q)?;
+        let motion = PosedMotion { q, pose: Pose::default(), around: Aabb::default(), reach };
+        Ok(Self { context, volumes, motion, is_current: false, stack: Vec::new() })
+    }
+
+    /// Deforms and moves the shape, and returns a box around it in the world, at a cost of O(r).
+    ///
+    /// # Errors
+    /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
+    pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
+        let reach = pose.reach(self.context.model.check_coordinates(q)?);
+        // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
+        let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
+        if !(is_finite && reach * 1.001 <= limits::LARGEST) {
+            return Err(Error::CoordinatesRange);
+        }
+        self.motion.q.copy_from_slice(q);
+        self.motion.pose = *pose;
+        self.motion.reach = reach;
+        self.is_current = false;
+        let rounding = self.motion.rounding();
+        let whole = self.volumes.layout.bd_tree.root([q], DVec3::splat(rounding));
+        Ok(pose.enclose(whole, rounding))
+    }
+
+    /// Adds all pairs (triangle of this shape, triangle of the other one) that have a point in common, sorted;
+    /// touching counts. `around`: a box around about all shapes that are compared. Any box is right; volumes are computed
+    /// once after each [`PosedShape::place`] while it stays the same.
+    pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
+        let first = found.len();
+        self.enter(around);
+        other.enter(around);
+        let mut stack = std::mem::take(&mut self.stack);
+        stack.clear();
+        if self.volumes.node(0).overlaps(other.volumes.node(0)) {
+            stack.push((0, 0));
+        }
+        while let Some((n, m)) = stack.pop() {
+            match [self.bucket(n), other.bucket(m)] {
+                [Some(a), Some(b)] => self.test_buckets(a, other, b, found),
+                // A node larger than a bucket is opened.
+                [None, Some(_)] => {
+                    self.open(n);
+                    let first_child = self.first_child(n);
+                    let open = self.volumes.children(n).overlapping(other.volumes.node(m));
+                    stack.extend(open.map(|i| (first_child + i, m)));
+                }
+                [Some(_), None] => {
+                    other.open(m);
+                    let first_child = other.first_child(m);
+                    let open = other.volumes.children(m).overlapping(self.volumes.node(n));
+                    stack.extend(open.map(|j| (n, first_child + j)));
+                }
+                [None, None] => {
+                    self.open(n);
+                    other.open(m);
+                    let [x, y] = [self.first_child(n), other.first_child(m)];
+                    for i in self.volumes.children(n).overlapping(other.volumes.node(m)) {
+                        let open =
+                            other.volumes.children(m).overlapping_lane(self.volumes.children(n), i as usize);
+                        stack.extend(open.map(|j| (x + i, y + j)));
+                    }
+                }
+            }
+        }
+        self.stack = stack;
+        found[first..].sort_unstable();
+    }
+
+    /// Adds the used vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
+    pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
+        let first = found.len();
+        let Layout { vertices, buckets, bd_tree, .. } = &*self.volumes.layout;
+        let PosedMotion { q, pose, .. } = &self.motion;
+        let local = pose.rotation.transpose() * normal;
+        let height = height - normal.dot(pose.translation);
+        let rounding = DVec3::splat(self.motion.rounding());
+        self.stack.clear();
+        self.stack.push((0, 0));
+        while let Some((n, _)) = self.stack.pop() {
+            let is_above = bd_tree.at(n, [q], rounding).is_some_and(|Aabb { lower, upper }| {
+                let half = (upper - lower) * 0.5;
+                local.dot((upper + lower) * 0.5) - local.abs().dot(half) > height
+            });
+            if is_above {
+                continue;
+            }
+            if let Some(bucket) = buckets.of_node(n) {
+                let below = |v: &&u32| local.dot(vertices.position(**v, [q])[0]) < height;
+                found.extend(buckets.vertices(bucket).iter().filter(below).map(|v| vertices.mesh_vertex(*v)));
+            } else {
+                self.stack.extend(self.context.hierarchy.nodes()[n as usize].children().map(|n| (n, 0)));
+            }
+        }
+        // Buckets have vertices in common.
+        found[first..].sort_unstable();
+        let mut kept = first;
+        for i in first..found.len() {
+            if kept == first || found[kept - 1] != found[i] {
+                found[kept] = found[i];
+                kept += 1;
+            }
+        }
+        found.truncate(kept);
+    }
+
+    /// The corners of a triangle in the world, bit for bit those of all answers.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let face = self.context.model.mesh().faces()[triangle as usize];
+        face.map(|v| self.motion.pose.apply(self.context.model.position(v, &self.motion.q)))
+    }
+
+    /// Starts a search in the frame of this box, unless the last one was the same.
+    fn enter(&mut self, around: Aabb) {
+        if !self.is_current || self.motion.around != around {
+            self.motion.around = around;
+            self.is_current = true;
+            self.volumes.begin(&self.context.hierarchy, &self.motion);
+            self.volumes.enclose(0, &self.motion);
+        }
+    }
+
+    fn bucket(&self, node: u32) -> Option<u32> {
+        self.volumes.layout.buckets.of_node(node)
+    }
+
+    fn first_child(&self, node: u32) -> u32 {
+        self.context.hierarchy.nodes()[node as usize].first_child
+    }
+
+    fn open(&mut self, node: u32) {
+        self.volumes.open_node(&self.context.hierarchy, node, &self.motion);
+    }
+
+    /// Tests two buckets whose boxes overlap.
+    fn test_buckets(&mut self, a: u32, other: &mut Self, b: u32, found: &mut Vec<Pair>) {
+        self.volumes.open_bucket(a, &self.motion);
+        other.volumes.open_bucket(b, &other.motion);
+        let [buckets_x, buckets_y] = [&self.volumes.layout.buckets, &other.volumes.layout.buckets];
+        let box_y = other.volumes.node(buckets_y.node(b));
+        if !self.volumes.node(buckets_x.node(a)).overlaps(box_y) {
+            return;
+        }
+        let [packets_x, packets_y] = [self.volumes.packets(a), other.volumes.packets(b)];
+        for i in packets_x.overlapping(box_y) {
+            let packet_x = buckets_x.packets(a).start + i as usize;
+            for j in packets_y.overlapping_lane(packets_x, i as usize) {
+                let packet_y = buckets_y.packets(b).start + j as usize;
+                // Most triangles of a packet stay clear of the whole other packet.
+                let triangles_x = self.volumes.triangles(packet_x);
+                for row in triangles_x.overlapping_lane(packets_y, j as usize) {
+                    let triangles_y = other.volumes.triangles(packet_y);
+                    for column in triangles_y.overlapping_lane(triangles_x, row as usize) {
+                        let slot_x = buckets_x.slots(packet_x).start + row as usize;
+                        let slot_y = buckets_y.slots(packet_y).start + column as usize;
+                        let [x] = self.volumes.corners(buckets_x.corners()[slot_x]);
+                        let [y] = other.volumes.corners(buckets_y.corners()[slot_y]);
+                        if intersect_triangle_triangle(&x, &y) {
+                            found.push((buckets_x.triangle(slot_x), buckets_y.triangle(slot_y)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+    use crate::{CertifyOptions, Modes, TriMesh};
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    /// A crumpled ball of loose triangles, with modes.
+    fn model(triangles: usize, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> = (0..triangles)
+            .flat_map(|_| {
+                let center = vector(state);
+                [(); 3].map(|()| center + vector(state) * 0.1)
+            })
+            .collect();
+        let faces = (0..triangles as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = positions.iter().flat_map(|p| [*p * 0.3, DVec3::new(p.y, -p.z, p.x * p.x)]).collect();
+        ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn pairs_are_those_of_all_triangles() {
+        let state = &mut 7;
+        let models = [model(400, state), model(150, state), model(40, state), model(9, state)];
+        let certificates = models.each_ref().map(|model| {
+            Certificates::compute(model, &CertifyOptions { budget: 0, ..CertifyOptions::default() }, &())
+                .unwrap()
+        });
+        let mut shapes: Vec<PosedShape<'_>> =
+            models.iter().zip(&certificates).map(|(m, c)| PosedShape::new(m, c).unwrap()).collect();
+        let (mut found, mut empty) = (0, 0);
+        for case in 0..60 {
+            // From on top of each other to apart; sometimes far from the origin.
+            let far = if case % 3 == 0 { DVec3::new(1e6, -3.0, 2e3) } else { DVec3::ZERO };
+            for shape in &mut shapes {
+                let rotation = DMat3::from_quat(glam::DQuat::from_scaled_axis(vector(state) * 3.0));
+                let translation = vector(state) * (0.05 * f64::from(case)) + far;
+                let q = [random(state), random(state)];
+                let pose = Pose { rotation, translation };
+                let Aabb { lower, upper } = shape.place(&q, &pose).unwrap();
+                for t in 0..shape.context.model.mesh().faces().len() as u32 {
+                    let corners = shape.corners(t);
+                    assert!(corners.iter().all(|x| x.cmpge(lower).all() && x.cmple(upper).all()));
+                }
+                // Half of it below.
+                let normal = vector(state).normalize();
+                let height = normal.dot(translation) + random(state);
+                let mut below = Vec::new();
+                shape.vertices_below(normal, height, &mut below);
+                let vertices = 0..shape.context.model.mesh().rest_positions().len() as u32;
+                let is_below =
+                    |v: &u32| normal.dot(pose.apply(shape.context.model.position(*v, &q))) < height;
+                assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());
+            }
+            // Any box is right, also one turned round.
+            let [a, b] = if case % 2 == 0 { [far - 2.0, far + 2.0] } else { [far + 2.0, far - 2.0] };
+            let around = Aabb { lower: a, upper: b };
+            for a in 0..shapes.len() {
+                for b in 0..a {
+                    let (left, right) = shapes.split_at_mut(a);
+                    let (x, y) = (&mut left[b], &mut right[0]);
+                    let mut pairs = Vec::new();
+                    x.colliding(y, around, &mut pairs);
+                    let mut expected = Vec::new();
+                    for i in 0..x.context.model.mesh().faces().len() as u32 {
+                        for j in 0..y.context.model.mesh().faces().len() as u32 {
+                            if intersect_triangle_triangle(&x.corners(i), &y.corners(j)) {
+                                expected.push((i, j));
+                            }
+                        }
+                    }
+                    assert_eq!(pairs, expected);
+                    found += pairs.len();
+                    empty += usize::from(pairs.is_empty());
+                    // Asked from the other side, with other boxes.
+                    let mut turned = vec![(0, 0)];
+                    y.colliding(x, Aabb { lower: far - 1e3, upper: far + 1.0 }, &mut turned);
+                    let mut turned: Vec<Pair> = turned.drain(1..).map(|(j, i)| (i, j)).collect();
+                    turned.sort_unstable();
+                    assert_eq!(turned, expected);
+                }
+            }
+        }
+        assert!(found > 200 && empty > 200, "{found} {empty}");
+    }
+
+    #[test]
+    fn what_has_no_place_is_refused() {
+        let model = model(20, &mut 3);
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let mut shape = PosedShape::new(&model, &certificates).unwrap();
+        for wrong in [f64::NAN, f64::INFINITY, 1e61] {
+            for axis in 0..3 {
+                let mut moved = Pose::default();
+                moved.translation[axis] = wrong;
+                assert_eq!(shape.place(&[0.0; 2], &moved), Err(Error::CoordinatesRange));
+            }
+            let turned = Pose { rotation: DMat3::IDENTITY * wrong, ..Pose::default() };
+            assert_eq!(shape.place(&[0.0; 2], &turned), Err(Error::CoordinatesRange));
+        }
+        assert!(matches!(shape.place(&[0.0], &Pose::default()), Err(Error::CoordinatesLength { .. })));
+    }
+}

@@ -1,0 +1,54 @@
+//! Which traversal a search makes at a norm: of the pair tree where that is complete, else by Algorithm 1 with the
+//! certificates of nodes, else without certificates.
+
+use super::certified_traversal::traverse_certified;
+use super::context::QueryContext;
+use super::pair_tree_traversal::{PairTreeStack, traverse_pair_tree};
+use crate::detect::broad_phase::BroadPhase;
+use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::vertex_motion::VertexMotion;
+
+/// The broad phase of a search, and the stack for the pair tree.
+#[derive(Clone)]
+pub(super) struct CertifiedSearch<const E: usize> {
+    pub(super) broad: BroadPhase<E>,
+    stack: PairTreeStack,
+}
+
+impl<const E: usize> CertifiedSearch<E> {
+    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+        let layout = &context.detect.layout;
+        let broad = BroadPhase::new(layout, context.method.is_lazy(), context.cones());
+        Self { broad, stack: PairTreeStack::default() }
+    }
+
+    /// Finds all hits but exceptions. `norm`: the largest `|z|` of the motion. A certificate holds during a motion if it
+    /// holds at both ends, since its region is convex.
+    pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &QueryContext<'_>,
+        norm: f64,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        match (context.complete_pair_tree(norm), context.used_certificates()) {
+            (Some(tree), Some(parts)) => {
+                let radii = &parts.node_radii;
+                traverse_pair_tree(
+                    &mut self.broad,
+                    &mut self.stack,
+                    &context.detect,
+                    tree,
+                    radii,
+                    norm,
+                    motion,
+                    narrow,
+                );
+            }
+            (_, Some(parts)) => {
+                traverse_certified(&mut self.broad, &context.detect, parts, norm, motion, narrow);
+            }
+            (_, None) => self.broad.traverse(&context.detect, (0, 0), motion, narrow),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The discrete search: colliding pairs at one configuration.
+
+use super::certified_search::CertifiedSearch;
+use super::context::QueryContext;
+use super::method::Method;
+use super::statistics::Statistics;
+use crate::Error;
+use crate::detect::narrow_phase::DiscreteHits;
+use crate::detect::vertex_motion::Deformed;
+
+/// Finds the pairs that collide at q, and owns the memory for it.
+#[derive(Clone)]
+pub(super) struct DiscreteSearch {
+    pub(super) certified: CertifiedSearch<1>,
+    pub(super) narrow: DiscreteHits,
+}
+
+impl DiscreteSearch {
+    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+        Self { certified: CertifiedSearch::new(context), narrow: DiscreteHits::default() }
+    }
+
+    /// Forgets all hits, and allows at most `limit` of them in the next search.
+    #[inline]
+    pub(super) fn begin(&mut self, limit: usize) {
+        self.narrow.0.begin(limit);
+        self.certified.broad.begin();
+    }
+
+    /// Finds all pairs at q, sorted.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    #[inline]
+    pub(super) fn find(
+        &mut self,
+        context: &QueryContext<'_>,
+        Configuration { q, norm, reach }: Configuration<'_>,
+        statistics: &mut Statistics,
+    ) -> Result<(), Error> {
+        statistics.root_certified = context.is_root_certified(norm);
+        if !statistics.root_certified || !context.detect.exceptions.is_empty() {
+            let result = self.search(context, Configuration { q, norm, reach }, statistics.root_certified);
+            statistics.set_counters(&self.certified.broad.counters);
+            result?;
+        }
+        statistics.complete = self.narrow.0.is_complete();
+        Ok(())
+    }
+
+    fn search(
+        &mut self,
+        context: &QueryContext<'_>,
+        Configuration { q, norm, reach }: Configuration<'_>,
+        is_root_certified: bool,
+    ) -> Result<(), Error> {
+        let Self { certified, narrow } = self;
+        if context.method == Method::BruteForce {
+            certified.broad.brute_force(&context.detect, [q], narrow);
+        } else {
+            let motion = Deformed::new([q], reach);
+            certified.broad.begin_volumes(&context.detect, &motion);
+            certified.broad.test_exceptions(&context.detect, &motion, narrow);
+            if !is_root_certified {
+                certified.find(context, norm, &motion, narrow);
+            }
+        }
+        certified.broad.end(narrow)?;
+        narrow.0.found.sort_unstable();
+        Ok(())
+    }
+}
+
+/// A q that is a configuration of the model.
+#[derive(Clone, Copy)]
+pub(super) struct Configuration<'q> {
+    pub(super) q: &'q [f64],
+    /// `|z|` in the metric and about the centre of the scope, rounded up.
+    pub(super) norm: f64,
+    /// An upper bound of the magnitude of every term of every position.
+    pub(super) reach: f64,
+}

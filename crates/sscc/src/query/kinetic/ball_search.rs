@@ -1,0 +1,44 @@
+//! The ball search: all pairs that can collide at some z in a ball around that of one q.
+
+use crate::Error;
+use crate::detect::ball_motion::BallMotion;
+use crate::detect::narrow_phase::BallHits;
+use crate::query::certified_search::CertifiedSearch;
+use crate::query::context::QueryContext;
+
+/// Finds the pairs whose boxes overlap in a ball, and owns the memory for it.
+pub(super) struct BallSearch {
+    pub(super) certified: CertifiedSearch<2>,
+    pub(super) narrow: BallHits,
+}
+
+impl BallSearch {
+    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+        Self { certified: CertifiedSearch::new(context), narrow: BallHits::default() }
+    }
+
+    /// Finds at most `limit` pairs, sorted, exceptions apart. `norm`: the largest `|z|` in the ball. False if there are
+    /// more.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    pub(super) fn find(
+        &mut self,
+        context: &QueryContext<'_>,
+        motion: &BallMotion<'_>,
+        norm: f64,
+        limit: usize,
+    ) -> Result<bool, Error> {
+        let Self { certified, narrow } = self;
+        narrow.0.begin(limit);
+        certified.broad.begin();
+        certified.broad.begin_volumes(&context.detect, motion);
+        certified.find(context, norm, motion, narrow);
+        certified.broad.end(narrow)?;
+        if narrow.0.is_full() {
+            return Ok(false);
+        }
+        narrow.0.found.sort_unstable();
+        Ok(true)
+    }
+}

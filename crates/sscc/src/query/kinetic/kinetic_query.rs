@@ -1,0 +1,258 @@
+//! The kinetic query: plain queries, ball searches, and steps that test active pairs alone.
+
+use super::active_pairs::{ActivePairs, up};
+use super::ball_control::{BallControl, MAX_SHARE, MIN_STEPS};
+use super::ball_search::BallSearch;
+use super::safe_distance::SafeDistances;
+use crate::detect::ball_motion::{BallMotion, BallRates};
+use crate::detect::broad_phase::Counters;
+use crate::detect::vertex_motion::Deformed;
+use crate::model::{ScaledModel, check_scaled_modes};
+use crate::query::discrete_search::Configuration;
+use crate::query::query::Query;
+use crate::query::statistics::Statistics;
+use crate::{Certificates, Error, Pair, Progress, ReducedModel};
+
+/// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
+const STEPS_WORTH_STORING: f64 = 8.0;
+
+/// Steps between two attempts to find safe distances of the pairs that are tested in every step.
+const RETRY_STEPS: u64 = 16;
+
+/// Safe distances computed between two checks whether the query was cancelled.
+const DISTANCES_PER_CHECK: u64 = 1024;
+
+/// A ball search may find at most this many pairs for each triangle ...
+const MAX_PAIRS_PER_TRIANGLE: usize = 8;
+
+/// ... and at most as many as cost this many plain queries.
+const MAX_PLAIN_QUERIES: u64 = 64;
+
+/// The cost, in boxes compared, of opening a node, of computing the safe distance of two triangles, of testing them, and
+/// of finding them in a ball.
+const OPEN_COST: u64 = 50;
+const DISTANCE_COST: u64 = 150;
+const TEST_COST: u64 = 20;
+const FIND_COST: u64 = 10;
+
+/// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
+/// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
+/// cost what they cost a [`Query`]. Takes three times its memory.
+pub struct KineticQuery<'a> {
+    query: Query<'a>,
+    search: BallSearch,
+    rates: BallRates,
+    distances: SafeDistances,
+    pub(super) active: ActivePairs,
+    pub(super) control: BallControl,
+    /// The last q at which the root's certificate did not hold; empty if there was none.
+    last_q: Vec<f64>,
+    /// Scratch for differences of q.
+    offset: Vec<f64>,
+    /// Scratch: pairs whose safe distance is to be computed.
+    pending: Vec<Pair>,
+}
+
+impl<'a> KineticQuery<'a> {
+    /// A query that knows nothing of any q yet.
+    ///
+    /// # Errors
+    /// When the certificates were computed for another model, or their metric does not fit it.
+    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+        let query = Query::new(model, certificates)?;
+        let scope = &certificates.parts().scope;
+        // Ordinary queries use the metric for radii alone; safe distances are computed anew.
+        check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
+        let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
+        let layout = &query.context.detect.layout;
+        Ok(Self {
+            search: BallSearch::new(&query.context),
+            rates: BallRates::new(&scaled, certificates.hierarchy(), layout),
+            distances: SafeDistances::new(scaled),
+            active: ActivePairs::default(),
+            control: BallControl::FIRST,
+            last_q: Vec::new(),
+            offset: vec![0.0; model.rank()],
+            pending: Vec::new(),
+            query,
+        })
+    }
+
+    /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
+    #[must_use]
+    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
+        self.query = self.query.cancelled_by(progress);
+        self
+    }
+
+    /// All colliding pairs at q, as [`Query::discrete`].
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
+        self.query.begin(usize::MAX);
+        let configuration = self.query.measure(q)?;
+        self.query.norm = configuration.norm;
+        if self.query.context.is_root_certified(configuration.norm) {
+            self.find_plainly(configuration)?;
+        } else {
+            self.find_beyond_root(configuration)?;
+        }
+        Ok(self.query.pairs())
+    }
+
+    /// The pairs that the last query found.
+    pub fn pairs(&self) -> &[Pair] {
+        self.query.pairs()
+    }
+
+    /// What the last query cost.
+    pub fn statistics(&self) -> Statistics {
+        self.query.statistics()
+    }
+
+    /// `|z|` of the last query, as [`Query::norm`].
+    pub fn norm(&self) -> f64 {
+        self.query.norm()
+    }
+
+    fn find_plainly(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
+        let Query { context, discrete, statistics, .. } = &mut self.query;
+        discrete.find(context, configuration, statistics)
+    }
+
+    fn find_beyond_root(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
+        let Configuration { q, norm, reach } = configuration;
+        let mut step = if self.last_q.is_empty() {
+            f64::INFINITY
+        } else {
+            self.query.context.scope.metric.norm_from(q, &self.last_q, &mut self.offset)
+        };
+        self.last_q.clear();
+        self.last_q.extend_from_slice(q);
+        let had_ball = self.active.has_ball();
+        let is_small = step <= MAX_SHARE * norm;
+        if is_small {
+            self.active.advance(step);
+        } else {
+            self.active.forget();
+        }
+        if had_ball && !self.active.is_in_ball(reach) {
+            self.active.leave_ball();
+            self.control.left(self.active.steps);
+        }
+        if is_small {
+            self.control.stepped(step);
+        } else {
+            step = self.control.step_after_jump().unwrap_or(step);
+        }
+        if !self.active.has_ball() && !self.begin_ball(configuration, step)? {
+            self.find_plainly(configuration)?;
+            self.control.plain_cost = plain_cost(&self.query.discrete.certified.broad.counters);
+            return Ok(());
+        }
+        // After an error nothing is known of any pair.
+        self.find_active(configuration, step).inspect_err(|_| self.active.forget())
+    }
+
+    /// Searches a ball around this z; false if no ball would pay.
+    fn begin_ball(
+        &mut self,
+        Configuration { q, norm, reach }: Configuration<'_>,
+        step: f64,
+    ) -> Result<bool, Error> {
+        if self.control.pause > 0 {
+            self.control.pause -= 1;
+            return Ok(false);
+        }
+        let context = &self.query.context;
+        let mut radius = (self.control.share * norm).max(2.0 * MIN_STEPS * step);
+        // Where the pair tree is complete, it must be so in the whole ball.
+        let limit = context.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit());
+        let left = (limit - norm) * (1.0 - 1e-9);
+        let is_cut = radius >= left && left > MIN_STEPS * step;
+        if is_cut {
+            radius = left;
+        }
+        if !(radius > 0.0 && radius.is_finite() && radius <= MAX_SHARE * norm) {
+            return Ok(false);
+        }
+        let share = radius / norm;
+        let norm = right_or!(up(norm + radius), KineticBallAtCentre, norm);
+        let reach = 2.0 * reach;
+        self.distances.begin(norm);
+        let most = MAX_PAIRS_PER_TRIANGLE * context.detect.model.mesh().faces().len();
+        let worth = MAX_PLAIN_QUERIES.saturating_mul(self.control.plain_cost) / (DISTANCE_COST + FIND_COST);
+        let limit = most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024);
+        let motion = BallMotion::new(&self.rates, q, radius, reach);
+        let is_complete = self.search.find(context, &motion, norm, limit)?;
+        let found = &self.search.narrow.0.found;
+        let counters = &self.search.certified.broad.counters;
+        let cost = counters.box_tests + OPEN_COST * counters.opened + FIND_COST * found.len() as u64;
+        if !is_complete {
+            self.control.overflowed(cost, share);
+            return Ok(false);
+        }
+        self.active.begin_ball(radius, reach);
+        self.active.take(found, &mut self.pending);
+        self.control.cost = cost;
+        if !is_cut {
+            self.control.searched(cost + DISTANCE_COST * self.pending.len() as u64, share);
+        }
+        // The tests of this step are counted on top.
+        let broad = &mut self.query.discrete.certified.broad;
+        broad.counters = Counters { triangle_tests: 0, ..*counters };
+        Ok(true)
+    }
+
+    /// Tests the active pairs, after computing the safe distances that are used up.
+    fn find_active(
+        &mut self,
+        Configuration { q, reach, .. }: Configuration<'_>,
+        step: f64,
+    ) -> Result<(), Error> {
+        let context = &self.query.context.detect;
+        let (search, active) = (&mut self.query.discrete, &mut self.active);
+        let (broad, narrow) = (&mut search.certified.broad, &mut search.narrow);
+        let motion = Deformed::new([q], reach);
+        let mut cost = 0;
+        broad.begin_volumes(context, &motion);
+        broad.test_exceptions(context, &motion, narrow);
+        if active.steps.is_multiple_of(RETRY_STEPS) {
+            self.pending.append(&mut active.tested);
+        }
+        while let Some(pair) = self.pending.pop().or_else(|| active.next_expired()) {
+            let corners = [pair.0, pair.1].map(|t| {
+                let vertices = broad.triangle(context, t).vertices;
+                broad.volumes.move_corners(vertices, &motion);
+                broad.volumes.corners(vertices)[0]
+            });
+            let distance = self.distances.of_triangles(&context.filter, pair, corners);
+            if distance < STEPS_WORTH_STORING * step || !active.store(pair, distance) {
+                active.tested.push(pair);
+            }
+            cost += DISTANCE_COST;
+            if cost.is_multiple_of(DISTANCES_PER_CHECK * DISTANCE_COST) {
+                broad.check_cancelled(context, narrow);
+                broad.end(narrow)?;
+            }
+        }
+        active.end_step();
+        self.control.cost = self.control.cost.saturating_add(cost + TEST_COST * active.tested.len() as u64);
+        for &(a, b) in &active.tested {
+            let [x, y] = [a, b].map(|t| broad.triangle(context, t));
+            broad.test_triangles(context, x, y, &motion, narrow);
+        }
+        let result = broad.end(narrow);
+        self.query.statistics.set_counters(&broad.counters);
+        result?;
+        narrow.0.found.sort_unstable();
+        self.query.statistics.complete = true;
+        Ok(())
+    }
+}
+
+/// The cost of a plain query.
+fn plain_cost(counters: &Counters) -> u64 {
+    counters.box_tests + OPEN_COST * counters.opened + TEST_COST * counters.triangle_tests
+}

@@ -1,0 +1,42 @@
+//! The methods by which a query finds colliding pairs.
+
+use crate::detect::layout::Needs;
+
+/// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Certificates of nodes and node pairs cull the traversal of a BD-tree (paper, Algorithm 1): BD-tree AABBs for nodes
+    /// down to about 64 triangles, tight ones below.
+    Certified,
+    /// The same BD-tree without certificates (James and Pai 2004).
+    BdTree,
+    /// All boxes refitted, no certificates: the paper's "traditional" method.
+    Traditional,
+    /// The traditional method that does not open a node whose normals and boundary prove that it is free (normal cones with
+    /// the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends of a motion prove nothing in between, so
+    /// continuous queries are traditional.
+    NormalCones,
+    /// Normal cones as the paper's section 7 compares with them, without the contour test: **may miss collisions**. For
+    /// measurements only.
+    NormalConesApprox,
+    /// Every pair of triangles. The oracle: quadratic.
+    BruteForce,
+}
+
+impl Method {
+    /// What the detector needs of the model; none for brute force.
+    pub(super) fn needs(self) -> Option<Needs> {
+        match self {
+            Self::Certified | Self::BdTree => Some(Needs::LAZY),
+            Self::Traditional => Some(Needs::REFIT),
+            Self::NormalCones => Some(Needs::NORMALS),
+            Self::NormalConesApprox => Some(Needs { boundaries: false, ..Needs::NORMALS }),
+            Self::BruteForce => None,
+        }
+    }
+
+    /// Whether boxes are computed where the traversal looks.
+    pub(super) fn is_lazy(self) -> bool {
+        matches!(self, Self::Certified | Self::BdTree)
+    }
+}

@@ -1,0 +1,182 @@
+//! The query: collisions of one reduced model with itself at q.
+
+use std::borrow::Cow;
+
+use super::context::QueryContext;
+use super::discrete_search::{Configuration, DiscreteSearch};
+use super::method::Method;
+use super::root_ball::RootBall;
+use super::statistics::Statistics;
+use super::swept_search::SweptSearch;
+use crate::hierarchy::Hierarchy;
+use crate::model::check_scaled_modes;
+use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
+
+/// Answers self-collision queries for one model. It owns its memory, so that repeated queries allocate nothing (brute force
+/// and the rare exact signs of extreme numbers aside). One query serves one thread; clone it for another, or use
+/// [`Query::batch`].
+///
+/// "Free" (no pairs) is exact, and so are the pairs: two triangles are listed exactly when they count under the
+/// [`PairRule`] (by default: when they share no vertex) and their closed hulls, at the positions given by
+/// [`deformed_position`](crate::deformed_position), have a point in common.
+#[derive(Clone)]
+pub struct Query<'a> {
+    pub(super) context: QueryContext<'a>,
+    /// Has the last answer, of continuous queries the pairs.
+    pub(super) discrete: DiscreteSearch,
+    /// Made by the first continuous query.
+    pub(super) swept: Option<Box<SweptSearch>>,
+    pub(super) norm: f64,
+    pub(super) statistics: Statistics,
+    pub(super) root_ball: RootBall,
+    /// Scratch for `q - center`; empty where the centre is 0.
+    offset: Vec<f64>,
+}
+
+impl<'a> Query<'a> {
+    /// A query that uses certificates.
+    ///
+    /// # Errors
+    /// When the certificates were computed for another model.
+    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+        Self::with_method(model, certificates, Method::Certified)
+    }
+
+    /// A query by the given method, with the hierarchy and the scope of the certificates.
+    ///
+    /// # Errors
+    /// When the certificates were computed for another model.
+    pub fn with_method(
+        model: &'a ReducedModel,
+        certificates: &'a Certificates,
+        method: Method,
+    ) -> Result<Self, Error> {
+        certificates.check_model(model)?;
+        let hierarchy = Cow::Borrowed(certificates.hierarchy());
+        let scope = Cow::Borrowed(&certificates.parts().scope);
+        Ok(Self::build(model, Some(certificates), scope, hierarchy, method))
+    }
+
+    /// A query without certificates, for the pairs that count in that scope ([`Scope::of`] is the default).
+    /// [`Method::Certified`] becomes [`Method::BdTree`].
+    ///
+    /// # Errors
+    /// When the scope's metric or centre is of another rank than the model.
+    pub fn without_certificates(
+        model: &'a ReducedModel,
+        scope: Scope,
+        method: Method,
+    ) -> Result<Self, Error> {
+        check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
+        model.check_coordinates(&scope.center)?;
+        let hierarchy = Cow::Owned(Hierarchy::build(model, &scope.metric));
+        let method = if method == Method::Certified { Method::BdTree } else { method };
+        Ok(Self::build(model, None, Cow::Owned(scope), hierarchy, method))
+    }
+
+    fn build(
+        model: &'a ReducedModel,
+        certificates: Option<&'a Certificates>,
+        scope: Cow<'a, Scope>,
+        hierarchy: Cow<'a, Hierarchy>,
+        method: Method,
+    ) -> Self {
+        let is_centered = scope.center.iter().all(|x| *x == 0.0);
+        let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
+        let context = QueryContext::new(model, certificates, scope, hierarchy, method);
+        let discrete = DiscreteSearch::new(&context);
+        let root_ball = RootBall::new(&context);
+        let statistics = Statistics::default();
+        Self { context, discrete, swept: None, norm: 0.0, statistics, root_ball, offset }
+    }
+
+    /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
+    #[must_use]
+    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
+        self.context.detect.progress = progress;
+        self
+    }
+
+    /// All colliding pairs at q: triangle indices `i < j` of the file's order, sorted.
+    ///
+    /// # Errors
+    /// When q has the wrong length, an entry is not finite, or q moves vertices beyond
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when it was cancelled.
+    pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
+        self.discrete_at_most(q, usize::MAX)
+    }
+
+    /// At most `limit` colliding pairs at q, sorted; which ones is not fixed. Where the limit stopped the query,
+    /// [`Statistics::complete`] is false: there may be more.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
+        self.begin(limit);
+        let configuration = self.measure(q)?;
+        self.norm = configuration.norm;
+        self.discrete.find(&self.context, configuration, &mut self.statistics)?;
+        Ok(&self.discrete.narrow.0.found)
+    }
+
+    /// One colliding pair at q, if there is any; which one is not fixed.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn first(&mut self, q: &[f64]) -> Result<Option<Pair>, Error> {
+        Ok(self.discrete_at_most(q, 1)?.first().copied())
+    }
+
+    /// The number of colliding pairs at q.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub fn count(&mut self, q: &[f64]) -> Result<usize, Error> {
+        Ok(self.discrete(q)?.len())
+    }
+
+    /// Forgets the last answer.
+    #[inline]
+    pub(super) fn begin(&mut self, limit: usize) {
+        self.statistics = Statistics::default();
+        self.discrete.begin(limit);
+    }
+
+    /// Checks that q is a configuration of the model, and measures it.
+    #[inline]
+    pub(super) fn measure<'q>(&mut self, q: &'q [f64]) -> Result<Configuration<'q>, Error> {
+        let scope = &self.context.scope;
+        let norm = if q.len() != scope.center.len() {
+            f64::INFINITY
+        } else if self.offset.is_empty() {
+            scope.metric.norm(q)
+        } else {
+            scope.metric.norm_from(q, &scope.center, &mut self.offset)
+        };
+        let is_within = norm < self.root_ball.radius;
+        let reach =
+            if is_within { self.root_ball.reach } else { self.context.detect.model.check_coordinates(q)? };
+        Ok(Configuration { q, norm, reach })
+    }
+
+    /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.
+    pub fn pairs(&self) -> &[Pair] {
+        &self.discrete.narrow.0.found
+    }
+
+    /// What the last query cost.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
+    /// continuous query the larger one of both ends.
+    pub fn norm(&self) -> f64 {
+        self.norm
+    }
+
+    /// Metric and centre of [`Query::norm`], and which pairs count.
+    pub fn scope(&self) -> &Scope {
+        &self.context.scope
+    }
+}

@@ -1,0 +1,54 @@
+//! Random models for tests within the crate.
+
+use glam::DVec3;
+
+use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
+
+/// Pseudo-random numbers (an LCG).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    /// In [-1, 1).
+    pub(crate) fn signed(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+        (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+    }
+
+    pub(crate) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+}
+
+/// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
+/// metric that is not diagonal.
+pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
+    let half = 2 + case as u32 % 4;
+    let gap = 0.05 + 0.5 * random.signed().abs();
+    let p: Vec<DVec3> = (0..2 * (half + 2))
+        .map(|i| {
+            let (i, side) = (i % (half + 2), f64::from(i / (half + 2)));
+            DVec3::new(f64::from(i) * 0.3, f64::from(i % 2) * 0.5, side * gap) + random.vector() * 0.05
+        })
+        .collect();
+    let strip = |first: u32| (0..half).map(move |i| [first + i, first + i + 1, first + i + 2]);
+    // In one piece every third time.
+    let second = if case.is_multiple_of(3) { half } else { half + 2 };
+    let faces: Vec<[u32; 3]> = strip(0).chain(strip(second)).collect();
+    let rank = 1 + case % 4;
+    let ways: Vec<[DVec3; 3]> =
+        (0..rank).map(|_| [random.vector(), random.vector(), random.vector()]).collect();
+    let noise = 0.1 * random.signed().max(0.0);
+    let modes = p.iter().flat_map(|x| {
+        ways.iter().map(|[w, u, v]| *w * x.dot(*u) + *v + random.vector() * noise).collect::<Vec<_>>()
+    });
+    let modes = Modes::new(rank, modes.collect()).unwrap();
+    let mesh = TriMesh::new(p, faces).unwrap();
+    let mut factor = vec![0.0; rank * rank];
+    for i in 0..rank {
+        (i..rank).for_each(|j| {
+            factor[i * rank + j] = if i == j { 1.0 + random.signed() * 0.5 } else { random.signed() }
+        });
+    }
+    let metric = Metric::from_factor(MetricKind::Given, rank, factor).unwrap();
+    (ReducedModel::with_metric(mesh, modes, metric).unwrap(), half)
+}
