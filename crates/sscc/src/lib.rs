@@ -1,11 +1,12 @@
-//! Proven self-collision detection for reduced deformable models: a triangle mesh that deforms by r modes,
+//! Exact self-collision detection for reduced deformable models: a triangle mesh that deforms by r modes,
 //! `x = p + U q` (blendshapes, PCA components, modal analysis).
 //!
-//! Once, [`Certificates::compute`] finds radii in q-space within which parts of the model provably cannot hit
-//! themselves. From then on a [`Query`] answers "does the shape collide with itself at q?" exactly: by one
-//! comparison where the deformation is small, and where certificates fail by a traversal that opens only what they
-//! could not rule out. The method is *Subspace Self-Collision Culling* (Barbič and James, SIGGRAPH 2010), with
-//! bounds that hold for any modes of any rank and for the floating-point positions themselves.
+//! [`Certificates::compute`] is called once. It builds a bounding volume hierarchy (BVH) and finds *certified radii*:
+//! within them, in q-space, nodes and node pairs of the hierarchy provably do not collide. A [`Query`] then answers which
+//! triangles collide at q (discrete) or between two q (continuous, CCD). Where the root's certificate holds, the answer is
+//! one comparison. Elsewhere the broad phase opens only nodes whose certificates do not hold, and the narrow phase tests
+//! triangles with exact predicates. The method is *Subspace Self-Collision Culling* (Barbič and James, SIGGRAPH 2010), with
+//! bounds that hold for any modes of any rank and account for every rounding error.
 //!
 //! # First use
 //!
@@ -32,58 +33,52 @@
 //! # }
 //! ```
 //!
-//! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; that makes a [`hierarchy::Hierarchy`] and
+//! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`hierarchy::Hierarchy`] and
 //! [`Certificates`]; a [`Query`] reads both. This crate reads no files, knows no clock and prints nothing.
 //!
-//! # What is promised
+//! # Guarantees
 //!
-//! - **Free is proven.** No pairs listed means that no two triangles that count (by default: without a common
-//!   vertex) have a point in common. There is no tolerance, and no false negative.
-//! - **Colliding is exact.** The pairs listed are all those that intersect or touch, and no others, sorted, the
-//!   same on every machine and for every number of threads.
-//! - Both speak of one shape: the f64 positions given by [`deformed_position`].
+//! An empty answer is a proof that no two triangles that count have a point in common, and a list of pairs has exactly those
+//! that do. Continuous queries miss no impact; [`Query::continuous`] states how close a pair without contact may come and
+//! still be listed. `docs/guarantees.md` in the repository states the promise in full, with its assumptions.
 //!
-//! Continuous queries are about the straight way of every vertex from one q to another: none that meets is missed, and
-//! what is listed without need has come within a stated tolerance ([`Query::continuous`]). Certificates hold for the
-//! mesh, the modes and the metric they were computed for, to the last bit, and say so: [`Query::new`] refuses any other
-//! model.
+//! # Which method for which question
 //!
-//! # Which question, which method
-//!
-//! | question | answer |
+//! | question | method |
 //! | --- | --- |
 //! | Which triangles collide at q? | [`Query::discrete`] |
-//! | Do any? | [`Query::first`], which stops at the first pair |
-//! | Some of them, at most n? | [`Query::discrete_at_most`] |
+//! | Does any pair? | [`Query::first`], which stops at the first pair |
+//! | At most n of them? | [`Query::discrete_at_most`] |
 //! | How many? | [`Query::count`] |
 //! | The same for many q? | [`Query::batch`], on all cores |
-//! | What did that cost, and was it proven by the root alone? | [`Query::statistics`] |
-//! | Which meet on the way from one q to another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
-//! | How far towards q is the shape free all the way? | [`Query::safe_scale`] |
-//! | The q on the way there at which one comparison is proof? | [`Certificates::clamp`] |
-//! | Where are the vertices at q? | [`ReducedModel::positions`] |
-//! | The same without certificates, for models that change all the time? | [`Query::without_certificates`] |
-//! | The same by another method, to compare? | [`Query::with_method`], [`Method`] |
-//! | Can the certificates be trusted, and how tight are they? | [`audit()`] |
-//! | Do two triangles meet? | [`intersect_triangle_triangle`] |
+//! | How much did that cost, and did the root's certificate hold? | [`Query::statistics`] |
+//! | Which collide between one q and another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
+//! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
+//! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
+//! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
+//! | Which positions do vertices have at q? | [`ReducedModel::positions`] |
+//! | The same without certificates, for models that change often? | [`Query::without_certificates`] |
+//! | The same by another method, for comparison? | [`Query::with_method`], [`Method`] |
+//! | Do the certificates hold under attack, and how tight are they? | [`audit()`] |
+//! | Do shapes in the world collide with each other? | [`PosedShape`] |
+//! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
 //! | Do two moving triangles, and when? | [`impact_triangle_triangle`] |
 //!
-//! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, whatever the size of the
-//! mesh. Above it a query costs about as much as refitting all boxes: what is fast is knowing that nothing collides.
+//! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh. Above it a
+//! query costs at most about as much as refitting all boxes.
 //!
 //! # Which pairs count
 //!
-//! Touching counts. Triangles that share a vertex always touch, so a [`PairRule`] says which pairs are asked for:
+//! Touching counts. Triangles that share a vertex always touch, so the contact filter ([`PairRule`]) decides which pairs
+//! count:
 //!
-//! - [`Neighbours`]: triangles that share a vertex do not count, or those that share exactly one count where
-//!   they meet beside it.
-//! - *Weld*: whether vertices of equal position and modes are one vertex. Files for drawing (STL, glTF) split
-//!   vertices along seams; without welding, the triangles on both sides of a seam share none, and always
-//!   collide.
+//! - [`Neighbours`]: triangles that share a vertex never count; or those that share exactly one count if they have another
+//!   point in common.
+//! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
+//!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide.
 //! - *Ignored* pairs never count.
 //!
-//! [`CertifyOptions`] asks for a rule, the certificates keep it ([`Certificates::rule`]), and their queries answer by
-//! it.
+//! [`CertifyOptions`] sets the contact filter, certificates store it ([`Certificates::rule`]), and their queries use it.
 //!
 //! ```
 //! use glam::DVec3;
@@ -117,26 +112,26 @@
 //!
 //! # Contacts at rest
 //!
-//! Closed lips touch, and many meshes cut through themselves somewhere. One such pair would make the radius of every
-//! node that holds it 0. So pairs that collide at rest (at the centre, where another is given) become *exceptions*: no
-//! radius speaks of them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). "Proven by
-//! the root" then means: apart from the exceptions. There may be half as many as triangles, or
+//! Closed lips touch, and many meshes intersect themselves somewhere. One such pair would make the radius of every node
+//! that contains it 0. So the pairs that collide at rest (at the centre, where another is given) become *exceptions*: no
+//! radius covers them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). Certified by the
+//! root then means: apart from the exceptions. Their number is limited to half that of the triangles, or to
 //! [`CertifyOptions::max_exceptions`].
 //!
-//! Where such pairs are of no interest, [`CertifyOptions::ignore_rest`] leaves them out for good.
+//! [`CertifyOptions::ignore_rest`] excludes such pairs for good.
 //!
 //! # Metrics
 //!
-//! A radius is a length `|z| = |S q|` in q-space, and the [`Metric`] says how the modes weigh. Answers are
-//! the same under every metric; how much one comparison can prove is not.
+//! A radius is a length `|z| = |S q|` in q-space, and the [`Metric`] weights the modes. Answers are the same under every
+//! metric, but the share of configurations that one comparison proves free depends on it.
 //!
-//! | metric | a unit of a mode counts |
+//! | metric | weight of a unit of a mode |
 //! | --- | --- |
-//! | [`Metric::displacement`] (default) | as far as it moves any vertex: `\|z\|` is a length |
-//! | [`Metric::mass`] | as much surface as it moves |
+//! | [`Metric::displacement`] (default) | the largest distance that it moves a vertex: `\|z\|` is a length |
+//! | [`Metric::mass`] | the root mean square displacement, weighted by area |
 //! | [`Metric::identity`] | 1 |
-//! | [`Metric::from_weights`], [`Metric::from_scales`] | what you say |
-//! | [`Metric::from_matrix`], [`Metric::from_factor`] | what you say, with the other modes: dense `M = S'S`, such as an inverse covariance |
+//! | [`Metric::from_weights`], [`Metric::from_scales`] | a given number |
+//! | [`Metric::from_matrix`], [`Metric::from_factor`] | a given dense matrix `M = S'S`, such as an inverse covariance |
 //! | `energy_metric` in the crate `sscc-modes` | its strain energy, for modes in which the stiffness is diagonal (paper, section 6) |
 //!
 //! A metric belongs to a model ([`ReducedModel::with_metric`]) or to certificates alone:
@@ -165,8 +160,8 @@
 //!
 //! # Centres
 //!
-//! Radii are measured from the rest pose q = 0, or from any other [`CertifyOptions::center`]: the pose about which
-//! a shape really moves. A model can have certificates about several.
+//! Radii are measured from the rest pose q = 0, or from another [`CertifyOptions::center`], such as the mean pose of a
+//! motion. A model can have certificates about several centres.
 //!
 //! ```
 //! # use glam::DVec3;
@@ -176,7 +171,7 @@
 //! # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
 //! # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
 //! # let model = ReducedModel::new(mesh, modes)?;
-//! // The two triangles of the beginning, far apart.
+//! // The two triangles of the first example, far apart.
 //! let q = [-2.0];
 //! let options = CertifyOptions { center: Some(vec![-1.0]), ..CertifyOptions::default() };
 //! for (options, certified) in [(CertifyOptions::default(), false), (options, true)] {
@@ -191,10 +186,9 @@
 //!
 //! # Batches, threads, cancelling
 //!
-//! A query owns its memory and serves one thread; clone it for another, or hand a batch over. Certificates and batches
-//! take a number of threads (none: all cores), and are the same for any. Long work tells a [`Progress`] how far it
-//! is, and stops when that says so; a single query stops by [`Query::cancelled_by`]. `()` is the `Progress` that does
-//! neither.
+//! A query owns its memory and serves one thread; clone it for another, or use [`Query::batch`]. Certificates and batches
+//! take a number of threads (none: all cores), and are the same for any number. Long work reports to a [`Progress`], which
+//! may cancel it; [`Query::cancelled_by`] makes a single query cancellable. The `Progress` `()` does neither.
 //!
 //! ```
 //! # use glam::DVec3;
@@ -239,15 +233,17 @@
 //! certificates and poses. `sscc-modes` makes modes for a mesh that has none. The workspace's `examples/` has whole
 //! programs.
 //!
-//! # Where the paper is
+//! # Sections of the paper
 //!
-//! | section | here |
+//! | section | where |
 //! | --- | --- |
 //! | 3, hierarchy | [`hierarchy`] |
-//! | 3 and 4, Algorithm 1 | [`Query`] (`query/traversal.rs` and `query/pair_walk.rs`, with BD-tree boxes in `query/bd_tree.rs`) |
-//! | 5.1, two triangles | `bounds/triangle_pair.rs`, `direction.rs`, `affine.rs` |
-//! | 5.2, nodes and precomputation | `bounds/cluster.rs`, `certificates/` |
+//! | 3 and 4, Algorithm 1 | `query/certified_traversal.rs`, for the pair tree `query/pair_tree_traversal.rs`; BD-tree AABBs in `detect/bd_tree.rs` |
+//! | 5.1, two triangles | `bounds/triangle_pair.rs`, `bounds/separating_direction.rs`, `bounds/affine.rs` |
+//! | 5.2, nodes and precomputation | `bounds/node_pair.rs`, `certificates/build/` |
 //! | 6, scaling | [`Metric`] |
+//! | 7, continuous queries | `query/swept.rs`, `geometry/ccd/` |
+//! | 7, collisions between objects | [`PosedShape`] |
 
 #[macro_use]
 mod mutants;

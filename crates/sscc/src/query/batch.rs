@@ -1,4 +1,4 @@
-//! Many q at once, on all cores.
+//! Batches: discrete queries of many q in parallel.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -16,17 +16,16 @@ pub struct Answer {
     pub pairs: Vec<Pair>,
     /// [`Query::norm`]
     pub norm: f64,
-    /// What it cost.
+    /// The cost of this q.
     pub statistics: Statistics,
 }
 
-/// After so many q progress is reported: often enough for people, and no cost to the cheapest queries.
-const REPORTED: usize = 64;
+/// Progress is reported once for this many q, which costs the cheapest queries nothing.
+const REPORT_INTERVAL: usize = 64;
 
 impl Query<'_> {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
-    /// of threads (none: all cores). `progress` also cancels the query at hand, in the place of what
-    /// [`Query::cancelled_by`] names.
+    /// of threads (none: all cores). `progress` may cancel it; that of [`Query::cancelled_by`] is not used.
     ///
     /// # Errors
     /// That of the first q that has one; when `progress` cancels.
@@ -57,8 +56,8 @@ impl Query<'_> {
                 return Err(Error::Cancelled);
             }
             let pairs = query.discrete_at_most(q.as_ref(), limit)?.to_vec();
-            if index.is_multiple_of(REPORTED) {
-                progress.report(done.fetch_add(REPORTED, Ordering::Relaxed), batch.len());
+            if index.is_multiple_of(REPORT_INTERVAL) {
+                progress.report(done.fetch_add(REPORT_INTERVAL, Ordering::Relaxed), batch.len());
             }
             Ok(Answer { pairs, norm: query.norm(), statistics: query.statistics() })
         };

@@ -1,4 +1,5 @@
-//! How far the shape can go towards q: the largest certified scale, found through the tree.
+//! The safe scale: how far along the line from the centre to q the shape is proven free. Conservative advancement, best-first
+//! over the hierarchy.
 
 use std::collections::BinaryHeap;
 
@@ -13,11 +14,11 @@ use crate::hierarchy::Hierarchy;
 use crate::{Certificates, Error, Pair, PairTree};
 
 impl Query<'_> {
-    /// A scale s such that the shape is proven free on the whole way `center + t (q - center)`, t in [0, s]: for
-    /// certificates about q = 0, at every `t q`. It is at least what the root's radius gives, and about as
-    /// large as the way is free: where that fails, nodes and pairs of nodes are bounded by their own radii, and what
-    /// these leave open by the way itself. Beyond `R_global` ([`Certificates::global_radius`]) nothing is looked at: s
-    /// ends there. 0 where the shape collides at the centre (pairs that are ignored apart); infinite where nothing
+    /// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for certificates
+    /// about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, and close to the
+    /// largest possible one. Nodes and node pairs are bounded by their certified radii, and triangle pairs beyond these by
+    /// conservative advancement along the line. At most the scale at which `R_global` is reached
+    /// ([`Certificates::global_radius`]). 0 if the shape collides at the centre (ignored pairs apart); infinite if nothing
     /// moves.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
@@ -44,7 +45,7 @@ impl Query<'_> {
         let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
         let mut waiting = BinaryHeap::new();
         waiting.push(MinFirst { key: self.certified_scale(0), tie: (0, 0), item: NONE });
-        // Always what could meet first: everything is followed only a little farther than all others are free.
+        // Best first: a pair is advanced only a little farther than the scale up to which all others are free.
         while let Some(MinFirst { key: lower, tie: (n, m), item: place }) = waiting.pop() {
             if lower >= best {
                 break;
@@ -64,7 +65,7 @@ impl Query<'_> {
             if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
                 let ends = place == UNKNOWN || (place != NONE && hierarchy.split_large(n, m).is_none());
                 let certified = if ends {
-                    [(UNKNOWN, 0.0); MOST_SIBLINGS]
+                    [(UNKNOWN, 0.0); MAX_SIBLINGS]
                 } else {
                     let stored = tree.filter(|_| place != NONE).map(|tree| tree.below(place));
                     self.certified_pairs(tree, stored.into_iter().flatten())
@@ -73,7 +74,7 @@ impl Query<'_> {
                     consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
                 }
             } else if node_n.is_leaf() {
-                let goal = (lower * AHEAD).max(best * LEAST).min(best);
+                let goal = (lower * LOOK_AHEAD).max(best * MIN_GOAL).min(best);
                 let triangles = |node| self.context.detect.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
@@ -96,7 +97,7 @@ impl Query<'_> {
                     consider((child, child), NONE, self.certified_scale(child), best);
                 }
                 let certified = if self.context.detect.hierarchy.is_whole(n) {
-                    [(UNKNOWN, 0.0); MOST_SIBLINGS]
+                    [(UNKNOWN, 0.0); MAX_SIBLINGS]
                 } else {
                     let stored = tree.map(|tree| tree.of_node(n));
                     self.certified_pairs(tree, stored.into_iter().flatten())
@@ -118,14 +119,14 @@ impl Query<'_> {
         self.context.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
     }
 
-    /// For each of some siblings its place in the pair tree and the scale up to which it is certified, where these are
-    /// stored: for the others the scale of the tree's limit.
+    /// For each of some sibling node pairs its entry in the pair tree and the scale up to which it is certified; for those
+    /// that are not stored the scale of the tree's limit.
     fn certified_pairs(
         &self,
         tree: Option<&PairTree>,
         stored: impl Iterator<Item = (u32, PairEntry)>,
-    ) -> [(u32, f64); MOST_SIBLINGS] {
-        let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MOST_SIBLINGS];
+    ) -> [(u32, f64); MAX_SIBLINGS] {
+        let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MAX_SIBLINGS];
         for (place, entry) in stored {
             all[entry.which() as usize] = (place, self.scale(f64::from(entry.radius)));
         }
@@ -138,8 +139,8 @@ impl Query<'_> {
         if radius > 0.0 && scale >= f64::MIN_POSITIVE { scale * DOWN } else { 0.0 }
     }
 
-    /// Follows two triangles that do not collide before `t`: infinite when they do not before `goal`, or do not count;
-    /// else a scale below which they do not, about where they meet.
+    /// Advances two triangles that do not collide before `t`: infinite if they do not before `goal` either, or do not
+    /// count; else a scale below which they do not, close to where they collide.
     fn follow(&self, path: &Path, (x, y): Pair, t: f64, goal: f64) -> f64 {
         if self.context.detect.filter.leaves_out(x, y) {
             return f64::INFINITY;
@@ -149,23 +150,23 @@ impl Query<'_> {
     }
 }
 
-/// Covers what scales and norms at scales are rounded.
+/// Covers the rounding of scales and of norms at scales.
 const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 
-/// Pairs of leaves are followed up to this many times the scale up to which all others are free ...
-const AHEAD: f64 = 1.5;
+/// Leaf pairs are advanced up to this many times the scale up to which all others are free ...
+const LOOK_AHEAD: f64 = 1.5;
 
-/// ... but at least up to this share of the best known end.
-const LEAST: f64 = 1.0 / 64.0;
+/// ... but at least up to this share of the best known scale.
+const MIN_GOAL: f64 = 1.0 / 64.0;
 
-/// The place of what is not in the pair tree: a node against itself, and pairs certified up to its limit.
+/// The entry of a node, and of a node pair that is certified up to the limit of the pair tree.
 const NONE: u32 = u32::MAX;
 
-/// The place of what the pair tree says nothing of: within a small node, and below the tree's ends.
+/// The entry of a node pair that the pair tree does not cover: within a bucket, and below its leaves.
 const UNKNOWN: u32 = u32::MAX - 1;
 
-/// The pairs of the four children that a node has at most.
-const MOST_SIBLINGS: usize = 6;
+/// A node has at most four children, hence six pairs of them.
+const MAX_SIBLINGS: usize = 6;
 
 /// For each node and each triangle the box of its vertices at the centre and that of their velocities.
 struct PathBoxes {
