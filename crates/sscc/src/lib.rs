@@ -259,6 +259,7 @@ mod detect;
 mod error;
 mod filter;
 mod geometry;
+mod heap;
 pub mod hierarchy;
 pub mod limits;
 mod model;

@@ -1,11 +1,11 @@
 //! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
 
-use std::cmp;
 use std::collections::BinaryHeap;
 
 use crate::Progress;
 use crate::bounds::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, Target, cluster_pair};
 use crate::filter::PairFilter;
+use crate::heap::MinFirst;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
 
@@ -40,39 +40,13 @@ const ROUGH_PAIR: f64 = 0.25;
 /// Directions that all triangle pairs of two leaves are looked at along, beside the first one.
 const LOOKS: usize = 3;
 
-/// Two sets of triangles whose pairs are still to be looked at, or one triangle pair.
+/// Two sets of triangles whose pairs are still to be looked at, or one triangle pair. Of two with the same lower bound a
+/// triangle pair is taken before nodes, then the one with the smaller index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Candidate {
     Triangles(u32, u32),
     Nodes(u32, u32),
 }
-
-struct Entry {
-    lower: f64,
-    candidate: Candidate,
-}
-
-/// Smallest lower bound first; triangle pairs before nodes; then by index, so that the order is the same in
-/// every run.
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> cmp::Ordering {
-        other.lower.total_cmp(&self.lower).then_with(|| other.candidate.cmp(&self.candidate))
-    }
-}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == cmp::Ordering::Equal
-    }
-}
-
-impl Eq for Entry {}
 
 /// Two hulls, at least one pair of which meets where two triangles do, and a lower bound.
 struct HullPair {
@@ -92,7 +66,7 @@ pub(crate) struct Search<'a> {
     clusters: &'a ClusterBounds,
     refiner: PairRefiner<'a>,
     scratch: ClusterScratch,
-    waiting: BinaryHeap<Entry>,
+    waiting: BinaryHeap<MinFirst<Candidate>>,
     leaves: LeafPair<'a>,
     pairs: Vec<HullPair>,
     epsilon: f64,
@@ -158,7 +132,7 @@ impl<'a> Search<'a> {
         self.target.cap = cap.min(enough);
         let mut waiting = std::mem::take(&mut self.waiting).into_vec();
         let known = pairs.iter().filter(|(_, lower)| *lower > 0.0);
-        waiting.extend(known.map(|&((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) }));
+        waiting.extend(known.map(|&((n, m), lower)| MinFirst::new(lower, Candidate::Nodes(n, m))));
         self.waiting = waiting.into();
         for ((n, m), _) in pairs.into_iter().filter(|(_, lower)| *lower <= 0.0) {
             self.consider(n, m, 0.0);
@@ -299,10 +273,10 @@ impl<'a> Search<'a> {
             if self.progress.is_cancelled() {
                 return 0.0;
             }
-            if entry.lower >= self.enough() {
-                return entry.lower.min(self.settled);
+            if entry.key >= self.enough() {
+                return entry.key.min(self.settled);
             }
-            self.open(entry.candidate, entry.lower);
+            self.open(entry.tie, entry.key);
             if self.settled <= 0.0 {
                 return 0.0;
             }
@@ -326,7 +300,7 @@ impl<'a> Search<'a> {
             return;
         }
         if self.waiting.len() < WAITING {
-            self.waiting.push(Entry { lower, candidate });
+            self.waiting.push(MinFirst::new(lower, candidate));
         } else if lower < self.enough() {
             self.open(candidate, lower);
         } else {
