@@ -1,6 +1,7 @@
 //! Algorithm 1 by the certified pair tree: only pairs whose radius has been passed are looked at.
 
 use crate::PairTree;
+use crate::certificates::StoredPair;
 use crate::detect::narrow_phase::Found;
 use crate::detect::search::Finder;
 use crate::query::context::{Asked, Ends};
@@ -66,7 +67,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         };
         self.walk.extend(node.children().filter(is_open).map(|child| (child, child, NODE)));
         let mut pairs = node.child_pairs().enumerate();
-        for (place, entry) in tree.of_node(n) {
+        for StoredPair { place, entry } in tree.of_node(n) {
             if let Some((_, (a, b))) = pairs.find(|(which, _)| *which == entry.which() as usize)
                 && is_entry_passed!(entry, ends.norm)
             {
@@ -94,7 +95,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         }
         self.statistics.opened += 1;
         if let Some(split) = asked.hierarchy.split_large(n, m) {
-            for (place, entry) in tree.below(place) {
+            for StoredPair { place, entry } in tree.below(place) {
                 if is_entry_passed!(entry, ends.norm) {
                     let (a, b) = split.pair(entry.which());
                     self.walk.push((a, b, place));

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Query;
 use crate::bounds::{MovingAabb, Path};
-use crate::certificates::PairEntry;
+use crate::certificates::StoredPair;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, Error, Pair, PairTree};
@@ -121,10 +121,10 @@ impl Query<'_> {
     fn certified_pairs(
         &self,
         tree: Option<&PairTree>,
-        stored: impl Iterator<Item = (u32, PairEntry)>,
+        stored: impl Iterator<Item = StoredPair>,
     ) -> [(u32, f64); MOST_SIBLINGS] {
         let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MOST_SIBLINGS];
-        for (place, entry) in stored {
+        for StoredPair { place, entry } in stored {
             all[entry.which() as usize] = (place, self.scale(f64::from(entry.radius)));
         }
         all
