@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::random::Random;
-use crate::certificates::roots_of;
+use crate::certificates::{StoredPair, sibling_pairs};
 use crate::{CertificateParts, Pair};
 
 /// No pair of triangles between two nodes, or within one where both are the same, collides below the radius.
@@ -81,12 +81,12 @@ impl<'a> Claims<'a> {
         let (tree, hierarchy) = (&self.parts.pair_tree, &self.parts.hierarchy);
         let nodes = self.parts.hierarchy.nodes().len();
         let (all, stored): (Vec<Pair>, Vec<u32>) = if parent < nodes {
-            let stored = tree.of_node(parent as u32).map(|(_, entry)| entry.which()).collect();
-            (roots_of(hierarchy, parent as u32).collect(), stored)
+            let stored = tree.of_node(parent as u32).map(|stored| stored.entry.which()).collect();
+            (sibling_pairs(hierarchy, parent as u32).collect(), stored)
         } else {
             let (n, m) = self.entries[parent - nodes];
             let Some(split) = hierarchy.split_large(n, m) else { return Vec::new() };
-            let stored = tree.below((parent - nodes) as u32).map(|(_, entry)| entry.which()).collect();
+            let stored = tree.below((parent - nodes) as u32).map(|stored| stored.entry.which()).collect();
             (split.pairs().collect(), stored)
         };
         let missing = (0..all.len()).filter(|which| !stored.contains(&(*which as u32)));
@@ -141,7 +141,7 @@ impl<'a> Claims<'a> {
         let mut pair = (a, b);
         let mut siblings: Vec<_> = {
             let all: Vec<Pair> = nodes[n as usize].child_pairs().collect();
-            tree.of_node(n).map(|(place, entry)| (place, all[entry.which() as usize])).collect()
+            tree.of_node(n).map(|StoredPair { place, entry }| (place, all[entry.which() as usize])).collect()
         };
         loop {
             let Some(&(place, _)) = siblings.iter().find(|(_, nodes)| *nodes == pair) else {
@@ -153,7 +153,8 @@ impl<'a> Claims<'a> {
             let split = hierarchy.split_large(pair.0, pair.1)?;
             let holds = |&(n, m): &Pair| has(n, i) && has(m, j) || has(n, j) && has(m, i);
             pair = split.pairs().find(holds)?;
-            siblings = tree.below(place).map(|(place, entry)| (place, split.pair(entry.which()))).collect();
+            let pair_of = |StoredPair { place, entry }| (place, split.pair(entry.which()));
+            siblings = tree.below(place).map(pair_of).collect();
         }
     }
 

@@ -6,7 +6,7 @@ use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Minimum};
 use super::random::Random;
 use crate::bounds::ClusterBounds;
-use crate::certificates::{ROUGH, Search};
+use crate::certificates::{KnownPair, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -42,15 +42,20 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let clusters = ClusterBounds::new(minimum.scaled, &parts.hierarchy);
-    let search =
-        || Search::new(minimum.scaled, minimum.filter, &parts.hierarchy, &clusters, parts.epsilon, progress);
+    let context = SearchContext {
+        model: minimum.scaled,
+        filter: minimum.filter,
+        hierarchy: &parts.hierarchy,
+        nodes: &clusters,
+    };
+    let search = || RadiusSearch::new(context, parts.epsilon, progress);
     let limit = parts.pair_tree.limit();
-    // More was not asked for: of nodes, where growing the tree had told something of them, see `Prepared::rough_limit`.
-    let enough = parts.global_radius * (1.0 - ROUGH.max(parts.epsilon));
+    // Where there is a pair tree, coarse radii of nodes go no further.
+    let coarse_cap = coarse_cap(parts.global_radius, parts.epsilon);
     let is_capped = |claim: &Claim| match claim.nodes {
         _ if claim.radius >= parts.global_radius => true,
         (n, m) if n != m => claim.radius == limit,
-        (n, _) => n != 0 && limit > 0.0 && claim.radius >= enough,
+        (n, _) => n != 0 && limit > 0.0 && claim.radius >= coarse_cap,
     };
     let mut measured = vec![claims.node(0)];
     measured.extend(claims.root_pairs());
@@ -63,7 +68,7 @@ pub(super) fn measure(
         spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
     let mut bounded: Vec<(f64, Claim)> = missing
         .into_par_iter()
-        .map_init(search, |search, claim| (search.bound(claim.nodes.0, claim.nodes.1, 2.0 * limit), claim))
+        .map_init(search, |search, claim| (search.bound_nodes(claim.nodes, 2.0 * limit), claim))
         .collect();
     bounded.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.nodes.cmp(&b.1.nodes)));
     measured.extend(bounded.into_iter().take(ABSENT).map(|(_, claim)| claim));
@@ -72,20 +77,21 @@ pub(super) fn measure(
         .par_iter()
         .map_init(search, |search, claim| {
             // Beyond the radius: what is searched only up to it can break no claim.
-            let cap = 2.0 * claim.radius.max(parts.global_radius);
+            let goal = SearchGoal::full(2.0 * claim.radius.max(parts.global_radius));
             let (n, m) = claim.nodes;
             if n != m {
-                search.between([(n, m)], cap);
+                search.between(&[KnownPair::unbounded((n, m))], goal);
             } else {
                 let n = responsible(certificates, n);
                 let node = &nodes[n as usize];
                 if node.is_leaf() || parts.hierarchy.is_whole(n) {
-                    search.within(n, cap);
+                    search.within(n, goal);
                 } else {
-                    search.between(node.child_pairs(), cap);
+                    let pairs: Vec<KnownPair> = node.child_pairs().map(KnownPair::unbounded).collect();
+                    search.between(&pairs, goal);
                 }
             }
-            search.hottest()
+            search.closest()
         })
         .collect();
     // Many claims have one pair of triangles in common.

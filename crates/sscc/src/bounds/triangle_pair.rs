@@ -3,7 +3,6 @@
 //! Replaces the constant-mode bound of the paper's section 5.1 and keeps its scheme: a lower and an upper
 //! bound, and midpoint subdivision until they are close enough.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::{DMat3, DVec3};
@@ -13,6 +12,7 @@ use super::contact_estimate::first_contact;
 use super::leaf_pair::is_near;
 use super::separating_direction::{TrianglePair, direction_bound, rest_distance};
 use crate::geometry::nearest_to_origin;
+use crate::heap::MinFirst;
 use crate::model::rows::{add_scaled, dot, gram, project};
 use crate::model::{ScaledModel, direction};
 
@@ -51,36 +51,14 @@ pub(super) type Weights = [DVec3; 3];
 
 pub(super) const WHOLE: Weights = [DVec3::X, DVec3::Y, DVec3::Z];
 
-/// A part of a triangle pair that is not refined yet.
+/// Sub-triangles of a triangle pair that are not refined yet; with their lower bound and, to break ties, a serial number
+/// an entry of the heap.
 struct Part {
-    lower: f64,
-    serial: u32,
     x: Weights,
     y: Weights,
     depth_x: u8,
     depth_y: u8,
 }
-
-/// Smallest lower bound first, then first made first.
-impl Ord for Part {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower).then(other.serial.cmp(&self.serial))
-    }
-}
-
-impl PartialOrd for Part {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Part {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Part {}
 
 /// Bounds triangle pairs; owns the scratch memory for it.
 pub(crate) struct PairRefiner<'a> {
@@ -89,7 +67,7 @@ pub(crate) struct PairRefiner<'a> {
     projections: Vec<f64>,
     mean: Vec<f64>,
     affine: AffineFit,
-    parts: BinaryHeap<Part>,
+    parts: BinaryHeap<MinFirst<u32, Part>>,
     /// The direction that bounded the last pair best.
     best: Option<DVec3>,
 }
@@ -145,19 +123,21 @@ impl<'a> PairRefiner<'a> {
         let mut parts = std::mem::take(&mut self.parts);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
         parts.clear();
-        parts.push(Part { lower, serial: 0, x: WHOLE, y: WHOLE, depth_x: 0, depth_y: 0 });
+        let whole_pair = Part { x: WHOLE, y: WHOLE, depth_x: 0, depth_y: 0 };
+        parts.push(MinFirst { key: lower, tie: 0, item: whole_pair });
         let mut serial = 0;
         // Parts that can be halved no further.
         let mut settled = f64::INFINITY;
         for step in 1..=target.subdivisions {
-            let Some(part) = parts.pop() else { break };
-            if part.lower >= target.enough().min(settled) || part.lower <= 0.0 {
-                parts.push(part);
+            let Some(entry) = parts.pop() else { break };
+            if entry.key >= target.enough().min(settled) || entry.key <= 0.0 {
+                parts.push(entry);
                 break;
             }
+            let MinFirst { key: lower, item: part, .. } = entry;
             // Where the modes reach all directions, the bounds themselves meet better upper bounds.
             if step.is_power_of_two() && !self.reaches_everywhere(whole) {
-                self.reach_along_ray(whole, &part, target, &mut corner_modes);
+                self.reach_along_ray(whole, &part, lower, target, &mut corner_modes);
             }
             // Halve the part whose modes vary more, so that both shrink alike.
             let spread = |corners: &[&[f64]; 3], depth: u8| {
@@ -167,24 +147,20 @@ impl<'a> PairRefiner<'a> {
             let split_x = spread(&whole.modes_x, part.depth_x) >= spread(&whole.modes_y, part.depth_y);
             let depth = if split_x { part.depth_x } else { part.depth_y };
             if depth >= DEPTH {
-                settled = settled.min(part.lower);
+                settled = settled.min(lower);
                 continue;
             }
             for quarter in quarters(if split_x { &part.x } else { &part.y }) {
                 let (x, y) = if split_x { (quarter, part.y) } else { (part.x, quarter) };
                 let bound = self.bound(&sub_pair(whole, &x, &y, &mut corner_modes), target);
                 serial += 1;
-                parts.push(Part {
-                    lower: bound.max(part.lower),
-                    serial,
-                    x,
-                    y,
-                    depth_x: part.depth_x + u8::from(split_x),
-                    depth_y: part.depth_y + u8::from(!split_x),
-                });
+                let depth_x = part.depth_x + u8::from(split_x);
+                let depth_y = part.depth_y + u8::from(!split_x);
+                let item = Part { x, y, depth_x, depth_y };
+                parts.push(MinFirst { key: bound.max(lower), tie: serial, item });
             }
         }
-        let lower = parts.peek().map_or(settled, |part| part.lower.min(settled));
+        let lower = parts.peek().map_or(settled, |part| part.key.min(settled));
         self.parts = parts;
         self.corner_modes = corner_modes;
         lower
@@ -201,6 +177,7 @@ impl<'a> PairRefiner<'a> {
         &mut self,
         whole: &TrianglePair<'_>,
         part: &Part,
+        lower: f64,
         target: &mut Target,
         corner_modes: &mut [f64],
     ) {
@@ -212,7 +189,7 @@ impl<'a> PairRefiner<'a> {
         project(&self.mean, closest.point, z);
         // As far as the triangles may move: to the cap, or well beyond the lower bound.
         let length = dot(z, z).sqrt();
-        let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * part.lower };
+        let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
         let velocities = |modes: &[&[f64]; 3]| {
             modes.map(|modes| {
                 let along = |c: usize| dot(&modes[c * z.len()..][..z.len()], z) * (-farthest / length);

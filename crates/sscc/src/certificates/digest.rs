@@ -1,16 +1,16 @@
-//! The digest of everything that certificates speak of.
+//! The digest by which certificates recognise their model and scope.
 
 use super::Scope;
 use crate::filter::weld_classes;
 use crate::{Neighbours, ReducedModel};
 
-/// BLAKE3 of faces, f64 positions, f64 modes, and everything in the certificates' [`Scope`]. Certificates whose
-/// digest differs from the model's would be a wrong proof.
+/// BLAKE3 of faces, f64 positions, f64 modes and the [`Scope`]. Certificates with another digest than the model's would
+/// be a wrong proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// The digest of a model with the scope of its certificates.
+    /// The digest of a model with a scope.
     pub fn of(model: &ReducedModel, scope: &Scope) -> Self {
         let mut sections = Sections(blake3::Hasher::new());
         let (mesh, modes) = (model.mesh(), model.modes());
@@ -24,7 +24,8 @@ impl Digest {
             Some(factor) => sections.reals("factor", factor.len(), factor.iter().copied()),
             None => sections.reals("scales", scope.metric.rank(), scope.metric.scales().into_iter()),
         }
-        // The defaults stand for themselves, so that digests of files written before there was a choice still hold.
+        // Only what differs from the default scope is hashed from here on: files of format version 1, which had no other
+        // scope, keep their digests.
         sections.begin(
             match scope.rule.neighbours {
                 Neighbours::Exclude => "exclude-adjacent",
@@ -53,7 +54,7 @@ impl Digest {
     }
 }
 
-/// Named lists of known length, one after the other.
+/// Hashes named lists one after the other, each with its length, so that no two models give the same bytes.
 struct Sections(blake3::Hasher);
 
 impl Sections {

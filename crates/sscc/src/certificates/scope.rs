@@ -1,23 +1,26 @@
-//! What certificates speak of beside the model.
+//! The scope of certificates: metric, centre and contact filter, for which alone they prove anything.
 
 use crate::{Metric, Pair, PairRule, ReducedModel};
 
-/// What certificates speak of beside faces, positions and modes: how `|z|` is measured, and for which pairs of
-/// triangles. Certificates for anything else would be a wrong proof.
+/// What certificates depend on beside faces, positions and modes: how `|z|` is measured, and which pairs of triangles
+/// count.
+///
+/// For another scope the same radii would be a wrong proof. So the scope is hashed into the
+/// [`Digest`](crate::Digest), stored with the certificates, and queries take it from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scope {
     /// The metric in which radii are measured.
     pub metric: Metric,
-    /// The configuration from which they are measured: `|z| = |S (q - center)|` (r).
+    /// The configuration from which radii are measured: `|z| = |S (q - center)|` (r entries).
     pub center: Vec<f64>,
     /// Which pairs of triangles count.
     pub rule: PairRule,
-    /// Pairs that no radius speaks of and every query tests: those that collide at the centre. Sorted.
+    /// Pairs that collide at the centre: no radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
 }
 
 impl Scope {
-    /// The default for a model: its own metric, about q = 0, all triangles that share no vertex.
+    /// The default scope of a model: its own metric, centre q = 0, all pairs of triangles that share no vertex.
     pub fn of(model: &ReducedModel) -> Self {
         Self {
             metric: model.metric().clone(),
@@ -32,7 +35,7 @@ impl Scope {
         self.metric.norm_from(q, &self.center, &mut vec![0.0; q.len()])
     }
 
-    /// The q whose scaled coordinates are `size z`: `center + S^-1 size z`, nearly.
+    /// The q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
     pub(crate) fn at(&self, z: &[f64], size: f64) -> Vec<f64> {
         let offset = self.metric.unscaled(z);
         self.center.iter().zip(offset).map(|(c, d)| c + size * d).collect()

@@ -3,6 +3,7 @@
 //! Every path down the tree comes through one pair of buckets, or one bucket, because the larger node is split first.
 //! There the traversal ends (docs/notes/2026-11-23-pair-tree-traversal.md).
 
+use crate::certificates::StoredPair;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
@@ -65,7 +66,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             let children = node.children().filter(is_reached);
             stack.extend(children.map(|child| Visit { nodes: (child, child), entry: NODE }));
             let mut pairs = node.child_pairs().enumerate();
-            for (place, stored) in tree.of_node(n) {
+            for StoredPair { place, entry: stored } in tree.of_node(n) {
                 if let Some((_, nodes)) = pairs.find(|(which, _)| *which == stored.which() as usize)
                     && is_entry_reached!(stored, norm)
                 {
@@ -86,7 +87,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         }
         broad.counters.opened += 1;
         if let Some(split) = context.hierarchy.split_large(n, m) {
-            for (place, stored) in tree.below(entry) {
+            for StoredPair { place, entry: stored } in tree.below(entry) {
                 if is_entry_reached!(stored, norm) {
                     stack.push(Visit { nodes: split.pair(stored.which()), entry: place });
                 }

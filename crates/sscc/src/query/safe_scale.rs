@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::query::Query;
 use crate::bounds::{MovingAabb, Path};
-use crate::certificates::PairEntry;
+use crate::certificates::StoredPair;
 use crate::geometry::Aabb;
 use crate::heap::MinFirst;
 use crate::hierarchy::Hierarchy;
@@ -124,10 +124,10 @@ impl Query<'_> {
     fn certified_pairs(
         &self,
         tree: Option<&PairTree>,
-        stored: impl Iterator<Item = (u32, PairEntry)>,
+        stored: impl Iterator<Item = StoredPair>,
     ) -> [(u32, f64); MAX_SIBLINGS] {
         let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MAX_SIBLINGS];
-        for (place, entry) in stored {
+        for StoredPair { place, entry } in stored {
             all[entry.which() as usize] = (place, self.scale(f64::from(entry.radius)));
         }
         all

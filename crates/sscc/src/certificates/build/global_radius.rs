@@ -1,13 +1,14 @@
-//! `R_global`, the largest radius of interest (paper, section 5.2).
+//! `R_global`, the largest radius of interest, at which all radii are capped (paper, section 5.2).
 
 use crate::certificates::pair_tree::round_down;
 use crate::geometry::Aabb;
 use crate::{Metric, ReducedModel};
 
-/// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the
-/// box at the centre; infinite when no mode moves anything. Only vertices of faces count. Rounded down to single
-/// precision, as the pair tree stores its radii, where that has its range: so that the tree holds them all.
-pub(in crate::certificates) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {
+/// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the box at the
+/// centre; infinite if no mode moves anything. Only vertices of faces count.
+///
+/// Rounded down to single precision, if it is in its range, so that the pair tree can store every radius up to it.
+pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {
     let used = model.mesh().used_vertices();
     let Aabb { lower, upper } = Aabb::of_points(used.iter().map(|&v| model.position(v, center)));
     let half_diagonal = (upper - lower).length() / 2.0;
@@ -17,8 +18,8 @@ pub(in crate::certificates) fn global_radius(model: &ReducedModel, metric: &Metr
         let largest = lengths.fold(0.0, f64::max);
         if largest > 0.0 && half_diagonal > 0.0 {
             let radius = half_diagonal / largest;
-            let in_range = (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius);
-            return if in_range { f64::from(round_down(radius)) } else { radius };
+            let is_in_range = (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius);
+            return if is_in_range { f64::from(round_down(radius)) } else { radius };
         }
     }
     f64::INFINITY

@@ -1,237 +1,183 @@
-//! Precomputation of all certificates, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's
-//! pairs)` (paper, section 5.2). Small nodes are searched as wholes, and what lies in them gets their radius: no
-//! discrete or continuous query looks into them.
+//! Radii of nodes, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's pairs)` (paper, section
+//! 5.2).
+//!
+//! Two passes. The first one is coarse: it takes what building the pair tree has bounded, and searches the rest with few
+//! subdivisions. On the way an upper bound of the root's radius is met; the second pass searches all radii that may be
+//! below it with the error asked for. Buckets are searched as a whole, and nodes in them get their radius, because no
+//! discrete or continuous query looks into a bucket.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::certificates::build::pair_tree_builder::{Frontier, Grove};
-use crate::certificates::build::search::Precision;
-use crate::certificates::build::task::{Here, NodeTask, Prepared, Solver};
-use crate::certificates::pair_tree::Entry;
-use crate::certificates::{CertificateParts, CertifyOptions, PairTree};
+use super::executor::{Executor, Stage};
+use super::frontier::Frontier;
+use super::goal::{Precision, SearchGoal};
+use super::pair_tree_builder::PairTreeBuilder;
+use super::prepare::Prepared;
+use super::progress_counter::ProgressCounter;
+use super::radius_bound::{KnownPair, RadiusBound};
+use super::task::{NodeRadiusTask, Task, TaskResult};
 use crate::hierarchy::Node;
-use crate::threads::on_threads;
-use crate::{Error, Progress, ReducedModel};
+use crate::{Error, Progress};
 
-pub(in crate::certificates) fn compute(
-    model: &ReducedModel,
-    options: &CertifyOptions,
-    progress: &dyn Progress,
-) -> Result<CertificateParts, Error> {
-    on_threads(options.threads, || {
-        let prepared = Prepared::new(model, options, progress)?;
-        let mut here = Here { prepared: &prepared, progress };
-        let radii = Radii::compute(&prepared, options.budget, &mut here, progress)?;
-        Ok(radii.of(prepared))
-    })
+/// Radii that a thread takes at once: each takes long.
+const RADIUS_GRAIN: usize = 1;
+
+/// An upper bound of the root's radius is searched up to this many times the coarse radius; farther away there is hardly
+/// ever one.
+const UPPER_BOUND_REACH: f64 = 4.0;
+
+/// Certified radii of all nodes and of the pairs of the root's children.
+pub(super) struct NodeRadii {
+    pub(super) nodes: Vec<f64>,
+    pub(super) root_pairs: Vec<f64>,
 }
 
-/// What is computed, stage by stage.
-pub(in crate::certificates) struct Radii {
-    nodes: Vec<f64>,
-    root_pairs: Vec<f64>,
-    pair_tree: PairTree,
-}
-
-impl Radii {
-    /// All radii, and a pair tree of so many bytes a triangle.
-    pub(in crate::certificates) fn compute(
+impl NodeRadii {
+    /// Computes all radii, given what building the pair tree has bounded.
+    pub(super) fn compute(
         prepared: &Prepared,
-        budget: usize,
-        solver: &mut dyn Solver,
+        builder: &PairTreeBuilder,
+        executor: &mut dyn Executor,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        let hierarchy = &prepared.hierarchy;
-        let budget = budget.saturating_mul(hierarchy.order().len()) / size_of::<Entry>();
-        let grove = Grove::grow(hierarchy, prepared.global_radius, budget, solver)?;
-        let mut work = Work::new(prepared, &grove, progress);
-        let upper = work.pass(Precision::Rough, f64::INFINITY, solver)?;
-        let upper = upper.min(work.upper_of_root(solver)?);
-        // Then precisely those that may be below what was learnt of the root's.
-        work.pass(Precision::Full, upper, solver)?;
-        work.tally.finish()?;
-        let Work { nodes, root_pairs, .. } = work;
-        let pair_tree = grove.harvest(hierarchy, &nodes);
-        Ok(Self { nodes, root_pairs, pair_tree })
-    }
-
-    /// The certificates of the model that was prepared.
-    pub(in crate::certificates) fn of(self, prepared: Prepared) -> CertificateParts {
-        let Prepared { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } = prepared;
-        CertificateParts {
-            digest,
-            scope,
-            rest_collisions,
-            hierarchy,
-            epsilon,
-            global_radius,
-            node_radii: self.nodes,
-            root_pair_radii: self.root_pairs,
-            pair_tree: self.pair_tree,
-        }
-    }
-}
-
-/// The radii so far.
-struct Work<'a> {
-    prepared: &'a Prepared,
-    grove: &'a Grove,
-    tally: Tally<'a>,
-    nodes: Vec<f64>,
-    root_pairs: Vec<f64>,
-}
-
-impl<'a> Work<'a> {
-    fn new(prepared: &'a Prepared, grove: &'a Grove, progress: &'a dyn Progress) -> Self {
         let nodes = prepared.hierarchy.nodes();
         let (count, pairs) = (nodes.len(), nodes[0].child_pairs().count());
-        let tally = Tally::new(progress, 2 * (count + pairs));
-        Self { prepared, grove, tally, nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] }
+        let counter = ProgressCounter::new(progress, 2 * (count + pairs));
+        let radii = Self { nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] };
+        let mut passes = Passes { prepared, builder, counter, radii };
+        let upper = passes.run(Precision::Coarse, f64::INFINITY, executor)?;
+        let upper = upper.min(passes.root_upper_bound(executor)?);
+        passes.run(Precision::Full, upper, executor)?;
+        passes.counter.finish()?;
+        Ok(passes.radii)
     }
+}
 
-    /// Computes the radii of all nodes that are below a limit; roughly, growing has told some of them. Gives the smallest
-    /// upper bound that was met of any, if one was.
+/// The radii so far, and what they are computed from.
+struct Passes<'a> {
+    prepared: &'a Prepared,
+    builder: &'a PairTreeBuilder,
+    counter: ProgressCounter<'a>,
+    radii: NodeRadii,
+}
+
+impl Passes<'_> {
+    /// Computes all radii that are below a limit; gives the smallest upper bound met of any radius.
     ///
-    /// Nodes of one level are independent of each other: level by level from the leaves, each result
-    /// depends only on the model, whoever solves the tasks.
-    fn pass(&mut self, precision: Precision, below: f64, solver: &mut dyn Solver) -> Result<f64, Error> {
+    /// Nodes of one level are independent of each other. So a stage is a level, from the leaves up, then the pairs of the
+    /// root's children.
+    fn run(&mut self, precision: Precision, below: f64, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.prepared.hierarchy;
         let nodes = hierarchy.nodes();
-        let within_small = hierarchy.nodes_within_buckets();
+        let is_in_bucket = hierarchy.nodes_within_buckets();
         let mut upper = f64::INFINITY;
-        let mut take = |radius: &mut f64, (better, met): (f64, f64)| {
-            *radius = radius.max(better);
-            upper = upper.min(met);
+        let mut take = |radius: &mut f64, bound: RadiusBound| {
+            *radius = radius.max(bound.radius);
+            upper = upper.min(bound.upper);
         };
         for level in hierarchy.levels().into_iter().rev() {
             if level.start == 0 && !nodes[0].is_leaf() {
                 continue;
             }
-            let wanted = |n: &usize| self.nodes[*n] < below && !within_small[*n];
-            let wanted: Vec<usize> = level.clone().filter(wanted).collect();
-            self.tally.add(level.len() - wanted.len());
-            let task = |at: usize| {
-                let node = &nodes[wanted[at]];
-                self.task(precision, wanted[at], 0..node.child_pairs().count(), self.least_child(node))
+            let is_wanted = |n: &usize| self.radii.nodes[*n] < below && !is_in_bucket[*n];
+            let wanted: Vec<usize> = level.clone().filter(is_wanted).collect();
+            self.counter.add(level.len() - wanted.len());
+            let task = |index: usize| {
+                let node = &nodes[wanted[index]];
+                self.task(precision, wanted[index], 0..node.child_pairs().count(), self.smallest_child(node))
             };
-            let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
-            wanted.into_iter().zip(found).for_each(|(n, found)| take(&mut self.nodes[n], found));
+            let bounds = search(executor, wanted.len(), &task, &|count| self.counter.add(count))?;
+            wanted.into_iter().zip(bounds).for_each(|(n, bound)| take(&mut self.radii.nodes[n], bound));
         }
         if !nodes[0].is_leaf() {
-            // Between the children of the root each pair has a radius of its own.
-            let wanted = |at: &usize| self.root_pairs[*at] < below;
-            let wanted: Vec<usize> = (0..self.root_pairs.len()).filter(wanted).collect();
-            self.tally.add(self.root_pairs.len() - wanted.len() + 1);
-            let all = self.prepared.global_radius;
-            let task = |at: usize| self.task(precision, 0, wanted[at]..wanted[at] + 1, all);
-            let found = solver.radii(precision, wanted.len(), &task, &self.tally)?;
-            wanted.into_iter().zip(found).for_each(|(at, found)| take(&mut self.root_pairs[at], found));
-            self.nodes[0] = self.root_pairs.iter().copied().fold(self.least_child(&nodes[0]), f64::min);
+            let wanted: Vec<usize> =
+                (0..self.radii.root_pairs.len()).filter(|i| self.radii.root_pairs[*i] < below).collect();
+            self.counter.add(self.radii.root_pairs.len() - wanted.len() + 1);
+            let cap = self.prepared.global_radius;
+            let task = |index: usize| self.task(precision, 0, wanted[index]..wanted[index] + 1, cap);
+            let bounds = search(executor, wanted.len(), &task, &|count| self.counter.add(count))?;
+            wanted.into_iter().zip(bounds).for_each(|(i, bound)| take(&mut self.radii.root_pairs[i], bound));
+            let smallest = self.smallest_child(&nodes[0]);
+            self.radii.nodes[0] = self.radii.root_pairs.iter().copied().fold(smallest, f64::min);
         }
         // Parents come before their children.
         for (n, node) in nodes.iter().enumerate() {
-            for child in node.children().filter(|child| within_small[*child as usize]) {
-                self.nodes[child as usize] = self.nodes[n];
+            for child in node.children().filter(|child| is_in_bucket[*child as usize]) {
+                self.radii.nodes[child as usize] = self.radii.nodes[n];
             }
         }
         Ok(upper)
     }
 
-    /// An upper bound of the root's radius where that is known from growing alone: as a rule one is met by searching the
-    /// pairs of children that it comes from. Infinite if not.
-    fn upper_of_root(&self, solver: &mut dyn Solver) -> Result<f64, Error> {
-        let nodes = self.prepared.hierarchy.nodes();
-        let mut at = 0;
-        while let Some(child) = nodes[at].children().find(|n| self.nodes[*n as usize] == self.nodes[0]) {
-            at = child as usize;
+    /// An upper bound of the root's radius, if it comes from pairs that building the pair tree has bounded: as a rule the
+    /// search of the pairs from which it comes meets one. Infinite if not: then the first pass has met one.
+    fn root_upper_bound(&self, executor: &mut dyn Executor) -> Result<f64, Error> {
+        let hierarchy = &self.prepared.hierarchy;
+        let (nodes, radii) = (hierarchy.nodes(), &self.radii);
+        let mut n = 0;
+        while let Some(child) = nodes[n].children().find(|n| radii.nodes[*n as usize] == radii.nodes[0]) {
+            n = child as usize;
         }
-        if self.grove.is_empty() || nodes[at].is_leaf() || self.prepared.hierarchy.is_whole(at as u32) {
-            // It was searched, not grown: what upper bounds that met are known.
+        if self.builder.is_empty() || nodes[n].is_leaf() || hierarchy.is_whole(n as u32) {
             return Ok(f64::INFINITY);
         }
-        let which = match self.root_pairs.iter().position(|radius| *radius == self.nodes[0]) {
-            Some(pair) if at == 0 => pair..pair + 1,
-            _ => 0..nodes[at].child_pairs().count(),
+        let siblings = match radii.root_pairs.iter().position(|radius| *radius == radii.nodes[0]) {
+            Some(pair) if n == 0 => pair..pair + 1,
+            _ => 0..nodes[n].child_pairs().count(),
         };
-        // Farther away than that there is hardly any.
-        let cap = self.prepared.global_radius.min(4.0 * self.nodes[0]);
-        let task = |_| self.task(Precision::Full, at, which.clone(), cap);
-        let found = solver.radii(Precision::Rough, 1, &task, &Tally::new(&(), 1))?;
-        Ok(found.into_iter().map(|(_, upper)| upper).fold(f64::INFINITY, f64::min))
+        let cap = self.prepared.global_radius.min(UPPER_BOUND_REACH * radii.nodes[0]);
+        let task = |_| {
+            // From the bounded pairs, too, but with the precision of the first pass.
+            let mut task = self.task(Precision::Full, n, siblings.clone(), cap);
+            task.goal.precision = Precision::Coarse;
+            task
+        };
+        let bounds = search(executor, 1, &task, &|_| {})?;
+        Ok(bounds.into_iter().map(|bound| bound.upper).fold(f64::INFINITY, f64::min))
     }
 
-    fn least_child(&self, node: &Node) -> f64 {
-        let radii = node.children().map(|child| self.nodes[child as usize]);
+    /// The smallest radius of a node's children, at most the global one.
+    fn smallest_child(&self, node: &Node) -> f64 {
+        let radii = node.children().map(|child| self.radii.nodes[child as usize]);
         radii.fold(self.prepared.global_radius, f64::min)
     }
 
-    /// To find the radius, at most `cap`, of a node or of some pairs of its children. Roughly, what growing has bounded is
-    /// known.
-    fn task(&self, precision: Precision, node: usize, which: Range<usize>, cap: f64) -> NodeTask {
+    /// The task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings`: their
+    /// indices among these pairs.
+    fn task(&self, precision: Precision, n: usize, siblings: Range<usize>, cap: f64) -> NodeRadiusTask {
         let hierarchy = &self.prepared.hierarchy;
-        let parent = &hierarchy.nodes()[node];
-        let node = node as u32;
-        if hierarchy.is_whole(node) || parent.is_leaf() {
-            // It is searched within, whatever its parts have: they were not.
-            let cap = self.prepared.global_radius;
-            return NodeTask { node, cap, enough: cap, pairs: Vec::new() };
+        let node = n as u32;
+        if hierarchy.is_whole(node) || hierarchy.nodes()[n].is_leaf() {
+            // The radii of its parts are not known: they were not searched.
+            return NodeRadiusTask::within(node, precision, self.prepared.global_radius);
         }
-        let Some(frontier) = self.grove.frontier(hierarchy, node, which.clone(), cap) else {
-            let pairs = parent.child_pairs().skip(which.start).take(which.len());
-            return NodeTask { node, cap, enough: cap, pairs: pairs.map(|pair| (pair, 0.0)).collect() };
+        let goal = SearchGoal { cap, refine_up_to: cap, precision };
+        let Some(frontier) = self.builder.frontier(hierarchy, n, siblings.clone(), cap) else {
+            let pairs = hierarchy.nodes()[n].child_pairs().skip(siblings.start).take(siblings.len());
+            return NodeRadiusTask { node, pairs: pairs.map(KnownPair::unbounded).collect(), goal };
         };
         let Frontier { radius, open, bounded } = frontier;
         match precision {
-            Precision::Rough => {
-                let pairs = open.into_iter().filter(|(_, lower)| *lower < radius).collect();
-                // Without a tree these radii are all that queries have.
-                let enough = if self.grove.is_empty() { cap } else { self.prepared.rough_limit() };
-                NodeTask { node, cap: radius, enough, pairs }
+            Precision::Coarse => {
+                // Without a pair tree queries have no other radii than these.
+                let refine_up_to = if self.builder.is_empty() { cap } else { self.prepared.coarse_cap() };
+                let pairs = open.into_iter().filter(|pair| pair.lower < radius).collect();
+                NodeRadiusTask { node, pairs, goal: SearchGoal { cap: radius, refine_up_to, precision } }
             }
-            Precision::Full => NodeTask { node, cap, enough: cap, pairs: [open, bounded].concat() },
+            Precision::Full => NodeRadiusTask { node, pairs: [open, bounded].concat(), goal },
         }
     }
 }
 
-/// Steps between two reports.
-const REPORT: usize = 64;
-
-/// Counts finished steps, reports them, and skips the rest once the caller has cancelled.
-pub(in crate::certificates) struct Tally<'a> {
-    progress: &'a dyn Progress,
-    done: AtomicUsize,
-    total: usize,
-}
-
-impl<'a> Tally<'a> {
-    fn new(progress: &'a dyn Progress, total: usize) -> Self {
-        Self { progress, done: AtomicUsize::new(0), total }
-    }
-
-    /// One step, and its results: the radius that promises nothing once the caller has cancelled.
-    pub(in crate::certificates) fn step(&self, work: impl FnOnce() -> (f64, f64)) -> (f64, f64) {
-        if self.progress.is_cancelled() {
-            return (0.0, 0.0);
-        }
-        let result = work();
-        self.add(1);
-        result
-    }
-
-    /// So many steps are finished.
-    pub(in crate::certificates) fn add(&self, count: usize) {
-        let before = self.done.fetch_add(count, Ordering::Relaxed);
-        if before / REPORT != (before + count) / REPORT {
-            self.progress.report(before + count, self.total);
-        }
-    }
-
-    fn finish(&self) -> Result<(), Error> {
-        if self.progress.is_cancelled() {
-            return Err(Error::Cancelled);
-        }
-        self.progress.report(self.total, self.total);
-        Ok(())
-    }
+/// Has radii searched as one stage.
+fn search(
+    executor: &mut dyn Executor,
+    count: usize,
+    task: &(dyn Fn(usize) -> NodeRadiusTask + Sync),
+    on_finished: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<RadiusBound>, Error> {
+    let task = |index: usize| Task::NodeRadius(task(index));
+    let stage = Stage { count, task: &task, grain: RADIUS_GRAIN, room: usize::MAX, on_finished };
+    let results = executor.run(&stage)?.unwrap_or_default();
+    results.into_iter().map(TaskResult::into_bound).collect()
 }

@@ -1,367 +1,234 @@
 //! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
+//!
+//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a node
+//! pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends as soon as the
+//! smallest bound left is within the error allowed of the smallest upper bound that was met. The result depends on the
+//! sets searched and the goal alone, never on earlier searches.
 
-use std::cmp;
 use std::collections::BinaryHeap;
 
-use crate::Progress;
-use crate::bounds::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, Target, cluster_pair};
-use crate::filter::PairFilter;
-use crate::hierarchy::Hierarchy;
-use crate::model::ScaledModel;
+use super::context::SearchContext;
+use super::goal::{
+    COARSE_EPSILON, COARSE_SUBDIVISIONS, FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
+};
+use super::leaf_bounds::{BoundedTriangles, LeafBounds};
+use super::radius_bound::{KnownPair, RadiusBound};
+use crate::bounds::{ClusterScratch, PairRefiner, Target, cluster_pair};
+use crate::heap::MinFirst;
+use crate::{Pair, Progress};
 
-/// Candidates waiting at the most, beside those of the pair at hand. Beyond it the search goes on depth
-/// first, in constant memory.
-const WAITING: usize = 1 << 20;
+/// Most candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth first, in constant
+/// memory.
+const MAX_QUEUED: usize = 1 << 20;
 
-/// How closely radii are searched.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Precision {
-    /// To [`ROUGH`], where [`FEW`] subdivisions do for that.
-    Rough,
-    /// To the relative error asked for.
-    Full,
-}
-
-/// The relative error of rough searches.
-pub(crate) const ROUGH: f64 = 0.4;
-
-/// Subdivisions of one triangle pair in rough searches. With none at all the dragon's certificates take 0.8 of the
-/// time, and queries by node certificates open 1.2 times as many nodes.
-const FEW: usize = 4;
-
-/// Subdivisions of one triangle pair at the most. When they are used up the best lower bound so far
-/// stands: still certified, only less tight. Hit in practice only by modes of rank 1 and 2.
-const SUBDIVISIONS: usize = 500;
-
-/// The relative error of pairs in the pair tree, as far as it needs no subdivision: there are many, each of little
-/// weight.
-const ROUGH_PAIR: f64 = 0.25;
-
-/// Directions that all triangle pairs of two leaves are looked at along, beside the first one.
-const LOOKS: usize = 3;
-
-/// Two sets of triangles whose pairs are still to be looked at, or one triangle pair.
+/// Two nodes whose triangle pairs have not been listed, or one triangle pair. Of two with the same lower bound a triangle
+/// pair is taken before nodes, then the one with the smaller index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Candidate {
     Triangles(u32, u32),
     Nodes(u32, u32),
 }
 
-struct Entry {
-    lower: f64,
-    candidate: Candidate,
-}
-
-/// Smallest lower bound first; triangle pairs before nodes; then by index, so that the order is the same in
-/// every run.
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> cmp::Ordering {
-        other.lower.total_cmp(&self.lower).then_with(|| other.candidate.cmp(&self.candidate))
-    }
-}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == cmp::Ordering::Equal
-    }
-}
-
-impl Eq for Entry {}
-
-/// Two hulls, at least one pair of which meets where two triangles do, and a lower bound.
-struct HullPair {
-    triangles: (u32, u32),
-    x: [u32; 3],
-    y: [u32; 3],
-    lower: f64,
-    /// Whether the bound is made any better by subdivision only.
-    refined: bool,
-}
-
-/// Searches triangle pairs of one model; owns its scratch memory.
-pub(crate) struct Search<'a> {
-    model: &'a ScaledModel,
-    filter: &'a PairFilter,
-    hierarchy: &'a Hierarchy,
-    clusters: &'a ClusterBounds,
+/// Searches radii of one model; owns the scratch memory for it.
+pub(crate) struct RadiusSearch<'a> {
+    context: SearchContext<'a>,
+    epsilon: f64,
     refiner: PairRefiner<'a>,
     scratch: ClusterScratch,
-    waiting: BinaryHeap<Entry>,
-    leaves: LeafPair<'a>,
-    pairs: Vec<HullPair>,
-    epsilon: f64,
-    precision: Precision,
+    leaves: LeafBounds<'a>,
+    triangle_pairs: Vec<BoundedTriangles>,
+    queue: BinaryHeap<MinFirst<Candidate>>,
     target: Target,
-    /// The smallest upper bound of all searches before.
-    upper: f64,
-    /// The smallest certified radius among the pairs that are settled.
-    settled: f64,
-    /// The pair for which the smallest upper bound was found.
-    hottest: Option<(u32, u32)>,
+    /// The smallest certified radius among the pairs that need no more refinement.
+    certified: f64,
+    /// The triangle pair with the smallest upper bound.
+    closest: Option<Pair>,
     progress: &'a dyn Progress,
 }
 
-impl<'a> Search<'a> {
-    pub(crate) fn new(
-        model: &'a ScaledModel,
-        filter: &'a PairFilter,
-        hierarchy: &'a Hierarchy,
-        clusters: &'a ClusterBounds,
-        epsilon: f64,
-        progress: &'a dyn Progress,
-    ) -> Self {
+impl<'a> RadiusSearch<'a> {
+    pub(crate) fn new(context: SearchContext<'a>, epsilon: f64, progress: &'a dyn Progress) -> Self {
         Self {
-            model,
-            filter,
-            hierarchy,
-            clusters,
-            refiner: PairRefiner::new(model),
-            scratch: ClusterScratch::new(model.row),
-            waiting: BinaryHeap::new(),
-            leaves: LeafPair::new(model),
-            pairs: Vec::new(),
+            context,
             epsilon,
-            precision: Precision::Full,
+            refiner: PairRefiner::new(context.model),
+            scratch: ClusterScratch::new(context.model.row),
+            leaves: LeafBounds::new(context),
+            triangle_pairs: Vec::new(),
+            queue: BinaryHeap::new(),
             target: Target { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
-            upper: f64::INFINITY,
-            settled: 0.0,
-            hottest: None,
+            certified: 0.0,
+            closest: None,
             progress,
         }
     }
 
-    /// The pair of triangles for which the last search found its smallest upper bound.
-    pub(crate) fn hottest(&self) -> Option<(u32, u32)> {
-        self.hottest
+    /// The triangle pair for which the last search met its smallest upper bound.
+    pub(crate) fn closest(&self) -> Option<Pair> {
+        self.closest
     }
 
-    /// A certified lower bound for all triangle pairs between two nodes; from `enough` on it is not made better.
-    pub(crate) fn bound(&mut self, n: u32, m: u32, enough: f64) -> f64 {
-        cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
+    /// A certified lower bound for all triangle pairs between two nodes, by the nodes alone; a bound of at least
+    /// `refine_up_to` is not made better.
+    pub(crate) fn bound_nodes(&mut self, (n, m): Pair, refine_up_to: f64) -> f64 {
+        cluster_pair(self.context.nodes, self.context.model, n, m, refine_up_to, &mut self.scratch)
     }
 
-    /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
-    pub(crate) fn between(&mut self, pairs: impl IntoIterator<Item = (u32, u32)>, cap: f64) -> f64 {
-        self.among(pairs.into_iter().map(|pair| (pair, 0.0)).collect(), cap, cap)
-    }
-
-    /// The same for pairs of which a lower bound is known; 0: not looked at yet. From `enough` on the radius is made no
-    /// better.
-    pub(crate) fn among(&mut self, pairs: Vec<((u32, u32), f64)>, cap: f64, enough: f64) -> f64 {
-        self.start(cap);
-        self.target.cap = cap.min(enough);
-        let mut waiting = std::mem::take(&mut self.waiting).into_vec();
-        let known = pairs.iter().filter(|(_, lower)| *lower > 0.0);
-        waiting.extend(known.map(|&((n, m), lower)| Entry { lower, candidate: Candidate::Nodes(n, m) }));
-        self.waiting = waiting.into();
-        for ((n, m), _) in pairs.into_iter().filter(|(_, lower)| *lower <= 0.0) {
-            self.consider(n, m, 0.0);
+    /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
+    pub(crate) fn between(&mut self, pairs: &[KnownPair], goal: SearchGoal) -> Option<RadiusBound> {
+        self.start(goal);
+        // All at once: building a heap of many takes linear time.
+        let mut queued = std::mem::take(&mut self.queue).into_vec();
+        let bounded = pairs.iter().filter(|pair| pair.lower > 0.0);
+        queued.extend(bounded.map(|pair| {
+            let (n, m) = pair.nodes;
+            MinFirst::new(pair.lower, Candidate::Nodes(n, m))
+        }));
+        self.queue = queued.into();
+        for pair in pairs.iter().filter(|pair| pair.lower <= 0.0) {
+            self.add_nodes(pair.nodes, 0.0);
         }
         self.run()
     }
 
-    /// A certified radius, at most `cap`, for all triangle pairs between two nodes, with a larger relative error.
-    pub(crate) fn roughly(&mut self, n: u32, m: u32, cap: f64) -> f64 {
-        self.start(cap);
-        self.target = Target { epsilon: self.epsilon.max(ROUGH_PAIR), subdivisions: 0, ..self.target };
-        self.consider(n, m, 0.0);
+    /// The radius, at most `cap`, of all triangle pairs between two nodes, with the error of the pair tree and without
+    /// subdivision. None if cancelled.
+    pub(crate) fn between_coarse(&mut self, nodes: Pair, cap: f64) -> Option<RadiusBound> {
+        self.start(SearchGoal::full(cap));
+        self.target = Target { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
+        self.add_nodes(nodes, 0.0);
         self.run()
     }
 
-    /// Bounds all triangle pairs between two leaves, or within one, without subdivision, as far as they matter.
-    fn bound_leaves(&mut self, n: u32, m: u32) {
-        let hierarchy = self.hierarchy;
-        let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
-        self.leaves.load(x, y);
-        let direction = if n == m { None } else { self.clusters.direction(n, m, &mut self.scratch) };
-        if let Some(direction) = direction {
-            self.leaves.look_along(direction);
-        }
-        self.pairs.clear();
-        for (i, &a) in x.iter().enumerate() {
-            for &b in if n == m { &y[i + 1..] } else { y } {
-                for (x, y) in self.filter.hulls(a, b) {
-                    let lower = direction.map_or(0.0, |_| self.leaves.along(x, y));
-                    if lower < self.settled && !self.filter.leaves_out(a, b) {
-                        self.pairs.push(HullPair { triangles: (a, b), x, y, lower, refined: false });
-                    }
-                }
-            }
-        }
-        self.refine_worst();
-    }
-
-    /// Refines the pair with the smallest bound until that of a refined one is the smallest.
-    fn refine_worst(&mut self) {
-        let Self { pairs, leaves, refiner, target, hottest, .. } = self;
-        let mut looks = 0;
-        let mut least = self.settled;
-        loop {
-            let enough = target.enough().min(least);
-            let waiting = pairs.iter_mut().filter(|pair| !pair.refined && pair.lower < enough);
-            let Some(worst) = waiting.reduce(|a, b| if b.lower < a.lower { b } else { a }) else { break };
-            worst.refined = true;
-            let upper = target.upper;
-            worst.lower = worst.lower.max(refiner.bound_once(worst.x, worst.y, target));
-            if target.upper < upper {
-                *hottest = Some(worst.triangles);
-            }
-            least = least.min(worst.lower);
-            // What it needed may do for the others, too: the direction, or an affine map of all.
-            let enough = target.enough().min(least);
-            let open = |pair: &HullPair| !pair.refined && pair.lower < enough;
-            if looks < LOOKS
-                && pairs.iter().any(open)
-                && let Some(n) = refiner.best_direction()
-            {
-                leaves.look_along(n);
-                pairs.iter_mut().for_each(|pair| pair.lower = pair.lower.max(leaves.along(pair.x, pair.y)));
-            }
-            if looks == 0 {
-                for pair in pairs.iter_mut().filter(|pair| open(pair)) {
-                    pair.lower = pair.lower.max(leaves.affine(pair.x, pair.y, enough));
-                }
-            }
-            looks += 1;
-        }
-    }
-
-    /// Takes the triangle pairs between two leaves, or within one, as candidates.
-    fn open_leaves(&mut self, n: u32, m: u32, inherited: f64) {
-        self.bound_leaves(n, m);
-        let pairs = std::mem::take(&mut self.pairs);
-        // A bound of two triangles holds for all of their hulls.
-        for hulls in pairs.chunk_by(|a, b| a.triangles == b.triangles) {
-            let (x, y) = hulls[0].triangles;
-            let lower = hulls.iter().map(|hull| hull.lower).fold(f64::INFINITY, f64::min);
-            self.keep(Candidate::Triangles(x, y), lower.max(inherited));
-        }
-        self.pairs = pairs;
-    }
-
-    /// A certified radius, at most `cap`, for all triangle pairs within a node.
+    /// The radius of all triangle pairs within a node. None if cancelled.
     ///
-    /// Part by part, so that what one gives is all that is asked of the next.
-    pub(crate) fn within(&mut self, n: u32, cap: f64) -> f64 {
-        let node = &self.hierarchy.nodes()[n as usize];
-        let (mut least, mut hottest) = (cap, None);
+    /// Each child is searched first: the radius of one is the cap of the next.
+    pub(crate) fn within(&mut self, n: u32, goal: SearchGoal) -> Option<RadiusBound> {
+        let node = &self.context.hierarchy.nodes()[n as usize];
+        let (mut children, mut closest) = (RadiusBound { radius: goal.cap, upper: f64::INFINITY }, None);
         for child in node.children() {
-            let radius = self.within(child, least);
-            if radius < least {
-                (least, hottest) = (radius, self.hottest);
+            let bound = self.within(child, SearchGoal { cap: children.radius, ..goal })?;
+            if bound.radius < children.radius {
+                (children.radius, closest) = (bound.radius, self.closest);
             }
+            children.upper = children.upper.min(bound.upper);
         }
-        self.start(least);
+        self.start(SearchGoal { cap: children.radius, ..goal });
         if node.is_leaf() {
-            self.open_leaves(n, n, 0.0);
+            self.add_triangles((n, n), 0.0);
         } else {
-            node.child_pairs().for_each(|(a, b)| self.consider(a, b, 0.0));
+            node.child_pairs().for_each(|nodes| self.add_nodes(nodes, 0.0));
         }
-        let radius = self.run();
-        if radius >= least {
-            self.hottest = hottest;
+        let own = self.run()?;
+        if own.radius >= children.radius {
+            self.closest = closest;
         }
-        radius
+        Some(RadiusBound { radius: own.radius, upper: own.upper.min(children.upper) })
     }
 
-    /// Searches nodes, and pairs of them, like this from now on.
-    pub(crate) fn set_precision(&mut self, precision: Precision) {
-        self.precision = precision;
-    }
-
-    /// An upper bound of the radius of the whole shape: the smallest that was met so far; infinite if none was.
-    pub(crate) fn upper(&self) -> f64 {
-        self.upper.min(self.target.upper)
-    }
-
-    fn start(&mut self, cap: f64) {
-        self.upper = self.upper();
-        self.waiting.clear();
-        let (epsilon, subdivisions) = match self.precision {
-            Precision::Rough => (self.epsilon.max(ROUGH), FEW),
-            Precision::Full => (self.epsilon, SUBDIVISIONS),
+    fn start(&mut self, goal: SearchGoal) {
+        self.queue.clear();
+        let (epsilon, subdivisions) = match goal.precision {
+            Precision::Coarse => (self.epsilon.max(COARSE_EPSILON), COARSE_SUBDIVISIONS),
+            Precision::Full => (self.epsilon, FULL_SUBDIVISIONS),
         };
+        let cap = goal.cap.min(goal.refine_up_to);
         self.target = Target { cap, upper: f64::INFINITY, epsilon, subdivisions };
-        self.settled = cap;
-        self.hottest = None;
+        self.certified = goal.cap;
+        self.closest = None;
     }
 
-    /// Takes the candidate with the smallest lower bound until none can lower the result by more than epsilon.
-    /// A cancelled search gives 0, the radius that promises nothing.
-    fn run(&mut self) -> f64 {
-        while let Some(entry) = self.waiting.pop() {
+    /// Refines the candidate with the smallest lower bound until none can lower the result by more than epsilon.
+    fn run(&mut self) -> Option<RadiusBound> {
+        let radius = loop {
+            let Some(MinFirst { key: lower, tie: candidate, .. }) = self.queue.pop() else {
+                break self.certified;
+            };
             if self.progress.is_cancelled() {
-                return 0.0;
+                return None;
             }
-            if entry.lower >= self.enough() {
-                return entry.lower.min(self.settled);
+            if lower >= self.refine_up_to() {
+                break lower.min(self.certified);
             }
-            self.open(entry.candidate, entry.lower);
-            if self.settled <= 0.0 {
-                return 0.0;
+            self.refine(candidate, lower);
+            if self.certified <= 0.0 {
+                break 0.0;
             }
+        };
+        Some(RadiusBound { radius, upper: self.target.upper })
+    }
+
+    /// A candidate with a lower bound of at least this cannot lower the result by more than epsilon.
+    fn refine_up_to(&self) -> f64 {
+        self.target.enough().min(self.certified)
+    }
+
+    /// Bounds two nodes and queues them if they matter. `inherited`: a lower bound of a pair that contains this one.
+    fn add_nodes(&mut self, nodes: Pair, inherited: f64) {
+        let lower = self.bound_nodes(nodes, self.refine_up_to()).max(inherited);
+        self.add(Candidate::Nodes(nodes.0, nodes.1), lower);
+    }
+
+    /// Bounds the triangle pairs between two leaves, or within one, and queues those that matter.
+    fn add_triangles(&mut self, leaves: Pair, inherited: f64) {
+        let (n, m) = leaves;
+        let dir = if n == m { None } else { self.context.nodes.direction(n, m, &mut self.scratch) };
+        self.leaves.load(leaves, dir, self.certified);
+        let closest = self.leaves.refine(&mut self.refiner, &mut self.target, self.certified);
+        self.closest = closest.or(self.closest);
+        let mut pairs = std::mem::take(&mut self.triangle_pairs);
+        pairs.extend(self.leaves.triangle_pairs());
+        for BoundedTriangles { triangles: (a, b), lower } in pairs.drain(..) {
+            self.add(Candidate::Triangles(a, b), lower.max(inherited));
         }
-        self.settled
+        self.triangle_pairs = pairs;
     }
 
-    /// Candidates whose radius is at least this cannot change the result beyond epsilon.
-    fn enough(&self) -> f64 {
-        self.target.enough().min(self.settled)
-    }
-
-    /// Bounds two nodes, part of two with the bound `inherited`, and keeps them if they matter.
-    fn consider(&mut self, n: u32, m: u32, inherited: f64) {
-        let lower = self.bound(n, m, self.enough()).max(inherited);
-        self.keep(Candidate::Nodes(n, m), lower);
-    }
-
-    fn keep(&mut self, candidate: Candidate, lower: f64) {
-        if lower >= self.settled {
+    /// Queues a candidate that can lower the result. If the queue is full, refines it at once.
+    fn add(&mut self, candidate: Candidate, lower: f64) {
+        if lower >= self.certified {
             return;
         }
-        if self.waiting.len() < WAITING {
-            self.waiting.push(Entry { lower, candidate });
-        } else if lower < self.enough() {
-            self.open(candidate, lower);
+        if self.queue.len() < MAX_QUEUED {
+            self.queue.push(MinFirst::new(lower, candidate));
+        } else if lower < self.refine_up_to() {
+            self.refine(candidate, lower);
         } else {
-            self.settled = lower;
+            self.certified = lower;
         }
     }
 
-    fn open(&mut self, candidate: Candidate, lower: f64) {
+    fn refine(&mut self, candidate: Candidate, lower: f64) {
         match candidate {
-            Candidate::Triangles(x, y) => {
-                let upper = self.target.upper;
-                for (x, y) in self.filter.hulls(x, y) {
-                    let refined = self.refiner.refine(x, y, &mut self.target);
-                    self.settled = self.settled.min(refined.max(lower));
-                }
-                if self.target.upper < upper {
-                    self.hottest = Some((x, y));
-                }
-            }
-            Candidate::Nodes(n, m) => self.open_nodes(n, m, lower),
+            Candidate::Triangles(a, b) => self.refine_triangles((a, b), lower),
+            Candidate::Nodes(n, m) => self.split_nodes((n, m), lower),
         }
     }
 
-    /// Splits the larger of two nodes, or two leaves into their triangle pairs.
-    fn open_nodes(&mut self, n: u32, m: u32, lower: f64) {
-        let hierarchy = self.hierarchy;
+    /// Refines a triangle pair by subdivision, as far as it matters.
+    fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
+        let upper = self.target.upper;
+        for (x, y) in self.context.filter.hulls(a, b) {
+            let refined = self.refiner.refine(x, y, &mut self.target);
+            self.certified = self.certified.min(refined.max(lower));
+        }
+        if self.target.upper < upper {
+            self.closest = Some((a, b));
+        }
+    }
+
+    /// Splits the node with the larger box, or two leaves into their triangle pairs.
+    fn split_nodes(&mut self, (n, m): Pair, lower: f64) {
+        let SearchContext { hierarchy, nodes, .. } = self.context;
         let (node_n, node_m) = (&hierarchy.nodes()[n as usize], &hierarchy.nodes()[m as usize]);
         if node_n.is_leaf() && node_m.is_leaf() {
-            return self.open_leaves(n, m, lower);
+            return self.add_triangles((n, m), lower);
         }
-        let larger = self.clusters.size(n) >= self.clusters.size(m);
-        if node_m.is_leaf() || (!node_n.is_leaf() && larger) {
-            node_n.children().for_each(|child| self.consider(child, m, lower));
+        let is_larger = nodes.size(n) >= nodes.size(m);
+        if node_m.is_leaf() || (!node_n.is_leaf() && is_larger) {
+            node_n.children().for_each(|child| self.add_nodes((child, m), lower));
         } else {
-            node_m.children().for_each(|child| self.consider(n, child, lower));
+            node_m.children().for_each(|child| self.add_nodes((n, child), lower));
         }
     }
 }

@@ -1,187 +1,110 @@
-//! Jobs and their results as bytes: some tasks of one stage, and what they came to.
+//! Jobs as bytes: some tasks of one stage, for a worker.
+//!
+//! The bytes are a stage's room, then the tasks one after the other. They carry lower bounds and caps from earlier
+//! stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are refused.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use super::seal::Reader;
-use crate::certificates::build::pair_tree_builder::{BOUNDED, Grown, OPEN, Round, expand};
-use crate::certificates::build::search::Precision;
-use crate::certificates::build::task::{NodeTask, Prepared};
+use super::reader::Reader;
+use crate::Pair;
+use crate::certificates::build::{KnownPair, NodeRadiusTask, Precision, SearchGoal, SplitTask, Task};
 use crate::hierarchy::Hierarchy;
-use crate::{Error, Progress};
 
-/// Tasks of one stage.
-pub(in crate::certificates) enum Job {
-    Grow(Round, Vec<Grown>),
-    Radii(Precision, Vec<NodeTask>),
+/// Tasks that one worker runs.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Job {
+    /// Most node pairs that the results may add.
+    pub(super) room: usize,
+    pub(super) tasks: Vec<Task>,
 }
 
-const GROW: u8 = 0;
-const ROUGH: u8 = 1;
-const FULL: u8 = 2;
+const SPLIT: u8 = 0;
+const COARSE_RADIUS: u8 = 1;
+const FULL_RADIUS: u8 = 2;
 
-/// More pairs than there is room for.
-const TOO_MANY: u8 = 0;
-const COMPLETE: u8 = 1;
+/// Writes a job, task by task, so that not all of them need be in memory at once.
+pub(super) struct JobWriter(Vec<u8>);
 
-/// What became of a pair.
-const IS_OPEN: u8 = 0;
-const IS_BOUNDED: u8 = 1;
-const IS_SPLIT: u8 = 2;
+impl JobWriter {
+    pub(super) fn new(room: usize) -> Self {
+        Self((room as u64).to_le_bytes().to_vec())
+    }
+
+    pub(super) fn add(&mut self, task: &Task) {
+        match task {
+            Task::Split(task) => self.add_split(task),
+            Task::NodeRadius(task) => self.add_radius(task),
+        }
+    }
+
+    pub(super) fn into_bytes(self) -> Vec<u8> {
+        self.0
+    }
+
+    fn add_split(&mut self, task: &SplitTask) {
+        self.0.push(SPLIT);
+        self.add_nodes(task.nodes);
+        self.0.extend(task.lower.to_le_bytes());
+        self.0.extend(task.limit.to_le_bytes());
+    }
+
+    fn add_radius(&mut self, task: &NodeRadiusTask) {
+        let SearchGoal { cap, refine_up_to, precision } = task.goal;
+        self.0.push(match precision {
+            Precision::Coarse => COARSE_RADIUS,
+            Precision::Full => FULL_RADIUS,
+        });
+        self.0.extend(task.node.to_le_bytes());
+        self.0.extend(cap.to_le_bytes());
+        self.0.extend(refine_up_to.to_le_bytes());
+        self.0.extend((task.pairs.len() as u64).to_le_bytes());
+        for pair in &task.pairs {
+            self.add_nodes(pair.nodes);
+            self.0.extend(pair.lower.to_le_bytes());
+        }
+    }
+
+    fn add_nodes(&mut self, (n, m): Pair) {
+        self.0.extend(n.to_le_bytes());
+        self.0.extend(m.to_le_bytes());
+    }
+}
 
 impl Job {
-    pub(in crate::certificates) fn write(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        match self {
-            Self::Grow(Round { limit, most, room }, pairs) => {
-                bytes.push(GROW);
-                bytes.extend(limit.to_le_bytes());
-                bytes.extend(most.to_le_bytes());
-                bytes.extend((*room as u64).to_le_bytes());
-                for Grown { pair: (n, m), lower, .. } in pairs {
-                    bytes.extend(n.to_le_bytes());
-                    bytes.extend(m.to_le_bytes());
-                    bytes.extend(lower.to_le_bytes());
-                }
-            }
-            Self::Radii(precision, tasks) => {
-                bytes.push(if *precision == Precision::Rough { ROUGH } else { FULL });
-                for task in tasks {
-                    bytes.extend(task.node.to_le_bytes());
-                    bytes.extend(task.cap.to_le_bytes());
-                    bytes.extend(task.enough.to_le_bytes());
-                    bytes.extend((task.pairs.len() as u64).to_le_bytes());
-                    for ((n, m), lower) in &task.pairs {
-                        bytes.extend(n.to_le_bytes());
-                        bytes.extend(m.to_le_bytes());
-                        bytes.extend(lower.to_le_bytes());
-                    }
-                }
-            }
-        }
-        bytes
-    }
-
-    /// None where the bytes are no job on this hierarchy.
-    pub(in crate::certificates) fn read(hierarchy: &Hierarchy, bytes: &[u8]) -> Option<Self> {
-        let mut from = Reader(bytes);
-        let precision = match from.u8()? {
-            GROW => {
-                let (limit, most) = (from.radius()?, from.radius()?);
-                let round = Round { limit, most, room: usize::try_from(from.u64()?).ok()? };
-                let mut pairs = Vec::new();
-                while !from.0.is_empty() {
-                    pairs.push(Grown::new(read_pair(hierarchy, &mut from)?, from.single()?));
-                }
-                return Some(Self::Grow(round, pairs));
-            }
-            ROUGH => Precision::Rough,
-            FULL => Precision::Full,
-            _ => return None,
-        };
+    /// None if the bytes are no job on this hierarchy.
+    pub(super) fn read(hierarchy: &Hierarchy, bytes: &[u8]) -> Option<Self> {
+        let mut from = Reader::new(bytes);
+        let room = usize::try_from(from.u64()?).ok()?;
         let mut tasks = Vec::new();
-        while !from.0.is_empty() {
-            let (node, cap, enough) = (from.u32()?, from.radius()?, from.radius()?);
-            hierarchy.nodes().get(node as usize)?;
-            let mut pairs = Vec::new();
-            for _ in 0..from.u64()? {
-                pairs.push((read_pair(hierarchy, &mut from)?, from.radius()?));
-            }
-            tasks.push(NodeTask { node, cap, enough, pairs });
-        }
-        Some(Self::Radii(precision, tasks))
-    }
-
-    /// The result, written.
-    pub(in crate::certificates) fn solve(
-        self,
-        prepared: &Prepared,
-        progress: &dyn Progress,
-    ) -> Result<Vec<u8>, Error> {
-        let mut search = prepared.search(progress);
-        let mut bytes = Vec::new();
-        match self {
-            Self::Grow(round, pairs) => {
-                let used = AtomicUsize::new(0);
-                bytes.push(COMPLETE);
-                for pair in pairs {
-                    for Grown { first, lower, .. } in
-                        expand(pair, round, &prepared.hierarchy, &mut search, &used, progress)
-                    {
-                        bytes.push(match first {
-                            OPEN => IS_OPEN,
-                            BOUNDED => IS_BOUNDED,
-                            _ => IS_SPLIT,
-                        });
-                        bytes.extend(lower.to_le_bytes());
-                    }
-                    if used.load(Ordering::Relaxed) > round.room {
-                        bytes = vec![TOO_MANY];
-                        break;
-                    }
-                }
-            }
-            Self::Radii(precision, tasks) => {
-                search.set_precision(precision);
-                for task in tasks {
-                    let (radius, upper) = task.solve(prepared, &mut search);
-                    bytes.extend(radius.to_le_bytes());
-                    bytes.extend(upper.to_le_bytes());
-                }
-            }
-        }
-        if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(bytes) }
-    }
-}
-
-fn read_pair(hierarchy: &Hierarchy, from: &mut Reader<'_>) -> Option<(u32, u32)> {
-    let pair @ (n, m) = (from.u32()?, from.u32()?);
-    (n != m && n.max(m) < hierarchy.nodes().len() as u32).then_some(pair)
-}
-
-/// Whether a result of growing says that there were more pairs than there is room for.
-pub(in crate::certificates) fn too_many(result: &[u8]) -> bool {
-    result == [TOO_MANY]
-}
-
-/// The lists that open pairs became. Pairs are not written: they follow from how nodes are split.
-pub(in crate::certificates) fn read_grown(
-    hierarchy: &Hierarchy,
-    pairs: &[Grown],
-    result: &[u8],
-) -> Option<Vec<Vec<Grown>>> {
-    let mut from = Reader(result);
-    if from.u8()? != COMPLETE {
-        return None;
-    }
-    let mut lists = Vec::with_capacity(pairs.len());
-    for pair in pairs {
-        let mut list = vec![*pair];
-        let mut next = 0;
-        while next < list.len() {
-            let (n, m) = list[next].pair;
-            let split = hierarchy.split_large(n, m);
-            let state = from.u8()?;
-            let lower = from.single()?;
-            list[next].lower = lower;
-            list[next].first = match (state, &split) {
-                (IS_OPEN, _) => OPEN,
-                (IS_BOUNDED, None) => BOUNDED,
-                (IS_SPLIT, Some(_)) => list.len() as u32,
+        while !from.is_at_end() {
+            tasks.push(match from.u8()? {
+                SPLIT => Task::Split(read_split(hierarchy, &mut from)?),
+                COARSE_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Coarse, &mut from)?),
+                FULL_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Full, &mut from)?),
                 _ => return None,
-            };
-            if state == IS_SPLIT {
-                list.extend(split.into_iter().flat_map(|split| split.pairs()).map(|p| Grown::new(p, lower)));
-            }
-            next += 1;
+            });
         }
-        lists.push(list);
+        Some(Self { room, tasks })
     }
-    from.0.is_empty().then_some(lists)
 }
 
-/// Radii and upper bounds of so many tasks.
-pub(in crate::certificates) fn read_radii(count: usize, result: &[u8]) -> Option<Vec<(f64, f64)>> {
-    let mut from = Reader(result);
-    let radii = (0..count).map(|_| Some((from.radius()?, from.radius()?))).collect::<Option<Vec<_>>>()?;
-    from.0.is_empty().then_some(radii)
+fn read_split(hierarchy: &Hierarchy, from: &mut Reader<'_>) -> Option<SplitTask> {
+    let nodes = read_nodes(hierarchy, from)?;
+    Some(SplitTask { nodes, lower: from.single_radius()?, limit: from.radius()? })
+}
+
+fn read_radius(hierarchy: &Hierarchy, precision: Precision, from: &mut Reader<'_>) -> Option<NodeRadiusTask> {
+    let node = from.u32()?;
+    hierarchy.nodes().get(node as usize)?;
+    let goal = SearchGoal { cap: from.radius()?, refine_up_to: from.radius()?, precision };
+    let count = from.u64()?;
+    // Nothing is allocated by a number that the bytes do not bear out.
+    let mut pairs = Vec::new();
+    for _ in 0..count {
+        pairs.push(KnownPair { nodes: read_nodes(hierarchy, from)?, lower: from.radius()? });
+    }
+    Some(NodeRadiusTask { node, pairs, goal })
+}
+
+fn read_nodes(hierarchy: &Hierarchy, from: &mut Reader<'_>) -> Option<Pair> {
+    let (n, m) = (from.u32()?, from.u32()?);
+    (n != m && n.max(m) < hierarchy.nodes().len() as u32).then_some((n, m))
 }

@@ -1,8 +1,12 @@
 //! Sharded certificates against those of one process.
 
+use super::job::{Job, JobWriter};
+use super::job_result::{Expected, JobResult};
+use super::seal::HASH;
 use super::*;
-use crate::certificates::build::pair_tree_builder::tests::ring;
-use crate::{Metric, MetricKind, PairRule};
+use crate::certificates::build::Task;
+use crate::certificates::test_models::ring;
+use crate::{Certificates, CertifyOptions, Error, Metric, MetricKind, PairRule, Progress, ReducedModel};
 
 fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Result<Certificates, Error> {
     let worker = ShardWorker::new(model, options, &()).unwrap();
@@ -23,7 +27,7 @@ fn jobs(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Vec<(V
     all
 }
 
-/// Would fail where a result depended on the tasks before it in the same job, or were put in another order.
+/// Would fail if a result depended on the tasks before it in the same job, or came in another order.
 #[test]
 fn any_number_of_shards_gives_the_same_certificates() {
     let center = Some(vec![0.01, -0.02, 0.0, 0.01]);
@@ -52,7 +56,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
 
 /// Models of a few triangles, whose root is a leaf or small.
 #[test]
-fn small_models_have_shards_too() {
+fn small_models_can_be_sharded() {
     for quads in [2, 4, 9, 40] {
         let model = ring(quads, 2, 0.4);
         let options = CertifyOptions::default();
@@ -112,42 +116,44 @@ fn damaged_bytes_are_answered_with_an_error() {
         }
     }
     let mut refused = 0;
+    let hierarchy = &worker.prepared.hierarchy;
     for (job, result) in &all {
         let body = worker.key.open("a job", job).unwrap();
         for at in (0..body.len()).step_by(1 + body.len() / 97) {
             let mut changed = body.to_vec();
             changed[at] ^= 0x80;
-            // What is a job after all may be done; nothing may panic.
-            refused += usize::from(Job::read(&worker.prepared.hierarchy, &changed).is_none());
-            let _ = Job::read(&worker.prepared.hierarchy, &body[..at]);
+            // It may be another job; nothing may panic.
+            refused += usize::from(Job::read(hierarchy, &changed).is_none());
+            let _ = Job::read(hierarchy, &body[..at]);
         }
-        let result = &worker.key.open("a result", result).unwrap()[32..];
-        match Job::read(&worker.prepared.hierarchy, body).unwrap() {
-            Job::Grow(_, pairs) => {
-                for at in 0..result.len() {
-                    let mut changed = result.to_vec();
-                    changed[at] ^= 0x83;
-                    let read = read_grown(&worker.prepared.hierarchy, &pairs, &changed);
-                    refused += usize::from(read.is_none());
-                    assert!(read_grown(&worker.prepared.hierarchy, &pairs, &result[..at]).is_none());
-                }
-            }
-            Job::Radii(_, tasks) => {
-                for at in 0..result.len() {
-                    assert!(read_radii(tasks.len(), &result[..at]).is_none());
-                }
-                let mut negative = result.to_vec();
-                negative[7] |= 0x80;
-                refused += usize::from(read_radii(tasks.len(), &negative).is_none());
-                negative[..8].copy_from_slice(&f64::NAN.to_le_bytes());
-                assert!(read_radii(tasks.len(), &negative).is_none());
-            }
+        let job = Job::read(hierarchy, body).unwrap();
+        let mut writer = JobWriter::new(job.room);
+        job.tasks.iter().for_each(|task| writer.add(task));
+        assert_eq!(writer.into_bytes(), body);
+        let expected: Vec<Expected> = job.tasks.iter().map(Expected::of).collect();
+        let result = &worker.key.open("a result", result).unwrap()[HASH..];
+        let read = |bytes: &[u8]| JobResult::read(hierarchy, &expected, bytes);
+        assert_eq!(read(result).unwrap().to_bytes(), result);
+        for at in 0..result.len() {
+            let mut changed = result.to_vec();
+            changed[at] ^= 0x83;
+            refused += usize::from(read(&changed).is_none());
+            assert!(read(&result[..at]).is_none());
+        }
+        assert!(read(&[result, &[0]].concat()).is_none());
+        if let Task::NodeRadius(_) = job.tasks[0] {
+            // The sign of the first radius, behind the byte that says that the results are complete.
+            let mut negative = result.to_vec();
+            negative[8] |= 0x80;
+            refused += usize::from(read(&negative).is_none());
+            negative[1..9].copy_from_slice(&f64::NAN.to_le_bytes());
+            assert!(read(&negative).is_none());
         }
     }
     assert!(refused > 100, "{refused}");
 }
 
-/// A cancelled computation ends with the error, whoever works.
+/// A cancelled job ends with the error.
 #[test]
 fn shards_can_be_cancelled() {
     struct Stopped;

@@ -1,39 +1,21 @@
-//! The tree against what truly collides.
+//! Certificates against brute force: whatever collides below a limit must be open there.
 
 use glam::DVec3;
 
+use super::StoredPair;
+use super::pair_tree::round_down;
+use super::test_models::ring;
 use crate::hierarchy::Hierarchy;
 use crate::{
     Certificates, CertifyOptions, Method, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
 };
 
-/// A strip of 2 x `quads` triangles bent to an open ring, with smooth modes: its ends meet, and its middle.
-pub(in crate::certificates) fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
-    let angle = |i: usize| 5.6 * i as f64 / quads as f64;
-    let positions: Vec<DVec3> = (0..=quads)
-        .flat_map(|i| [0.0, 0.4].map(|y| DVec3::new(angle(i).cos(), y + 0.1 * angle(i), angle(i).sin())))
-        .collect();
-    let faces =
-        (0..quads as u32).map(|i| 2 * i).flat_map(|i| [[i, i + 1, i + 2], [i + 1, i + 3, i + 2]]).collect();
-    let mode = |p: &DVec3, k: usize| {
-        let (a, b) = (seed + k as f64, seed * 0.7 + 2.0 * k as f64);
-        DVec3::new(
-            p.x * a.sin() + p.z * p.x * b.cos(),
-            p.x * p.z * a.cos(),
-            p.z * b.sin() + p.x * p.x * a.cos(),
-        )
-    };
-    let displacements = positions.iter().flat_map(|p| (0..rank).map(move |k| mode(p, k))).collect();
-    let mesh = TriMesh::new(positions, faces).unwrap();
-    ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
-}
-
 fn certify(model: &ReducedModel, budget: usize) -> Certificates {
     Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
 }
 
-/// All pairs of triangles that the tree does not certify at this norm: within a small node, or between two with an
-/// entry that has been passed, as have all above it.
+/// All triangle pairs that the tree does not certify at this norm: those within a bucket, and those between two nodes with
+/// an entry whose radius has been reached, as have the radii of its parents.
 fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     let mut open = Vec::new();
     let mut add = |n: u32, m: u32| {
@@ -45,16 +27,17 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
             add(n as u32, n as u32);
             continue;
         }
-        let pairs: Vec<(u32, u32)> = node.child_pairs().collect();
-        let mut stack: Vec<_> =
-            tree.of_node(n as u32).map(|(at, e)| (at, e, pairs[e.which() as usize])).collect();
-        while let Some((at, entry, (n, m))) = stack.pop() {
-            if f64::from(entry.radius) > norm {
+        let pairs: Vec<Pair> = node.child_pairs().collect();
+        let mut stack: Vec<(StoredPair, Pair)> =
+            tree.of_node(n as u32).map(|stored| (stored, pairs[stored.entry.which() as usize])).collect();
+        while let Some((stored, (n, m))) = stack.pop() {
+            if f64::from(stored.entry.radius) > norm {
                 continue;
             }
             match hierarchy.split_large(n, m) {
                 None => add(n, m),
-                Some(split) => stack.extend(tree.below(at).map(|(at, e)| (at, e, split.pair(e.which())))),
+                Some(split) => stack
+                    .extend(tree.below(stored.place).map(|below| (below, split.pair(below.entry.which())))),
             }
         }
     }
@@ -62,7 +45,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     open
 }
 
-/// Would fail for a tree that leaves out pairs because their boxes are apart, and for radii or limits above the truth.
+/// Would fail for a tree that omits pairs because their boxes are disjoint, and for radii or limits above the truth.
 #[test]
 fn below_the_limit_whatever_collides_is_open() {
     let (mut collided, mut lowered) = (0, 0);
@@ -101,10 +84,10 @@ fn below_the_limit_whatever_collides_is_open() {
     assert!(lowered >= 2, "{lowered}");
 }
 
-/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from growing it,
-/// above from a search among what growing has left open.
+/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from building it,
+/// above from a search among the pairs that it has left open.
 #[test]
-fn no_node_is_free_where_two_of_its_triangles_meet() {
+fn no_node_is_free_where_two_of_its_triangles_collide() {
     let (mut below, mut above) = (0, 0);
     for (case, budget, quads) in [(0, 2, 400), (1, 3, 500), (2, 16, 400), (3, 2, 600), (4, 0, 400)] {
         let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
@@ -125,9 +108,9 @@ fn no_node_is_free_where_two_of_its_triangles_meet() {
             pairs.iter_mut().flatten().for_each(|t| *t = place[*t as usize]);
             for (n, node) in hierarchy.nodes().iter().enumerate() {
                 let range = node.first_triangle..node.first_triangle + node.triangle_count;
-                let meets = pairs.iter().any(|pair| pair.iter().all(|place| range.contains(place)));
+                let collides = pairs.iter().any(|pair| pair.iter().all(|place| range.contains(place)));
                 assert!(
-                    !meets || certificates.node_radius(n as u32) <= norm,
+                    !collides || certificates.node_radius(n as u32) <= norm,
                     "case {case}: node {n} at {norm}"
                 );
             }
@@ -136,10 +119,10 @@ fn no_node_is_free_where_two_of_its_triangles_meet() {
     assert!(below > 50 && above > 50, "{below} {above}");
 }
 
-/// The radius is 1 wherever it comes from: a search from the beginning, what growing has left open, what it has
-/// bounded.
+/// The radius is 1 wherever it comes from: a search of all pairs, the pairs that building the tree has left open, those
+/// that it has bounded.
 #[test]
-fn the_root_is_as_close_as_asked_for() {
+fn the_root_radius_is_as_close_as_asked_for() {
     // Two parallel strips at a distance of 1, which the mode takes away.
     let positions: Vec<DVec3> =
         (0..800).map(|i| DVec3::new((i / 2 % 200) as f64, (i % 2) as f64, (i / 400) as f64)).collect();
@@ -156,7 +139,7 @@ fn the_root_is_as_close_as_asked_for() {
     assert!(limits[0] == 0.0 && 0.0 < limits[1] && limits[1] < 0.9 && 1.0 < limits[2], "{limits:?}");
 }
 
-/// Would fail where a parent is bounded better than its children and that is not pushed down.
+/// Would fail where a parent is bounded better than its children and its bound is not pushed down.
 #[test]
 fn radii_never_fall_towards_the_leaves() {
     let mut checked = 0;
@@ -166,14 +149,14 @@ fn radii_never_fall_towards_the_leaves() {
         let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
         assert!(tree.len() * 8 <= budget * 480);
         for n in 0..hierarchy.nodes().len() as u32 {
-            let of_node = f64::from(super::round_down(certificates.node_radius(n)));
-            let mut stack: Vec<_> = tree.of_node(n).map(|(at, entry)| (at, entry, of_node)).collect();
-            while let Some((at, entry, above)) = stack.pop() {
+            let of_node = f64::from(round_down(certificates.node_radius(n)));
+            let mut stack: Vec<_> = tree.of_node(n).map(|stored| (stored, of_node)).collect();
+            while let Some((StoredPair { place, entry }, of_parent)) = stack.pop() {
                 let radius = f64::from(entry.radius);
-                assert!(above <= radius && radius < tree.limit());
+                assert!(of_parent <= radius && radius < tree.limit());
                 checked += 1;
                 if entry.start() != 0 {
-                    stack.extend(tree.below(at).map(|(at, entry)| (at, entry, radius)));
+                    stack.extend(tree.below(place).map(|stored| (stored, radius)));
                 }
             }
         }
@@ -182,7 +165,7 @@ fn radii_never_fall_towards_the_leaves() {
 }
 
 #[test]
-fn threads_grow_the_same_tree() {
+fn any_number_of_threads_builds_the_same_tree() {
     for (quads, budget) in [(240, 4), (240, 64), (900, 3)] {
         let model = ring(quads, 4, 0.9);
         let on = |threads| {

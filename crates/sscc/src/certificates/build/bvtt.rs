@@ -1,0 +1,145 @@
+//! The BVTT under construction: node pairs with lower bounds of their radii, from which the pair tree is made.
+//!
+//! The BVTT begins with the pairs of children of each node that is not within a bucket. A pair is split by
+//! [`Hierarchy::split_large`] alone, so pairs are not stored with what they are split into: children are side by side,
+//! in the order of the split.
+
+use std::ops::Range;
+
+use crate::Pair;
+use crate::certificates::pair_tree::{round_down, sibling_pairs};
+use crate::hierarchy::Hierarchy;
+
+/// A node pair, in 16 bytes: a large model has millions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BvttPair {
+    pub(crate) nodes: Pair,
+    /// A lower bound of its radius, at least its parent's.
+    pub(crate) lower: f32,
+    /// [`OPEN`], [`BOUNDED`], or where its children start.
+    link: u32,
+}
+
+const OPEN: u32 = 0;
+const BOUNDED: u32 = u32::MAX;
+
+/// What a node pair has become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PairState {
+    /// Not split; only the lower bound is known.
+    Open,
+    /// Two small nodes whose radius is known.
+    Bounded,
+    /// Split into pairs that start there.
+    Split(u32),
+}
+
+impl BvttPair {
+    pub(crate) fn open(nodes: Pair, lower: f32) -> Self {
+        Self { nodes, lower, link: OPEN }
+    }
+
+    pub(crate) fn state(&self) -> PairState {
+        match self.link {
+            OPEN => PairState::Open,
+            BOUNDED => PairState::Bounded,
+            first => PairState::Split(first),
+        }
+    }
+
+    pub(crate) fn set_state(&mut self, state: PairState) {
+        self.link = match state {
+            PairState::Open => OPEN,
+            PairState::Bounded => BOUNDED,
+            PairState::Split(first) => first,
+        };
+    }
+
+    /// Whether the pair is open and may collide below a limit.
+    pub(crate) fn is_open_below(&self, limit: f64) -> bool {
+        self.link == OPEN && f64::from(self.lower) < limit
+    }
+}
+
+/// All node pairs so far; parents come before their children.
+pub(super) struct Bvtt {
+    pub(super) pairs: Vec<BvttPair>,
+    /// For each node where its pairs of children start, and the end of the last one's.
+    starts: Vec<u32>,
+}
+
+impl Bvtt {
+    /// A BVTT that says nothing of any node.
+    pub(super) fn empty() -> Self {
+        Self { pairs: Vec::new(), starts: Vec::new() }
+    }
+
+    /// The pairs of children of each node, all open.
+    pub(super) fn new(hierarchy: &Hierarchy) -> Self {
+        let mut bvtt = Self { pairs: Vec::new(), starts: vec![0] };
+        for n in 0..hierarchy.nodes().len() as u32 {
+            bvtt.pairs.extend(sibling_pairs(hierarchy, n).map(|nodes| BvttPair::open(nodes, 0.0)));
+            bvtt.starts.push(bvtt.pairs.len() as u32);
+        }
+        bvtt
+    }
+
+    /// The places of the pairs of a node's children; none if nothing is known of any node.
+    pub(super) fn of_node(&self, n: usize) -> Option<Range<usize>> {
+        Some(*self.starts.get(n)? as usize..*self.starts.get(n + 1)? as usize)
+    }
+
+    /// The places of the pairs that a pair is split into.
+    pub(super) fn children(&self, hierarchy: &Hierarchy, pair: &BvttPair) -> Range<usize> {
+        let PairState::Split(first) = pair.state() else { return 0..0 };
+        let (n, m) = pair.nodes;
+        let count = hierarchy.split_large(n, m).map_or(0, |split| split.children().len());
+        first as usize..first as usize + count
+    }
+
+    /// Replaces an open pair by what it has become: the first of `subtree`, with the others behind all pairs.
+    pub(super) fn replace(&mut self, place: u32, subtree: Vec<BvttPair>) {
+        // The pair stays in its place; the others, numbered from 1 in the subtree, follow.
+        let offset = self.pairs.len() as u32 - 1;
+        let mut moved = subtree.into_iter().map(|mut pair| {
+            if let PairState::Split(first) = pair.state() {
+                pair.set_state(PairState::Split(first + offset));
+            }
+            pair
+        });
+        if let Some(pair) = moved.next() {
+            self.pairs[place as usize] = pair;
+        }
+        self.pairs.extend(moved);
+    }
+
+    /// Gives each pair that is split the smallest lower bound of its children.
+    pub(super) fn pull_up(&mut self, hierarchy: &Hierarchy) {
+        for place in (0..self.pairs.len()).rev() {
+            let pair = self.pairs[place];
+            if let PairState::Split(_) = pair.state() {
+                let children = &self.pairs[self.children(hierarchy, &pair)];
+                self.pairs[place].lower =
+                    children.iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
+            }
+        }
+    }
+
+    /// Gives each pair at least the radius of the node that contains it, and at least the lower bound of its parent.
+    pub(super) fn push_down(&mut self, hierarchy: &Hierarchy, node_radii: &[f64]) {
+        for (n, radius) in node_radii.iter().enumerate() {
+            let radius = round_down(*radius);
+            let places = self.of_node(n).unwrap_or_default();
+            for pair in &mut self.pairs[places] {
+                pair.lower = pair.lower.max(radius);
+            }
+        }
+        for place in 0..self.pairs.len() {
+            let parent = self.pairs[place];
+            let children = self.children(hierarchy, &parent);
+            for child in &mut self.pairs[children] {
+                child.lower = child.lower.max(parent.lower);
+            }
+        }
+    }
+}

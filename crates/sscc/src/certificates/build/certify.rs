@@ -1,0 +1,69 @@
+//! The computation of all certificates, stage by stage: pair tree, then radii of nodes (paper, section 5.2).
+
+use super::executor::{Executor, ThreadExecutor};
+use super::node_radii::NodeRadii;
+use super::pair_tree_builder::PairTreeBuilder;
+use super::prepare::Prepared;
+use crate::certificates::pair_tree::{PairEntry, PairTree};
+use crate::certificates::{CertificateParts, Certificates, CertifyOptions};
+use crate::threads::on_threads;
+use crate::{Error, Progress, ReducedModel};
+
+impl Certificates {
+    /// Computes the hierarchy and all certificates of a model: every `R_n`, `R_nm` for the children of the root (paper,
+    /// section 5.2), and the pair tree within [`CertifyOptions::budget`].
+    ///
+    /// # Errors
+    /// When an option is out of range, the metric does not fit the model, or `progress` cancels.
+    pub fn compute(
+        model: &ReducedModel,
+        options: &CertifyOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        on_threads(options.threads, || {
+            let prepared = Prepared::new(model, options, progress)?;
+            let mut executor = ThreadExecutor { prepared: &prepared, progress };
+            let radii = CertifiedRadii::compute(&prepared, options.budget, &mut executor, progress)?;
+            Ok(radii.into_certificates(prepared))
+        })
+    }
+}
+
+/// The radii of a model that was prepared.
+pub(crate) struct CertifiedRadii {
+    radii: NodeRadii,
+    pair_tree: PairTree,
+}
+
+impl CertifiedRadii {
+    /// Has all stages run. `budget`: bytes of the pair tree for each triangle.
+    pub(crate) fn compute(
+        prepared: &Prepared,
+        budget: usize,
+        executor: &mut dyn Executor,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        let hierarchy = &prepared.hierarchy;
+        let entries = budget.saturating_mul(hierarchy.order().len()) / size_of::<PairEntry>();
+        let builder = PairTreeBuilder::build(hierarchy, prepared.global_radius, entries, executor)?;
+        let radii = NodeRadii::compute(prepared, &builder, executor, progress)?;
+        let pair_tree = builder.finish(hierarchy, &radii.nodes);
+        Ok(Self { radii, pair_tree })
+    }
+
+    /// The certificates of the model that was prepared.
+    pub(crate) fn into_certificates(self, prepared: Prepared) -> Certificates {
+        let Prepared { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } = prepared;
+        Certificates::new(CertificateParts {
+            digest,
+            scope,
+            rest_collisions,
+            hierarchy,
+            epsilon,
+            global_radius,
+            node_radii: self.radii.nodes,
+            root_pair_radii: self.radii.root_pairs,
+            pair_tree: self.pair_tree,
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! Executors run the tasks of a stage: this one on the threads of this process, `remote/executor.rs` in other processes.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::prepare::Prepared;
+use super::search::RadiusSearch;
+use super::task::{Task, TaskResult, run_task};
+use crate::{Error, Progress};
+
+/// Tasks that are independent of each other. The next stage depends on their results.
+pub(crate) struct Stage<'a> {
+    /// How many tasks there are.
+    pub(crate) count: usize,
+    /// Makes the task with an index, when it is run: all at once would take too much memory.
+    pub(crate) task: &'a (dyn Fn(usize) -> Task + Sync),
+    /// Most tasks that a thread takes at once. Tasks are unequal, and those taken cannot be shared any more.
+    pub(crate) grain: usize,
+    /// Most node pairs that all results together may add to the BVTT.
+    pub(crate) room: usize,
+    /// Receives numbers of tasks that have finished.
+    pub(crate) on_finished: &'a (dyn Fn(usize) + Sync),
+}
+
+/// Runs tasks, stage by stage.
+pub(crate) trait Executor {
+    /// The results of a stage, in the order of its tasks. None if there is no room for them.
+    ///
+    /// # Errors
+    /// When cancelled, or when other processes fail.
+    fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error>;
+}
+
+/// Counts the node pairs that results add, and stops work for which there is no room.
+pub(crate) struct Room {
+    room: usize,
+    added: AtomicUsize,
+}
+
+impl Room {
+    pub(crate) fn new(room: usize) -> Self {
+        Self { room, added: AtomicUsize::new(0) }
+    }
+
+    pub(crate) fn add(&self, result: &TaskResult) {
+        self.added.fetch_add(result.added_pairs(), Ordering::Relaxed);
+    }
+
+    pub(crate) fn is_exceeded(&self) -> bool {
+        self.added.load(Ordering::Relaxed) > self.room
+    }
+}
+
+/// Runs tasks on the threads of the current pool.
+pub(crate) struct ThreadExecutor<'a> {
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) progress: &'a dyn Progress,
+}
+
+impl Executor for ThreadExecutor<'_> {
+    fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error> {
+        let Self { prepared, progress } = *self;
+        let room = Room::new(stage.room);
+        let run = |search: &mut RadiusSearch<'_>, index: usize| {
+            if room.is_exceeded() {
+                return None;
+            }
+            let result = run_task(&(stage.task)(index), prepared, search, progress)?;
+            room.add(&result);
+            (stage.on_finished)(1);
+            Some(result)
+        };
+        let tasks = (0..stage.count).into_par_iter().with_max_len(stage.grain);
+        let results: Vec<Option<TaskResult>> = tasks.map_init(|| prepared.search(progress), run).collect();
+        if room.is_exceeded() {
+            return Ok(None);
+        }
+        results.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(Error::Cancelled)
+    }
+}

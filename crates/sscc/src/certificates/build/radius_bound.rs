@@ -1,0 +1,27 @@
+//! Bounds of radii: of one node pair before a search, of all pairs searched after it.
+
+use crate::Pair;
+
+/// A node pair and a lower bound of its radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct KnownPair {
+    pub(crate) nodes: Pair,
+    /// 0: the pair has not been bounded yet.
+    pub(crate) lower: f64,
+}
+
+impl KnownPair {
+    /// A pair that has not been bounded yet.
+    pub(crate) fn unbounded(nodes: Pair) -> Self {
+        Self { nodes, lower: 0.0 }
+    }
+}
+
+/// The result of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RadiusBound {
+    /// Certified: no triangle pair searched collides below this.
+    pub(crate) radius: f64,
+    /// The smallest upper bound met of any such pair's radius; infinite if none was met.
+    pub(crate) upper: f64,
+}

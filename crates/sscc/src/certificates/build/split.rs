@@ -1,0 +1,69 @@
+//! Splitting of a node pair into the part of the BVTT below it, as far as that may collide below a limit.
+
+use super::bvtt::{BvttPair, PairState};
+use super::prepare::Prepared;
+use super::search::RadiusSearch;
+use crate::certificates::pair_tree::round_down;
+use crate::{Pair, Progress};
+
+/// A pair of small nodes is bounded up to this many times the limit, so that most need no further search in the next
+/// round.
+const BUCKET_LOOKAHEAD: f64 = 2.0;
+
+/// Most pairs that one task bounds; those that it leaves open are further tasks, so that threads finish together. Tests
+/// have small models, and should leave some open, too.
+const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
+
+/// Pairs between two tests for cancellation; searches test for themselves.
+const CANCEL_INTERVAL: usize = 64;
+
+/// An open node pair that may collide below a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SplitTask {
+    pub(crate) nodes: Pair,
+    /// A lower bound of its radius.
+    pub(crate) lower: f32,
+    /// Pairs with a lower bound below this are split.
+    pub(crate) limit: f64,
+}
+
+/// The pair itself, then those that it is split into, breadth first; places count in this list. After
+/// [`MAX_BOUNDED`] pairs the others stay open with a lower bound below the limit. None if cancelled.
+pub(super) fn split(
+    task: SplitTask,
+    prepared: &Prepared,
+    search: &mut RadiusSearch<'_>,
+    progress: &dyn Progress,
+) -> Option<Vec<BvttPair>> {
+    let SplitTask { limit, .. } = task;
+    let mut subtree = vec![BvttPair::open(task.nodes, task.lower)];
+    let mut next = 0;
+    while next < subtree.len().min(MAX_BOUNDED) {
+        if next.is_multiple_of(CANCEL_INTERVAL) && progress.is_cancelled() {
+            return None;
+        }
+        let nodes @ (n, m) = subtree[next].nodes;
+        let first = subtree.len() as u32;
+        let pair = &mut subtree[next];
+        match prepared.hierarchy.split_large(n, m) {
+            None => {
+                let cap = (BUCKET_LOOKAHEAD * limit).min(prepared.global_radius);
+                let radius = search.between_coarse(nodes, cap)?.radius;
+                if radius < cap || cap == prepared.global_radius {
+                    pair.set_state(PairState::Bounded);
+                }
+                pair.lower = pair.lower.max(round_down(radius));
+            }
+            Some(split) => {
+                let lower = pair.lower.max(round_down(search.bound_nodes(nodes, limit)));
+                pair.lower = lower;
+                if f64::from(lower) < limit {
+                    pair.set_state(PairState::Split(first));
+                    subtree.extend(split.pairs().map(|nodes| BvttPair::open(nodes, lower)));
+                }
+            }
+        }
+        next += 1;
+    }
+    Some(subtree)
+}

@@ -1,0 +1,109 @@
+//! The certificates of a model: their contents, and the type whose contents are known to fit together.
+//!
+//! What makes them is in `build/` and `remote/`; what refuses parts that do not fit, in `validation.rs`; what refuses
+//! other models, in `coverage.rs`.
+
+use super::{Digest, PairTree, Scope};
+use crate::hierarchy::Hierarchy;
+use crate::{Metric, Pair, PairRule};
+
+/// The proof of which parts of a model are free of collisions near the centre: a hierarchy with a radius for each node
+/// and for pairs of nodes.
+///
+/// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A radius R of a set of triangle pairs
+/// promises: at any q with `|z| < R`, no pair of the set that counts under the rule has a point in common, except for
+/// the exceptions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificates {
+    parts: CertificateParts,
+}
+
+/// The contents of [`Certificates`], for reading and writing files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CertificateParts {
+    /// Hash of the model and the scope for which the certificates hold.
+    pub digest: Digest,
+    /// The hierarchy over the triangles.
+    pub hierarchy: Hierarchy,
+    /// Metric, centre, rule and exceptions for which the certificates hold.
+    pub scope: Scope,
+    /// Relative error allowed of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
+    pub epsilon: f64,
+    /// `R_global`: radii are capped here (paper, section 5.2); infinite if no mode moves anything.
+    pub global_radius: f64,
+    /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
+    /// bucket ([`Node::is_small`](crate::hierarchy::Node::is_small)) has the bucket's radius.
+    pub node_radii: Vec<f64>,
+    /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
+    pub root_pair_radii: Vec<f64>,
+    /// Radii of node pairs, all below the tree's limit.
+    pub pair_tree: PairTree,
+    /// Number of colliding pairs at rest (q = 0), ignored ones included.
+    pub rest_collisions: u64,
+}
+
+impl Certificates {
+    /// Certificates from parts that fit together.
+    pub(super) fn new(parts: CertificateParts) -> Self {
+        Self { parts }
+    }
+
+    /// The contents, for writing.
+    pub fn parts(&self) -> &CertificateParts {
+        &self.parts
+    }
+
+    /// The hierarchy over the triangles.
+    pub fn hierarchy(&self) -> &Hierarchy {
+        &self.parts.hierarchy
+    }
+
+    /// The metric in which radii are measured.
+    pub fn metric(&self) -> &Metric {
+        &self.parts.scope.metric
+    }
+
+    /// The configuration from which radii are measured (r entries).
+    pub fn center(&self) -> &[f64] {
+        &self.parts.scope.center
+    }
+
+    /// Which pairs of triangles count.
+    pub fn rule(&self) -> &PairRule {
+        &self.parts.scope.rule
+    }
+
+    /// Pairs that no radius covers and every query tests, sorted.
+    pub fn exceptions(&self) -> &[Pair] {
+        &self.parts.scope.exceptions
+    }
+
+    /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
+    /// exceptions.
+    pub fn root_radius(&self) -> f64 {
+        self.parts.node_radii[0]
+    }
+
+    /// `R_global`, at which radii are capped.
+    pub fn global_radius(&self) -> f64 {
+        self.parts.global_radius
+    }
+
+    /// `R_n` of a node.
+    pub fn node_radius(&self, node: u32) -> f64 {
+        self.parts.node_radii[node as usize]
+    }
+
+    /// Number of colliding pairs at rest.
+    pub fn rest_collisions(&self) -> u64 {
+        self.parts.rest_collisions
+    }
+
+    /// `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
+    ///
+    /// # Panics
+    /// When the length of q is not the number of modes.
+    pub fn norm(&self, q: &[f64]) -> f64 {
+        self.parts.scope.norm(q)
+    }
+}

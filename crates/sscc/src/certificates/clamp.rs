@@ -1,0 +1,48 @@
+//! Clamping of a configuration to the ellipsoid that the root's certificate proves free.
+
+use super::Certificates;
+use crate::Error;
+
+/// Most steps towards the centre: a few make up for rounding, about a thousand for a norm that overflows.
+const MAX_STEPS: usize = 4096;
+
+impl Certificates {
+    /// q itself if it is inside the root's ellipsoid, else the last point inside it on the line from the centre to q:
+    /// free by the root's certificate. None if the root's radius is 0, or if there are exceptions, which no radius
+    /// covers.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates) for a model of this rank: length
+    /// and finite entries.
+    pub fn clamp(&self, q: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        let center = self.center();
+        if q.len() != center.len() {
+            return Err(Error::CoordinatesLength { found: q.len(), rank: center.len() });
+        }
+        if let Some(index) = q.iter().position(|x| !x.is_finite()) {
+            return Err(Error::CoordinatesValue { index, value: q[index] });
+        }
+        let root = self.root_radius();
+        if root <= 0.0 || !self.exceptions().is_empty() {
+            return Ok(None);
+        }
+        let mut offset = vec![0.0; q.len()];
+        let mut norm_at = |q: &[f64]| self.metric().norm_from(q, center, &mut offset);
+        let mut clamped = q.to_vec();
+        let norm = norm_at(&clamped);
+        let mut scale = if norm.is_finite() { root / norm } else { 0.5 };
+        for _ in 0..MAX_STEPS {
+            if norm_at(&clamped) < root {
+                return Ok(Some(clamped));
+            }
+            for ((x, q), c) in clamped.iter_mut().zip(q).zip(center) {
+                *x = c + (q - c) * scale;
+            }
+            scale *= 1.0 - 4.0 * f64::EPSILON;
+            if norm.is_infinite() {
+                scale *= 0.5;
+            }
+        }
+        Ok(Some(center.to_vec()))
+    }
+}

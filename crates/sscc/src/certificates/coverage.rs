@@ -1,0 +1,51 @@
+//! Whether certificates cover a model and a contact filter: for any other ones they would be a wrong proof.
+
+use super::{Certificates, Digest};
+use crate::{Error, PairRule, ReducedModel};
+
+impl Certificates {
+    /// Refuses a model for which these certificates were not computed.
+    ///
+    /// # Errors
+    /// When faces, positions or modes differ in any bit from the certified ones, or when hierarchy, metric or pairs do not
+    /// fit the model.
+    pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
+        let (parts, scope) = (self.parts(), &self.parts().scope);
+        let found = Digest::of(model, scope);
+        if found != parts.digest {
+            return Err(Error::OtherModel { certificates: parts.digest.short(), model: found.short() });
+        }
+        let damaged = |cause: &str| Err(Error::Certificates(cause.to_owned()));
+        let triangles = model.mesh().faces().len();
+        if parts.hierarchy.order().len() != triangles {
+            return damaged("the hierarchy is of another mesh");
+        }
+        if scope.metric.rank() != model.rank() {
+            return damaged("the metric is of another rank");
+        }
+        if scope.exceptions.iter().chain(scope.rule.ignored()).any(|(_, b)| *b as usize >= triangles) {
+            return damaged("a pair names a triangle that does not exist");
+        }
+        model.check_coordinates(self.center()).map(|_| ())
+    }
+
+    /// Refuses a rule under which other pairs count than those that were certified.
+    ///
+    /// # Errors
+    /// When neighbours, weld or ignored pairs differ.
+    pub fn check_rule(&self, rule: &PairRule) -> Result<(), Error> {
+        let certified = self.rule();
+        let what = if certified.neighbours != rule.neighbours {
+            let [certified, asked] = [certified, rule].map(|rule| rule.neighbours.name());
+            format!("they were made with the neighbour rule {certified}, not {asked}")
+        } else if certified.weld != rule.weld {
+            format!("they were made with{} welding", if certified.weld { "" } else { "out" })
+        } else if certified.ignored() != rule.ignored() {
+            let [certified, asked] = [certified, rule].map(|rule| rule.ignored().len());
+            format!("the {certified} pairs that they ignore are not the {asked} asked for")
+        } else {
+            return Ok(());
+        };
+        Err(Error::OtherPairs { what })
+    }
+}

@@ -1,0 +1,60 @@
+//! Options of the computation of certificates.
+
+use crate::{Metric, PairRule};
+
+/// How certificates are computed.
+#[derive(Clone, Debug)]
+pub struct CertifyOptions {
+    /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one, and so is each
+    /// other node's radius that may be as small. Larger radii are coarse: those that the pair tree's construction has
+    /// bounded have an error of at least 0.25, more where only subdivision would make it smaller; the others an error of
+    /// at least 0.4, because queries that far out open many nodes anyway. A radius that is capped, or whose search
+    /// reached a limit (subdivisions, candidates in the queue), may be smaller still. Paper, section 5.1: 0.1.
+    pub epsilon: f64,
+    /// The metric; none: the model's default.
+    pub metric: Option<Metric>,
+    /// The configuration from which radii are measured (r entries); none: q = 0, the rest pose.
+    pub center: Option<Vec<f64>>,
+    /// Which pairs of triangles count.
+    pub rule: PairRule,
+    /// Whether the rule also ignores the pairs that collide at rest (q = 0): queries never list them.
+    pub ignore_rest: bool,
+    /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
+    /// in every query. If more pairs collide there, none of them is an exception, and the radius of each node that
+    /// contains one is 0. None: [`CertifyOptions::default_exceptions`].
+    pub max_exceptions: Option<usize>,
+    /// Memory for the pair tree ([`PairTree`](crate::PairTree)), in bytes for each triangle of the mesh; a node pair
+    /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
+    /// ([`PairTree::limit`](crate::PairTree::limit)): queries with `|z|` below that never open two nodes only because
+    /// their boxes touch. 0: no tree, which is the paper's scheme of one radius for each node and each pair of the root's
+    /// children; this suits certificates that serve a few queries only, since the tree takes most of the time.
+    pub budget: usize,
+    /// Number of threads; none: all cores. The result is the same for any number.
+    pub threads: Option<usize>,
+}
+
+impl Default for CertifyOptions {
+    fn default() -> Self {
+        Self {
+            epsilon: 0.1,
+            metric: None,
+            center: None,
+            rule: PairRule::default(),
+            ignore_rest: false,
+            max_exceptions: None,
+            budget: Self::DEFAULT_BUDGET,
+            threads: None,
+        }
+    }
+}
+
+impl CertifyOptions {
+    /// The default of [`CertifyOptions::budget`], in bytes for each triangle.
+    pub const DEFAULT_BUDGET: usize = 16;
+
+    /// The default of [`CertifyOptions::max_exceptions`] for a mesh: half the number of its triangles. Testing more in
+    /// every query costs as much as radii can save.
+    pub fn default_exceptions(triangles: usize) -> usize {
+        triangles.div_ceil(2)
+    }
+}

@@ -1,0 +1,97 @@
+//! Validation of a pair tree that was read from a file, against its hierarchy.
+//!
+//! Every entry is visited once, in order: a list of siblings must start right after the one before. So no bytes can make
+//! the check loop, or take more than linear time.
+
+use super::pair_tree::{MAX_ENTRIES, NO_PAIRS, PairTree, sibling_pairs};
+use crate::Pair;
+use crate::hierarchy::Hierarchy;
+
+/// All siblings that a list may name, and the radius of their parent.
+struct Siblings<F> {
+    count: usize,
+    pair: F,
+    parent_radius: f32,
+}
+
+impl PairTree {
+    /// The nodes of each entry, in order.
+    ///
+    /// # Errors
+    /// When the tree is not one over this hierarchy.
+    pub(crate) fn pairs(&self, hierarchy: &Hierarchy) -> Result<Vec<Pair>, &'static str> {
+        let limit = self.limit();
+        if limit.is_nan() || limit < 0.0 || limit.is_infinite() {
+            return Err("its limit is negative or not finite");
+        }
+        if limit == 0.0 {
+            let is_empty = self.is_empty() && self.starts().is_empty();
+            return if is_empty { Ok(Vec::new()) } else { Err("it has pairs, but no limit") };
+        }
+        if self.starts().len() != hierarchy.nodes().len() {
+            return Err("there is not one start for each node");
+        }
+        if self.len() > MAX_ENTRIES {
+            return Err("it has more pairs than links can name");
+        }
+        let mut pairs: Vec<Pair> = Vec::new();
+        for (n, start) in self.starts().iter().enumerate() {
+            if *start == NO_PAIRS {
+                continue;
+            }
+            let all: Vec<Pair> = sibling_pairs(hierarchy, n as u32).collect();
+            let siblings = Siblings { count: all.len(), pair: |which| all[which], parent_radius: 0.0 };
+            self.append(*start, &siblings, &mut pairs)?;
+        }
+        let mut place = 0;
+        while let Some(&(n, m)) = pairs.get(place) {
+            let entry = self.entry(place);
+            match hierarchy.split_large(n, m) {
+                None if entry.start() != 0 => return Err("a pair of small nodes has children"),
+                None => {}
+                Some(split) => {
+                    let pair = |which| split.pair(which as u32);
+                    let siblings =
+                        Siblings { count: split.children().len(), pair, parent_radius: entry.radius };
+                    self.append(entry.start(), &siblings, &mut pairs)?;
+                }
+            }
+            place += 1;
+        }
+        if place == self.len() { Ok(pairs) } else { Err("some pairs have no parent") }
+    }
+
+    /// Appends the nodes of the list of siblings at `start`.
+    fn append(
+        &self,
+        start: u32,
+        siblings: &Siblings<impl Fn(usize) -> Pair>,
+        pairs: &mut Vec<Pair>,
+    ) -> Result<(), &'static str> {
+        if start as usize != pairs.len() {
+            return Err("lists of siblings are out of order");
+        }
+        let mut next = 0;
+        for entry in (start as usize..self.len()).map(|place| self.entry(place)) {
+            if entry.radius.is_nan() || entry.radius < 0.0 {
+                return Err("a radius is negative or not a number");
+            }
+            if f64::from(entry.radius) >= self.limit() {
+                return Err("a radius is not below the limit");
+            }
+            if entry.radius < siblings.parent_radius {
+                return Err("a pair's radius exceeds that of a child");
+            }
+            let which = entry.which() as usize;
+            if which < next || which >= siblings.count {
+                return Err("a child is listed twice or does not exist");
+            }
+            next = which + 1;
+            pairs.push((siblings.pair)(which));
+            if entry.is_last() {
+                return Ok(());
+            }
+        }
+        Err("a list of siblings does not end")
+    }
+}

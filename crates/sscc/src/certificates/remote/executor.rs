@@ -1,0 +1,116 @@
+//! The executor that has tasks run by workers in other processes.
+
+use super::job::JobWriter;
+use super::job_result::{Expected, JobResult};
+use super::seal::{HASH, Key};
+use crate::certificates::build::{CertifiedRadii, Executor, Prepared, Room, Stage, TaskResult};
+use crate::certificates::{Certificates, CertifyOptions};
+use crate::threads::on_threads;
+use crate::{Error, Progress, ReducedModel};
+
+/// Has jobs run, each by [`ShardWorker::run`](crate::ShardWorker::run) in some process; gives the results in the order
+/// of the jobs.
+pub type RunJobs<'a> = dyn FnMut(Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Error> + 'a;
+
+impl Certificates {
+    /// As [`Certificates::compute`], by workers: `run` has the jobs of each stage run, at most `shards` of them. Every
+    /// number of shards gives the same certificates. A few times as many shards as workers keep all of them busy to the
+    /// end.
+    ///
+    /// # Errors
+    /// As `compute`; what `run` returns; [`Error::Shard`] for a result that is not the job's.
+    pub fn compute_in_shards(
+        model: &ReducedModel,
+        options: &CertifyOptions,
+        shards: usize,
+        run: &mut RunJobs<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        if shards == 0 {
+            return Err(Error::Option { name: "shards", value: 0.0, wanted: "at least 1" });
+        }
+        let prepared = on_threads(options.threads, || Prepared::new(model, options, progress))?;
+        let key = Key::of(&prepared);
+        let mut executor = RemoteExecutor { prepared: &prepared, key, shards, run, progress };
+        let radii = CertifiedRadii::compute(&prepared, options.budget, &mut executor, progress)?;
+        Ok(radii.into_certificates(prepared))
+    }
+}
+
+/// Writes the tasks of a stage as jobs, has them run, and reads their results.
+struct RemoteExecutor<'a> {
+    prepared: &'a Prepared,
+    key: Key,
+    shards: usize,
+    run: &'a mut RunJobs<'a>,
+    progress: &'a dyn Progress,
+}
+
+/// A job that was sealed, and what is needed to read its result.
+struct SealedJob {
+    bytes: Vec<u8>,
+    expected: Vec<Expected>,
+}
+
+impl RemoteExecutor<'_> {
+    /// Job j of k has the tasks j, j + k, j + 2k, ..., because neighbours are often equally hard.
+    fn seal(&self, stage: &Stage<'_>, job: usize, jobs: usize) -> SealedJob {
+        let (mut writer, mut expected) = (JobWriter::new(stage.room), Vec::new());
+        for index in (job..stage.count).step_by(jobs) {
+            let task = (stage.task)(index);
+            writer.add(&task);
+            expected.push(Expected::of(&task));
+        }
+        SealedJob { bytes: self.key.seal(&writer.into_bytes()), expected }
+    }
+
+    /// Reads the result of the job with that name.
+    fn open(&self, name: [u8; HASH], expected: &[Expected], result: &[u8]) -> Result<JobResult, Error> {
+        let body = self.key.open("a result", result)?;
+        let body =
+            body.strip_prefix(&name).ok_or_else(|| Error::Shard("a result is of another job".to_owned()))?;
+        JobResult::read(&self.prepared.hierarchy, expected, body)
+            .ok_or_else(|| Error::Shard("a result does not fit its job".to_owned()))
+    }
+}
+
+impl Executor for RemoteExecutor<'_> {
+    fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error> {
+        if self.progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        let jobs = self.shards.min(stage.count);
+        if jobs == 0 {
+            return Ok(Some(Vec::new()));
+        }
+        let (mut bytes, mut known) = (Vec::with_capacity(jobs), Vec::with_capacity(jobs));
+        for job in 0..jobs {
+            let sealed = self.seal(stage, job, jobs);
+            known.push((Key::name(&sealed.bytes), sealed.expected));
+            bytes.push(sealed.bytes);
+        }
+        let results = (self.run)(bytes)?;
+        if results.len() != jobs {
+            return Err(Error::Shard(format!("{} results came back for {jobs} jobs", results.len())));
+        }
+        let mut of_jobs = Vec::with_capacity(jobs);
+        for (result, (name, expected)) in results.into_iter().zip(known) {
+            of_jobs.push(self.open(name, &expected, &result)?);
+        }
+        (stage.on_finished)(stage.count);
+        Ok(in_order(stage, of_jobs))
+    }
+}
+
+/// The results in the order of their tasks; none if there is no room for all of them.
+fn in_order(stage: &Stage<'_>, jobs: Vec<JobResult>) -> Option<Vec<TaskResult>> {
+    let complete = |job: JobResult| match job {
+        JobResult::OutOfRoom => None,
+        JobResult::Complete(results) => Some(results.into_iter()),
+    };
+    let mut jobs = jobs.into_iter().map(complete).collect::<Option<Vec<_>>>()?;
+    let (room, count) = (Room::new(stage.room), jobs.len());
+    let results: Vec<TaskResult> =
+        (0..stage.count).filter_map(|index| jobs[index % count].next()).inspect(|r| room.add(r)).collect();
+    (!room.is_exceeded()).then_some(results)
+}

@@ -1,0 +1,114 @@
+//! Results of jobs as bytes: those of the tasks one after the other.
+//!
+//! Of a pair that was split only states and lower bounds are written: which pairs they belong to follows from the pair
+//! and the splitting rule. So whoever reads a result must know the task.
+
+use super::reader::Reader;
+use crate::Pair;
+use crate::certificates::build::{BvttPair, PairState, RadiusBound, Task, TaskResult};
+use crate::hierarchy::Hierarchy;
+
+/// The first byte: whether there was room for the results.
+const OUT_OF_ROOM: u8 = 0;
+const COMPLETE: u8 = 1;
+
+const OPEN: u8 = 0;
+const BOUNDED: u8 = 1;
+const SPLIT: u8 = 2;
+
+/// What must be known of a task to read its result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Expected {
+    /// The pair that is split.
+    Split(Pair),
+    NodeRadius,
+}
+
+impl Expected {
+    pub(super) fn of(task: &Task) -> Self {
+        match task {
+            Task::Split(task) => Self::Split(task.nodes),
+            Task::NodeRadius(_) => Self::NodeRadius,
+        }
+    }
+}
+
+/// The result of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum JobResult {
+    /// There is no room for the results.
+    OutOfRoom,
+    Complete(Vec<TaskResult>),
+}
+
+impl JobResult {
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let Self::Complete(results) = self else { return vec![OUT_OF_ROOM] };
+        let mut bytes = vec![COMPLETE];
+        for result in results {
+            match result {
+                TaskResult::Split(subtree) => subtree.iter().for_each(|pair| write_pair(pair, &mut bytes)),
+                TaskResult::NodeRadius(RadiusBound { radius, upper }) => {
+                    bytes.extend(radius.to_le_bytes());
+                    bytes.extend(upper.to_le_bytes());
+                }
+            }
+        }
+        bytes
+    }
+
+    /// The results of some tasks; none if the bytes are no such results.
+    pub(super) fn read(hierarchy: &Hierarchy, expected: &[Expected], bytes: &[u8]) -> Option<Self> {
+        let mut from = Reader::new(bytes);
+        let result = match from.u8()? {
+            OUT_OF_ROOM => Self::OutOfRoom,
+            COMPLETE => {
+                let read = |expected: &Expected| read_result(hierarchy, *expected, &mut from);
+                Self::Complete(expected.iter().map(read).collect::<Option<_>>()?)
+            }
+            _ => return None,
+        };
+        from.is_at_end().then_some(result)
+    }
+}
+
+fn write_pair(pair: &BvttPair, bytes: &mut Vec<u8>) {
+    bytes.push(match pair.state() {
+        PairState::Open => OPEN,
+        PairState::Bounded => BOUNDED,
+        PairState::Split(_) => SPLIT,
+    });
+    bytes.extend(pair.lower.to_le_bytes());
+}
+
+fn read_result(hierarchy: &Hierarchy, expected: Expected, from: &mut Reader<'_>) -> Option<TaskResult> {
+    Some(match expected {
+        Expected::Split(nodes) => TaskResult::Split(read_subtree(hierarchy, nodes, from)?),
+        Expected::NodeRadius => {
+            TaskResult::NodeRadius(RadiusBound { radius: from.radius()?, upper: from.radius()? })
+        }
+    })
+}
+
+fn read_subtree(hierarchy: &Hierarchy, nodes: Pair, from: &mut Reader<'_>) -> Option<Vec<BvttPair>> {
+    let mut subtree = vec![BvttPair::open(nodes, 0.0)];
+    let mut next = 0;
+    while next < subtree.len() {
+        let (n, m) = subtree[next].nodes;
+        let split = hierarchy.split_large(n, m);
+        let (state, lower) = (from.u8()?, from.single_radius()?);
+        let state = match (state, &split) {
+            (OPEN, _) => PairState::Open,
+            (BOUNDED, None) => PairState::Bounded,
+            (SPLIT, Some(_)) => PairState::Split(subtree.len() as u32),
+            _ => return None,
+        };
+        subtree[next].lower = lower;
+        subtree[next].set_state(state);
+        if let (PairState::Split(_), Some(split)) = (state, split) {
+            subtree.extend(split.pairs().map(|nodes| BvttPair::open(nodes, lower)));
+        }
+        next += 1;
+    }
+    Some(subtree)
+}

@@ -1,0 +1,74 @@
+//! Validation of certificates that were read from a file: whether their parts fit together.
+//!
+//! The file's hash proves that no byte was changed, not that the bytes are certificates. Whether they are those of a
+//! given model is checked in `coverage.rs`.
+
+use super::{CertificateParts, Certificates};
+use crate::Error;
+
+impl Certificates {
+    /// Certificates from their parts, as read from a file whose integrity has been checked.
+    ///
+    /// # Errors
+    /// When the parts do not fit together.
+    pub fn from_parts(parts: CertificateParts) -> Result<Self, Error> {
+        check_scope(&parts).and_then(|()| check_radii(&parts)).map_err(|cause| damaged(cause.to_owned()))?;
+        match parts.pair_tree.pairs(&parts.hierarchy) {
+            Ok(_) => Ok(Self::new(parts)),
+            Err(cause) => Err(damaged(format!("pair tree: {cause}"))),
+        }
+    }
+}
+
+fn damaged(cause: String) -> Error {
+    Error::Certificates(cause)
+}
+
+fn check_scope(parts: &CertificateParts) -> Result<(), &'static str> {
+    let scope = &parts.scope;
+    if scope.center.len() != scope.metric.rank() {
+        return Err("centre and metric are of different ranks");
+    }
+    if scope.center.iter().any(|x| !x.is_finite()) {
+        return Err("the centre is not finite");
+    }
+    let (exceptions, ignored) = (&scope.exceptions, scope.rule.ignored());
+    if !exceptions.is_sorted_by(|a, b| a < b) || exceptions.iter().any(|(a, b)| a >= b) {
+        return Err("exceptions are not sorted pairs");
+    }
+    if exceptions.iter().any(|pair| ignored.binary_search(pair).is_ok()) {
+        return Err("a pair is an exception and ignored");
+    }
+    Ok(())
+}
+
+fn check_radii(parts: &CertificateParts) -> Result<(), &'static str> {
+    let nodes = parts.hierarchy.nodes();
+    if parts.node_radii.len() != nodes.len() {
+        return Err("the number of node radii is not the number of nodes");
+    }
+    let children = nodes[0].child_count as usize;
+    if parts.root_pair_radii.len() != children * children.saturating_sub(1) / 2 {
+        return Err("the number of root pair radii is not the number of pairs of the root's children");
+    }
+    // NaN must fail these tests, too.
+    let mut radii = parts.node_radii.iter().chain(&parts.root_pair_radii);
+    if radii.any(|radius| radius.is_nan() || *radius < 0.0) {
+        return Err("a radius is negative or not a number");
+    }
+    if parts.global_radius.is_nan() || parts.global_radius <= 0.0 {
+        return Err("the global radius is not positive");
+    }
+    if !(parts.epsilon > 0.0 && parts.epsilon < 1.0) {
+        return Err("epsilon is not between 0 and 1");
+    }
+    if parts.root_pair_radii.iter().any(|radius| *radius < parts.node_radii[0]) {
+        return Err("the root's radius exceeds that of a pair of its children");
+    }
+    for (node, radius) in nodes.iter().zip(&parts.node_radii) {
+        if node.children().any(|child| parts.node_radii[child as usize] < *radius) {
+            return Err("a node's radius exceeds that of a child");
+        }
+    }
+    Ok(())
+}
