@@ -71,7 +71,7 @@ fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
     }
     let is_boundary =
         |(i, j, _): &(u32, u32, u32)| edges.binary_search_by_key(&(*j, *i), |e| (e.0, e.1)).is_err();
-    // The faces at each vertex are one fan: going from one to the next meets all of them.
+    // The faces at each vertex are one fan: going from one to the next visits all of them.
     for around in edges.chunk_by(|a, b| a.0 == b.0) {
         let start = around.iter().find(|e| is_boundary(e)).unwrap_or(&around[0]).1;
         let (mut at, mut count) = (start, 0);
@@ -98,7 +98,7 @@ fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
     (around.len() == boundary.len()).then_some(around)
 }
 
-/// Whether a closed polygon in the plane certainly does not meet itself. Its coordinates are rounded once; `order` is
+/// Whether a closed polygon in the plane certainly does not intersect itself. Its coordinates are rounded once; `order` is
 /// scratch.
 pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     let count = polygon.len();
@@ -137,7 +137,7 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     count > 2
 }
 
-/// What two products of differences, each difference off by at most `2 moved`, may be off by together.
+/// The error bound of two products of differences, each difference with an error of at most `2 moved`.
 ///
 /// Let m be the largest magnitude of a coordinate and u = 2^-53, so that `moved = 2 u m`. Coordinates are off by `u m`,
 /// a difference of two by `moved`, and it is itself rounded by at most `moved`, since it is at most `2 m`. So two products

@@ -25,7 +25,7 @@ const VISITS_PER_CHECK: u32 = 1024;
 /// Boxes of single triangles compared between two checks.
 const BOXES_PER_CHECK: u64 = 1024;
 
-/// What a search cost.
+/// The cost of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counters {
     /// Nodes and node pairs that were opened.
@@ -50,8 +50,8 @@ pub(crate) struct BroadPhase<const E: usize> {
 }
 
 impl<const E: usize> BroadPhase<E> {
-    /// Lazy searches compute boxes where they look, others refit all of them first. Cones are those of the method, if it
-    /// uses any.
+    /// Lazy searches compute boxes where the traversal visits nodes, others refit all of them first. `cones`: those of the
+    /// method, if it uses any.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool, cones: Option<NormalCones>) -> Self {
         Self {
             volumes: NodeVolumes::new(layout, is_lazy),

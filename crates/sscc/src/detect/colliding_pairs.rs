@@ -1,4 +1,4 @@
-//! The colliding pairs at one configuration by the traditional method: for what certificates leave out.
+//! The colliding pairs at one configuration by the traditional method: for exceptions and ignored pairs.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! What stays the same in all searches on one model.
+//! The context of a detector: state shared by all searches on one model.
 
 use std::borrow::Cow;
 use std::sync::Arc;

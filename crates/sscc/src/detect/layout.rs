@@ -10,7 +10,7 @@ use crate::ReducedModel;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 
-/// What the searches of a detector need beside vertices and buckets.
+/// The parts of a layout that only some searches need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Needs {
     /// BD-tree AABBs of all nodes down to buckets; else of the root alone.
@@ -22,7 +22,7 @@ pub(crate) struct Needs {
 }
 
 impl Needs {
-    /// For searches that compute boxes only where they look.
+    /// For searches that compute boxes where the traversal visits nodes.
     pub(crate) const LAZY: Self = Self { bd_tree: true, coarse: true, boundaries: false };
 
     /// For searches that refit all boxes first.
@@ -32,7 +32,7 @@ impl Needs {
     pub(crate) const NORMALS: Self = Self { bd_tree: false, coarse: false, boundaries: true };
 }
 
-/// Vertices, buckets, and what [`Needs`] names.
+/// Vertices, buckets, and the parts that [`Needs`] names.
 #[derive(Default)]
 pub(crate) struct Layout {
     pub(crate) vertices: VertexStore,

@@ -5,8 +5,8 @@
 //! ([`buckets`]), whose boxes are compared eight at a time ([`packet`]). The narrow phase ([`narrow_phase`]) is exact. Where
 //! vertices come from is a static parameter ([`vertex_motion`]).
 //!
-//! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here; what certificates cull is
-//! in [`query`](crate::Query), by the same tests of nodes and buckets.
+//! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here. The traversals that use
+//! certificates are in `query/`, by the same tests of nodes and buckets.
 
 mod adjacency_masks;
 pub(crate) mod ball_motion;

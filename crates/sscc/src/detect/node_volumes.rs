@@ -2,7 +2,7 @@
 //!
 //! All are AABBs in the single precision of a [`Frame`](super::frame::Frame). Where a search has two ends, a box contains
 //! both, hence the straight lines between them. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
-//! 2004), computed where the traversal looks. A bucket gets tight boxes, from its vertices, when it is opened: BD-tree AABBs
+//! 2004), computed where the traversal visits them. A bucket gets tight boxes, from its vertices, when it is opened: BD-tree AABBs
 //! of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel or not. The
 //! traditional method refits everything first.
 
@@ -47,7 +47,7 @@ pub(crate) struct NodeVolumes<const E: usize> {
 }
 
 impl<const E: usize> NodeVolumes<E> {
-    /// Lazy volumes are computed where a traversal looks, others all at the start of each search.
+    /// Lazy volumes are computed where a traversal visits nodes, others all at the start of each search.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool) -> Self {
         let (nodes, buckets) = (layout.buckets.node_count(), layout.buckets.count());
         Self {

@@ -4,9 +4,9 @@
 //! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
 //! directions: the corners and the face centres of a cube. That alone is approximate. It is a proof with the *contour
 //! test*: the patch is one oriented manifold with a single boundary, and the boundary, projected along the direction,
-//! does not meet itself. Then the projection is one to one: a point off all projected edges is covered as often as the
+//! does not intersect itself. Then the projection is one to one: a point off all projected edges is covered as often as the
 //! boundary winds around it, which for a simple curve is once or never. Two points of the patch on the same spot would
-//! be both on the boundary, where it would meet itself, or one of them would be an inner point: around it the patch
+//! be both on the boundary, where it would intersect itself, or one of them would be an inner point: around it the patch
 //! covers all, and near the other one some of that a second time.
 
 use glam::DVec3;

@@ -83,7 +83,7 @@ impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
     }
 }
 
-/// What rounding can add to a BD-tree box and to positions: well above the 2 (r + 1) roundings of each.
+/// An upper bound of the rounding error of BD-tree boxes and positions: well above the 2 (r + 1) roundings of each.
 pub(crate) fn rounding_bound(reach: f64, rank: usize) -> f64 {
     right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
 }

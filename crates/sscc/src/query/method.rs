@@ -24,7 +24,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// What the detector needs of the model; none for brute force.
+    /// The parts of the layout that the method needs; none for brute force.
     pub(super) fn needs(self) -> Option<Needs> {
         match self {
             Self::Certified | Self::BdTree => Some(Needs::LAZY),
@@ -35,7 +35,7 @@ impl Method {
         }
     }
 
-    /// Whether boxes are computed where the traversal looks.
+    /// Whether boxes are computed where the traversal visits nodes.
     pub(super) fn is_lazy(self) -> bool {
         matches!(self, Self::Certified | Self::BdTree)
     }

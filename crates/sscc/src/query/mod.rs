@@ -1,5 +1,5 @@
-//! Queries: which pairs of triangles collide at q, or between two q, with what certificates cull (paper, Algorithm 1 and
-//! section 7).
+//! Queries: which pairs of triangles collide at q, or between two q, with traversals that certificates cull (paper,
+//! Algorithm 1 and section 7).
 
 mod batch;
 mod certified_search;

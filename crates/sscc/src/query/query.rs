@@ -164,7 +164,7 @@ impl<'a> Query<'a> {
         &self.discrete.narrow.0.found
     }
 
-    /// What the last query cost.
+    /// The cost of the last query.
     pub fn statistics(&self) -> Statistics {
         self.statistics
     }

@@ -1,8 +1,8 @@
-//! What a query cost.
+//! The cost of a query.
 
 use crate::detect::broad_phase::Counters;
 
-/// What the last query cost.
+/// The cost of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Whether the root's certificate alone proved the shape free, exceptions apart.

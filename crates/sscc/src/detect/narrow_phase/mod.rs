@@ -1,4 +1,4 @@
-//! The narrow phase: what a search tests two triangles for, once their boxes overlap. There are three:
+//! The narrow phase: the test of two triangles whose boxes overlap. There are three:
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
@@ -24,7 +24,7 @@ pub(crate) use swept::SweptHits;
 
 /// Tests two triangles exactly, and collects those that count. All methods share it, so that all give the same answers.
 pub(crate) trait NarrowPhase<const E: usize> {
-    /// What is listed for a pair of triangles that counts.
+    /// The entry of a colliding pair in the answer.
     type Hit: Copy;
 
     /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each end.
@@ -36,6 +36,6 @@ pub(crate) trait NarrowPhase<const E: usize> {
         b: &[[DVec3; 3]; E],
     ) -> Option<Self::Hit>;
 
-    /// What was collected so far.
+    /// The hits so far.
     fn hits(&mut self) -> &mut Hits<Self::Hit>;
 }

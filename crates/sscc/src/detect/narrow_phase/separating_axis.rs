@@ -65,8 +65,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
 
-    /// What is said of positions that are wrong by nearly the margin is true of the exact ones, which touch, or are a
-    /// few margins apart or within each other, or farther.
+    /// With positions that are off by nearly the error bound, triangles are separated only if the exact ones are. These touch,
+    /// or are a few error bounds apart or inside each other, or farther.
     #[test]
     fn only_what_is_apart_is_said_to_be() {
         let random = &mut Random(5);
@@ -134,7 +134,7 @@ mod tests {
         assert!(used > 4000, "{used}");
     }
 
-    /// The same on the way from one place to another.
+    /// The same for triangles that move.
     #[test]
     fn only_what_stays_apart_on_the_way_is_said_to() {
         let random = &mut Random(6);

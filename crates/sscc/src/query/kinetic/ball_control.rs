@@ -72,7 +72,7 @@ impl BallControl {
         (self.share, self.factor, self.rate) = ((share / 4.0).max(MIN_SHARE), 1.0 / FACTOR, f64::INFINITY);
     }
 
-    /// A ball was left after so many steps. What it lost, if anything, must be little beside the plain queries that follow.
+    /// A ball was left after so many steps. Its loss, if any, must be small beside the plain queries that follow.
     pub(super) fn left(&mut self, steps: u64) {
         let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain_cost));
         self.pause = PAUSE_FACTOR.saturating_mul(lost) / self.plain_cost.max(1);

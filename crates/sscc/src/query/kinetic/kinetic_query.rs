@@ -37,7 +37,7 @@ const FIND_COST: u64 = 10;
 
 /// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
-/// cost what they cost a [`Query`]. Takes three times its memory.
+/// cost the same as in a [`Query`]. Takes three times its memory.
 pub struct KineticQuery<'a> {
     query: Query<'a>,
     search: BallSearch,
@@ -106,7 +106,7 @@ impl<'a> KineticQuery<'a> {
         self.query.pairs()
     }
 
-    /// What the last query cost.
+    /// The cost of the last query.
     pub fn statistics(&self) -> Statistics {
         self.query.statistics()
     }

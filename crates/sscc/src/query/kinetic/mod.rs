@@ -1,4 +1,4 @@
-//! Kinetic queries: what one query finds out serves the next ones, as long as q stays near.
+//! Kinetic queries: reuse of one query's results in the next ones, as long as q stays near.
 //!
 //! A search at one z, with the boxes and radii of all z in a ball around it, finds every pair that can collide anywhere in
 //! the ball. Each of them gets a safe distance: two triangles that are apart stay apart until z has moved by their gap over

@@ -60,7 +60,7 @@ mod tests {
     use crate::test_models::{Random, strips};
     use crate::{Neighbours, PairRule, Scope};
 
-    /// Nothing meets within a margin: looked for at random, and towards where corners come closer fastest. And margins
+    /// No pair collides within its safe distance, in random directions and in those that close gaps fastest. And distances
     /// are not much too small: many are reached up to a tenth.
     #[test]
     fn nothing_collides_within_a_safe_distance() {
