@@ -4,14 +4,13 @@ use anyhow::Result;
 use sscc::Certificates;
 use sscc_io::Rows;
 use sscc_modes::shapes::ElasticShape;
+use sscc_sim::{elasticity, frequencies_of_modes};
 use sscc_view::{
     Arrays, Axis, Body, Colliding, ModelDetails, ModelScene, Playback, Plot, Report as Page, Scene, Series,
 };
 
 use super::frames::{Answers, Frames};
 use super::report::Report;
-use crate::commands::modes::elasticity;
-use crate::frequencies;
 
 /// Frames in a second.
 const RATE: f64 = 30.0;
@@ -27,7 +26,7 @@ pub fn html(
     let mut arrays = Arrays::default();
     let mut scene = Scene::new("A double-helix spring, shaken ever harder");
     let forces = elasticity(spring.eigenvalues.clone(), None);
-    let details = ModelDetails { frequencies: frequencies::of_modes(&forces), ..ModelDetails::default() };
+    let details = ModelDetails { frequencies: frequencies_of_modes(&forces), ..ModelDetails::default() };
     scene.models.push(ModelScene::new(0, "spring", &spring.model, certificates, details, &mut arrays)?);
     scene.summary = report.table();
     let times: Vec<f64> = (0..animation.rows).map(|frame| frame as f64 / RATE).collect();

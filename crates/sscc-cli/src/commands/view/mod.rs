@@ -6,12 +6,13 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use sscc_sim::frequencies_of_modes;
 use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Report, Scene, Server};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
 use crate::output::{Output, file_name, note};
-use crate::{Outcome, frequencies, load};
+use crate::{Outcome, load};
 
 /// The report in a folder of `simulate` or `demo`.
 const REPORT: &str = "report.html";
@@ -33,7 +34,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     let comparison = if args.compare_metrics { Some(metrics::compare(&loaded, path)?) } else { None };
     let server = bind(args)?;
     let details = ModelDetails {
-        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies::of_modes),
+        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies_of_modes),
         mode_names: loaded.mode_names.clone(),
         default_q: loaded.default_q.clone(),
     };

@@ -1,0 +1,33 @@
+//! A model that was made, with what was found on the way.
+
+use sscc::ReducedModel;
+use sscc_io::ModelInfo;
+
+use super::pca::Components;
+
+/// A surface with modes.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct NewModel {
+    /// The model; of a solid its metric is the strain energy, else the displacement.
+    pub model: ReducedModel,
+    /// Provenance; of a solid also the stiffness and the forces.
+    pub info: ModelInfo,
+    /// Whether vertices are split along seams, so that certificates should weld them.
+    pub is_split: bool,
+    /// Of a solid: its size and frequencies.
+    pub solid: Option<SolidFacts>,
+    /// Of principal components: what they explain.
+    pub components: Option<Components>,
+}
+
+/// The size of a solid and the frequencies of its modes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidFacts {
+    /// Tetrahedra and cubes.
+    pub elements: usize,
+    /// Coordinates of vertices that are not fixed.
+    pub degrees_of_freedom: usize,
+    /// Of each mode (Hz).
+    pub frequencies: Vec<f64>,
+}

@@ -1,0 +1,45 @@
+//! The mean and the principal components of the frames of an animation.
+
+use glam::DVec3;
+use serde::Serialize;
+use sscc::{Progress, ReducedModel, TriMesh};
+use sscc_io::ModelInfo;
+use sscc_modes::pca_modes;
+
+use super::new_model::NewModel;
+use crate::SimError;
+
+/// What principal components explain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Components {
+    /// Number of frames.
+    pub frames: usize,
+    /// The share of the variance that all modes together explain.
+    pub explained: f64,
+    /// The standard deviation of each mode.
+    pub deviations: Vec<f64>,
+}
+
+/// The mean and the principal components of frames with the faces of `mesh`; without a rank as many as explain 99.9% of
+/// the variance. `name` says what the frames are, for the provenance.
+///
+/// # Errors
+/// When there are too few frames, none of them differ, or `progress` cancels.
+pub fn pca_model(
+    mesh: &TriMesh,
+    frames: &[Vec<DVec3>],
+    rank: Option<usize>,
+    name: &str,
+    progress: &dyn Progress,
+) -> Result<NewModel, SimError> {
+    let found = pca_modes(mesh, frames, rank, progress)?;
+    let count = frames.len();
+    let explained = found.shares.iter().sum();
+    Ok(NewModel {
+        model: ReducedModel::new(found.mesh, found.modes)?,
+        info: ModelInfo::new("", format!("mean and principal components of {count} {name}")),
+        is_split: false,
+        solid: None,
+        components: Some(Components { frames: count, explained, deviations: found.deviations }),
+    })
+}

@@ -1,0 +1,94 @@
+//! A folder that keeps from run to run what takes long to make, under a hash of all that it is made from.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use crate::error::InSystem;
+use crate::text::one_line;
+use crate::watch::check_cancelled;
+use crate::{SimError, Watch};
+
+/// A folder of files that can be made again.
+pub struct Cache {
+    folder: PathBuf,
+    /// The hash of this program, once it was asked for.
+    program: OnceLock<String>,
+}
+
+impl Cache {
+    /// The folder that is wanted, else `sscc` in the system's cache folder.
+    ///
+    /// # Errors
+    /// When it cannot be written to.
+    pub fn open(wanted: Option<&Path>) -> Result<Self, SimError> {
+        let folder = wanted.map_or_else(|| system_folder().join("sscc"), Path::to_owned);
+        let open = || {
+            fs::create_dir_all(&folder)?;
+            tempfile::tempfile_in(&folder).map(drop)
+        };
+        open().map_err(|cause| SimError::System {
+            place: format!("{}: no folder that can be written to; choose one by --cache", folder.display()),
+            cause,
+        })?;
+        Ok(Self { folder, program: OnceLock::new() })
+    }
+
+    /// Where the files are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The hash of this very program: certificates, and the time they took, are those of one build.
+    ///
+    /// # Errors
+    /// When the system does not let it read its own file.
+    pub fn program(&self) -> Result<&str, SimError> {
+        if let Some(hash) = self.program.get() {
+            return Ok(hash);
+        }
+        let own = Path::new("this program's own file");
+        let path = env::current_exe().system(own)?;
+        let mut hasher = blake3::Hasher::new();
+        let file = fs::File::open(&path).system(&path)?;
+        hasher.update_reader(file).system(&path)?;
+        Ok(self.program.get_or_init(|| hasher.finalize().to_hex().to_string()))
+    }
+
+    /// Reads a file, or makes and writes it where it is missing or damaged.
+    pub(crate) fn get<T>(
+        &self,
+        name: &str,
+        watch: &dyn Watch,
+        read: impl FnOnce(&Path) -> Result<T, SimError>,
+        make: impl FnOnce() -> Result<T, SimError>,
+        write: impl FnOnce(&Path, &T) -> Result<(), SimError>,
+    ) -> Result<T, SimError> {
+        let path = self.folder.join(name);
+        if path.exists() {
+            match read(&path) {
+                Ok(found) => return Ok(found),
+                Err(error) => watch.note(&format!("made anew: {}", one_line(&error.to_string()))),
+            }
+        }
+        let made = make()?;
+        check_cancelled(watch)?;
+        write(&path, &made)?;
+        Ok(made)
+    }
+}
+
+/// The folder in which programs of this system keep what they can make again.
+fn system_folder() -> PathBuf {
+    let named = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let at_home = |folder: &str| env::home_dir().map(|home| home.join(folder));
+    let folder = if cfg!(windows) {
+        named("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        at_home("Library/Caches")
+    } else {
+        named("XDG_CACHE_HOME").or_else(|| at_home(".cache"))
+    };
+    folder.unwrap_or_else(env::temp_dir)
+}

@@ -1,0 +1,82 @@
+//! What a model is made from: a shape, a material and a kind of modes.
+
+use sscc::{Metric, MetricKind, ReducedModel};
+
+use super::shape::Shape;
+use crate::SimError;
+use crate::error::At;
+use crate::models::RequestedMaterial;
+
+/// A free elastic body with modes.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    /// What the model is called.
+    pub name: String,
+    /// What it is made around.
+    pub shape: Shape,
+    /// Its modes.
+    pub modes: ModesSpec,
+    /// Goes before what the file of a solid names.
+    pub material: RequestedMaterial,
+    /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
+    pub cells: Option<usize>,
+    /// The longest side of the box around a surface; none: as it is.
+    pub size: Option<f64>,
+    /// How far q goes along each mode as a rule: certificates measure it in these units. None: in the model's metric.
+    pub spread: Option<Vec<f64>>,
+}
+
+/// Modes of a free elastic body.
+#[derive(Clone, Copy, Debug)]
+pub enum ModesSpec {
+    /// So many natural vibrations.
+    Linear(usize),
+    /// So many modes for large deformations.
+    Nonlinear(usize),
+    /// The 24 quadratic polynomials.
+    Polynomial,
+}
+
+impl ModesSpec {
+    /// Number of modes r.
+    pub fn rank(self) -> usize {
+        match self {
+            Self::Linear(rank) | Self::Nonlinear(rank) => rank,
+            Self::Polynomial => 24,
+        }
+    }
+}
+
+/// Cubes along the spring, as in the library's `elastic_spring`.
+const SPRING_CELLS: usize = 30;
+
+impl Recipe {
+    /// Of the default material, in its own size and its usual lattice.
+    pub fn new(name: impl Into<String>, shape: Shape, modes: ModesSpec) -> Self {
+        Self {
+            name: name.into(),
+            shape,
+            modes,
+            material: RequestedMaterial::default(),
+            cells: None,
+            size: None,
+            spread: None,
+        }
+    }
+
+    /// Cubes along the longest side of the lattice; none: as many as any surface has.
+    pub(super) fn cells(&self) -> Option<usize> {
+        let usual = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
+        self.cells.or(usual)
+    }
+
+    /// The metric of certificates of a model made from this.
+    ///
+    /// # Errors
+    /// When the spread has a number out of range.
+    pub fn metric(&self, model: &ReducedModel) -> Result<Metric, SimError> {
+        let Some(spread) = &self.spread else { return Ok(model.metric().clone()) };
+        let scales = spread.iter().map(|far| 1.0 / far).collect();
+        Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: spread", self.name))
+    }
+}

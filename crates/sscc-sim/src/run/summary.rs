@@ -1,0 +1,202 @@
+//! What a simulation came to: the keys of `sscc simulate --json`, and lines for people.
+
+use serde::Serialize;
+
+use super::history::History;
+use super::prepared::PreparedScene;
+use crate::machine;
+use crate::scenes::Scene;
+use crate::text::{counted, grouped};
+
+/// The result as JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    pub scene: String,
+    pub models: Vec<ModelSummary>,
+    pub objects: usize,
+    /// Steps that were simulated, and those that the scene has.
+    pub steps: usize,
+    pub scene_steps: usize,
+    /// Seconds of a step, of all steps, and the processor's that its parts took.
+    pub step: f64,
+    pub simulated_seconds: f64,
+    pub simulation_seconds: f64,
+    /// Seconds simulated in each second that passed by the wall's clock: whether it keeps up with the world; and in each
+    /// second of the processor, where one thread did it all.
+    pub real_time_factor: f64,
+    pub real_time_factor_processor: Option<f64>,
+    pub colliding_steps: usize,
+    pub body_steps: usize,
+    pub colliding_body_steps: usize,
+    /// In the last state, pairs of triangles that collide within bodies, and between them.
+    pub last_self_pairs: usize,
+    pub last_inter_pairs: usize,
+    /// Of the time, detection of self-collisions.
+    pub self_collision_share: f64,
+    pub energy_first: f64,
+    pub energy_largest: f64,
+    pub energy_last: f64,
+    pub machine: String,
+}
+
+/// One model of the scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelSummary {
+    pub name: String,
+    pub source: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    pub triangles: usize,
+    pub rank: usize,
+    pub root_radius: f64,
+}
+
+impl Summary {
+    pub fn new(
+        scene: &Scene,
+        prepared: &PreparedScene,
+        history: &History,
+        processor_seconds: Option<f64>,
+    ) -> Self {
+        let steps = history.len();
+        let colliding: Vec<usize> = (0..steps).map(|state| history.colliding_bodies(state)).collect();
+        let facts = || (0..steps).map(|state| history.step(state));
+        let seconds: f64 = facts().map(|f| f.total_seconds()).sum();
+        let wall: f64 = facts().map(|f| f.wall).sum();
+        let own: f64 = facts().map(|f| f.self_seconds()).sum();
+        let energies =
+            || (0..steps).map(|state| history.step(state).energy).filter(|energy| energy.is_finite());
+        let models = prepared.models.iter().map(|model| ModelSummary {
+            name: model.certified.name.clone(),
+            source: model.certified.source.clone(),
+            note: model.certified.note.clone(),
+            triangles: model.certified.model.mesh().faces().len(),
+            rank: model.certified.model.rank(),
+            root_radius: model.certified.full.certificates.root_radius(),
+        });
+        Self {
+            scene: scene.name.clone(),
+            models: models.collect(),
+            objects: scene.bodies.len(),
+            steps,
+            scene_steps: scene.steps,
+            step: scene.step,
+            simulated_seconds: steps as f64 * scene.step,
+            simulation_seconds: seconds,
+            real_time_factor: steps as f64 * scene.step / wall,
+            // Several bodies are tested on other threads, too.
+            real_time_factor_processor: processor_seconds
+                .filter(|_| scene.bodies.len() == 1)
+                .map(|seconds| steps as f64 * scene.step / seconds),
+            colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
+            body_steps: steps * scene.bodies.len(),
+            colliding_body_steps: colliding.iter().sum(),
+            last_self_pairs: steps.checked_sub(1).map_or(0, |last| history.self_pairs(last)),
+            last_inter_pairs: steps.checked_sub(1).map_or(0, |last| history.step(last).inter_pairs),
+            self_collision_share: own / seconds,
+            energy_first: energies().next().unwrap_or_default(),
+            energy_largest: energies().fold(f64::NEG_INFINITY, f64::max),
+            energy_last: energies().next_back().unwrap_or_default(),
+            machine: machine::machine_description(),
+        }
+    }
+
+    /// One JSON object.
+    pub fn to_json(&self) -> String {
+        // Text and finite or infinite numbers, which become null, are always JSON.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for model in &self.models {
+            lines.push(format!("{}: {}", model.name, model.line()));
+            lines.extend(model.note.iter().map(|note| format!("note: {note}")));
+        }
+        lines.push(format!("{}: {}", self.scene, self.motion()));
+        lines.push(format!("self-contact in {}", self.contact()));
+        lines.push(format!("at the end {}", self.end()));
+        lines.push(format!("detecting self-collisions took {}", self.share()));
+        lines
+    }
+
+    /// The same as rows of a table, and the machine.
+    pub fn table(&self) -> Vec<(String, String)> {
+        let row = |label: &str, value: String| (label.to_owned(), value);
+        let mut rows = Vec::new();
+        for model in &self.models {
+            rows.push(row(&model.name, model.line()));
+            rows.extend(model.note.iter().map(|note| row("note", note.clone())));
+        }
+        rows.push(row("motion", self.motion()));
+        rows.push(row("self-contact", format!("in {}", self.contact())));
+        rows.push(row("at the end", self.end()));
+        rows.push(row("detecting self-collisions", self.share()));
+        rows.push(row("machine", self.machine.clone()));
+        rows
+    }
+
+    fn motion(&self) -> String {
+        format!(
+            "{}, {}, {} s, simulated in {:.2} s of the processor ({:.2} times real time{})",
+            if self.objects == 1 { "one body".into() } else { format!("{} bodies", self.objects) },
+            counted(self.steps as u64, "step"),
+            self.simulated_seconds,
+            self.simulation_seconds,
+            self.real_time_factor,
+            self.real_time_factor_processor
+                .map_or(String::new(), |factor| format!(", {factor:.2} on one core"))
+        )
+    }
+
+    fn contact(&self) -> String {
+        let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
+        format!(
+            "{} of {} steps ({:.1}%), in {:.1}% with each body counted",
+            grouped(self.colliding_steps as u64),
+            grouped(self.steps as u64),
+            share(self.colliding_steps, self.steps),
+            share(self.colliding_body_steps, self.body_steps)
+        )
+    }
+
+    fn end(&self) -> String {
+        format!(
+            "{} of triangles within bodies and {} between them",
+            counted(self.last_self_pairs as u64, "colliding pair"),
+            self.last_inter_pairs
+        )
+    }
+
+    fn share(&self) -> String {
+        format!("{:.1}% of the time", 100.0 * self.self_collision_share)
+    }
+}
+
+impl ModelSummary {
+    fn line(&self) -> String {
+        format!("{} triangles, {} modes ({})", grouped(self.triangles as u64), self.rank, self.source)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::history::{StateLayout, StepRecord};
+    use crate::scenes::SHIPPED;
+
+    #[test]
+    fn costs_are_processor_time_and_the_real_time_factor_is_by_the_wall() {
+        let (name, text) = SHIPPED[0];
+        let scene = Scene::parse(name.as_ref(), text).unwrap();
+        let (layout, mut numbers) = (StateLayout::new([]), Vec::new());
+        let facts =
+            StepRecord { seconds: [1e-3, 2e-3, 0.0, 0.0, 5e-3, 0.0], wall: 0.1, ..StepRecord::default() };
+        (0..4).for_each(|_| layout.push(facts, [], &mut numbers));
+        let prepared = PreparedScene { models: Vec::new(), program: String::new() };
+        let summary = Summary::new(&scene, &prepared, &History::new(layout, numbers), None);
+        assert!((summary.simulation_seconds - 4.0 * 8e-3).abs() < 1e-12);
+        assert!((summary.self_collision_share - 1.0 / 8.0).abs() < 1e-12);
+        assert!((summary.real_time_factor - scene.step / 0.1).abs() < 1e-12 * summary.real_time_factor);
+    }
+}
