@@ -1,11 +1,11 @@
 //! Models, metrics and certificates by what was typed, with errors that name the file.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::{Certificates, CertifyOptions, Metric, MetricKind, Neighbours, PairRule, ReducedModel, Scope};
-use sscc_io::{IoError, LoadOptions, LoadedModel};
+use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
 use sscc_sim::{SimError, available_threads};
 
 use crate::output::note;
@@ -238,14 +238,6 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
         ensure!(!inputs.iter().any(is_input), "{shown}: the output is an input; choose another name");
         ensure!(real.is_file(), "{shown}: cannot be written: it is no file; choose another name");
     }
-    // Nameless, so that nothing is left of it.
-    tempfile::tempfile_in(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
+    check_writable(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
     Ok(())
-}
-
-fn folder(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent.to_owned(),
-        _ => PathBuf::from("."),
-    }
 }

@@ -46,5 +46,5 @@ pub use run::{
     StateLayout, StateLog, StepRecord, Summary, run,
 };
 pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Sound, read_scene};
-pub use simulate::{Request, check_writable, simulate};
+pub use simulate::{Request, make_folder, simulate};
 pub use watch::{Stage, Watch};

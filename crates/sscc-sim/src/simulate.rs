@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use sscc_io::check_writable;
+
 use crate::error::{At, Result, SimError};
 use crate::machine::available_threads;
 use crate::recipes::{Cache, models_folder};
@@ -43,7 +45,7 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
         Some(folder) => folder.clone(),
         None => own_folder(&request.scene, &scene.name)?,
     };
-    check_writable(&folder)?;
+    make_folder(&folder)?;
     let threads = request.threads.unwrap_or_else(available_threads);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| SimError::refused("threads", error.to_string()))?;
@@ -86,11 +88,10 @@ fn finish(
 ///
 /// # Errors
 /// What the system says.
-pub fn check_writable(folder: &Path) -> Result<(), SimError> {
+pub fn make_folder(folder: &Path) -> Result<(), SimError> {
     let make = || {
         fs::create_dir_all(folder)?;
-        // Nameless, so that nothing is left of it.
-        tempfile::tempfile_in(folder).map(drop)
+        check_writable(folder)
     };
     make().map_err(|cause| SimError::System {
         place: format!("{}: no folder that can be written to", folder.display()),

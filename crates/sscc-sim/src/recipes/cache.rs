@@ -5,6 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use sscc_io::check_writable;
+
 use crate::error::InSystem;
 use crate::text::one_line;
 use crate::watch::check_cancelled;
@@ -26,7 +28,7 @@ impl Cache {
         let folder = wanted.map_or_else(|| system_folder().join("sscc"), Path::to_owned);
         let open = || {
             fs::create_dir_all(&folder)?;
-            tempfile::tempfile_in(&folder).map(drop)
+            check_writable(&folder)
         };
         open().map_err(|cause| SimError::System {
             place: format!("{}: no folder that can be written to; choose one by --cache", folder.display()),

@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, ensure};
 use sscc::CertifyOptions;
 use sscc_modes::shapes::elastic_spring;
-use sscc_sim::check_writable;
+use sscc_sim::make_folder;
 
 use crate::args::{Demo, Threads};
 use crate::output::Output;
@@ -23,7 +23,7 @@ use report::Report;
 
 pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     if let Some(folder) = &args.out {
-        check_writable(folder)?;
+        make_folder(folder)?;
     }
     let start = Instant::now();
     let spring = elastic_spring(&Bar::new("modes")).context("the embedded spring")?;
