@@ -1,4 +1,4 @@
-//! What it was measured on, and how much memory it took.
+//! The machine that measures: its description, its threads, and the memory of this process.
 
 use std::env::consts::{ARCH, OS};
 use std::fs;
@@ -28,12 +28,13 @@ pub fn available_threads() -> usize {
 pub struct PeakMemory(());
 
 impl PeakMemory {
-    /// From now on; none where the system does not tell.
+    /// Starts now; none where the system does not tell.
     pub fn start() -> Option<Self> {
         // Resets the peak that the kernel knows (proc(5), clear_refs).
         fs::write("/proc/self/clear_refs", "5").ok().map(|()| Self(()))
     }
 
+    /// The most bytes in memory since [`PeakMemory::start`].
     pub fn bytes(self) -> Option<u64> {
         line_of("/proc/self/status", "VmHWM").and_then(|text| kibibytes(&text))
     }

@@ -66,7 +66,7 @@ fn finish(
     let prepared = PreparedScene::get(&scene, models, cache, watch).at(in_scene)?;
     let RunOutcome { history, processor_seconds, failure } =
         run(&scene, &prepared, &folder, steps, again, watch).at(in_scene)?;
-    if history.len() == 0 {
+    if history.is_empty() {
         let failure = failure.unwrap_or_else(|| SimError::refused("steps", "no step was made"));
         return Err(failure).at(in_scene);
     }

@@ -1,9 +1,8 @@
-//! A model that was made, with what was found on the way.
+//! A new model, with the facts that were found while it was made.
 
+use serde::Serialize;
 use sscc::ReducedModel;
 use sscc_io::ModelInfo;
-
-use super::pca::Components;
 
 /// A surface with modes.
 #[derive(Clone, Debug)]
@@ -30,4 +29,15 @@ pub struct SolidFacts {
     pub degrees_of_freedom: usize,
     /// Of each mode (Hz).
     pub frequencies: Vec<f64>,
+}
+
+/// What principal components explain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Components {
+    /// Number of frames.
+    pub frames: usize,
+    /// The share of the variance that all modes together explain.
+    pub explained: f64,
+    /// The standard deviation of each mode.
+    pub deviations: Vec<f64>,
 }

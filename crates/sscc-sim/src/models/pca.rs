@@ -1,24 +1,12 @@
 //! The mean and the principal components of the frames of an animation.
 
 use glam::DVec3;
-use serde::Serialize;
 use sscc::{Progress, ReducedModel, TriMesh};
 use sscc_io::ModelInfo;
 use sscc_modes::pca_modes;
 
-use super::new_model::NewModel;
+use super::new_model::{Components, NewModel};
 use crate::SimError;
-
-/// What principal components explain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Components {
-    /// Number of frames.
-    pub frames: usize,
-    /// The share of the variance that all modes together explain.
-    pub explained: f64,
-    /// The standard deviation of each mode.
-    pub deviations: Vec<f64>,
-}
 
 /// The mean and the principal components of frames with the faces of `mesh`; without a rank as many as explain 99.9% of
 /// the variance. `name` says what the frames are, for the provenance.

@@ -12,16 +12,26 @@ use crate::SimError;
 
 /// A solid with its surface, from a file or around a surface.
 pub enum SolidSource {
-    /// Around a surface.
-    Around { mesh: TriMesh, embedded: Embedded, material: MaterialOrigin },
+    /// A lattice around a surface.
+    Around {
+        /// The surface.
+        mesh: TriMesh,
+        /// The lattice, and how it moves the surface.
+        embedded: Embedded,
+        /// Where its material comes from.
+        material: MaterialOrigin,
+    },
     /// From a file, with its boundary.
     Whole {
+        /// Its elements.
         solid: Solid,
+        /// The surface of its elements.
         boundary: Boundary,
         /// The solid's vertex for each of the file's, if it is left.
         vertices: Vec<Option<u32>>,
         /// Tetrahedra of the file outside the surface that it lists.
         left_out: usize,
+        /// Where its material comes from.
         material: MaterialOrigin,
     },
 }
@@ -33,7 +43,10 @@ pub fn is_solid(path: &Path) -> bool {
 }
 
 impl SolidSource {
-    /// A lattice around a surface, with so many cubes along its longest side.
+    /// Builds a lattice around a surface, with `cells` cubes along its longest side; none: about 20,000 cubes in all.
+    ///
+    /// # Errors
+    /// When the surface is open or meets itself, the material is out of range, or `progress` cancels.
     pub fn around(
         mesh: TriMesh,
         cells: Option<usize>,
@@ -44,7 +57,12 @@ impl SolidSource {
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 
-    /// From a file. The material given on the command line overrides those of the file.
+    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side. Numbers
+    /// of `material` override those of the file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
+    /// is out of range, or `progress` cancels.
     pub fn read(
         path: &Path,
         resolution: Option<usize>,
@@ -95,6 +113,7 @@ impl SolidSource {
         Ok(Self::Whole { solid, boundary, vertices, left_out, material: origin })
     }
 
+    /// The elements.
     pub fn solid(&self) -> &Solid {
         match self {
             Self::Around { embedded, .. } => embedded.solid(),
@@ -124,6 +143,7 @@ impl SolidSource {
         matches!(self, Self::Around { embedded, .. } if embedded.is_split())
     }
 
+    /// Whether it is a lattice around a surface.
     pub fn is_embedded(&self) -> bool {
         matches!(self, Self::Around { .. })
     }
@@ -136,6 +156,7 @@ impl SolidSource {
         }
     }
 
+    /// The surface alone.
     pub fn into_mesh(self) -> TriMesh {
         match self {
             Self::Around { mesh, .. } => mesh,
@@ -144,6 +165,9 @@ impl SolidSource {
     }
 
     /// Modes of the solid as modes of the surface.
+    ///
+    /// # Errors
+    /// When the modes are of another solid.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SimError> {
         match self {
             Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
@@ -156,6 +180,9 @@ impl SolidSource {
     }
 
     /// The vertices of the solid that hold a vertex of the file.
+    ///
+    /// # Errors
+    /// When the file has fewer vertices.
     pub fn holding(&self, number: u32) -> Result<Vec<u32>, SimError> {
         let count = match self {
             Self::Around { mesh, .. } => mesh.rest_positions().len(),

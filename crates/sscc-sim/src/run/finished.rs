@@ -1,4 +1,4 @@
-//! A simulation that has come to its end, or was stopped on its way: what its files and its report are made from.
+//! The data of a simulation after its last step, from which files and the report are made.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What happened in a simulation, step after step.
+//! The states of a simulation and the record of each step, in one array of numbers.
 
 use glam::{DQuat, DVec3};
 
@@ -11,12 +11,12 @@ const OF_STEP: usize = STEP_PARTS.len() + 4;
 /// Numbers of a body beside its q.
 const OF_BODY: usize = 8;
 
-/// A state, and the step that begins with it: what it cost, and what came of it.
+/// A step: its cost, and what was computed of the state that it begins with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepRecord {
     /// Processor time of each part (s).
     pub seconds: [f64; STEP_PARTS.len()],
-    /// What passed meanwhile by the wall's clock (s).
+    /// Wall-clock time of the step (s).
     pub wall: f64,
     /// Kinetic, elastic and potential energy; not a number at the steps at which it was not computed.
     pub energy: f64,
@@ -27,12 +27,12 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    /// Finding the triangles of bodies that collide with themselves (s).
+    /// Processor time of detecting self-collisions (s).
     pub fn self_seconds(&self) -> f64 {
         self.seconds[0]
     }
 
-    /// The whole step (s of the processor).
+    /// Processor time of the whole step (s).
     pub fn total_seconds(&self) -> f64 {
         self.seconds.iter().sum()
     }
@@ -54,7 +54,9 @@ pub struct BodyRecord<'a> {
     pub pairs: usize,
     /// Its centre of mass.
     pub position: DVec3,
+    /// From the axes of its model to those of the world.
     pub orientation: DQuat,
+    /// Its reduced coordinates.
     pub q: &'a [f64],
 }
 
@@ -75,6 +77,7 @@ impl StateLayout {
         Self { starts }
     }
 
+    /// Number of bodies.
     pub fn bodies(&self) -> usize {
         self.starts.len() - 1
     }
@@ -142,6 +145,7 @@ impl History {
         self
     }
 
+    /// How its steps are laid out.
     pub fn layout(&self) -> &StateLayout {
         &self.layout
     }
@@ -151,10 +155,16 @@ impl History {
         self.numbers.len() / self.layout.width()
     }
 
+    /// Whether there is no state.
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+
     fn of(&self, state: usize) -> &[f64] {
         &self.numbers[state * self.layout.width()..][..self.layout.width()]
     }
 
+    /// The record of the step that begins with a state.
     pub fn step(&self, state: usize) -> StepRecord {
         let of = self.of(state);
         let seconds = std::array::from_fn(|part| of[part]);
@@ -162,6 +172,7 @@ impl History {
         StepRecord { seconds, wall, energy, sound, inter_pairs: inter_pairs as usize }
     }
 
+    /// A body in a state.
     pub fn body(&self, state: usize, body: usize) -> BodyRecord<'_> {
         let of = &self.of(state)[self.layout.starts[body]..self.layout.starts[body + 1]];
         BodyRecord {
@@ -172,6 +183,7 @@ impl History {
         }
     }
 
+    /// All bodies in a state.
     pub fn bodies(&self, state: usize) -> impl Iterator<Item = BodyRecord<'_>> {
         (0..self.layout.bodies()).map(move |body| self.body(state, body))
     }

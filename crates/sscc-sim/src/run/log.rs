@@ -1,10 +1,8 @@
-//! The file to which a simulation is written while it runs, and the checkpoint from which it goes on after being
-//! killed.
+//! The log of a simulation's states, and the checkpoint from which a stopped simulation continues.
 //!
-//! States are appended, all of one size. A checkpoint tells how many there were when it was written, their hash, and
-//! what the simulation needs to go on from there; what was appended after it is cut off and simulated again, to the
-//! same bits. So the checkpoint may be written now and then, and costs as little at the end of a long simulation as at
-//! its beginning.
+//! States are appended, all of one size. A checkpoint holds their number, their hash, and the memory of the world and its
+//! sounds. States after the last checkpoint are cut off and simulated again, to the same bits, so a checkpoint can be
+//! written seldom. Its cost does not grow with the number of states.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -54,7 +52,7 @@ impl StateLog {
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.
-    pub fn open(
+    pub(super) fn open(
         folder: &Path,
         digest: [u8; DIGEST],
         layout: StateLayout,
@@ -161,12 +159,12 @@ impl StateLog {
     }
 
     /// Number of states.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.len
     }
 
     /// Appends whole states.
-    pub fn append(&mut self, numbers: &[f64]) -> Result<()> {
+    pub(super) fn append(&mut self, numbers: &[f64]) -> Result<()> {
         let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
         self.file.write_all(&bytes).system(&self.path())?;
         self.hasher.update(&bytes);
@@ -175,7 +173,7 @@ impl StateLog {
     }
 
     /// From here on it goes on after being killed.
-    pub fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
+    pub(super) fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
         // The states first: a checkpoint must not speak of what is not there.
         self.file.sync_data().system(&self.path())?;
         let mut bytes = self.digest.to_vec();
@@ -188,7 +186,7 @@ impl StateLog {
     }
 
     /// All states.
-    pub fn history(&mut self) -> Result<History> {
+    pub(super) fn history(&mut self) -> Result<History> {
         let path = self.path();
         let mut bytes = vec![0; self.len * self.layout.width() * 8];
         self.file.seek(SeekFrom::Start(DIGEST as u64)).system(&path)?;

@@ -1,4 +1,4 @@
-//! Simulations of scenes: what they need, how they go on after being killed, what they cost.
+//! Simulations of scenes: preparation, steps, the log of states, costs and a summary.
 
 mod clock;
 mod finished;

@@ -1,4 +1,4 @@
-//! All that a scene needs before it moves: models, certificates, masses; made once, then from the cache.
+//! The models of a scene with certificates, masses and sounds: made once, then from the cache.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -106,8 +106,9 @@ impl PreparedModel {
         let elasticity = elasticity(&certified, spec.is_linear)?;
         let first = diagonal(&certified.elasticity).into_iter().fold(f64::INFINITY, f64::min).sqrt();
         let period = TAU / first;
-        // Not a number where there is no mode.
-        if !(2.0 * scene.step < period) {
+        // NaN must fail this test, too.
+        let is_resolved = 2.0 * scene.step < period;
+        if !is_resolved {
             let cause = format!(
                 "steps of {:.3e} s are longer than half a period of its first mode ({period:.3e} s): take more steps \
                  in a second",

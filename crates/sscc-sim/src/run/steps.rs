@@ -1,4 +1,4 @@
-//! A simulation at work: it goes on from its last checkpoint, and keeps what it has when it fails.
+//! The loop over the steps of a simulation: continues from the last checkpoint, and keeps all states when it ends early.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ use super::log::StateLog;
 use super::prepared::PreparedScene;
 use super::stepper::Stepper;
 use super::world::{restore, world};
-use crate::error::{At, SimError};
+use crate::error::SimError;
 use crate::files::remove_outputs;
 use crate::scenes::Scene;
 use crate::watch::{Stage, Watch, check_cancelled};
@@ -65,8 +65,7 @@ pub fn run(
         remove_outputs(folder)?;
     }
     if let Some(checkpoint) = checkpoint {
-        restore(&mut world, &mut sounds, checkpoint.states, &checkpoint.memory)
-            .at(|| "the checkpoint".into())?;
+        restore(&mut world, &mut sounds, checkpoint.states, &checkpoint.memory)?;
     }
     // One body is tested and moved by the thread that calls.
     let is_one_thread = scene.bodies.len() == 1 || rayon::current_num_threads() == 1;

@@ -1,58 +1,79 @@
-//! What a simulation came to: the keys of `sscc simulate --json`, and lines for people.
+//! The results of a simulation in numbers: the keys of `sscc simulate --json`, and lines for people.
 
 use serde::Serialize;
 
 use super::history::History;
 use super::prepared::PreparedScene;
-use crate::machine;
+use crate::machine::machine_description;
 use crate::scenes::Scene;
 use crate::text::{counted, grouped};
 
 /// The result as JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// Name of the scene.
     pub scene: String,
+    /// Its models.
     pub models: Vec<ModelSummary>,
+    /// Number of bodies.
     pub objects: usize,
-    /// Steps that were simulated, and those that the scene has.
+    /// Number of steps that were simulated.
     pub steps: usize,
+    /// Number of steps of the scene.
     pub scene_steps: usize,
-    /// Seconds of a step, of all steps, and the processor's that its parts took.
+    /// Simulated seconds of a step.
     pub step: f64,
+    /// Simulated seconds of all steps.
     pub simulated_seconds: f64,
+    /// Processor time of all steps (s).
     pub simulation_seconds: f64,
-    /// Seconds simulated in each second that passed by the wall's clock: whether it keeps up with the world; and in each
-    /// second of the processor, where one thread did it all.
+    /// Simulated seconds in each second of wall-clock time.
     pub real_time_factor: f64,
+    /// Simulated seconds in each second of processor time, where one thread simulated all steps.
     pub real_time_factor_processor: Option<f64>,
+    /// Number of steps in which some body collides with itself.
     pub colliding_steps: usize,
+    /// Number of steps times number of bodies.
     pub body_steps: usize,
+    /// Of those, how many collide with themselves.
     pub colliding_body_steps: usize,
-    /// In the last state, pairs of triangles that collide within bodies, and between them.
+    /// In the last state, pairs of triangles that collide within bodies.
     pub last_self_pairs: usize,
+    /// In the last state, pairs of triangles that collide between bodies.
     pub last_inter_pairs: usize,
-    /// Of the time, detection of self-collisions.
+    /// Share of the processor time that detects self-collisions.
     pub self_collision_share: f64,
+    /// Kinetic, elastic and potential energy of the first state (J).
     pub energy_first: f64,
+    /// The largest energy of a state (J).
     pub energy_largest: f64,
+    /// The energy of the last state for which it was computed (J).
     pub energy_last: f64,
+    /// The machine's description.
     pub machine: String,
 }
 
 /// One model of the scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelSummary {
+    /// Its name in the scene.
     pub name: String,
+    /// Where its shape comes from.
     pub source: String,
+    /// What a person should know of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// Number of triangles.
     pub triangles: usize,
+    /// Number of modes.
     pub rank: usize,
+    /// The certified radius of the root.
     pub root_radius: f64,
 }
 
 impl Summary {
-    pub fn new(
+    /// Sums up all states. `processor_seconds` is the processor time of the thread that simulated all of them.
+    pub(crate) fn new(
         scene: &Scene,
         prepared: &PreparedScene,
         history: &History,
@@ -60,10 +81,10 @@ impl Summary {
     ) -> Self {
         let steps = history.len();
         let colliding: Vec<usize> = (0..steps).map(|state| history.colliding_bodies(state)).collect();
-        let facts = || (0..steps).map(|state| history.step(state));
-        let seconds: f64 = facts().map(|f| f.total_seconds()).sum();
-        let wall: f64 = facts().map(|f| f.wall).sum();
-        let own: f64 = facts().map(|f| f.self_seconds()).sum();
+        let records = || (0..steps).map(|state| history.step(state));
+        let seconds: f64 = records().map(|record| record.total_seconds()).sum();
+        let wall: f64 = records().map(|record| record.wall).sum();
+        let own: f64 = records().map(|record| record.self_seconds()).sum();
         let energies =
             || (0..steps).map(|state| history.step(state).energy).filter(|energy| energy.is_finite());
         let models = prepared.models.iter().map(|model| ModelSummary {
@@ -97,16 +118,17 @@ impl Summary {
             energy_first: energies().next().unwrap_or_default(),
             energy_largest: energies().fold(f64::NEG_INFINITY, f64::max),
             energy_last: energies().next_back().unwrap_or_default(),
-            machine: machine::machine_description(),
+            machine: machine_description(),
         }
     }
 
-    /// One JSON object.
+    /// The object that `sscc simulate --json` prints.
     pub fn to_json(&self) -> String {
-        // Text and finite or infinite numbers, which become null, are always JSON.
+        // It has text and numbers only; numbers that are not finite become null.
         serde_json::to_string(self).unwrap_or_default()
     }
 
+    /// Lines for people.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for model in &self.models {

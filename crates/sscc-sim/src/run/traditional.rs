@@ -1,4 +1,4 @@
-//! What the traditional method takes at some states of a simulation.
+//! The cost of the traditional method at some states of a simulation, for comparison.
 
 use cpu_time::ThreadTime;
 use sscc::{Method, Query};

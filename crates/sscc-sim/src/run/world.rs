@@ -1,4 +1,4 @@
-//! The world of a scene: its bodies at the beginning, or as a checkpoint says.
+//! The world of a scene: its bodies at the beginning, or at a checkpoint.
 
 use sscc_dynamics::{SoundBank, Start, State, World};
 
@@ -39,12 +39,13 @@ pub fn restore(
 ) -> Result<()> {
     let all: usize = sounds.iter().flatten().map(|bank| bank.state().len()).sum();
     let (numbers, mut rest) = memory.split_at_checked(memory.len().saturating_sub(all)).unwrap_or_default();
-    world.restore(&State { step: step as u64, numbers: numbers.to_vec() })?;
+    let at = || "the checkpoint".to_owned();
+    world.restore(&State { step: step as u64, numbers: numbers.to_vec() }).at(at)?;
     for bank in sounds.iter_mut().flatten() {
         let (own, others) = rest
             .split_at_checked(bank.state().len())
             .ok_or_else(|| SimError::refused("the checkpoint", "it is too short"))?;
-        bank.restore(own)?;
+        bank.restore(own).at(at)?;
         rest = others;
     }
     Ok(())

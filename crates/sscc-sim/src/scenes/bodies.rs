@@ -10,13 +10,14 @@ use crate::nearest::nearest;
 /// The most bodies of a scene.
 const MOST_BODIES: usize = 4096;
 
-/// A body at the beginning.
+/// A body at the beginning of a scene.
 #[derive(Clone, Debug)]
 pub struct BodySpec {
     /// Index of its model.
     pub model: usize,
     /// Where its centre of mass is (m).
     pub position: DVec3,
+    /// From the axes of its model to those of the world.
     pub orientation: DQuat,
     /// m/s.
     pub velocity: DVec3,

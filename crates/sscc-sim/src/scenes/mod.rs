@@ -1,4 +1,4 @@
-//! Scenes: what a simulation lets move, as TOML files. docs/simulations.md explains the keys.
+//! Scenes: models, bodies, ground and sound, as TOML files. docs/simulations.md explains the keys.
 
 mod bodies;
 mod models;

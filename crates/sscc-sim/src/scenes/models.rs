@@ -18,9 +18,11 @@ const MOST_CELLS: usize = 2000;
 /// A model that bodies are made of.
 #[derive(Clone, Debug)]
 pub struct ModelSpec {
+    /// How it is made.
     pub recipe: Recipe,
-    /// Whether q moves by the forces at rest alone.
+    /// Whether q moves by the stiffness at rest alone.
     pub is_linear: bool,
+    /// Of its modes.
     pub damping: Damping,
 }
 

@@ -1,4 +1,4 @@
-//! Scenes: what `sscc simulate` lets move, as TOML files. docs/simulations.md explains the keys.
+//! A scene and how its TOML file is read.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -44,21 +44,29 @@ pub struct Scene {
     pub digest: String,
     /// Seconds of a step.
     pub step: f64,
+    /// Number of steps.
     pub steps: usize,
     /// m/s^2.
     pub gravity: DVec3,
+    /// The ground, if there is any.
     pub ground: Option<Ground>,
+    /// How contacts push.
     pub contact: ContactOptions,
+    /// What self-collisions do.
     pub response: Response,
+    /// How self-collisions are detected.
     pub detection: Detection,
+    /// The models of its bodies.
     pub models: Vec<ModelSpec>,
+    /// The bodies at the beginning.
     pub bodies: Vec<BodySpec>,
+    /// Its sound, if there is any.
     pub sound: Option<Sound>,
     /// Key frames of the animation in a second.
     pub frames_per_second: f64,
 }
 
-/// What is heard.
+/// The sound of all bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sound {
     /// Modes of the sound, more than those that move.
@@ -85,7 +93,7 @@ const KEYS: [&str; 12] = [
 ];
 
 impl Scene {
-    /// What the library needs to know of it.
+    /// The options of its world.
     pub fn options(&self) -> WorldOptions {
         let Self { step, gravity, ground, contact, response, .. } = *self;
         WorldOptions { step, gravity, ground, contact, response }
@@ -110,7 +118,7 @@ impl Scene {
     /// # Errors
     /// When the file cannot be read, is no TOML, has an unknown key (the nearest known one is named), or a value that
     /// cannot be; with the line.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: &Path) -> Result<Self, SimError> {
         let bytes = read_whole(path)?;
         if bytes.len() > MOST_BYTES {
             let cause = format!("file has {} bytes; scenes may have at most {MOST_BYTES}", bytes.len());
@@ -123,7 +131,10 @@ impl Scene {
     }
 
     /// As [`Scene::read`], of the text of a file of that name.
-    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+    ///
+    /// # Errors
+    /// As of [`Scene::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, SimError> {
         let whole = Text { path, text };
         let table = DeTable::parse(text).map_err(|error| {
             whole.refused(

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::scene::Scene;
-use crate::error::{Result, SimError};
+use crate::error::SimError;
 use crate::nearest::nearest;
 
 /// The scenes that come with the program, near those of the paper's Table 1.
@@ -19,7 +19,7 @@ pub const SHIPPED: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// As of [`Scene::read`]; of a name that is neither, the nearest one is named.
-pub fn read_scene(path: &Path) -> Result<Scene> {
+pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
     let shipped = path.to_str().and_then(|name| SHIPPED.iter().find(|(known, _)| *known == name));
     match shipped {
         Some((name, text)) if !path.is_file() => Scene::parse(Path::new(&format!("{name}.toml")), text),
