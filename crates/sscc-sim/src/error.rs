@@ -1,4 +1,4 @@
-//! Why a model, a scene or a simulation is refused: always one line, with the file, the place and the cause.
+//! Errors of models, scenes and simulations: one line each, with the file, the place and the cause.
 
 use std::fmt::Display;
 use std::io;
@@ -8,7 +8,7 @@ use sscc_dynamics::DynamicsError;
 use sscc_io::IoError;
 use sscc_modes::ModesError;
 
-/// The result of what may be refused.
+/// The result of a function of this crate.
 pub(crate) type Result<T, E = SimError> = std::result::Result<T, E>;
 
 /// Something that could not be read, made, simulated or written.
@@ -30,9 +30,9 @@ pub enum SimError {
     /// The system refused.
     #[error("{place}: {cause}")]
     System {
-        /// The file or folder, and what was tried.
+        /// The file or folder.
         place: String,
-        /// What the system said.
+        /// The system's error.
         cause: io::Error,
     },
     /// A scene file is wrong at a line.
@@ -45,7 +45,7 @@ pub enum SimError {
         /// What is wrong.
         cause: String,
     },
-    /// What was asked for cannot be done.
+    /// A request that cannot be fulfilled.
     #[error("{place}: {cause}")]
     Refused {
         /// The file, the key or the part at fault.
@@ -58,7 +58,7 @@ pub enum SimError {
     At {
         /// The file, the scene or the part.
         place: String,
-        /// What was wrong there.
+        /// The error there.
         error: Box<SimError>,
     },
     /// A motion left the range of numbers.
@@ -75,7 +75,7 @@ pub enum SimError {
         body: usize,
         /// Its energy (J).
         energy: f64,
-        /// What the library said, after a colon; empty where the energy says it all.
+        /// The error of the world, after a colon; empty where the energy alone shows it.
         cause: String,
     },
     /// A simulation was cancelled; its states until then are kept.
@@ -85,11 +85,11 @@ pub enum SimError {
         steps: usize,
     },
     /// A simulation ended early; its states until then are kept.
-    #[error("{failure}; what was simulated until then is in {}{}", folder.display(), unwritten.as_ref().map(|e| format!(" ({e})")).unwrap_or_default())]
+    #[error("{failure}; what was simulated until then is in {}{}", folder.display(), in_parentheses(unwritten))]
     EndedEarly {
         /// Why it ended.
         failure: Box<SimError>,
-        /// The folder with what was written.
+        /// The folder of its files.
         folder: PathBuf,
         /// Why some file was not written.
         unwritten: Option<Box<SimError>>,
@@ -97,7 +97,7 @@ pub enum SimError {
 }
 
 impl SimError {
-    /// What was asked for cannot be done: the part at fault, and what is wrong with it.
+    /// Refuses a request: the part at fault, and what is wrong with it.
     pub fn refused(place: impl Display, cause: impl Into<String>) -> Self {
         Self::Refused { place: place.to_string(), cause: cause.into() }
     }
@@ -106,7 +106,7 @@ impl SimError {
         Self::System { place: path.display().to_string(), cause }
     }
 
-    /// The same with its place; a cancellation stays as it is.
+    /// This error with its place; a cancellation stays as it is.
     pub fn at(self, place: impl Into<String>) -> Self {
         if self.is_cancelled() { self } else { Self::At { place: place.into(), error: Box::new(self) } }
     }
@@ -122,7 +122,7 @@ impl SimError {
         }
     }
 
-    /// The file that could not be read, understood or written, where that is the cause.
+    /// The error of a file, where that is the cause.
     pub fn file(&self) -> Option<&IoError> {
         match self {
             Self::File(error) => Some(error),
@@ -139,6 +139,10 @@ impl SimError {
             _ => false,
         }
     }
+}
+
+fn in_parentheses(error: &Option<Box<SimError>>) -> String {
+    error.as_ref().map(|error| format!(" ({error})")).unwrap_or_default()
 }
 
 /// Adds the place to errors; a cancellation stays as it is.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{InSystem, Result};
 
-/// What a simulation may have written into its folder, in this order.
+/// The files that a simulation writes into its folder, in this order.
 pub const OUTPUT_FILES: [&str; 7] = [
     "summary.json",
     "report.html",
@@ -17,7 +17,7 @@ pub const OUTPUT_FILES: [&str; 7] = [
     "sound_float.wav",
 ];
 
-/// Removes the files of a simulation that begins again: what it does not write must not seem to be its own.
+/// Removes the files of an earlier simulation, so that none of them is taken for one of the new simulation.
 pub fn remove_outputs(folder: &Path) -> Result<()> {
     OUTPUT_FILES.iter().try_for_each(|name| remove_file(&folder.join(name)))
 }

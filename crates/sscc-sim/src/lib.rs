@@ -1,5 +1,4 @@
-//! Scenes of sscc as a library: models from files and recipes, simulations that go on after being killed, and the files
-//! that they write.
+//! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files.
 //!
 //! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
 //! printed. One simulation:
@@ -32,8 +31,8 @@ pub use error::SimError;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
     Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIALS_ARE_FREE, RequestedMaterial, SolidFacts,
-    SolidSource, elastic_model, elasticity, frequencies, frequencies_of_modes, is_solid, pca_model,
-    polynomial_model,
+    SolidSource, elastic_model, elasticity, frequencies, frequencies_of_modes, has_equal_vertices, is_solid,
+    pca_model, polynomial_model,
 };
 pub use nearest::nearest;
 pub use outputs::{Outputs, SoundTrack};

@@ -30,7 +30,7 @@ pub struct PeakMemory(());
 impl PeakMemory {
     /// Starts now; none where the system does not tell.
     pub fn start() -> Option<Self> {
-        // Resets the peak that the kernel knows (proc(5), clear_refs).
+        // Resets the peak of the kernel (proc(5), clear_refs).
         fs::write("/proc/self/clear_refs", "5").ok().map(|()| Self(()))
     }
 

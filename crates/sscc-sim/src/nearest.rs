@@ -1,4 +1,4 @@
-//! What someone who mistyped a name may have meant.
+//! The nearest known name to a mistyped one.
 
 /// The name with the fewest edits away; the first of several, and none where there are no names.
 pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

@@ -12,7 +12,7 @@ use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, run, tradition
 use crate::scenes::{Scene, read_scene};
 use crate::watch::Watch;
 
-/// What to simulate.
+/// A simulation that is requested.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// A scene file, or the name of a scene that comes with the program.
@@ -31,9 +31,8 @@ pub struct Request {
     pub threads: Option<usize>,
 }
 
-/// Simulates a scene, or goes on with a simulation of it that was stopped. [`Outputs::write`](crate::Outputs::write)
-/// makes files from the result. A motion that diverges and a cancellation are its failure; its states until then are
-/// kept.
+/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the files
+/// of the result. A motion that diverges and a cancellation are no errors but the result's failure: its states are kept.
 ///
 /// # Errors
 /// When the scene or a model cannot be read, the folder cannot be written to, or no step was made.
@@ -71,7 +70,7 @@ fn finish(
         return Err(failure).at(in_scene);
     }
     let summary = Summary::new(&scene, &prepared, &history, processor_seconds);
-    // Who cancels wants to wait no longer, and what diverged may be out of range.
+    // Not after a cancellation; and states that diverged may be out of range.
     let traditional = match &failure {
         None => traditional_costs(&scene, &prepared, &history, watch),
         Some(_) => Ok(Vec::new()),
@@ -87,7 +86,7 @@ fn finish(
 /// Makes a folder, and refuses one that cannot be written to before any long work.
 ///
 /// # Errors
-/// What the system says.
+/// When the system refuses.
 pub fn make_folder(folder: &Path) -> Result<(), SimError> {
     let make = || {
         fs::create_dir_all(folder)?;

@@ -4,7 +4,7 @@ use sscc::Progress;
 
 use crate::SimError;
 
-/// What long work does at the moment.
+/// The stage of a long job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -28,7 +28,7 @@ pub trait Watch: Progress {
     /// A stage begins: from now on progress is reported of it.
     fn begin(&self, stage: Stage);
 
-    /// A remark that is no error, in one line: what was left out, or made again.
+    /// A remark that is no error, in one line, such as that a damaged file of the cache was made anew.
     fn note(&self, note: &str);
 }
 

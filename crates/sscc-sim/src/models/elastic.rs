@@ -40,7 +40,7 @@ impl ModesKind {
     }
 }
 
-/// Modes of a solid, and what a model needs of them.
+/// Modes of a solid, on its surface, with the weights of the metric.
 pub(crate) struct ElasticModes {
     pub solid: SolidModes,
     pub on_surface: Modes,

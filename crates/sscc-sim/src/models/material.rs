@@ -28,7 +28,7 @@ impl RequestedMaterial {
         self.over(&sscc_io::Material::default())
     }
 
-    /// The material of elements whose file names one. What was asked for goes first.
+    /// The material of elements whose file names one. Requested numbers go first.
     pub fn over(&self, file: &sscc_io::Material) -> Material {
         let usual = Material::default();
         Material {
@@ -56,7 +56,7 @@ impl fmt::Display for RequestedMaterial {
 pub struct MaterialOrigin {
     /// For the model's provenance.
     pub provenance: String,
-    /// What was asked for in place of what the file says.
+    /// Requested numbers that override numbers of the file.
     pub replaced: Option<RequestedMaterial>,
 }
 

@@ -16,7 +16,7 @@ pub struct NewModel {
     pub is_split: bool,
     /// Of a solid: its size and frequencies.
     pub solid: Option<SolidFacts>,
-    /// Of principal components: what they explain.
+    /// Of principal components: their share of the variance.
     pub components: Option<Components>,
 }
 
@@ -31,7 +31,7 @@ pub struct SolidFacts {
     pub frequencies: Vec<f64>,
 }
 
-/// What principal components explain.
+/// The variance that principal components explain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Components {
     /// Number of frames.

@@ -9,7 +9,7 @@ use super::new_model::{Components, NewModel};
 use crate::SimError;
 
 /// The mean and the principal components of frames with the faces of `mesh`; without a rank as many as explain 99.9% of
-/// the variance. `name` says what the frames are, for the provenance.
+/// the variance. `name` describes the frames, for the provenance.
 ///
 /// # Errors
 /// When there are too few frames, none of them differ, or `progress` cancels.

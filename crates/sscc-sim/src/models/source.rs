@@ -27,7 +27,7 @@ pub enum SolidSource {
         solid: Solid,
         /// The surface of its elements.
         boundary: Boundary,
-        /// The solid's vertex for each of the file's, if it is left.
+        /// For each vertex of the file its vertex of the solid, unless it was left out.
         vertices: Vec<Option<u32>>,
         /// Tetrahedra of the file outside the surface that it lists.
         left_out: usize,
@@ -83,7 +83,7 @@ impl SolidSource {
         let left_out = within.iter().filter(|within| !**within).count();
         let kept: Vec<usize> = (0..file.tets.len()).filter(|t| within[*t]).collect();
         let tets: Vec<[u32; 4]> = kept.iter().map(|t| file.tets[*t]).collect();
-        // What belonged to nothing but left out elements is left out, too.
+        // Vertices of left-out elements alone are left out, too.
         let mut used = vec![left_out == 0; file.vertices.len()];
         tets.as_flattened().iter().chain(file.cubes.as_flattened()).for_each(|v| used[*v as usize] = true);
         let mut vertices = Vec::with_capacity(used.len());
@@ -128,7 +128,7 @@ impl SolidSource {
         }
     }
 
-    /// What a person should know of how it was read.
+    /// A note for people on elements that were left out.
     pub fn note(&self) -> Option<String> {
         match self {
             Self::Whole { left_out, .. } if *left_out > 0 => {

@@ -7,7 +7,7 @@ use sscc_io::{NamedArray, write_npz};
 use crate::error::Result;
 use crate::run::{FinishedRun, STEP_PARTS};
 
-/// All of the motion, to the bit.
+/// The whole motion, bit for bit.
 pub fn trajectories(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { scene, prepared, history, .. } = run;
     let (states, bodies) = (history.len(), history.layout().bodies());
@@ -61,7 +61,7 @@ pub fn trajectories(path: &Path, run: &FinishedRun) -> Result<()> {
     Ok(write_npz(path, &arrays)?)
 }
 
-/// What each step took, and the traditional method at some of them.
+/// The costs of each step, and of the traditional method at some of them.
 pub fn costs(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { history, .. } = run;
     let time: Vec<f64> = (0..history.len()).map(|state| run.time(state)).collect();

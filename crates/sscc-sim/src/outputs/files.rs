@@ -42,7 +42,7 @@ impl Outputs {
         outputs
     }
 
-    /// Writes the report, which others make from the run; or keeps why there is none.
+    /// Writes the report, or keeps why it could not be made.
     pub fn add_report(&mut self, html: Result<String, impl Display>) {
         self.add("report.html", |path| {
             let html = html.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
@@ -59,12 +59,12 @@ impl Outputs {
         self.written.sort_unstable();
     }
 
-    /// What was written.
+    /// The files that were written.
     pub fn files(&self) -> Vec<PathBuf> {
         self.written.iter().map(|place| self.folder.join(OUTPUT_FILES[*place])).collect()
     }
 
-    /// Whether all went well.
+    /// Ends the simulation.
     ///
     /// # Errors
     /// When the simulation ended early, or some file could not be written: the first of them.

@@ -1,4 +1,4 @@
-//! A folder that keeps from run to run what takes long to make, under a hash of all that it is made from.
+//! A folder of models and certificates that are kept from run to run, each under a hash of its inputs.
 
 use std::env;
 use std::fs;
@@ -15,12 +15,12 @@ use crate::{SimError, Watch};
 /// A folder of files that can be made again.
 pub struct Cache {
     folder: PathBuf,
-    /// The hash of this program, once it was asked for.
+    /// The hash of this program, once it was computed.
     program: OnceLock<String>,
 }
 
 impl Cache {
-    /// The folder that is wanted, else `sscc` in the system's cache folder.
+    /// Opens the folder `wanted`, else `sscc` in the system's cache folder.
     ///
     /// # Errors
     /// When it cannot be written to.
@@ -42,7 +42,7 @@ impl Cache {
         &self.folder
     }
 
-    /// The hash of this very program: certificates, and the time they took, are those of one build.
+    /// The hash of this program's file: cached certificates and their cost belong to one build.
     ///
     /// # Errors
     /// When the system does not let it read its own file.
@@ -81,7 +81,7 @@ impl Cache {
     }
 }
 
-/// The folder in which programs of this system keep what they can make again.
+/// The cache folder of this system.
 fn system_folder() -> PathBuf {
     let named = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let at_home = |folder: &str| env::home_dir().map(|home| home.join(folder));

@@ -9,13 +9,13 @@ use super::recipe::{ModesSpec, Recipe};
 use super::timed_certificates::TimedCertificates;
 use crate::{SimError, Watch};
 
-/// A model that queries can be made for.
+/// A model with its certificates.
 pub struct CertifiedModel {
-    /// Of its recipe.
+    /// The name of its recipe.
     pub name: String,
-    /// Where its shape is from.
+    /// Where its shape comes from.
     pub source: String,
-    /// What a person should know of it.
+    /// A note for people, such as which shape stands in for another.
     pub note: Option<String>,
     /// The model.
     pub model: ReducedModel,

@@ -4,11 +4,11 @@ use std::fmt::{self, Display};
 
 use sscc::{ReducedModel, TriMesh};
 
-/// The hash of what something is made from, the version of this program included.
+/// The hash of all inputs of a cached file, and of the version of this program.
 pub struct Key(blake3::Hasher);
 
 impl Key {
-    /// Of something of this kind.
+    /// The key of a file of this kind.
     pub fn new(kind: &str) -> Self {
         Self(blake3::Hasher::new()).text(kind).text(env!("CARGO_PKG_VERSION"))
     }
@@ -29,7 +29,7 @@ impl Key {
         self
     }
 
-    /// The model with all that its certificates speak of.
+    /// The model, with all inputs of its certificates.
     pub fn model(self, model: &ReducedModel) -> Self {
         let digest = sscc::Digest::of(model, &sscc::Scope::of(model));
         self.text(&format!("{digest:?}"))

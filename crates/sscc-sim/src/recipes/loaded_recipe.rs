@@ -15,13 +15,14 @@ use crate::error::At;
 use crate::models::{ElasticModes, ModesKind, SolidSource, elasticity};
 use crate::{SimError, Stage, Watch};
 
-/// The shape of a recipe, before anything that takes long.
+/// A recipe with its shape, before any long work.
 pub struct LoadedRecipe<'a> {
     recipe: &'a Recipe,
     matter: Matter,
-    /// Where the shape is from.
+    /// Where the shape comes from.
     pub source: String,
-    /// What an embedded shape stands in for, or which numbers of a file a material replaces.
+    /// A note for people: the file that an embedded shape stands in for, or the numbers of a file that the material
+    /// overrides.
     pub note: Option<String>,
     /// From its own axes to those of a shape that stands upright, z up.
     pub upright: DQuat,
@@ -58,12 +59,12 @@ impl<'a> LoadedRecipe<'a> {
         Ok(Self { recipe, matter, source, note, upright, around: OnceCell::new() })
     }
 
-    /// What it was loaded for.
+    /// The recipe.
     pub fn recipe(&self) -> &Recipe {
         self.recipe
     }
 
-    /// The hash of all that something of this solid is made from.
+    /// The key of a cached file that is made from this solid.
     pub(crate) fn key(&self, what: &str) -> Key {
         let material = self.recipe.material.alone();
         let key = Key::new(what).text(&format!("{material:?} {:?}", self.recipe.cells()));

@@ -1,4 +1,4 @@
-//! What a model is made from: a shape, a material and a kind of modes.
+//! Recipes of models: a shape, a material and a kind of modes.
 
 use sscc::{Metric, MetricKind, ReducedModel};
 
@@ -10,19 +10,19 @@ use crate::models::RequestedMaterial;
 /// A free elastic body with modes.
 #[derive(Clone, Debug)]
 pub struct Recipe {
-    /// What the model is called.
+    /// The name of the model.
     pub name: String,
-    /// What it is made around.
+    /// The shape of its surface or solid.
     pub shape: Shape,
     /// Its modes.
     pub modes: ModesSpec,
-    /// Goes before what the file of a solid names.
+    /// Overrides the materials in the file of a solid.
     pub material: RequestedMaterial,
     /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
     pub cells: Option<usize>,
     /// The longest side of the box around a surface; none: as it is.
     pub size: Option<f64>,
-    /// How far q goes along each mode as a rule: certificates measure it in these units. None: in the model's metric.
+    /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
     pub spread: Option<Vec<f64>>,
 }
 
@@ -51,7 +51,7 @@ impl ModesSpec {
 const SPRING_CELLS: usize = 30;
 
 impl Recipe {
-    /// Of the default material, in its own size and its usual lattice.
+    /// A recipe with the default material, the shape's own size and its usual lattice.
     pub fn new(name: impl Into<String>, shape: Shape, modes: ModesSpec) -> Self {
         Self {
             name: name.into(),
@@ -70,7 +70,7 @@ impl Recipe {
         self.cells.or(usual)
     }
 
-    /// The metric of certificates of a model made from this.
+    /// The metric of the certificates of its model.
     ///
     /// # Errors
     /// When the spread has a number out of range.

@@ -32,7 +32,7 @@ pub enum Shape {
     File(PathBuf),
 }
 
-/// What a shape was read or generated as.
+/// The content of a shape.
 pub(super) enum Matter {
     /// A surface, without any volume yet.
     Surface(TriMesh),
@@ -40,11 +40,11 @@ pub(super) enum Matter {
     Solid(Box<SolidSource>),
 }
 
-/// A shape with where it is from.
+/// A shape with its origin.
 pub(super) struct LoadedShape {
     pub matter: Matter,
     pub source: String,
-    /// What a person should know of it.
+    /// A note for people.
     pub note: Option<String>,
 }
 
@@ -92,7 +92,7 @@ impl Shape {
     }
 }
 
-/// The folder of real models: the one that is wanted, else the one that the environment names, else none.
+/// The folder of real models: `wanted`, else the one that the environment variable `SSCC_MODELS` names, else none.
 ///
 /// # Errors
 /// When there is no such folder.

@@ -1,4 +1,4 @@
-//! Certificates with what they cost: computed once, then from the cache.
+//! Certificates with their cost: computed once, then from the cache.
 
 use std::path::Path;
 use std::time::Instant;
@@ -13,15 +13,15 @@ use crate::error::At;
 use crate::machine::{PeakMemory, available_threads};
 use crate::{SimError, Stage, Watch};
 
-/// Certificates, and what they cost.
+/// Certificates with their cost.
 pub struct TimedCertificates {
     /// The certificates.
     pub certificates: Certificates,
-    /// What they cost.
+    /// Their cost.
     pub cost: CertificateCost,
 }
 
-/// What it cost to compute certificates.
+/// The cost of computing certificates.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct CertificateCost {
     /// By the wall clock.

@@ -1,4 +1,4 @@
-//! What the parts of a step cost: processor time, so that what other programs do meanwhile does not count.
+//! The cost of the parts of a step in processor time, in which other programs do not count.
 //!
 //! Reading the processor's clock takes a system call, about 0.2 microseconds; reading the wall's clock takes a tenth of
 //! that. Parts of short steps last less than either allows, so one reading of the processor's clock serves a block of
@@ -32,7 +32,7 @@ pub struct SystemClocks {
 }
 
 impl SystemClocks {
-    /// Of this thread, if it does all the work, else of the whole process.
+    /// Of this thread, if it does all the work, else of the whole process: another simulation in it then counts as well.
     pub fn new(is_one_thread: bool) -> Self {
         Self { begin: Instant::now(), is_one_thread }
     }
@@ -72,7 +72,7 @@ pub struct StepClock<C> {
 /// The parts of a step, and its seconds by the wall's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTimes {
-    /// Not yet processor time: they are to be multiplied by what [`StepClock::settle`] gives for their block.
+    /// Not yet processor time: the factor of their block, from [`StepClock::settle`], is missing.
     pub parts: [f64; STEP_PARTS.len()],
     pub wall: f64,
 }
@@ -114,7 +114,7 @@ impl<C: Clocks> StepClock<C> {
         self.block.is_some_and(|[wall, _]| self.clocks.wall() - wall >= BLOCK)
     }
 
-    /// Ends the block: what the parts of its steps are to be multiplied by.
+    /// Ends the block, and gives the factor from the parts of its steps to processor time.
     pub fn settle(&mut self) -> f64 {
         let Some([wall, processor]) = self.block.take() else { return 1.0 };
         if !self.clocks.is_one_thread() {

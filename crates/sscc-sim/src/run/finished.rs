@@ -10,7 +10,7 @@ use crate::scenes::Scene;
 
 /// A simulation with all of its states.
 pub struct FinishedRun {
-    /// What moved.
+    /// The scene.
     pub scene: Scene,
     /// Its models.
     pub prepared: PreparedScene,
@@ -18,7 +18,7 @@ pub struct FinishedRun {
     pub folder: PathBuf,
     /// Its states, at least one.
     pub history: History,
-    /// What it came to.
+    /// Its results in numbers.
     pub summary: Summary,
     /// States at which the traditional method was measured, and its seconds for all bodies.
     pub traditional: Vec<(usize, f64)>,

@@ -11,7 +11,7 @@ const OF_STEP: usize = STEP_PARTS.len() + 4;
 /// Numbers of a body beside its q.
 const OF_BODY: usize = 8;
 
-/// A step: its cost, and what was computed of the state that it begins with.
+/// A step: its cost, its sound, and energy and contacts of the state that it begins with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepRecord {
     /// Processor time of each part (s).
@@ -109,7 +109,7 @@ impl StateLayout {
         debug_assert_eq!(numbers.len() % self.width(), 0);
     }
 
-    /// Sets what is known of a state after the step only: its facts, and the pairs of each body.
+    /// Sets the numbers of a state that are known after the step only: its record, and the pairs of each body.
     pub fn complete(&self, facts: StepRecord, pairs: impl Iterator<Item = usize>, state: &mut [f64]) {
         state[..OF_STEP].copy_from_slice(&facts.numbers());
         for (start, pairs) in self.starts.iter().zip(pairs) {

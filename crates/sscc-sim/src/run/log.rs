@@ -18,7 +18,7 @@ use crate::files::remove_file;
 const LOG: &str = "states.log";
 const CHECKPOINT: &str = "checkpoint.bin";
 
-/// Both files begin with a hash of what is simulated.
+/// Both files begin with the digest of the simulation.
 const DIGEST: usize = 32;
 
 /// A checkpoint holds a hash of the states, and ends with one of all before.
@@ -32,23 +32,23 @@ pub struct StateLog {
     file: File,
     /// Whole states in the file.
     len: usize,
-    /// Of these.
+    /// The hash of these.
     hasher: Hasher,
 }
 
-/// Where a simulation goes on.
+/// A checkpoint from which a simulation continues.
 pub struct Checkpoint {
-    /// States that were there.
+    /// Number of states.
     pub states: usize,
-    /// Of them.
+    /// The hash of these states.
     hasher: Hasher,
-    /// What the simulation needs beside them.
+    /// The memory of the world and its sounds.
     pub memory: Vec<f64>,
 }
 
 impl StateLog {
-    /// Opens the log of a folder, and gives the checkpoint that is there; to begin again, what is there is removed.
-    /// `digest` is the hash of what is simulated.
+    /// Opens the log of a folder, with its checkpoint if it has one; to begin again, both are emptied. `digest` is that of
+    /// the simulation.
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.
@@ -97,7 +97,7 @@ impl StateLog {
         Ok((log, checkpoint))
     }
 
-    /// Whether a simulation can go on in the folder.
+    /// Whether the folder has a checkpoint.
     pub fn is_begun(folder: &Path) -> bool {
         folder.join(CHECKPOINT).exists()
     }
@@ -172,9 +172,9 @@ impl StateLog {
         Ok(())
     }
 
-    /// From here on it goes on after being killed.
+    /// Writes a checkpoint of all states so far.
     pub(super) fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
-        // The states first: a checkpoint must not speak of what is not there.
+        // The states first: a checkpoint must not count states that are not on the disk.
         self.file.sync_data().system(&self.path())?;
         let mut bytes = self.digest.to_vec();
         bytes.extend(self.hasher.finalize().as_bytes());

@@ -34,11 +34,11 @@ pub struct PreparedScene {
 pub struct PreparedModel {
     /// The model and its certificates.
     pub certified: CertifiedModel,
-    /// What its bodies are in a world.
+    /// The shape of its bodies in a world.
     pub shape: Shape,
     /// From the axes of its file to those of a shape that stands upright, z up.
     pub upright: DQuat,
-    /// What its bodies sound like.
+    /// The sound of a body, if the scene has sound.
     pub sound: Option<SoundBank>,
 }
 
@@ -80,7 +80,7 @@ impl PreparedScene {
         Ok(Self { models, program: cache.program()?.to_owned() })
     }
 
-    /// The hash of all that decides what a simulation comes to, this program included.
+    /// The hash of all inputs of a simulation, this program included.
     pub fn digest(&self, scene: &Scene) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.program.as_bytes()).update(scene.digest.as_bytes());

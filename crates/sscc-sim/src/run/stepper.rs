@@ -1,4 +1,4 @@
-//! One step after the other: a world with its sounds, and the record of each step.
+//! The steps of a world with its sounds, and the record of each step.
 
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, World};
 
@@ -16,7 +16,7 @@ pub struct Stepper<'a, C> {
     clock: StepClock<C>,
     /// States that are not yet in the log.
     numbers: Vec<f64>,
-    /// Where those begin whose processor time is not yet known.
+    /// Where the states begin whose costs are not yet processor time.
     unsettled: usize,
 }
 
@@ -25,14 +25,14 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), unsettled: 0 }
     }
 
-    /// The states that are not yet in the log, to be put there.
+    /// Removes the states that are not yet in the log, to append them.
     pub fn take(&mut self) -> Vec<f64> {
         self.settle();
         self.unsettled = 0;
         std::mem::take(&mut self.numbers)
     }
 
-    /// Gives the last states their processor time.
+    /// Scales the costs of the last steps to processor time.
     fn settle(&mut self) {
         let factor = self.clock.settle();
         self.layout.scale_seconds(factor, &mut self.numbers[self.unsettled..]);
@@ -49,7 +49,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         self.numbers.len() / self.layout.width()
     }
 
-    /// One step, and the state before it, of which the step tells what collides in it.
+    /// Makes one step, and records the state before it with the collisions that the step detects.
     pub fn step(&mut self) -> Result<(), DynamicsError> {
         let has_energy = self.world.steps().is_multiple_of(ENERGY_STEPS as u64);
         let energy = if has_energy { self.world.energy() } else { f64::NAN };
@@ -74,7 +74,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         if self.clock.is_due() {
             self.settle();
         }
-        // The state from which it could not go on is kept, too.
+        // The last state is kept even if its step failed.
         advanced.map(drop)
     }
 
@@ -87,7 +87,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         self.sounds.iter_mut().flatten().map(SoundBank::sample).sum()
     }
 
-    /// What going on needs.
+    /// The state of world and sounds, for a checkpoint.
     pub fn memory(&self) -> Vec<f64> {
         let mut memory = self.world.state().numbers;
         self.sounds.iter().flatten().for_each(|bank| memory.extend(bank.state()));

@@ -26,7 +26,7 @@ const KEPT: usize = 1 << 14;
 /// The largest log: all outputs are made from it in memory.
 const MOST_BYTES: f64 = 4e9;
 
-/// What became of a simulation.
+/// The result of the loop over the steps.
 pub struct RunOutcome {
     /// Its states.
     pub history: History,
@@ -36,12 +36,11 @@ pub struct RunOutcome {
     pub failure: Option<SimError>,
 }
 
-/// Lets a scene move for so many steps, or goes on with what is in the folder (unless it is to begin `again`). Checks
-/// first that it can begin.
+/// Simulates a scene up to a number of steps. Continues from the checkpoint in the folder, unless it is to begin `again`.
 ///
 /// # Errors
-/// When bodies begin in each other, in themselves or in the ground; when the folder cannot be written to. Of a
-/// motion that diverges, and of a cancellation, [`RunOutcome::failure`] tells: the states so far are there.
+/// When bodies begin in each other, in themselves or in the ground; when the folder cannot be written to. A motion that
+/// diverges and a cancellation are no errors but [`RunOutcome::failure`]: their states are kept.
 pub fn run(
     scene: &Scene,
     prepared: &PreparedScene,
@@ -98,7 +97,7 @@ pub fn run(
     }
     let processor_seconds = is_whole.then(|| processor.elapsed().as_secs_f64());
     log.append(&stepper.take())?;
-    // What diverged is no place to go on from.
+    // No simulation can continue from a state that diverged.
     if can_go_on {
         log.write_checkpoint(&stepper.memory())?;
     }
@@ -110,7 +109,7 @@ fn diverged(error: DynamicsError, world: &World<'_>) -> SimError {
     let (body, energy, cause) = match error {
         DynamicsError::Diverged { body, energy, .. } => (body, energy, String::new()),
         other => {
-            // Of what leaves the range of numbers, the fastest body is the cause.
+            // Where numbers leave their range, the body of the highest energy is the cause.
             let energies = world.bodies().iter().map(|body| body.energy());
             let key = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
             let fastest = energies.enumerate().max_by(|a, b| key(a.1).total_cmp(&key(b.1)));

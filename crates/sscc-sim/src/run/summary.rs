@@ -60,7 +60,7 @@ pub struct ModelSummary {
     pub name: String,
     /// Where its shape comes from.
     pub source: String,
-    /// What a person should know of it.
+    /// A note for people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// Number of triangles.

@@ -9,13 +9,14 @@ use crate::error::Result;
 use crate::scenes::Scene;
 use crate::watch::{Stage, Watch, check_cancelled};
 
-/// States at most, evenly spread ...
+/// States at most, evenly spread.
 const STATES: usize = 100;
 
-/// ... and bodies in all of them.
+/// Bodies in all of these states at most.
 const BODIES: usize = 2000;
 
-/// States, and the seconds of the processor that the traditional method takes for all bodies of each, on this thread.
+/// Some states, evenly spread, and for each the processor time (s) of the traditional method for all bodies, on this
+/// thread.
 pub fn traditional_costs(
     scene: &Scene,
     prepared: &PreparedScene,

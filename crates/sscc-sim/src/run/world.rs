@@ -30,7 +30,7 @@ pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>
     Ok(world)
 }
 
-/// Puts a world and its sounds where a checkpoint was made. `memory` is what the checkpoint holds.
+/// Restores a world and its sounds from the memory of a checkpoint.
 pub fn restore(
     world: &mut World<'_>,
     sounds: &mut [Option<SoundBank>],

@@ -30,7 +30,7 @@ pub struct ModelSpec {
 pub const QUICK_RANK: usize = 20;
 
 impl ModelSpec {
-    /// What the coordinates of its bodies are called in a file of arrays.
+    /// The name of the array of its bodies' coordinates.
     pub fn array_name(&self) -> String {
         format!("q_{}", self.recipe.name.replace('-', "_"))
     }

@@ -24,7 +24,7 @@ const MOST_STEPS: f64 = 1e9;
 /// Samples of a sound in a second.
 const RATES: RangeInclusive<f64> = 8000.0..=192_000.0;
 
-/// The most samples of a sound: what fits a WAV file.
+/// The most samples of a sound, so that it fits a WAV file.
 const MOST_SAMPLES: f64 = 1e9;
 
 /// A quick look shakes so many times as hard.
@@ -38,7 +38,7 @@ const LEAST_CONTACT_STEPS: f64 = 4.0;
 pub struct Scene {
     /// The file's name without its ending.
     pub name: String,
-    /// What its author says of it.
+    /// Its author's description.
     pub about: String,
     /// The hash of its text.
     pub digest: String,
@@ -52,7 +52,7 @@ pub struct Scene {
     pub ground: Option<Ground>,
     /// How contacts push.
     pub contact: ContactOptions,
-    /// What self-collisions do.
+    /// The response to self-collisions.
     pub response: Response,
     /// How self-collisions are detected.
     pub detection: Detection,
@@ -116,8 +116,8 @@ impl Scene {
     /// Reads a scene. Names of files in it are relative to its own folder.
     ///
     /// # Errors
-    /// When the file cannot be read, is no TOML, has an unknown key (the nearest known one is named), or a value that
-    /// cannot be; with the line.
+    /// When the file cannot be read, is no TOML, has an unknown key (the error names the nearest known one), or a value
+    /// out of range; with the line.
     pub fn read(path: &Path) -> Result<Self, SimError> {
         let bytes = read_whole(path)?;
         if bytes.len() > MOST_BYTES {

@@ -66,7 +66,7 @@ impl<'a> Section<'a> {
         self.text.refused(&span, format_args!("{key}: {cause}"))
     }
 
-    /// What was found in place of what was expected.
+    /// Refuses a value of another type.
     fn expected<T>(&self, key: &str, what: &str) -> Result<T> {
         Err(self.refused(key, format_args!("{what} was expected")))
     }

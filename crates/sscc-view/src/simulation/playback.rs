@@ -10,19 +10,19 @@ use sscc_sim::{FinishedRun, History, SoundTrack};
 use super::plots::costs;
 use crate::{Arrays, Body, Colliding, Playback};
 
-/// Bytes of all frames at the most: of longer motions there are fewer in a second.
+/// Bytes of all frames at most; longer motions have fewer frames in a second.
 const MOST_MOTION: usize = 24 << 20;
 
-/// Bytes of sound at the most: five minutes at 44,100 samples in a second.
+/// Bytes of sound at most: five minutes at 44,100 samples in a second.
 const MOST_SOUND: usize = 28 << 20;
 
-/// Colliding triangles are looked for in so many frames of bodies at the most, ...
+/// Frames of bodies in which colliding triangles are computed at most.
 const MOST_ASKED: usize = 4000;
 
-/// ... and kept up to this number.
+/// Colliding triangles of all frames at most.
 const MOST_TRIANGLES: usize = 2 << 20;
 
-/// The motion, if there is any, and what was left out of it.
+/// The motion, if a page can show any of it, and notes on what was left out.
 pub fn playback(
     run: &FinishedRun,
     progress: &dyn Progress,

@@ -7,9 +7,8 @@ use crate::{Axis, Plot, Series};
 /// Points of a line at most.
 const POINTS: usize = 700;
 
-/// What each step took to find the triangles in which bodies collide with themselves, in the manner of the
-/// paper's Figure 12. The certified method is timed within the simulation (the slowest of each stretch of
-/// steps), the traditional one, without certificates, at some of its states.
+/// The cost of self-collision detection in each step, as in the paper's Figure 12: of the simulation's own method the
+/// largest of each stretch of steps, of the traditional method at some states.
 pub fn costs(run: &FinishedRun) -> Plot {
     let own = line(run, |state| 1e3 * run.history.step(state).self_seconds());
     let of = |(state, seconds): &(usize, f64)| [run.time(*state), 1e3 * seconds];

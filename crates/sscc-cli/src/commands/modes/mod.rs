@@ -4,13 +4,10 @@ mod fix;
 mod make;
 mod material;
 
-use std::cmp::Ordering;
-
 use anyhow::Result;
 use serde::Serialize;
-use sscc::ReducedModel;
 use sscc_io::write_model;
-use sscc_sim::Components;
+use sscc_sim::{Components, has_equal_vertices};
 
 use crate::args;
 use crate::output::{Output, counted, grouped, length, note};
@@ -82,17 +79,4 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         note("some vertices have equal positions and modes, as along seams: certify it with --weld");
     }
     Ok(Outcome::Done)
-}
-
-/// Whether `--weld` would join two vertices that triangles have.
-fn has_equal_vertices(model: &ReducedModel) -> bool {
-    let of = |v: u32| {
-        let position = std::iter::once(&model.mesh().rest_positions()[v as usize]);
-        position.chain(model.modes().of_vertex(v)).flat_map(|x| x.to_array())
-    };
-    let mut used = model.mesh().used_vertices().to_vec();
-    // No number of a model is NaN.
-    let compare = |a: &u32, b: &u32| of(*a).partial_cmp(of(*b)).unwrap_or(Ordering::Equal);
-    used.sort_by(compare);
-    used.windows(2).any(|pair| compare(&pair[0], &pair[1]) == Ordering::Equal)
 }
