@@ -1,11 +1,14 @@
 //! Refusals of the libraries as Python exceptions that name the argument.
 
+use std::ffi::CString;
+
 use pyo3::exceptions::{
-    PyFileNotFoundError, PyMemoryError, PyOSError, PyRuntimeError, PyTypeError, PyValueError,
+    PyFileNotFoundError, PyMemoryError, PyOSError, PyRuntimeError, PyTypeError, PyUserWarning, PyValueError,
 };
 use pyo3::prelude::*;
 use sscc::Error;
 use sscc_io::IoError;
+use sscc_sim::SimError;
 
 /// A `ValueError`.
 pub fn value(message: impl Into<String>) -> PyErr {
@@ -39,6 +42,25 @@ pub fn file(error: &IoError) -> PyErr {
         IoError::NotAFile { .. } | IoError::System { .. } => PyOSError::new_err(message),
         _ => value(message),
     }
+}
+
+/// A scene or simulation that was refused.
+pub fn refused_simulation(error: &SimError) -> PyErr {
+    match error.file() {
+        Some(error) => file(error),
+        None if error.is_system() => PyOSError::new_err(error.to_string()),
+        None => value(error.to_string()),
+    }
+}
+
+/// Issues notes as warnings.
+pub fn warn(py: Python<'_>, notes: &[String]) -> PyResult<()> {
+    let category = py.get_type::<PyUserWarning>();
+    notes.iter().try_for_each(|note| {
+        // No text of ours has a NUL byte, but a file's name might.
+        let note = CString::new(note.replace('\0', " ")).unwrap_or_default();
+        PyErr::warn(py, &category, &note, 2)
+    })
 }
 
 /// Room for so many entries, or a `MemoryError`: sizes come from the caller.

@@ -7,14 +7,16 @@ use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use sscc::TriMesh;
-use sscc_cli::make::{self, AskedMaterial, Body, Kind, Wanted};
-use sscc_io::{IoError, ModelInfo, read_frames, splits_vertices};
-use sscc_modes::{ModesError, pca_modes};
+use sscc::{Progress, TriMesh};
+use sscc_io::{read_frames, read_mesh, splits_vertices};
+use sscc_sim::{
+    ModesKind, NewModel, RequestedMaterial, SimError, SolidSource, elastic_model, is_solid, pca_model,
+    polynomial_model,
+};
 
 use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
-use crate::errors::{file, kind, room, value};
+use crate::errors::{file, kind, room, value, warn};
 use crate::interrupt::run;
 use crate::model::{Loaded, Model, mesh, mesh_of, points};
 use crate::pool::{self, on_threads};
@@ -41,20 +43,21 @@ impl Source {
         }
     }
 
-    fn body(&self) -> Body<'_> {
+    /// What it is called in a model's provenance.
+    fn name(&self) -> String {
         match self {
-            Self::File(path) => Body::File(path),
-            Self::Surface(mesh) => Body::Surface(mesh.clone()),
+            Self::File(path) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            Self::Surface(_) => "in memory".into(),
         }
     }
 
     /// A refusal, with the name of the file.
-    fn refused(&self, error: &anyhow::Error) -> PyErr {
-        match error.downcast_ref::<IoError>() {
+    fn refused(&self, error: &SimError) -> PyErr {
+        match error.file() {
             Some(error) => file(error),
             None => match self {
-                Self::File(path) => value(format!("{}: {error:#}", path.to_string_lossy().escape_debug())),
-                Self::Surface(_) => value(format!("source: {error:#}")),
+                Self::File(path) => value(format!("{}: {error}", path.to_string_lossy().escape_debug())),
+                Self::Surface(_) => value(format!("source: {error}")),
             },
         }
     }
@@ -75,13 +78,19 @@ pub fn _elastic(
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
-    let kinds = [("linear", Kind::Linear), ("nonlinear", Kind::Nonlinear), ("polynomial", Kind::Polynomial)];
-    let kind = choice(Some(kind), "kind", &kinds)?.unwrap_or(Kind::Linear);
+    let kinds = [
+        ("linear", ModesKind::Linear),
+        ("nonlinear", ModesKind::Nonlinear),
+        ("polynomial", ModesKind::Polynomial),
+    ];
+    let kind = choice(Some(kind), "kind", &kinds)?.unwrap_or(ModesKind::Linear);
     let source = Source::of(source)?;
-    let mut wanted = Wanted::default();
-    wanted.rank = count(rank, "rank", 1..=500)?;
-    wanted.material = read_material(&material)?;
-    wanted.resolution = count(resolution, "resolution", 1..=2000)?.map(|cells| cells as u32);
+    let mut wanted = Wanted {
+        rank: count(rank, "rank", 1..=500)?,
+        material: read_material(&material)?,
+        resolution: count(resolution, "resolution", 1..=2000)?,
+        ..Wanted::default()
+    };
     if let Some(fix) = fix {
         wanted.fixed = vertex_numbers(fix)?;
     }
@@ -92,13 +101,7 @@ pub fn _elastic(
         };
         wanted.fixed_box = Some([a, b]);
     }
-    let threads = pool::threads(threads)?;
-    let source = Arc::new(source);
-    let of_worker = Arc::clone(&source);
-    let made = run(py, progress, "modes", move |progress| {
-        on_threads(threads, || make::elastic(of_worker.body(), kind, wanted, progress))
-    })?;
-    made.map(loaded).map_err(|error| source.refused(&error))
+    made(py, source, threads, progress, move |source, progress| elastic(source, kind, wanted, progress))
 }
 
 /// Polynomial modes of a surface alone; a solid in a file gets its stiffness, too.
@@ -109,27 +112,79 @@ pub fn _polynomial(
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
-    let source = Source::of(source)?;
+    made(py, Source::of(source)?, threads, progress, |source, progress| match source {
+        Source::File(path) if is_solid(path) => {
+            elastic(source, ModesKind::Polynomial, Wanted::default(), progress)
+        }
+        Source::File(path) => Ok((polynomial_model(read_mesh(path)?, &source.name())?, None)),
+        Source::Surface(mesh) => Ok((polynomial_model(mesh.clone(), &source.name())?, None)),
+    })
+}
+
+/// What is asked of an elastic body beside the kind of its modes.
+#[derive(Default)]
+struct Wanted {
+    rank: Option<usize>,
+    material: RequestedMaterial,
+    /// Vertices that do not move, and all in a box between two corners.
+    fixed: Vec<u32>,
+    fixed_box: Option<[DVec3; 2]>,
+    resolution: Option<usize>,
+}
+
+/// A model of an elastic body, and a note on how its file was read.
+fn elastic(
+    source: &Source,
+    kind: ModesKind,
+    wanted: Wanted,
+    progress: &dyn Progress,
+) -> Result<(NewModel, Option<String>), SimError> {
+    let Wanted { rank, material, fixed, fixed_box, resolution } = wanted;
+    let solid = match source {
+        Source::File(path) => SolidSource::read(path, resolution, &material, progress)?,
+        Source::Surface(mesh) => SolidSource::around(mesh.clone(), resolution, &material, progress)?,
+    };
+    let mut held = Vec::new();
+    for number in fixed {
+        held.extend(solid.holding(number).map_err(|error| error.at("fix"))?);
+    }
+    if let Some([a, b]) = fixed_box {
+        let within = solid.within(a.min(b), a.max(b));
+        if within.is_empty() {
+            return Err(SimError::refused("fix_box", "no vertex is there"));
+        }
+        held.extend(within);
+    }
+    held.sort_unstable();
+    held.dedup();
+    let note = solid.note();
+    Ok((elastic_model(kind, rank, solid, &held, &source.name(), progress)?, note))
+}
+
+/// Makes a model on other threads, and issues the note on it.
+fn made(
+    py: Python<'_>,
+    source: Source,
+    threads: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+    make: impl FnOnce(&Source, &dyn Progress) -> Result<(NewModel, Option<String>), SimError> + Send + 'static,
+) -> PyResult<Model> {
     let threads = pool::threads(threads)?;
     let source = Arc::new(source);
     let of_worker = Arc::clone(&source);
-    let made = run(py, progress, "modes", move |progress| {
-        on_threads(threads, || match &*of_worker {
-            Source::File(path) if make::is_volumetric(path) => {
-                make::elastic(of_worker.body(), Kind::Polynomial, Wanted::default(), progress)
-            }
-            _ => make::polynomial(of_worker.body()),
-        })
-    })?;
-    made.map(loaded).map_err(|error| source.refused(&error))
+    let made =
+        run(py, progress, "modes", move |progress| on_threads(threads, || make(&of_worker, progress)))?;
+    let (made, note) = made.map_err(|error| source.refused(&error))?;
+    warn(py, note.as_slice())?;
+    Ok(loaded(made))
 }
 
-fn loaded(made: make::Model) -> Model {
+fn loaded(made: NewModel) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<AskedMaterial> {
-    Ok(AskedMaterial {
+fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<RequestedMaterial> {
+    Ok(RequestedMaterial {
         youngs: number(youngs.as_ref(), "youngs")?,
         poisson: number(poisson.as_ref(), "poisson")?,
         density: number(density.as_ref(), "density")?,
@@ -177,15 +232,11 @@ pub fn _pca(
         let Some(first) = frames.first() else { return Err(value("shapes is empty")) };
         (mesh_of(first.clone(), "shapes", faces)?, frames, "shapes in memory".into(), false)
     };
-    let count = frames.len();
     let found = run(py, progress, "principal components", move |progress| {
-        on_threads(threads, || pca_modes(&mesh, &frames, rank, progress))
+        on_threads(threads, || pca_model(&mesh, &frames, rank, &name, progress))
     })?;
-    let found = found.map_err(|error: ModesError| value(format!("shapes: {error}")))?;
-    let model = sscc::ReducedModel::new(found.mesh, found.modes)
-        .map_err(|error| value(format!("shapes: {error}")))?;
-    let info = ModelInfo::new("", format!("mean and principal components of {count} {name}"));
-    Ok(Model::of(Loaded::new(model, info, is_split)))
+    let found = found.map_err(|error| value(format!("shapes: {error}")))?;
+    Ok(Model::of(Loaded::new(found.model, found.info, is_split)))
 }
 
 /// Shapes from an array (n, V, 3) or (n, 3V).

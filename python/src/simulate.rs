@@ -1,21 +1,18 @@
 //! `sscc.simulate`: what is in Rust of it.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, TryLockError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::PyBool;
-use sscc_cli::simulate::{Request, simulate, stop};
-use sscc_io::IoError;
+use sscc::Progress;
+use sscc_sim::{Outputs, Request, SimError, Stage, Watch, simulate};
+use sscc_view::simulation_report;
 
 use crate::arguments::{count, path, switch};
-use crate::errors::{file, value};
+use crate::errors::{refused_simulation, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
-
-/// Stopping one stops all.
-static ONLY: Mutex<()> = Mutex::new(());
 
 /// Simulates a scene: its summary (JSON), the folder and the files in it.
 #[pyfunction]
@@ -34,46 +31,56 @@ pub fn _simulate(
     let request = Request {
         scene: path(scene, "scene")?,
         out: folder(out, "out")?,
-        steps: count(steps, "steps", 1..=u32::MAX as usize)?.map(|steps| steps as u32),
+        steps: count(steps, "steps", 1..=u32::MAX as usize)?,
         restart: switch(restart, "restart")?.unwrap_or(false),
         models: folder(models, "models")?,
         cache: folder(cache, "cache")?,
-        threads: pool::threads(threads)?.map(|threads| threads as u32),
+        threads: pool::threads(threads)?,
     };
-    let _only = match ONLY.try_lock() {
-        Ok(only) => only,
-        // One that panicked has ended.
-        Err(TryLockError::Poisoned(only)) => only.into_inner(),
-        Err(TryLockError::WouldBlock) => {
-            return Err(PyRuntimeError::new_err(
-                "another simulation goes on in this process; wait for its end",
-            ));
+    let (written, notes) = run_borrowing(py, None, "simulating", |progress| {
+        let steps = Steps { progress, are_simulated: AtomicBool::new(false), notes: Mutex::default() };
+        let written = simulated(&request, &steps);
+        (written, steps.notes.into_inner().unwrap_or_else(PoisonError::into_inner))
+    })?;
+    warn(py, &notes)?;
+    written.map_err(|error| refused_simulation(&error))
+}
+
+/// Simulates and writes all files.
+fn simulated(request: &Request, steps: &Steps<'_>) -> Result<(String, PathBuf, Vec<PathBuf>), SimError> {
+    let run = simulate(request, steps)?;
+    let mut outputs = Outputs::write(&run);
+    outputs.add_report(simulation_report(&run, steps));
+    let written = (run.summary.to_json(), run.folder.clone(), outputs.files());
+    outputs.finish(run)?;
+    Ok(written)
+}
+
+/// Tells of the steps alone how many are done, so that the share only grows; keeps notes for the end.
+struct Steps<'a> {
+    progress: &'a dyn Progress,
+    are_simulated: AtomicBool,
+    notes: Mutex<Vec<String>>,
+}
+
+impl Progress for Steps<'_> {
+    fn report(&self, done: usize, total: usize) {
+        if self.are_simulated.load(Ordering::Relaxed) {
+            self.progress.report(done, total);
         }
-    };
-    stop(false);
-    let no = PyBool::new(py, false);
-    let written = run_borrowing(py, Some(no.as_any()), "simulating", |progress| {
-        std::thread::scope(|scope| {
-            let work = scope.spawn(|| simulate(request));
-            while !work.is_finished() {
-                std::thread::sleep(std::time::Duration::from_millis(10));
-                if progress.is_cancelled() {
-                    stop(true);
-                }
-            }
-            work.join()
-        })
-    });
-    stop(false);
-    match written? {
-        Ok(Ok(written)) => Ok((written.summary, written.folder, written.files)),
-        Ok(Err(error)) => {
-            Err(match (error.downcast_ref::<IoError>(), error.downcast_ref::<std::io::Error>()) {
-                (Some(error), _) => file(error),
-                (None, Some(_)) => PyOSError::new_err(format!("{error:#}")),
-                (None, None) => value(format!("{error:#}")),
-            })
-        }
-        Err(panic) => std::panic::resume_unwind(panic),
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.progress.is_cancelled()
+    }
+}
+
+impl Watch for Steps<'_> {
+    fn begin(&self, stage: Stage) {
+        self.are_simulated.store(matches!(stage, Stage::Steps { .. }), Ordering::Relaxed);
+    }
+
+    fn note(&self, note: &str) {
+        self.notes.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
     }
 }

@@ -11,7 +11,7 @@ from sscc._sscc import _simulate
 
 
 class Simulation(NamedTuple):
-    """What a simulation came to."""
+    """The results of a simulation."""
 
     summary: dict[str, Any]
     """The keys of ``sscc simulate --json``."""
@@ -38,8 +38,9 @@ def simulate(
     steps: how many from the beginning; None: those of the scene. ``restart`` begins again.
     models, cache: the folder of real models; where models and certificates are kept from run to run.
 
-    A bar is shown where standard error is a terminal. Ctrl-C stops after the step at hand. One simulation at a time in
-    each process. Raises FileNotFoundError, OSError, ValueError, RuntimeError.
+    A bar shows the progress of the steps, on a terminal or in a notebook. Ctrl-C stops after the step at hand; what was
+    simulated until then is written, and the same call continues from there. Several threads may simulate at the same
+    time, each in a folder of its own. Raises FileNotFoundError, OSError, ValueError.
     """
     summary, folder, files = _simulate(scene, out, steps, restart, models, cache, threads)
     return Simulation(json.loads(summary), Path(folder), [Path(file) for file in files])

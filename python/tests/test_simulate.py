@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -58,3 +62,60 @@ def test_what_is_wrong_is_named(tmp_path: Path) -> None:
         sscc.simulate("spring", tmp_path / "o", steps=0)
     with pytest.raises(TypeError, match="^restart is a int"):
         sscc.simulate("spring", tmp_path / "o", restart=1)  # type: ignore[arg-type]
+
+
+def test_several_simulate_at_the_same_time(tmp_path: Path) -> None:
+    vertices, faces, _ = torus(24, 12, 1)
+    write_obj(tmp_path / "ring.obj", vertices, faces)
+    scene, cache = tmp_path / "scene.toml", tmp_path / "cache"
+    scene.write_text(SCENE)
+    alone = sscc.simulate(scene, tmp_path / "alone", steps=200, cache=cache, threads=1)
+    found: dict[str, sscc.Simulation] = {}
+
+    def simulate(name: str) -> None:
+        found[name] = sscc.simulate(scene, tmp_path / name, steps=200, cache=cache, threads=1)
+
+    threads = [threading.Thread(target=simulate, args=(name,)) for name in ("a", "b")]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(found) == ["a", "b"]
+    motion = (alone.folder / "trajectories.npz").read_bytes()
+    assert all((simulation.folder / "trajectories.npz").read_bytes() == motion for simulation in found.values())
+
+
+def test_ctrl_c_stops_and_the_same_call_continues(tmp_path: Path) -> None:
+    vertices, faces, _ = torus(24, 12, 1)
+    write_obj(tmp_path / "ring.obj", vertices, faces)
+    scene, cache, out = tmp_path / "scene.toml", tmp_path / "cache", tmp_path / "out"
+    scene.write_text(SCENE.replace("duration = 1.0", "duration = 1e4"))
+    sscc.simulate(scene, out, steps=1, cache=cache)
+    log = out / "states.log"
+    before = log.stat().st_size
+
+    def press() -> None:
+        while log.stat().st_size <= before:
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    # What a shell starts in the background ignores Ctrl-C.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    presser = threading.Thread(target=press)
+    presser.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            sscc.simulate(scene, out, cache=cache)
+    finally:
+        presser.join()
+        signal.signal(signal.SIGINT, handler)
+    with np.load(out / "trajectories.npz") as motion:
+        stopped = motion["positions"]
+    assert len(stopped) > 1
+    steps = len(stopped) + 10
+    again = sscc.simulate(scene, out, steps=steps, cache=cache)
+    assert again.summary["steps"] == steps
+    # Steps made by the call before are not timed again.
+    assert again.summary["real_time_factor_processor"] is None
+    with np.load(out / "trajectories.npz") as motion:
+        assert np.array_equal(motion["positions"][: len(stopped)], stopped)

@@ -31,11 +31,6 @@ pub fn happened() -> bool {
     HAPPENED.load(Ordering::Relaxed)
 }
 
-/// For programs that hear of interrupts by themselves.
-pub fn set(happened: bool) {
-    HAPPENED.store(happened, Ordering::Relaxed);
-}
-
 /// Cancels queries on an interrupt.
 pub struct Interrupt;
 

@@ -1,23 +1,16 @@
 //! The `sscc` command: certify a deformable model once, then ask whether it collides with itself.
 //!
-//! `args` holds what was typed, `commands` what it means; exit codes are decided here. What the Python package shares
-//! with the command is public: [`make`] and [`simulate`].
+//! `args` holds what was typed, `commands` what it means; exit codes are decided here.
 
 mod args;
-mod case;
 mod commands;
-mod frequencies;
 mod interrupt;
 mod load;
-mod machine;
-pub mod make;
-mod nearest;
+mod meter;
 mod output;
 mod picture;
 mod progress;
-mod scene;
-pub mod simulate;
-mod simulation;
+mod stages;
 mod usage;
 
 use std::process::ExitCode;

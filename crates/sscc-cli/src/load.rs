@@ -1,12 +1,12 @@
 //! Models, metrics and certificates by what was typed, with errors that name the file.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::thread;
+use std::path::Path;
 
 use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::{Certificates, CertifyOptions, Metric, MetricKind, Neighbours, PairRule, ReducedModel, Scope};
-use sscc_io::{IoError, LoadOptions, LoadedModel};
+use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
+use sscc_sim::{SimError, available_threads};
 
 use crate::output::note;
 use crate::progress::Bar;
@@ -78,10 +78,7 @@ fn welds_by_default(files: &args::Model) -> bool {
 
 /// Number of threads for what was typed.
 pub fn threads(typed: &args::Threads) -> usize {
-    match typed.threads {
-        Some(threads) => threads as usize,
-        None => thread::available_parallelism().map_or(1, usize::from),
-    }
+    typed.threads.map_or_else(available_threads, |threads| threads as usize)
 }
 
 /// Bytes for each triangle that pairs of nodes may take; none where no flag speaks of it.
@@ -161,7 +158,8 @@ pub fn certificates_now(
 
 /// An error about a file, with its name. Errors of readers and writers have it already.
 pub fn in_file(error: Error, path: &Path) -> Error {
-    if error.is::<IoError>() { error } else { error.context(path.display().to_string()) }
+    let is_named = error.is::<IoError>() || error.downcast_ref().and_then(SimError::file).is_some();
+    if is_named { error } else { error.context(path.display().to_string()) }
 }
 
 /// Reads certificates, and refuses those of another model, or other than the options typed say.
@@ -240,14 +238,6 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
         ensure!(!inputs.iter().any(is_input), "{shown}: the output is an input; choose another name");
         ensure!(real.is_file(), "{shown}: cannot be written: it is no file; choose another name");
     }
-    // Nameless, so that nothing is left of it.
-    tempfile::tempfile_in(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
+    check_writable(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
     Ok(())
-}
-
-fn folder(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent.to_owned(),
-        _ => PathBuf::from("."),
-    }
 }

@@ -1,9 +1,10 @@
 //! Files read whole and written whole.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
 
+use crate::part_file::PartFile;
 use crate::{FormatError, IoError};
 
 /// Reads a whole file.
@@ -48,15 +49,11 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
         Err(error) if error.kind() == ErrorKind::NotFound => {}
         Err(error) => return Err(refused(error)),
     }
-    let directory = match path.parent() {
-        Some(parent) if parent != Path::new("") => parent.to_owned(),
-        _ => PathBuf::from("."),
-    };
+    let directory = folder(path);
     // Removed when dropped before the rename, on every way out.
-    let mut beside = temporary().tempfile_in(&directory).map_err(refused)?;
-    beside.write_all(bytes).map_err(refused)?;
-    beside.as_file().sync_all().map_err(refused)?;
-    beside.persist(path).map_err(|error| refused(error.error))?;
+    let mut beside = PartFile::create_in(directory).map_err(refused)?;
+    beside.write(bytes).map_err(refused)?;
+    beside.rename(path).map_err(refused)?;
     // The rename itself should outlive a power cut too; not every system lets a directory be opened.
     if let Ok(directory) = File::open(directory) {
         let _ = directory.sync_all();
@@ -85,14 +82,20 @@ pub(crate) fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// A temporary file with the permissions of a file made the usual way (tempfile's own default is
-/// private to the user, and the rename would keep that).
-fn temporary() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".sscc-").suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
+/// The folder of a file.
+pub fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Whether files can be written to a folder: before long work whose result is for it.
+///
+/// # Errors
+/// What the system says.
+pub fn check_writable(folder: &Path) -> io::Result<()> {
+    PartFile::create_in(folder).map(drop)
 }
 
 fn check_regular(path: &Path, metadata: &fs::Metadata) -> Result<(), IoError> {

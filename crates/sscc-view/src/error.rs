@@ -19,7 +19,19 @@ pub enum ViewError {
     /// The system refused.
     #[error(transparent)]
     System(#[from] std::io::Error),
+    /// A model of a simulation.
+    #[error("{name}: {error}")]
+    Model {
+        /// What it is called.
+        name: String,
+        /// Why it cannot be shown.
+        error: Box<ViewError>,
+    },
+    /// What cannot be written as JSON.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
     /// No random numbers for the token.
+    #[cfg(feature = "server")]
     #[error("the system gives no random numbers: {0}")]
     Random(getrandom::Error),
 }

@@ -1,29 +1,38 @@
-//! The page of sscc: what it shows ([`Scene`], [`Arrays`]), reports in one file ([`Report`]), and the server on this
-//! machine ([`Server`]) that answers a live page by the native queries ([`Live`]).
+//! The page of sscc: its data ([`Scene`], [`Arrays`]), reports in one file ([`Report`], [`simulation_report`],
+//! [`Animation`]), and the answers of a live page by native queries ([`Live`]).
 //!
-//! The page is one HTML file without any other, built from the folder `viewer/` and kept in `page/`. In a report its
-//! data stands in the file; live it is asked for. Both are the same JSON and the same arrays.
+//! The page is one HTML file that needs no other, built from the folder `viewer/` and kept in `page/`. A report holds its
+//! data in the file; a live page requests them. Both use the same JSON and the same arrays. The server of live pages is
+//! behind the cargo feature `server`: programs that only write reports link no HTTP parser.
 
+mod animation_report;
 mod arrays;
 mod error;
 mod extremal;
 mod levels;
 mod live;
+mod metric_comparison;
 mod page;
 mod playback;
 mod plot;
 mod report;
 mod scene;
+#[cfg(feature = "server")]
 mod server;
+mod simulation;
 
+pub use animation_report::Animation;
 pub use arrays::Arrays;
 pub use error::ViewError;
 pub use extremal::{Extremal, extremal};
 pub use levels::{Level, levels};
 pub use live::Live;
+pub use metric_comparison::metric_comparison;
 pub use page::PAGE;
 pub use playback::{Body, Colliding, Playback};
 pub use plot::{Axis, Plot, Series};
 pub use report::Report;
 pub use scene::{ModelDetails, ModelScene, Scene};
+#[cfg(feature = "server")]
 pub use server::Server;
+pub use simulation::simulation_report;

@@ -6,8 +6,8 @@ mod certify;
 mod check;
 mod demo;
 mod info;
-pub mod modes;
-pub mod simulate;
+mod modes;
+mod simulate;
 mod view;
 
 use crate::Outcome;
@@ -22,7 +22,7 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Check(args) => check::run(&args),
         Command::Audit(args) => audit::run(&args),
         Command::Info(args) => info::run(&args),
-        Command::Simulate(args) => simulate::run_command(&args),
+        Command::Simulate(args) => simulate::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::View(args) => view::run(&args),
     }

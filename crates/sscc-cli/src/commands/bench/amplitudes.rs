@@ -6,9 +6,9 @@ use super::Session;
 use super::measure::{Asked, Step, measure};
 use super::report::Report;
 use super::sample::{directions, scaled, to_unit};
-use crate::case::{Kind, Recipe, Shape};
 use crate::output::Output;
 use crate::progress::Bar;
+use sscc_sim::{ModesSpec, Recipe, Shape};
 
 /// Largest displacements in percent of half the diagonal of the box.
 const SHARES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0];
@@ -25,7 +25,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     session.check_only(&recipes.each_ref().map(|(name, ..)| *name))?;
     let mut mismatches = 0;
     for (name, shape, rank) in recipes.into_iter().filter(|(name, ..)| session.wants(name)) {
-        let case = session.case(&Recipe::new(name, shape, Kind::Linear(rank)))?;
+        let case = session.case(&Recipe::new(name, shape, ModesSpec::Linear(rank)))?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
         let mut reports = Vec::new();
         for share in SHARES {

@@ -5,14 +5,14 @@ use parry3d_f64::partitioning::BvhBuildStrategy;
 use sscc::{Error, Impact, Method, Pair, Query};
 
 use super::peer::Peer;
-use crate::case::Case;
+use sscc_sim::CertifiedModel;
 
 /// One column of the tables. Where several have the same key, the one with the smallest mean counts.
 pub struct Column {
     /// Its name in tables and JSON.
     pub key: &'static str,
     pub role: Role,
-    make: for<'a> fn(&'a Case) -> Result<Box<dyn Engine + 'a>>,
+    make: for<'a> fn(&'a CertifiedModel) -> Result<Box<dyn Engine + 'a>>,
 }
 
 /// Where a method takes part.
@@ -45,25 +45,25 @@ pub const COLUMNS: &[Column] = &[
 ];
 
 impl Column {
-    pub fn engine<'a>(&self, case: &'a Case) -> Result<Box<dyn Engine + 'a>> {
+    pub fn engine<'a>(&self, case: &'a CertifiedModel) -> Result<Box<dyn Engine + 'a>> {
         (self.make)(case)
     }
 }
 
-fn plain(case: &Case, method: Method) -> Result<Box<dyn Engine + '_>> {
+fn plain(case: &CertifiedModel, method: Method) -> Result<Box<dyn Engine + '_>> {
     Ok(Box::new(Query::with_method(&case.model, &case.full.certificates, method)?))
 }
 
-fn paper(case: &Case) -> Result<Box<dyn Engine + '_>> {
+fn paper(case: &CertifiedModel) -> Result<Box<dyn Engine + '_>> {
     let paper = case.paper.as_ref().context("certificates as in the paper were not computed")?;
     Ok(Box::new(Query::new(&case.model, &paper.certificates)?))
 }
 
-fn full(case: &Case) -> Result<Box<dyn Engine + '_>> {
+fn full(case: &CertifiedModel) -> Result<Box<dyn Engine + '_>> {
     Ok(Box::new(Query::new(&case.model, &case.full.certificates)?))
 }
 
-fn peer(case: &Case, how: BvhBuildStrategy) -> Result<Box<dyn Engine + '_>> {
+fn peer(case: &CertifiedModel, how: BvhBuildStrategy) -> Result<Box<dyn Engine + '_>> {
     Ok(Box::new(Peer::new(&case.model, how)))
 }
 

@@ -6,8 +6,8 @@ use sscc::{KineticQuery, Query};
 
 use super::clock::median;
 use super::measure::{Step, Times};
-use crate::case::Case;
 use crate::interrupt;
+use sscc_sim::CertifiedModel;
 
 /// Times that all blocks are gone through; the median counts.
 const ROUNDS: usize = 3;
@@ -19,7 +19,7 @@ const ROUNDS: usize = 3;
 /// consecutive ones that it leaves open, share one. What such a query computes at one step serves the next ones: the
 /// steps of a block that the root's certificate leaves open share the time of all of them, since other methods are asked
 /// some of them only.
-pub fn follow(case: &Case, steps: &[Step], times: &mut Times) -> Result<usize> {
+pub fn follow(case: &CertifiedModel, steps: &[Step], times: &mut Times) -> Result<usize> {
     let bodies = steps.first().map_or(0, |step| step.q_t0.len());
     let certificates = &case.full.certificates;
     let mut plain = Query::new(&case.model, certificates)?;

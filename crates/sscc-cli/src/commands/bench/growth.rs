@@ -7,13 +7,12 @@ use sscc_io::write_whole;
 use super::Session;
 use super::amplitudes::steps;
 use super::measure::{Asked, measure};
+use super::plot::{Line, Plot};
 use super::report::{Means, Report};
 use super::sample::{directions, to_unit};
-use crate::case::{Kind, Recipe, SPRING_RINGS, Shape};
-use crate::machine;
 use crate::output::Output;
 use crate::progress::Bar;
-use crate::simulation::{Line, Plot};
+use sscc_sim::{ModesSpec, Recipe, SPRING_RINGS, Shape, machine_description};
 
 /// The embedded spring, so many halves of its usual number of rings and of vertices in each; and the number of modes.
 const SPRINGS: [(&str, usize, usize); 6] = [
@@ -58,7 +57,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     let mut reports = Vec::new();
     for (name, halves, rank) in SPRINGS.into_iter().filter(|(name, ..)| session.wants(name)) {
         let [rings, around] = SPRING_RINGS.map(|usual| usual * halves / 2);
-        let recipe = Recipe::new(name, Shape::Spring { rings, around }, Kind::Linear(rank));
+        let recipe = Recipe::new(name, Shape::Spring { rings, around }, ModesSpec::Linear(rank));
         let case = session.case(&recipe)?;
         let unit = to_unit(&case.model, &directions(&case.model, session.samples(SAMPLES)));
         let measured = measure(&case, &steps(&unit, SHARE), None, Asked::Discrete, &Bar::new("measuring"))?;
@@ -70,7 +69,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
         write_whole(path, plot(&reports).as_bytes())?;
     }
     if session.args.json.json {
-        let machine = machine::description();
+        let machine = machine_description();
         reports.iter().for_each(|report| session.rows.add(report));
         out.json(&Growth { scenario: "growth", mismatches, sizes: &reports, exponents, machine })?;
     } else {

@@ -13,11 +13,10 @@ use super::columns::{COLUMNS, Engine, Role};
 use super::report::Means;
 use super::strata::{Strata, Stratum, weighted_mean};
 use super::vibration::Vibration;
-use crate::case::{Case, Kind, Recipe, Shape};
 use crate::interrupt;
-use crate::machine;
 use crate::output::{Output, grouped};
 use crate::progress::Bar;
+use sscc_sim::{CertifiedModel, ModesSpec, Recipe, Shape, machine_description};
 
 /// Steps in a second: each is a sample of sound.
 const RATE: f64 = 44_100.0;
@@ -63,7 +62,7 @@ struct Report {
 
 /// Gives the number of mismatches.
 pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
-    let case = session.case(&Recipe::new("spring", Shape::SPRING, Kind::Linear(20)))?;
+    let case = session.case(&Recipe::new("spring", Shape::SPRING, ModesSpec::Linear(20)))?;
     let vibration = Vibration::new(&case, 1)?;
     let steps = session.args.steps.map_or(STEPS, |steps| steps as usize);
     let own = vibration.bodies[0].first_frequency() / std::f64::consts::TAU;
@@ -89,7 +88,7 @@ pub fn run(session: &Session<'_>, out: &mut Output) -> Result<usize> {
     Ok(mismatches)
 }
 
-fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> Result<Report> {
+fn measure(case: &CertifiedModel, vibration: &Vibration, frequency: f64, steps: usize) -> Result<Report> {
     let (blocks, body) = (BLOCKS.min(steps), &vibration.bodies[0]);
     let certificates = &case.full.certificates;
     let mut follower = KineticQuery::new(&case.model, certificates)?;
@@ -169,7 +168,7 @@ fn measure(case: &Case, vibration: &Vibration, frequency: f64, steps: usize) -> 
         mismatches,
         kinetic_us_colliding: (colliding > 0).then(|| time_colliding * 1e6 / colliding as f64),
         microseconds: Means(microseconds),
-        machine: machine::description(),
+        machine: machine_description(),
     })
 }
 

@@ -10,9 +10,9 @@ use super::clock::{median, milliseconds};
 use super::columns::{COLUMNS, Column, Engine, Role};
 use super::strata::{Counts, Strata, Stratum, weighted_mean};
 use super::verdict::is_wrong;
-use crate::case::Case;
 use crate::interrupt;
 use crate::progress::Bar;
+use sscc_sim::CertifiedModel;
 
 /// Turns of each method on each block of steps; of each step the median counts.
 const ROUNDS: usize = 3;
@@ -67,7 +67,7 @@ pub enum Asked {
 
 /// Asks all methods. `scene` are the strata of all steps that the given ones stand for; none where these are all.
 pub fn measure(
-    case: &Case,
+    case: &CertifiedModel,
     steps: &[Step],
     scene: Option<Counts>,
     asked: Asked,
@@ -174,7 +174,11 @@ fn answer_discrete(
 }
 
 /// Whether all methods list the same pairs, but for such as may be listed or not.
-fn answer_continuous(engines: &mut [Box<dyn Engine + '_>], case: &Case, step: &Step) -> Result<bool> {
+fn answer_continuous(
+    engines: &mut [Box<dyn Engine + '_>],
+    case: &CertifiedModel,
+    step: &Step,
+) -> Result<bool> {
     let mut agreed = true;
     for ends in step.q_t0.iter().zip(&step.q_t1) {
         let mut answers: Vec<Vec<Impact>> = Vec::new();

@@ -13,6 +13,7 @@ mod measure;
 mod page;
 mod paper;
 mod peer;
+mod plot;
 mod random;
 mod report;
 mod sample;
@@ -28,13 +29,15 @@ use std::path::PathBuf;
 use anyhow::{Context, ensure};
 
 use crate::args::Bench;
-use crate::case::{Cache, Case, Kind, Recipe, Shape, models_folder};
-use crate::machine;
 use crate::output::Output;
+use crate::stages::Stages;
 use crate::{Outcome, load};
 use page::Rows;
 use report::Report;
 use scenario::Scenario;
+use sscc_sim::{
+    Cache, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, Shape, machine_description, models_folder,
+};
 use table::Table;
 
 pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
@@ -61,7 +64,7 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     }
     .with_context(|| format!("bench {}", args.scenario.as_deref().unwrap_or_default()))?;
     if !args.json.json {
-        out.line(format_args!("measured on: {}", machine::description()))?;
+        out.line(format_args!("measured on: {}", machine_description()))?;
     }
     out.finish()?;
     if let Some(report) = &args.report {
@@ -99,12 +102,15 @@ struct Session<'a> {
 
 impl Session<'_> {
     /// A model with its certificates; where a quick look is wanted, the small spring in place of any.
-    fn case(&self, recipe: &Recipe) -> anyhow::Result<Case> {
+    fn case(&self, recipe: &Recipe) -> anyhow::Result<CertifiedModel> {
+        let stages = Stages::default();
         if !self.args.quick {
-            let begun = recipe.begin(self.models.as_deref())?;
-            return Case::get(&begun, &self.cache)?.with_paper(&self.cache);
+            let begun = LoadedRecipe::load(recipe, self.models.as_deref(), &stages)?;
+            return Ok(CertifiedModel::get(&begun, &self.cache, &stages)?.with_paper(&self.cache, &stages)?);
         }
-        let mut case = Case::get(&small_spring().begin(None)?, &self.cache)?.with_paper(&self.cache)?;
+        let spring = small_spring();
+        let begun = LoadedRecipe::load(&spring, None, &stages)?;
+        let mut case = CertifiedModel::get(&begun, &self.cache, &stages)?.with_paper(&self.cache, &stages)?;
         case.note = Some("--quick: a spring of 4,000 triangles stands in for any model".into());
         Ok(case)
     }
@@ -149,5 +155,5 @@ impl Session<'_> {
 
 /// The first spring of `growth`.
 fn small_spring() -> Recipe {
-    Recipe::new("spring-4k", Shape::SMALL_SPRING, Kind::Linear(20))
+    Recipe::new("spring-4k", Shape::SMALL_SPRING, ModesSpec::Linear(20))
 }

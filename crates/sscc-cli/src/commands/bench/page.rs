@@ -9,8 +9,8 @@ use sscc_view::{Arrays, Axis, Plot, Report as Page, Scene, Series};
 
 use super::measure::Times;
 use super::report::{Means, Report};
-use crate::machine;
 use crate::output::duration;
+use sscc_sim::machine_description;
 
 /// What is told of each report.
 #[derive(Default)]
@@ -56,7 +56,7 @@ impl Rows {
         let rows = self.rows.borrow();
         let mut scene = Scene::new(format!("sscc bench {title}"));
         scene.summary = rows.iter().map(Row::line).collect();
-        scene.summary.push(("machine".into(), machine::description()));
+        scene.summary.push(("machine".into(), machine_description()));
         scene.plots.extend(self.costs.borrow().iter().cloned());
         // A model over how far it is displaced; ...
         for group in rows.chunk_by(|a, b| a.scenario == b.scenario).filter(|group| group.len() > 1) {

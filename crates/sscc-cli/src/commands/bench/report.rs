@@ -4,9 +4,7 @@ use serde::{Serialize, Serializer};
 
 use super::measure::Measured;
 use super::strata::Counts;
-use crate::case::Case;
-use crate::machine;
-use crate::simulation::PARTS;
+use sscc_sim::{CertifiedModel, STEP_PARTS, machine_description};
 
 /// One line of JSON. Times are means over the whole scene, estimated from steps that count by the shares of their strata;
 /// where comparators were not asked all steps, those that they were asked count for every method, so that ratios are of
@@ -71,7 +69,7 @@ pub struct Whole {
     pub body_steps: usize,
     pub colliding_body_steps: usize,
     /// What the parts of its simulation took.
-    pub seconds: Option<[f64; PARTS.len()]>,
+    pub seconds: Option<[f64; STEP_PARTS.len()]>,
 }
 
 /// A value for each column.
@@ -98,7 +96,7 @@ impl Report {
     pub fn new(
         scenario: String,
         share: f64,
-        case: &Case,
+        case: &CertifiedModel,
         measured: &Measured,
         objects: usize,
         whole: Option<Whole>,
@@ -116,7 +114,9 @@ impl Report {
         let simulation_seconds = whole.seconds.map(|parts| parts.iter().sum::<f64>());
         let of_step = |seconds: f64| seconds * 1e3 / whole.steps as f64;
         let simulation_ms = match whole.seconds {
-            Some(parts) => PARTS.iter().zip(parts).map(|(part, seconds)| (*part, of_step(seconds))).collect(),
+            Some(parts) => {
+                STEP_PARTS.iter().zip(parts).map(|(part, seconds)| (*part, of_step(seconds))).collect()
+            }
             None => Vec::new(),
         };
         let Measured { discrete, continuous, strata, .. } = measured;
@@ -161,7 +161,7 @@ impl Report {
             continuous_ms: Means(continuous.means(&continuous.compared, strata)),
             discrete_ms_root_failed: Means(discrete.means(&root_failed, strata)),
             discrete_ms_all_steps: Means(everywhere),
-            machine: machine::description(),
+            machine: machine_description(),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use anyhow::{Result, bail};
 
-use crate::nearest::nearest;
-use crate::scene::{SHIPPED, Scene};
+use sscc_sim::nearest;
+use sscc_sim::{SHIPPED, Scene};
 
 /// What can be measured.
 #[derive(Clone, Copy)]

@@ -14,8 +14,8 @@ use super::scenario::PaperTable;
 use super::strata::{Stratum, blocks};
 use crate::output::{Output, note, one_line};
 use crate::progress::Bar;
-use crate::scene::Scene;
-use crate::simulation::{History, Log, Meter, PARTS, Prepared, Ran, run};
+use crate::stages::Stages;
+use sscc_sim::{History, PreparedScene, RunOutcome, STEP_PARTS, Scene, StateLog, run};
 
 /// Steps that are measured, if nothing is said.
 const STEPS: usize = 100;
@@ -54,16 +54,16 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
     if session.args.quick {
         scene.quicken();
     }
-    let prepared = Prepared::get(&scene, session.models.as_deref(), &session.cache)?;
+    let prepared = PreparedScene::get(&scene, session.models.as_deref(), &session.cache, &Stages::default())?;
     let history = simulated(session, &scene, &prepared)?;
     let mut models = prepared.models.into_iter();
     let (Some(model), None) = (models.next(), models.next()) else {
         bail!("scenes of one model are measured");
     };
-    let mut case = model.case.with_paper(&session.cache)?;
+    let mut case = model.certified.with_paper(&session.cache, &Stages::default())?;
     let stratum = |state: usize| {
         let root_failed = history.bodies(state).any(|body| !case.is_root_certified(body.q));
-        Stratum::of(root_failed, history.colliding(state) > 0)
+        Stratum::of(root_failed, history.colliding_bodies(state) > 0)
     };
     let strata: Vec<Stratum> = (0..history.len() - 1).map(stratum).collect();
     let steps = blocks(&strata, session.args.steps.map_or(STEPS, |steps| steps as usize));
@@ -92,22 +92,23 @@ fn one(session: &Session<'_>, name: &str, text: &str) -> Result<Report> {
 }
 
 /// The motion of the whole scene, simulated on one thread.
-fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Result<History> {
-    let digest = prepared.digest(scene)?;
+fn simulated(session: &Session<'_>, scene: &Scene, prepared: &PreparedScene) -> Result<History> {
+    let digest = prepared.digest(scene);
     let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
     let folder = session.cache.folder().join(format!("{}-{hash}.scene", scene.name));
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let simulate = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &Meter::new()));
-    let Ran { history, failure, .. } = match simulate(false) {
-        Err(error) if Log::is_begun(&folder) => {
+    let simulate =
+        |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &Stages::default()));
+    let RunOutcome { history, failure, .. } = match simulate(false) {
+        Err(error) if StateLog::is_begun(&folder) => {
             note(format_args!("simulated anew: {}", one_line(&format!("{error:#}"))));
             simulate(true)?
         }
         ran => ran?,
     };
     match failure {
-        Some(error) => Err(error),
+        Some(error) => Err(error.into()),
         None => {
             ensure!(history.len() > 1, "a scene of one step has nothing to measure");
             Ok(history)
@@ -118,10 +119,10 @@ fn simulated(session: &Session<'_>, scene: &Scene, prepared: &Prepared) -> Resul
 /// What collides in the whole scene, and what its simulation took.
 fn whole(history: &History) -> Whole {
     let steps = history.len();
-    let colliding: Vec<usize> = (0..steps).map(|state| history.colliding(state)).collect();
-    let mut seconds = [0.0; PARTS.len()];
+    let colliding: Vec<usize> = (0..steps).map(|state| history.colliding_bodies(state)).collect();
+    let mut seconds = [0.0; STEP_PARTS.len()];
     for state in 0..steps {
-        seconds.iter_mut().zip(history.facts(state).seconds).for_each(|(sum, part)| *sum += part);
+        seconds.iter_mut().zip(history.step(state).seconds).for_each(|(sum, part)| *sum += part);
     }
     Whole {
         steps,

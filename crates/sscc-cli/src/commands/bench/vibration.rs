@@ -7,8 +7,8 @@ use sscc::{Method, Query};
 
 use super::random::Random;
 use super::sample::{directions, half_diagonal, largest_displacement, scaled};
-use crate::case::Case;
 use crate::interrupt::Interrupt;
+use sscc_sim::CertifiedModel;
 
 /// Periods of the first mode in a scene, and steps in each.
 const PERIODS: usize = 5;
@@ -36,7 +36,7 @@ pub struct Swing {
 }
 
 impl Swing {
-    fn new(case: &Case, random: &mut Random) -> Self {
+    fn new(case: &CertifiedModel, random: &mut Random) -> Self {
         let amplitudes = directions(&case.model, 1).remove(0);
         let phases = amplitudes.iter().map(|_| TAU * random.uniform()).collect();
         let (rank, stiffness) = (case.model.rank(), case.elasticity.stiffness());
@@ -71,7 +71,7 @@ pub struct Vibration {
 
 impl Vibration {
     /// Of bodies with phases of their own, so large that one in eight states of the first body collides.
-    pub fn new(case: &Case, objects: usize) -> Result<Self> {
+    pub fn new(case: &CertifiedModel, objects: usize) -> Result<Self> {
         let mut random = Random(SEED);
         let mut bodies: Vec<Swing> = (0..objects).map(|_| Swing::new(case, &mut random)).collect();
         let first = bodies[0].scene();

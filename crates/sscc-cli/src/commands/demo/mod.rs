@@ -2,7 +2,6 @@
 
 mod animation;
 mod frames;
-mod page;
 mod report;
 mod save;
 
@@ -12,6 +11,8 @@ use std::time::Instant;
 use anyhow::{Context, ensure};
 use sscc::CertifyOptions;
 use sscc_modes::shapes::elastic_spring;
+use sscc_sim::{elasticity, frequencies_of_modes, make_folder};
+use sscc_view::Animation;
 
 use crate::args::{Demo, Threads};
 use crate::output::Output;
@@ -20,9 +21,12 @@ use crate::{Outcome, load};
 use frames::Frames;
 use report::Report;
 
+/// Frames in a second.
+const RATE: f64 = 30.0;
+
 pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     if let Some(folder) = &args.out {
-        save::prepare(folder)?;
+        make_folder(folder)?;
     }
     let start = Instant::now();
     let spring = elastic_spring(&Bar::new("modes")).context("the embedded spring")?;
@@ -45,7 +49,23 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         report.lines().into_iter().try_for_each(|line| out.line(line))?;
     }
     if let Some(folder) = &args.out {
-        let page = page::html(&spring, &certificates, &animation, &frames, &report)?;
+        let page = Animation {
+            title: "A double-helix spring, shaken ever harder",
+            name: "spring",
+            model,
+            certificates: &certificates,
+            frequencies: frequencies_of_modes(&elasticity(spring.eigenvalues.clone(), None)),
+            rate: RATE,
+            q: &animation.data,
+            pairs: &frames.certified.pairs,
+            costs: vec![
+                ("traditional", &frames.traditional.microseconds),
+                ("BD-tree", &frames.bd_tree.microseconds),
+                ("certified", &frames.certified.microseconds),
+            ],
+            summary: report.table(),
+        };
+        let page = page.report()?;
         save::save(folder, spring, &certificates, &animation, &page)?;
         if !args.json.json {
             save::what_next(folder).into_iter().try_for_each(|line| out.line(line))?;

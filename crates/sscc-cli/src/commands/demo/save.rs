@@ -1,28 +1,19 @@
 //! The demo's files, and what to try on them.
 
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
-use crate::commands::modes::elasticity;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use sscc::{Certificates, TriMesh};
 use sscc_io::{ModelInfo, Rows, write_certificates, write_model, write_npy, write_whole};
 use sscc_modes::shapes::ElasticShape;
+use sscc_sim::elasticity;
 
 const MESH: &str = "spring.obj";
 const MODEL: &str = "spring.model.safetensors";
 const CERTIFICATES: &str = "spring.sscc.safetensors";
 const ANIMATION: &str = "spring.npy";
 const REPORT: &str = "report.html";
-
-/// Makes the folder, and refuses one that cannot be written to before any work is done.
-pub fn prepare(folder: &Path) -> Result<()> {
-    let refused = || format!("{}: no folder that can be written to", folder.display());
-    fs::create_dir_all(folder).with_context(refused)?;
-    tempfile::tempfile_in(folder).with_context(refused)?;
-    Ok(())
-}
 
 /// Writes the five files.
 pub fn save(

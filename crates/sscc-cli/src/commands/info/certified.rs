@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sscc::Certificates;
+use sscc_view::levels;
 
 use super::{form, hexadecimal, range};
 use crate::output::{counted, grouped, length};
@@ -43,20 +44,14 @@ struct Level {
     capped: f64,
 }
 
-impl Level {
-    fn of(radii: &[f64], limit: f64) -> Self {
-        let mut sorted = radii.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let nodes = sorted.len();
-        let capped = sorted.iter().filter(|r| **r >= limit).count() as f64 / nodes as f64;
-        Self { nodes, min: sorted[0], median: sorted[nodes / 2], max: sorted[nodes - 1], capped }
-    }
-}
-
 impl Certified {
     pub fn of(certificates: &Certificates) -> Self {
         let parts = certificates.parts();
-        let (levels, tree) = (parts.hierarchy.levels(), &parts.pair_tree);
+        let tree = &parts.pair_tree;
+        let level = |level: sscc_view::Level| {
+            let sscc_view::Level { nodes, least, median, largest, capped, .. } = level;
+            Level { nodes, min: least, median, max: largest, capped }
+        };
         Self {
             digest: hexadecimal(parts.digest),
             scheme: if tree.limit() > 0.0 { "full" } else { "paper" },
@@ -79,10 +74,7 @@ impl Certified {
             pairs: parts.root_pair_radii.len() + tree.len(),
             pair_limit: tree.limit(),
             pair_bytes: tree.bytes(),
-            levels: levels
-                .into_iter()
-                .map(|l| Level::of(&parts.node_radii[l], parts.global_radius))
-                .collect(),
+            levels: levels(certificates).into_iter().map(level).collect(),
         }
     }
 

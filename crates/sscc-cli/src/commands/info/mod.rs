@@ -12,10 +12,10 @@ use anyhow::Result;
 use serde::Serialize;
 use sscc::Metric;
 use sscc_io::{IoError, LoadOptions, LoadedModel, load_model_with, read_certificates, read_mesh, read_model};
+use sscc_sim::is_solid;
 
 use crate::Outcome;
 use crate::args::Info;
-use crate::commands::modes::is_solid;
 use crate::output::Output;
 use certified::Certified;
 use meshes::Meshes;

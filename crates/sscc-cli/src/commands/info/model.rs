@@ -3,10 +3,10 @@
 use serde::Serialize;
 use sscc::{Digest, ReducedModel, Scope};
 use sscc_io::{Elasticity, ModelInfo};
+use sscc_sim::frequencies;
 
 use super::surface::Surface;
 use super::{form, hexadecimal, range};
-use crate::frequencies::frequencies;
 use crate::output::length;
 
 /// Frequencies that are told to people; the JSON has all.

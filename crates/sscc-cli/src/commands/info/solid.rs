@@ -6,10 +6,10 @@ use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
 use sscc_io::{IoError, read_solid};
+use sscc_sim::{RequestedMaterial, SolidSource};
 
 use super::surface::{Surface, size};
-use crate::commands::modes::{AskedMaterial, Source};
-use crate::output::{counted, grouped, one_line};
+use crate::output::{counted, grouped, note, one_line};
 use crate::progress::Bar;
 
 /// Materials that are told to people; the JSON has all.
@@ -54,10 +54,13 @@ impl Solid {
             poisson_ratio: material.poisson_ratio,
             density: material.density,
         };
-        let surface = Source::read(path, None, &AskedMaterial::default(), &Bar::new("surface"));
+        let surface = SolidSource::read(path, None, &RequestedMaterial::default(), &Bar::new("surface"));
         let (boundary, refusal) = match surface {
-            Ok(source) => (Some(Surface::of(source.mesh())), None),
-            Err(error) => (None, Some(format!("{error:#}"))),
+            Ok(source) => {
+                source.note().into_iter().for_each(note);
+                (Some(Surface::of(source.mesh())), None)
+            }
+            Err(error) => (None, Some(error.to_string())),
         };
         let points = || file.vertices.iter().copied();
         Ok(Self {

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use glam::DVec3;
-
-use super::source::Source;
+use sscc_sim::SolidSource;
 
 /// What was typed, before the solid is there.
 pub struct Fix<'a> {
@@ -35,7 +34,7 @@ impl<'a> Fix<'a> {
     }
 
     /// The vertices of the solid that are fixed: of a surface the corners of the lattice that hold those typed.
-    pub fn vertices(&self, source: &Source) -> Result<Vec<u32>> {
+    pub fn vertices(&self, source: &SolidSource) -> Result<Vec<u32>> {
         let (typed, mut fixed) = (self.typed, Vec::new());
         match &self.wanted {
             Wanted::Box([a, b]) => fixed = source.within(a.min(*b), a.max(*b)),

@@ -1,17 +1,19 @@
 //! `sscc view`: the page, live.
 
-mod metrics;
-
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Report, Scene, Server};
+use sscc::MetricKind;
+use sscc_io::LoadedModel;
+use sscc_sim::frequencies_of_modes;
+use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Plot, Report, Scene, Server, metric_comparison};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
 use crate::output::{Output, file_name, note};
-use crate::{Outcome, frequencies, load};
+use crate::progress::Bar;
+use crate::{Outcome, load};
 
 /// The report in a folder of `simulate` or `demo`.
 const REPORT: &str = "report.html";
@@ -30,10 +32,10 @@ pub fn run(args: &View) -> Result<Outcome> {
         Some(path) => load::certificates(path, model, &args.options)?,
         None => load::certificates_now(model, &args.model, &args.options)?,
     };
-    let comparison = if args.compare_metrics { Some(metrics::compare(&loaded, path)?) } else { None };
+    let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
     let server = bind(args)?;
     let details = ModelDetails {
-        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies::of_modes),
+        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies_of_modes),
         mode_names: loaded.mode_names.clone(),
         default_q: loaded.default_q.clone(),
     };
@@ -49,6 +51,22 @@ pub fn run(args: &View) -> Result<Outcome> {
     announce(args, &server)?;
     server.serve(&live, &interrupt::happened)?;
     Ok(Outcome::Done)
+}
+
+/// The plot of `--compare-metrics`.
+fn compare_metrics(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
+    let metric = loaded.model.metric();
+    let form = if metric.dense_factor().is_some() { "dense" } else { "diagonal" };
+    if (metric.kind(), form) != (MetricKind::Energy, "diagonal") {
+        bail!(
+            "--compare-metrics: {}: the model's own metric is {} ({form}), not a diagonal energy metric; make a model \
+             with its stiffness by sscc modes --kind linear or nonlinear",
+            path.display(),
+            metric.kind().name()
+        );
+    }
+    let plot = metric_comparison(&loaded.model, &loaded.info.units, &Bar::new("certifying"));
+    plot.with_context(|| path.display().to_string())
 }
 
 /// A report through the same door: its data, in the page of this program.

@@ -1,0 +1,81 @@
+//! The model that `sscc modes` was asked for, by its kind.
+
+use anyhow::{Context, Result, bail, ensure};
+use sscc_io::{read_frames, read_mesh};
+use sscc_sim::{
+    ModesKind, NewModel, POLYNOMIALS_ARE_FREE, SolidSource, elastic_model, is_solid, pca_model,
+    polynomial_model,
+};
+
+use super::fix::Fix;
+use super::material;
+use crate::args;
+use crate::load::in_file;
+use crate::output::{file_name, note};
+use crate::progress::Bar;
+
+/// Makes the model; errors name the source.
+pub fn make(args: &args::Modes) -> Result<NewModel> {
+    let kind = match args.kind {
+        args::ModesKind::Linear => ModesKind::Linear,
+        args::ModesKind::Nonlinear => ModesKind::Nonlinear,
+        args::ModesKind::Polynomial if !asks_for_solid(args) => return surface_polynomials(args),
+        args::ModesKind::Polynomial => ModesKind::Polynomial,
+        args::ModesKind::Pca => return principal_components(args),
+    };
+    elastic(args, kind).map_err(|error| in_file(error, &args.source))
+}
+
+fn elastic(args: &args::Modes, kind: ModesKind) -> Result<NewModel> {
+    if kind == ModesKind::Polynomial {
+        refuse_rank_and_fix(args)?;
+    }
+    let material = args.material.as_deref().map(material::parse).transpose()?.unwrap_or_default();
+    let fix = args.fix.as_deref().map(Fix::parse).transpose()?;
+    let bar = Bar::new("modes");
+    let source =
+        SolidSource::read(&args.source, args.resolution.map(|cells| cells as usize), &material, &bar)?;
+    source.note().into_iter().for_each(note);
+    if let Some(replaced) = &source.material().replaced {
+        note(format_args!("--material overrides what the file states: {replaced}"));
+    }
+    let fixed = fix.map_or_else(|| Ok(Vec::new()), |fix| fix.vertices(&source))?;
+    let rank = args.rank.map(|rank| rank as usize);
+    Ok(elastic_model(kind, rank, source, &fixed, &file_name(&args.source), &bar)?)
+}
+
+/// Whether polynomial modes shall know the stiffness of a solid.
+fn asks_for_solid(args: &args::Modes) -> bool {
+    args.resolution.is_some() || args.material.is_some() || is_solid(&args.source)
+}
+
+fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
+    refuse_rank_and_fix(args)?;
+    let mesh = read_mesh(&args.source)?;
+    let made = polynomial_model(mesh, &file_name(&args.source));
+    made.with_context(|| args.source.display().to_string())
+}
+
+fn refuse_rank_and_fix(args: &args::Modes) -> Result<()> {
+    if args.rank.is_some() || args.fix.is_some() {
+        bail!("--rank and --fix: {POLYNOMIALS_ARE_FREE}");
+    }
+    Ok(())
+}
+
+fn principal_components(args: &args::Modes) -> Result<NewModel> {
+    let shown = args.source.display();
+    ensure!(
+        args.fix.is_none() && args.material.is_none() && args.resolution.is_none(),
+        "--fix, --material and --resolution: principal components know no solid; leave them out"
+    );
+    ensure!(
+        !args.source.is_file(),
+        "{shown}: is a file; principal components are those of a folder of meshes, the frames"
+    );
+    let frames = read_frames(&args.source)?;
+    let rank = args.rank.map(|rank| rank as usize);
+    let name = format!("meshes in {}", file_name(&args.source));
+    let made = pca_model(&frames.mesh, &frames.positions, rank, &name, &Bar::new("modes"));
+    made.with_context(|| shown.to_string())
+}

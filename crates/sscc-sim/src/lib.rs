@@ -1,0 +1,49 @@
+//! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files.
+//!
+//! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
+//! printed. One simulation:
+//!
+//! ```no_run
+//! use sscc_sim::{Outputs, Request, simulate};
+//!
+//! let request = Request { scene: "spring".into(), ..Request::default() };
+//! let run = simulate(&request, &())?;
+//! println!("{} steps with self-contact", run.summary.colliding_steps);
+//! let outputs = Outputs::write(&run);
+//! outputs.finish(run)?;
+//! # Ok::<(), sscc_sim::SimError>(())
+//! ```
+
+mod error;
+mod files;
+mod machine;
+mod models;
+mod nearest;
+mod outputs;
+mod recipes;
+mod run;
+mod scenes;
+mod simulate;
+pub mod text;
+mod watch;
+
+pub use error::SimError;
+pub use machine::{PeakMemory, available_threads, machine_description};
+pub use models::{
+    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIALS_ARE_FREE, RequestedMaterial, SolidFacts,
+    SolidSource, elastic_model, elasticity, frequencies, frequencies_of_modes, has_equal_vertices, is_solid,
+    pca_model, polynomial_model,
+};
+pub use nearest::nearest;
+pub use outputs::{Outputs, SoundTrack};
+pub use recipes::{
+    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, SPRING_RINGS, Shape,
+    TimedCertificates, models_folder,
+};
+pub use run::{
+    BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
+    StateLayout, StateLog, StepRecord, Summary, run,
+};
+pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Sound, read_scene};
+pub use simulate::{Request, make_folder, simulate};
+pub use watch::{Stage, Watch};

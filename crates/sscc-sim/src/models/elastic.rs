@@ -1,0 +1,136 @@
+//! Modes of elastic solids, as modes of their surface.
+
+use sscc::{Modes, Progress, ReducedModel};
+use sscc_io::{Cubic, Elasticity, ModelInfo};
+use sscc_modes::{
+    DEFAULT_ELL, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
+    polynomial_solid_modes,
+};
+
+use super::new_model::{NewModel, SolidFacts};
+use super::source::SolidSource;
+use crate::SimError;
+
+/// Modes, if no number is given.
+const LINEAR_RANK: usize = 20;
+const NONLINEAR_RANK: usize = 30;
+
+/// Polynomial modes take neither a rank nor fixed vertices.
+pub const POLYNOMIALS_ARE_FREE: &str = "polynomial modes are always all 24, and move every vertex";
+
+/// Kinds of modes of a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModesKind {
+    /// The lowest natural vibrations.
+    Linear,
+    /// A basis for large deformations, with its forces.
+    Nonlinear,
+    /// The 24 quadratic polynomials of the rest position, with the forces of the solid.
+    Polynomial,
+}
+
+impl ModesKind {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Nonlinear => "nonlinear",
+            Self::Polynomial => "polynomial",
+        }
+    }
+}
+
+/// Modes of a solid, on its surface, with the weights of the metric.
+pub(crate) struct ElasticModes {
+    pub solid: SolidModes,
+    pub on_surface: Modes,
+    /// Of the energy metric.
+    pub weights: Vec<f64>,
+}
+
+impl ElasticModes {
+    /// Computes them; takes up to some minutes.
+    pub fn new(
+        source: &SolidSource,
+        kind: ModesKind,
+        rank: Option<usize>,
+        fixed: &[u32],
+        progress: &dyn Progress,
+    ) -> Result<Self, SimError> {
+        let solid = source.solid();
+        let (solid, on_surface) = match kind {
+            ModesKind::Linear => {
+                let found = linear_modes(solid, fixed, rank.unwrap_or(LINEAR_RANK), progress)?;
+                let modes = source.on_surface(&found.modes)?;
+                (found, modes)
+            }
+            ModesKind::Nonlinear => {
+                let found = nonlinear_modes(solid, fixed, rank.unwrap_or(NONLINEAR_RANK), progress)?;
+                let modes = source.on_surface(&found.modes)?;
+                (found, modes)
+            }
+            ModesKind::Polynomial => polynomial_solid_modes(solid, source.mesh(), progress)?,
+        };
+        // Natural frequencies are as they are; those of other modes may be very high, and are filtered (paper,
+        // section 6).
+        let weights = match kind {
+            ModesKind::Linear => solid.eigenvalues.clone(),
+            _ => filter_eigenvalues(&solid.eigenvalues, DEFAULT_ELL)?,
+        };
+        Ok(Self { solid, on_surface, weights })
+    }
+}
+
+/// A model of a solid with fixed vertices (of the solid, ascending). Without a rank it has 20 linear or 30 nonlinear
+/// modes. `name` is that of the source, for the provenance.
+///
+/// # Errors
+/// When polynomial modes are to have a rank or fixed vertices, the material is out of range, there are not so many modes,
+/// or `progress` cancels.
+pub fn elastic_model(
+    kind: ModesKind,
+    rank: Option<usize>,
+    source: SolidSource,
+    fixed: &[u32],
+    name: &str,
+    progress: &dyn Progress,
+) -> Result<NewModel, SimError> {
+    if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
+        return Err(SimError::refused("--rank and --fix", POLYNOMIALS_ARE_FREE));
+    }
+    let ElasticModes { solid: found, on_surface, weights } =
+        ElasticModes::new(&source, kind, rank, fixed, progress)?;
+    let solid = source.solid();
+    let (elements, freedom) =
+        (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
+    let of_source = if source.is_embedded() { "mesh" } else { "solid" };
+    let made_of = &source.material().provenance;
+    let provenance = format!(
+        "{of_source} {name}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
+        kind.name(),
+    );
+    let frequencies = found.frequencies();
+    let is_split = source.is_split();
+    let metric = energy_metric(&weights)?;
+    Ok(NewModel {
+        model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
+        info: ModelInfo::new("", provenance).with_elasticity(elasticity(found.eigenvalues, found.forces)),
+        is_split,
+        solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
+        components: None,
+    })
+}
+
+/// Forces as a model file holds them: linear where there are none of large deformations.
+pub fn elasticity(eigenvalues: Vec<f64>, forces: Option<ReducedForces>) -> Elasticity {
+    let rank = eigenvalues.len();
+    let mut stiffness = vec![0.0; rank * rank];
+    eigenvalues.iter().enumerate().for_each(|(k, x)| stiffness[k * (rank + 1)] = *x);
+    match forces {
+        None => Elasticity::Linear(stiffness),
+        // The linear part is that diagonal, but for rounding.
+        Some(ReducedForces { quadratic, cubic, .. }) => {
+            Elasticity::Nonlinear(Cubic { rank, linear: stiffness, quadratic, cubic })
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Models of elastic solids and of samples, made from files or meshes.
+
+mod elastic;
+mod equal_vertices;
+mod frequencies;
+mod material;
+mod new_model;
+mod pca;
+mod polynomial;
+mod source;
+
+pub(crate) use elastic::ElasticModes;
+pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model, elasticity};
+pub use equal_vertices::has_equal_vertices;
+pub use frequencies::{frequencies, frequencies_of_modes};
+pub use material::{MaterialOrigin, RequestedMaterial};
+pub use new_model::{Components, NewModel, SolidFacts};
+pub use pca::pca_model;
+pub use polynomial::polynomial_model;
+pub use source::{SolidSource, is_solid};

@@ -1,0 +1,33 @@
+//! The mean and the principal components of the frames of an animation.
+
+use glam::DVec3;
+use sscc::{Progress, ReducedModel, TriMesh};
+use sscc_io::ModelInfo;
+use sscc_modes::pca_modes;
+
+use super::new_model::{Components, NewModel};
+use crate::SimError;
+
+/// The mean and the principal components of frames with the faces of `mesh`; without a rank as many as explain 99.9% of
+/// the variance. `name` describes the frames, for the provenance.
+///
+/// # Errors
+/// When there are too few frames, none of them differ, or `progress` cancels.
+pub fn pca_model(
+    mesh: &TriMesh,
+    frames: &[Vec<DVec3>],
+    rank: Option<usize>,
+    name: &str,
+    progress: &dyn Progress,
+) -> Result<NewModel, SimError> {
+    let found = pca_modes(mesh, frames, rank, progress)?;
+    let count = frames.len();
+    let explained = found.shares.iter().sum();
+    Ok(NewModel {
+        model: ReducedModel::new(found.mesh, found.modes)?,
+        info: ModelInfo::new("", format!("mean and principal components of {count} {name}")),
+        is_split: false,
+        solid: None,
+        components: Some(Components { frames: count, explained, deviations: found.deviations }),
+    })
+}

@@ -1,0 +1,215 @@
+//! The solid that modes are computed for: from a file, or a lattice around a surface.
+
+use std::path::Path;
+
+use glam::DVec3;
+use sscc::{Modes, Progress, TriMesh};
+use sscc_io::{read_mesh, read_solid};
+use sscc_modes::{Boundary, Embedded, Solid, tets_within};
+
+use super::material::{MaterialOrigin, RequestedMaterial};
+use crate::SimError;
+
+/// A solid with its surface, from a file or around a surface.
+pub enum SolidSource {
+    /// A lattice around a surface.
+    Around {
+        /// The surface.
+        mesh: TriMesh,
+        /// The lattice, and how it moves the surface.
+        embedded: Embedded,
+        /// Where its material comes from.
+        material: MaterialOrigin,
+    },
+    /// From a file, with its boundary.
+    Whole {
+        /// Its elements.
+        solid: Solid,
+        /// The surface of its elements.
+        boundary: Boundary,
+        /// For each vertex of the file its vertex of the solid, unless it was left out.
+        vertices: Vec<Option<u32>>,
+        /// Tetrahedra of the file outside the surface that it lists.
+        left_out: usize,
+        /// Where its material comes from.
+        material: MaterialOrigin,
+    },
+}
+
+/// Whether a file holds a volumetric mesh, by its ending.
+pub fn is_solid(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    ["mesh", "veg", "msh", "node", "ele"].contains(&ending.as_str())
+}
+
+impl SolidSource {
+    /// Builds a lattice around a surface, with `cells` cubes along its longest side; none: about 20,000 cubes in all.
+    ///
+    /// # Errors
+    /// When the surface is open or meets itself, the material is out of range, or `progress` cancels.
+    pub fn around(
+        mesh: TriMesh,
+        cells: Option<usize>,
+        material: &RequestedMaterial,
+        progress: &dyn Progress,
+    ) -> Result<Self, SimError> {
+        let embedded = Embedded::new(&mesh, cells, material.alone(), progress)?;
+        Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
+    }
+
+    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side. Numbers
+    /// of `material` override those of the file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
+    /// is out of range, or `progress` cancels.
+    pub fn read(
+        path: &Path,
+        resolution: Option<usize>,
+        material: &RequestedMaterial,
+        progress: &dyn Progress,
+    ) -> Result<Self, SimError> {
+        if !is_solid(path) {
+            return Self::around(read_mesh(path)?, resolution, material, progress);
+        }
+        let file = read_solid(path)?;
+        if resolution.is_some() {
+            return Err(SimError::refused(
+                "--resolution is for surfaces",
+                "this file brings its own elements",
+            ));
+        }
+        let within = tets_within(&file.tets, &file.surface);
+        let left_out = within.iter().filter(|within| !**within).count();
+        let kept: Vec<usize> = (0..file.tets.len()).filter(|t| within[*t]).collect();
+        let tets: Vec<[u32; 4]> = kept.iter().map(|t| file.tets[*t]).collect();
+        // Vertices of left-out elements alone are left out, too.
+        let mut used = vec![left_out == 0; file.vertices.len()];
+        tets.as_flattened().iter().chain(file.cubes.as_flattened()).for_each(|v| used[*v as usize] = true);
+        let mut vertices = Vec::with_capacity(used.len());
+        let mut count = 0;
+        for used in &used {
+            vertices.push(used.then_some(count));
+            count += u32::from(*used);
+        }
+        let number = |v: u32| vertices[v as usize].unwrap_or_default();
+        let positions = file.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect();
+        let of_tets = kept.iter().map(|t| file.element_material[*t]);
+        let of_cubes = file.element_material[file.tets.len()..].iter().copied();
+        let of_elements: Vec<u32> = of_tets.chain(of_cubes).collect();
+        // A file may name materials that none of its elements has.
+        let mut is_used = vec![false; file.materials.len()];
+        of_elements.iter().for_each(|at| is_used[*at as usize] = true);
+        let named = file.materials.iter().zip(&is_used).filter(|(_, used)| **used).map(|(named, _)| named);
+        let origin = MaterialOrigin::new(material, &named.collect::<Vec<_>>());
+        let solid = Solid::new(
+            positions,
+            tets.iter().map(|t| t.map(number)).collect(),
+            file.cubes.iter().map(|c| c.map(number)).collect(),
+            file.materials.iter().map(|of_file| material.over(of_file)).collect(),
+            of_elements,
+        )?;
+        let boundary = solid.boundary()?;
+        Ok(Self::Whole { solid, boundary, vertices, left_out, material: origin })
+    }
+
+    /// The elements.
+    pub fn solid(&self) -> &Solid {
+        match self {
+            Self::Around { embedded, .. } => embedded.solid(),
+            Self::Whole { solid, .. } => solid,
+        }
+    }
+
+    /// Where its material comes from.
+    pub fn material(&self) -> &MaterialOrigin {
+        match self {
+            Self::Around { material, .. } | Self::Whole { material, .. } => material,
+        }
+    }
+
+    /// A note for people on elements that were left out.
+    pub fn note(&self) -> Option<String> {
+        match self {
+            Self::Whole { left_out, .. } if *left_out > 0 => {
+                Some(format!("{left_out} tetrahedra outside the surface that the file lists are left out"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether its file split vertices along seams.
+    pub fn is_split(&self) -> bool {
+        matches!(self, Self::Around { embedded, .. } if embedded.is_split())
+    }
+
+    /// Whether it is a lattice around a surface.
+    pub fn is_embedded(&self) -> bool {
+        matches!(self, Self::Around { .. })
+    }
+
+    /// The surface.
+    pub fn mesh(&self) -> &TriMesh {
+        match self {
+            Self::Around { mesh, .. } => mesh,
+            Self::Whole { boundary, .. } => &boundary.mesh,
+        }
+    }
+
+    /// The surface alone.
+    pub fn into_mesh(self) -> TriMesh {
+        match self {
+            Self::Around { mesh, .. } => mesh,
+            Self::Whole { boundary, .. } => boundary.mesh,
+        }
+    }
+
+    /// Modes of the solid as modes of the surface.
+    ///
+    /// # Errors
+    /// When the modes are of another solid.
+    pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SimError> {
+        match self {
+            Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
+            Self::Whole { boundary, .. } => {
+                let rank = modes.rank();
+                let of = |v: &u32| &modes.displacements()[*v as usize * rank..][..rank];
+                Ok(Modes::new(rank, boundary.vertices.iter().flat_map(of).copied().collect())?)
+            }
+        }
+    }
+
+    /// The vertices of the solid that hold a vertex of the file.
+    ///
+    /// # Errors
+    /// When the file has fewer vertices.
+    pub fn holding(&self, number: u32) -> Result<Vec<u32>, SimError> {
+        let count = match self {
+            Self::Around { mesh, .. } => mesh.rest_positions().len(),
+            Self::Whole { vertices, .. } => vertices.len(),
+        };
+        if number as usize >= count {
+            let cause = format!("the file has {count}");
+            return Err(SimError::refused(
+                format_args!("there is no vertex {number} (counted from 0)"),
+                cause,
+            ));
+        }
+        Ok(match self {
+            Self::Around { embedded, .. } => embedded.holding(number as usize).collect(),
+            Self::Whole { vertices, .. } => vertices[number as usize].into_iter().collect(),
+        })
+    }
+
+    /// The vertices of the solid in a box, and those that hold vertices of the surface there.
+    pub fn within(&self, low: DVec3, high: DVec3) -> Vec<u32> {
+        let inside = |p: &DVec3| p.cmpge(low).all() && p.cmple(high).all();
+        let solid = self.solid().vertices();
+        let mut found: Vec<u32> = (0..solid.len() as u32).filter(|v| inside(&solid[*v as usize])).collect();
+        if let Self::Around { mesh, embedded, .. } = self {
+            let points = mesh.rest_positions();
+            (0..points.len()).filter(|v| inside(&points[*v])).for_each(|v| found.extend(embedded.holding(v)));
+        }
+        found
+    }
+}

@@ -1,0 +1,33 @@
+//! The nearest known name to a mistyped one.
+
+/// The name with the fewest edits away; the first of several, and none where there are no names.
+pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    names.into_iter().min_by_key(|name| edits(typed, name))
+}
+
+/// The number of characters to insert, delete or replace (Levenshtein).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edits_are_counted() {
+        assert_eq!(["", "spring", "sprnig", "string"].map(|name| edits(name, "spring")), [6, 0, 2, 1]);
+        assert_eq!(nearest("sprng", ["bunny", "spring"]), Some("spring"));
+        assert_eq!(nearest("x", []), None);
+    }
+}

@@ -1,0 +1,86 @@
+//! The files of a simulation, written from its states.
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use sscc_io::{WavFormat, write_wav, write_whole};
+
+use super::animation::animation;
+use super::arrays::{costs, trajectories};
+use super::sound::SoundTrack;
+use crate::error::{Result, SimError};
+use crate::files::OUTPUT_FILES;
+use crate::run::FinishedRun;
+
+/// Files in the folder of a simulation, and why some were not written: of a motion that diverges some numbers may fit no
+/// file.
+pub struct Outputs {
+    folder: PathBuf,
+    /// Places in [`OUTPUT_FILES`] of those that were written.
+    written: Vec<usize>,
+    unwritten: Vec<(usize, SimError)>,
+}
+
+impl Outputs {
+    /// Writes the summary, trajectories, costs, the animation and the sound.
+    pub fn write(run: &FinishedRun) -> Self {
+        let mut outputs = Self { folder: run.folder.clone(), written: Vec::new(), unwritten: Vec::new() };
+        outputs.add("summary.json", |path| {
+            let json = serde_json::to_vec_pretty(&run.summary);
+            let json = json.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
+            Ok(write_whole(path, &json)?)
+        });
+        outputs.add("trajectories.npz", |path| trajectories(path, run));
+        outputs.add("costs.npz", |path| costs(path, run));
+        outputs.add("animation.glb", |path| animation(path, run));
+        if let Some(sound) = SoundTrack::of(run) {
+            let SoundTrack { samples, rate } = &sound;
+            outputs
+                .add("sound.wav", |path| Ok(write_wav(path, *rate, &sound.normalized(), WavFormat::Pcm16)?));
+            outputs.add("sound_float.wav", |path| Ok(write_wav(path, *rate, samples, WavFormat::Float32)?));
+        }
+        outputs
+    }
+
+    /// Writes the report, or keeps why it could not be made.
+    pub fn add_report(&mut self, html: Result<String, impl Display>) {
+        self.add("report.html", |path| {
+            let html = html.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
+            Ok(write_whole(path, html.as_bytes())?)
+        });
+    }
+
+    fn add(&mut self, name: &str, write: impl FnOnce(&Path) -> Result<()>) {
+        let place = OUTPUT_FILES.iter().position(|known| *known == name).unwrap_or(OUTPUT_FILES.len() - 1);
+        match write(&self.folder.join(OUTPUT_FILES[place])) {
+            Ok(()) => self.written.push(place),
+            Err(error) => self.unwritten.push((place, error)),
+        }
+        self.written.sort_unstable();
+    }
+
+    /// The files that were written.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.written.iter().map(|place| self.folder.join(OUTPUT_FILES[*place])).collect()
+    }
+
+    /// Ends the simulation.
+    ///
+    /// # Errors
+    /// When the simulation ended early, or some file could not be written: the first of them.
+    pub fn finish(self, run: FinishedRun) -> Result<(), SimError> {
+        let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place).map(|(_, error)| error);
+        match (run.failure, unwritten) {
+            (None, None) => Ok(()),
+            (None, Some(unwritten)) => Err(unwritten),
+            (Some(failure), _) if failure.is_cancelled() => {
+                Err(SimError::Interrupted { steps: run.history.len() })
+            }
+            (Some(failure), unwritten) => Err(SimError::EndedEarly {
+                failure: Box::new(failure),
+                folder: self.folder,
+                unwritten: unwritten.map(Box::new),
+            }),
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The files of a simulation: summary, trajectories, costs, animation and sound.
+
+mod animation;
+mod arrays;
+mod files;
+mod sound;
+
+pub use files::Outputs;
+pub use sound::SoundTrack;

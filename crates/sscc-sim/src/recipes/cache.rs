@@ -1,0 +1,96 @@
+//! A folder of models and certificates that are kept from run to run, each under a hash of its inputs.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use sscc_io::check_writable;
+
+use crate::error::InSystem;
+use crate::text::one_line;
+use crate::watch::check_cancelled;
+use crate::{SimError, Watch};
+
+/// A folder of files that can be made again.
+pub struct Cache {
+    folder: PathBuf,
+    /// The hash of this program, once it was computed.
+    program: OnceLock<String>,
+}
+
+impl Cache {
+    /// Opens the folder `wanted`, else `sscc` in the system's cache folder.
+    ///
+    /// # Errors
+    /// When it cannot be written to.
+    pub fn open(wanted: Option<&Path>) -> Result<Self, SimError> {
+        let folder = wanted.map_or_else(|| system_folder().join("sscc"), Path::to_owned);
+        let open = || {
+            fs::create_dir_all(&folder)?;
+            check_writable(&folder)
+        };
+        open().map_err(|cause| SimError::System {
+            place: format!("{}: no folder that can be written to; choose one by --cache", folder.display()),
+            cause,
+        })?;
+        Ok(Self { folder, program: OnceLock::new() })
+    }
+
+    /// Where the files are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The hash of this program's file: cached certificates and their cost belong to one build.
+    ///
+    /// # Errors
+    /// When the system does not let it read its own file.
+    pub fn program(&self) -> Result<&str, SimError> {
+        if let Some(hash) = self.program.get() {
+            return Ok(hash);
+        }
+        let own = Path::new("this program's own file");
+        let path = env::current_exe().system(own)?;
+        let mut hasher = blake3::Hasher::new();
+        let file = fs::File::open(&path).system(&path)?;
+        hasher.update_reader(file).system(&path)?;
+        Ok(self.program.get_or_init(|| hasher.finalize().to_hex().to_string()))
+    }
+
+    /// Reads a file, or makes and writes it where it is missing or damaged.
+    pub(crate) fn get<T>(
+        &self,
+        name: &str,
+        watch: &dyn Watch,
+        read: impl FnOnce(&Path) -> Result<T, SimError>,
+        make: impl FnOnce() -> Result<T, SimError>,
+        write: impl FnOnce(&Path, &T) -> Result<(), SimError>,
+    ) -> Result<T, SimError> {
+        let path = self.folder.join(name);
+        if path.exists() {
+            match read(&path) {
+                Ok(found) => return Ok(found),
+                Err(error) => watch.note(&format!("made anew: {}", one_line(&error.to_string()))),
+            }
+        }
+        let made = make()?;
+        check_cancelled(watch)?;
+        write(&path, &made)?;
+        Ok(made)
+    }
+}
+
+/// The cache folder of this system.
+fn system_folder() -> PathBuf {
+    let named = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let at_home = |folder: &str| env::home_dir().map(|home| home.join(folder));
+    let folder = if cfg!(windows) {
+        named("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        at_home("Library/Caches")
+    } else {
+        named("XDG_CACHE_HOME").or_else(|| at_home(".cache"))
+    };
+    folder.unwrap_or_else(env::temp_dir)
+}

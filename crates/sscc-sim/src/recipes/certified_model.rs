@@ -1,0 +1,84 @@
+//! A model with its certificates: made once, then from the cache.
+
+use sscc::{CertifyOptions, ReducedModel};
+use sscc_io::{Elasticity, ModelInfo, read_model, write_model};
+
+use super::cache::Cache;
+use super::loaded_recipe::LoadedRecipe;
+use super::recipe::{ModesSpec, Recipe};
+use super::timed_certificates::TimedCertificates;
+use crate::{SimError, Watch};
+
+/// A model with its certificates.
+pub struct CertifiedModel {
+    /// The name of its recipe.
+    pub name: String,
+    /// Where its shape comes from.
+    pub source: String,
+    /// A note for people, such as which shape stands in for another.
+    pub note: Option<String>,
+    /// The model.
+    pub model: ReducedModel,
+    /// Its stiffness and forces.
+    pub elasticity: Elasticity,
+    /// Certificates of the default budget.
+    pub full: TimedCertificates,
+    /// One radius for each node, as in the paper; only where it is compared.
+    pub paper: Option<TimedCertificates>,
+}
+
+impl CertifiedModel {
+    /// From the cache, or made now.
+    ///
+    /// # Errors
+    /// When the modes or certificates cannot be computed or written, or `watch` cancels.
+    pub fn get(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<Self, SimError> {
+        let recipe @ Recipe { name, modes, .. } = loaded.recipe();
+        let (model, elasticity) = recipe_modes(loaded, *modes, cache, watch)?;
+        let (metric, budget) = (recipe.metric(&model)?, CertifyOptions::DEFAULT_BUDGET);
+        let full = TimedCertificates::get(cache, name, &model, &metric, &loaded.source, budget, watch)?;
+        let (source, note) = (loaded.source.clone(), loaded.note.clone());
+        Ok(Self { name: name.clone(), source, note, model, elasticity, full, paper: None })
+    }
+
+    /// The same with certificates as in the paper.
+    ///
+    /// # Errors
+    /// As of [`CertifiedModel::get`].
+    pub fn with_paper(self, cache: &Cache, watch: &dyn Watch) -> Result<Self, SimError> {
+        let metric = self.full.certificates.metric();
+        let paper = TimedCertificates::get(cache, &self.name, &self.model, metric, &self.source, 0, watch)?;
+        Ok(Self { paper: Some(paper), ..self })
+    }
+
+    /// Whether the root's certificate alone proves the shape free.
+    pub fn is_root_certified(&self, q: &[f64]) -> bool {
+        let certificates = &self.full.certificates;
+        certificates.metric().norm(q) < certificates.root_radius()
+    }
+}
+
+/// Modes of a shape with their stiffness, from the cache or made now.
+pub(crate) fn recipe_modes(
+    loaded: &LoadedRecipe<'_>,
+    modes: ModesSpec,
+    cache: &Cache,
+    watch: &dyn Watch,
+) -> Result<(ReducedModel, Elasticity), SimError> {
+    let key = loaded.key("model").text(&format!("{modes:?}"));
+    let name = format!("{}-{key}.model.safetensors", loaded.recipe().name);
+    let (model, info) = cache.get(
+        &name,
+        watch,
+        |path| Ok(read_model(path)?),
+        || loaded.modes(modes, watch),
+        |path, (model, info): &(ReducedModel, ModelInfo)| Ok(write_model(path, model, info)?),
+    )?;
+    let elasticity = info.elasticity.ok_or_else(|| {
+        SimError::refused(
+            cache.folder().join(name).display(),
+            "a model of the cache without its stiffness; remove it",
+        )
+    })?;
+    Ok((model, elasticity))
+}

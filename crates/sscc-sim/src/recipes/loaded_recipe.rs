@@ -1,0 +1,178 @@
+//! A recipe with its shape, and the modes that are computed from it.
+
+use std::cell::OnceCell;
+use std::path::Path;
+
+use glam::DQuat;
+use sscc::{ReducedModel, TriMesh};
+use sscc_io::ModelInfo;
+use sscc_modes::energy_metric;
+
+use super::key::Key;
+use super::recipe::{ModesSpec, Recipe};
+use super::shape::{LoadedShape, Matter, Shape};
+use crate::error::At;
+use crate::models::{ElasticModes, ModesKind, SolidSource, elasticity};
+use crate::{SimError, Stage, Watch};
+
+/// A recipe with its shape, before any long work.
+pub struct LoadedRecipe<'a> {
+    recipe: &'a Recipe,
+    matter: Matter,
+    /// Where the shape comes from.
+    pub source: String,
+    /// A note for people: the file that an embedded shape stands in for, or the numbers of a file that the material
+    /// overrides.
+    pub note: Option<String>,
+    /// From its own axes to those of a shape that stands upright, z up.
+    pub upright: DQuat,
+    /// The lattice around a surface.
+    around: OnceCell<SolidSource>,
+}
+
+impl<'a> LoadedRecipe<'a> {
+    /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes stand in for them.
+    ///
+    /// # Errors
+    /// When a file cannot be read, a size or resolution is given for a solid, or `watch` cancels.
+    pub fn load(recipe: &'a Recipe, models: Option<&Path>, watch: &dyn Watch) -> Result<Self, SimError> {
+        watch.begin(Stage::Solid);
+        let LoadedShape { mut matter, source, note } = recipe.shape.load(models, &recipe.material, watch)?;
+        if let Matter::Solid(solid) = &matter {
+            solid.note().into_iter().for_each(|note| watch.note(&note));
+        }
+        match (&mut matter, recipe.size) {
+            (Matter::Surface(mesh), Some(size)) => *mesh = resized(mesh, size)?,
+            (Matter::Solid(_), Some(_)) => {
+                return Err(SimError::refused(source, "size is for surfaces; a solid's file has its own"));
+            }
+            (_, None) => {}
+        }
+        if recipe.cells.is_some() && matches!(matter, Matter::Solid(_)) {
+            let cause = "resolution is for surfaces; a solid's file brings its own elements";
+            return Err(SimError::refused(source, cause));
+        }
+        // The files have y up, embedded shapes z.
+        let is_turned = models.is_some() && matches!(recipe.shape, Shape::Bunny | Shape::Dragon);
+        let upright =
+            if is_turned { DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
+        Ok(Self { recipe, matter, source, note, upright, around: OnceCell::new() })
+    }
+
+    /// The recipe.
+    pub fn recipe(&self) -> &Recipe {
+        self.recipe
+    }
+
+    /// The key of a cached file that is made from this solid.
+    pub(crate) fn key(&self, what: &str) -> Key {
+        let material = self.recipe.material.alone();
+        let key = Key::new(what).text(&format!("{material:?} {:?}", self.recipe.cells()));
+        match &self.matter {
+            Matter::Surface(mesh) => key.mesh(mesh),
+            Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
+        }
+    }
+
+    /// The solid with its surface.
+    pub(crate) fn solid(&self, watch: &dyn Watch) -> Result<&SolidSource, SimError> {
+        let mesh = match &self.matter {
+            Matter::Solid(source) => return Ok(source),
+            Matter::Surface(mesh) => mesh,
+        };
+        if let Some(source) = self.around.get() {
+            return Ok(source);
+        }
+        watch.begin(Stage::Solid);
+        let Recipe { material, .. } = self.recipe;
+        let around = SolidSource::around(mesh.clone(), self.recipe.cells(), material, watch);
+        let around = around.at(|| self.source.clone())?;
+        Ok(self.around.get_or_init(|| around))
+    }
+
+    /// Computes modes; takes up to some minutes.
+    pub(crate) fn modes(
+        &self,
+        modes: ModesSpec,
+        watch: &dyn Watch,
+    ) -> Result<(ReducedModel, ModelInfo), SimError> {
+        let source = self.solid(watch)?;
+        watch.begin(Stage::Modes);
+        let (kind, rank) = match modes {
+            ModesSpec::Linear(rank) => (ModesKind::Linear, Some(rank)),
+            ModesSpec::Nonlinear(rank) => (ModesKind::Nonlinear, Some(rank)),
+            ModesSpec::Polynomial => (ModesKind::Polynomial, None),
+        };
+        let ElasticModes { solid, on_surface, weights } = ElasticModes::new(source, kind, rank, &[], watch)?;
+        let model = ReducedModel::with_metric(source.mesh().clone(), on_surface, energy_metric(&weights)?)?;
+        let info = ModelInfo::new("", format!("{}, {modes:?}", self.source))
+            .with_elasticity(elasticity(solid.eigenvalues, solid.forces));
+        Ok((model, info))
+    }
+}
+
+/// The same shape, the longest side of its box so long.
+fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh, SimError> {
+    let rest = mesh.rest_positions();
+    let (lower, upper) = rest.iter().fold((rest[0], rest[0]), |(a, b), p| (a.min(*p), b.max(*p)));
+    let scale = size / (upper - lower).max_element();
+    if !scale.is_finite() || scale <= 0.0 {
+        return Err(SimError::refused("size", format!("a shape of no size cannot be made {size:e} long")));
+    }
+    Ok(TriMesh::new(rest.iter().map(|p| p * scale).collect(), mesh.faces().to_vec())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use sscc::MetricKind;
+
+    use super::*;
+    use crate::models::RequestedMaterial;
+
+    #[test]
+    fn a_key_tells_the_cells_that_a_shape_has_by_itself() {
+        let key = |cells| {
+            let recipe = Recipe { cells, ..Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6)) };
+            LoadedRecipe::load(&recipe, None, &()).unwrap().key("model").to_string()
+        };
+        assert_eq!(key(None), key(Some(30)));
+        assert_ne!(key(None), key(Some(30 + 1)));
+    }
+
+    /// One tetrahedron of a soft material.
+    const SOFT: &str = "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n\
+        *MATERIAL soft\nENU, 1000, 1e6, 0.4\n*REGION\nallElements, soft\n";
+
+    #[test]
+    fn a_scenes_material_goes_before_that_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("soft.veg");
+        std::fs::write(&file, SOFT).unwrap();
+        let first = |material: RequestedMaterial| {
+            let recipe = Recipe::new("soft", Shape::File(file.clone()), ModesSpec::Linear(6));
+            let recipe = Recipe { material, ..recipe };
+            let loaded = LoadedRecipe::load(&recipe, None, &()).unwrap();
+            let (_, info) = loaded.modes(ModesSpec::Linear(6), &()).unwrap();
+            (info.elasticity.unwrap().stiffness()[0], loaded.note.clone(), loaded.key("model").to_string())
+        };
+        let (own, nothing, key) = first(RequestedMaterial::default());
+        assert_eq!(nothing, None);
+        let (stiff, note, of_stiff) = first(RequestedMaterial { youngs: Some(4e6), ..Default::default() });
+        assert!((stiff / own - 4.0).abs() < 1e-9, "{own} {stiff}");
+        let said = "the scene's material overrides what soft.veg states: youngs=4e6";
+        assert_eq!(note.as_deref(), Some(said));
+        assert_ne!(key, of_stiff);
+    }
+
+    #[test]
+    fn the_spread_is_the_unit_of_certificates() {
+        let plain = Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6));
+        let (model, _) =
+            LoadedRecipe::load(&plain, None, &()).unwrap().modes(ModesSpec::Linear(6), &()).unwrap();
+        assert_eq!(&plain.metric(&model).unwrap(), model.metric());
+        let spread = vec![0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+        let metric = Recipe { spread: Some(spread.clone()), ..plain }.metric(&model).unwrap();
+        assert_eq!(metric.kind(), MetricKind::Given);
+        assert!((metric.norm(&spread) - 6.0_f64.sqrt()).abs() < 1e-12);
+    }
+}

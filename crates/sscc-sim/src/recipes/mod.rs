@@ -1,0 +1,17 @@
+//! Models by recipe: a shape, a material and a kind of modes. Made once with their certificates, then from a cache.
+
+mod cache;
+mod certified_model;
+mod key;
+mod loaded_recipe;
+mod recipe;
+mod shape;
+mod timed_certificates;
+
+pub use cache::Cache;
+pub use certified_model::CertifiedModel;
+pub(crate) use certified_model::recipe_modes;
+pub use loaded_recipe::LoadedRecipe;
+pub use recipe::{ModesSpec, Recipe};
+pub use shape::{SPRING_RINGS, Shape, models_folder};
+pub use timed_certificates::{CertificateCost, TimedCertificates};

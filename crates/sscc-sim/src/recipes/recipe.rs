@@ -1,0 +1,82 @@
+//! Recipes of models: a shape, a material and a kind of modes.
+
+use sscc::{Metric, MetricKind, ReducedModel};
+
+use super::shape::Shape;
+use crate::SimError;
+use crate::error::At;
+use crate::models::RequestedMaterial;
+
+/// A free elastic body with modes.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    /// The name of the model.
+    pub name: String,
+    /// The shape of its surface or solid.
+    pub shape: Shape,
+    /// Its modes.
+    pub modes: ModesSpec,
+    /// Overrides the materials in the file of a solid.
+    pub material: RequestedMaterial,
+    /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
+    pub cells: Option<usize>,
+    /// The longest side of the box around a surface; none: as it is.
+    pub size: Option<f64>,
+    /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
+    pub spread: Option<Vec<f64>>,
+}
+
+/// Modes of a free elastic body.
+#[derive(Clone, Copy, Debug)]
+pub enum ModesSpec {
+    /// So many natural vibrations.
+    Linear(usize),
+    /// So many modes for large deformations.
+    Nonlinear(usize),
+    /// The 24 quadratic polynomials.
+    Polynomial,
+}
+
+impl ModesSpec {
+    /// Number of modes r.
+    pub fn rank(self) -> usize {
+        match self {
+            Self::Linear(rank) | Self::Nonlinear(rank) => rank,
+            Self::Polynomial => 24,
+        }
+    }
+}
+
+/// Cubes along the spring, as in the library's `elastic_spring`.
+const SPRING_CELLS: usize = 30;
+
+impl Recipe {
+    /// A recipe with the default material, the shape's own size and its usual lattice.
+    pub fn new(name: impl Into<String>, shape: Shape, modes: ModesSpec) -> Self {
+        Self {
+            name: name.into(),
+            shape,
+            modes,
+            material: RequestedMaterial::default(),
+            cells: None,
+            size: None,
+            spread: None,
+        }
+    }
+
+    /// Cubes along the longest side of the lattice; none: as many as any surface has.
+    pub(super) fn cells(&self) -> Option<usize> {
+        let usual = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
+        self.cells.or(usual)
+    }
+
+    /// The metric of the certificates of its model.
+    ///
+    /// # Errors
+    /// When the spread has a number out of range.
+    pub fn metric(&self, model: &ReducedModel) -> Result<Metric, SimError> {
+        let Some(spread) = &self.spread else { return Ok(model.metric().clone()) };
+        let scales = spread.iter().map(|far| 1.0 / far).collect();
+        Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: spread", self.name))
+    }
+}

@@ -1,0 +1,113 @@
+//! Shapes that recipes begin with: embedded ones, and files.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+use sscc::{Progress, TriMesh};
+use sscc_io::read_mesh;
+use sscc_modes::shapes::{hare, serpent, spring_of};
+
+use crate::SimError;
+use crate::error::At;
+use crate::models::{RequestedMaterial, SolidSource, is_solid};
+
+/// Rings of the embedded spring, and vertices of each.
+pub const SPRING_RINGS: [usize; 2] = [500, 16];
+
+/// A shape to begin with.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// The embedded spring, finer or coarser.
+    Spring {
+        /// Number of rings.
+        rings: usize,
+        /// Vertices of each.
+        around: usize,
+    },
+    /// The bunny; without files the embedded hare.
+    Bunny,
+    /// The dragon; without files the embedded serpent.
+    Dragon,
+    /// A surface or a solid.
+    File(PathBuf),
+}
+
+/// The content of a shape.
+pub(super) enum Matter {
+    /// A surface, without any volume yet.
+    Surface(TriMesh),
+    /// A solid from a file.
+    Solid(Box<SolidSource>),
+}
+
+/// A shape with its origin.
+pub(super) struct LoadedShape {
+    pub matter: Matter,
+    pub source: String,
+    /// A note for people.
+    pub note: Option<String>,
+}
+
+impl Shape {
+    /// The embedded spring of 16,000 triangles.
+    pub const SPRING: Self = Self::Spring { rings: SPRING_RINGS[0], around: SPRING_RINGS[1] };
+    /// A quarter of the triangles.
+    pub const SMALL_SPRING: Self = Self::Spring { rings: SPRING_RINGS[0] / 2, around: SPRING_RINGS[1] / 2 };
+
+    /// Reads or generates it. `models` is the folder of real models.
+    pub(super) fn load(
+        &self,
+        models: Option<&Path>,
+        material: &RequestedMaterial,
+        progress: &dyn Progress,
+    ) -> Result<LoadedShape, SimError> {
+        let surface =
+            |mesh, source: String, note| LoadedShape { matter: Matter::Surface(mesh), source, note };
+        let (file, name, embedded): (_, _, fn() -> TriMesh) = match self {
+            Self::Spring { rings, around } => {
+                return Ok(surface(spring_of(*rings, *around), "embedded spring".into(), None));
+            }
+            Self::File(path) => {
+                let name: String = path.file_name().unwrap_or_default().to_string_lossy().into();
+                if !is_solid(path) {
+                    return Ok(surface(read_mesh(path)?, name, None));
+                }
+                let solid = SolidSource::read(path, None, material, progress).in_file(path)?;
+                let replaced = solid.material().replaced.as_ref();
+                let note = replaced
+                    .map(|replaced| format!("the scene's material overrides what {name} states: {replaced}"));
+                return Ok(LoadedShape { matter: Matter::Solid(Box::new(solid)), source: name, note });
+            }
+            Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
+            Self::Dragon => ("dragon_77202_closed.ply", "serpent", serpent),
+        };
+        Ok(match models {
+            Some(folder) => surface(read_mesh(&folder.join(file))?, file.into(), None),
+            None => surface(
+                embedded(),
+                format!("embedded {name}"),
+                Some(format!("the embedded {name} stands in for {file}: no --models given")),
+            ),
+        })
+    }
+}
+
+/// The folder of real models: `wanted`, else the one that the environment variable `SSCC_MODELS` names, else none.
+///
+/// # Errors
+/// When there is no such folder.
+pub fn models_folder(wanted: Option<&Path>) -> Result<Option<PathBuf>, SimError> {
+    let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
+    let (folder, named_by) = match (wanted, named) {
+        (Some(wanted), _) => (wanted.to_owned(), "--models"),
+        (None, Some(named)) => (named, "the environment variable SSCC_MODELS"),
+        (None, None) => return Ok(None),
+    };
+    if !folder.is_dir() {
+        return Err(SimError::refused(
+            folder.display(),
+            format!("no folder of models; leave out {named_by}"),
+        ));
+    }
+    Ok(Some(folder))
+}

@@ -1,0 +1,98 @@
+//! Certificates with their cost: computed once, then from the cache.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+use sscc::{Certificates, CertifyOptions, Metric, ReducedModel};
+use sscc_io::{read_certificates, read_whole, write_certificates, write_whole};
+
+use super::cache::Cache;
+use super::key::Key;
+use crate::error::At;
+use crate::machine::{PeakMemory, available_threads};
+use crate::{SimError, Stage, Watch};
+
+/// Certificates with their cost.
+pub struct TimedCertificates {
+    /// The certificates.
+    pub certificates: Certificates,
+    /// Their cost.
+    pub cost: CertificateCost,
+}
+
+/// The cost of computing certificates.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub struct CertificateCost {
+    /// By the wall clock.
+    pub seconds: f64,
+    /// Threads that computed them.
+    pub threads: usize,
+    /// The most memory of the whole process meanwhile; none where the system does not tell.
+    pub peak_bytes: Option<u64>,
+    /// Pairs of nodes in their tree: a file without them would measure another method.
+    pairs: usize,
+}
+
+impl TimedCertificates {
+    /// From the cache, or computed now with the metric and the budget (bytes for each triangle). `source` is where the
+    /// model is from, for errors.
+    pub(crate) fn get(
+        cache: &Cache,
+        name: &str,
+        model: &ReducedModel,
+        metric: &Metric,
+        source: &str,
+        budget: usize,
+        watch: &dyn Watch,
+    ) -> Result<Self, SimError> {
+        let asked = format!("{budget} {metric:?}");
+        let key = Key::new("certificates").text(cache.program()?).text(&asked).model(model);
+        cache.get(
+            &format!("{name}-{key}.sscc.safetensors"),
+            watch,
+            |path| Self::read(path, model),
+            || Self::compute(model, metric, budget, watch).at(|| source.to_owned()),
+            |path, certified| certified.write(path),
+        )
+    }
+
+    fn compute(
+        model: &ReducedModel,
+        metric: &Metric,
+        budget: usize,
+        watch: &dyn Watch,
+    ) -> Result<Self, SimError> {
+        let (metric, threads) = (Some(metric.clone()), available_threads());
+        let options = CertifyOptions { metric, budget, threads: Some(threads), ..CertifyOptions::default() };
+        watch.begin(Stage::Certificates);
+        let peak = PeakMemory::start();
+        let start = Instant::now();
+        let certificates = Certificates::compute(model, &options, watch)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let (peak_bytes, pairs) = (peak.and_then(PeakMemory::bytes), certificates.parts().pair_tree.len());
+        Ok(Self { certificates, cost: CertificateCost { seconds, threads, peak_bytes, pairs } })
+    }
+
+    fn read(path: &Path, model: &ReducedModel) -> Result<Self, SimError> {
+        let certificates = read_certificates(path)?;
+        certificates.check_model(model)?;
+        let beside = path.with_extension("json");
+        let cost: CertificateCost = serde_json::from_slice(&read_whole(&beside)?)
+            .map_err(|error| SimError::refused(beside.display(), error.to_string()))?;
+        let pairs = certificates.parts().pair_tree.len();
+        if pairs != cost.pairs {
+            let cause = format!("its pair tree has {pairs} pairs, not {}", cost.pairs);
+            return Err(SimError::refused(path.display(), cause));
+        }
+        Ok(Self { certificates, cost })
+    }
+
+    fn write(&self, path: &Path) -> Result<(), SimError> {
+        write_certificates(path, &self.certificates)?;
+        let beside = path.with_extension("json");
+        let cost = serde_json::to_vec(&self.cost)
+            .map_err(|error| SimError::refused(beside.display(), error.to_string()))?;
+        Ok(write_whole(&beside, &cost)?)
+    }
+}

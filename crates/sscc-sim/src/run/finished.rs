@@ -1,0 +1,34 @@
+//! The data of a simulation after its last step, from which files and the report are made.
+
+use std::path::PathBuf;
+
+use super::history::History;
+use super::prepared::PreparedScene;
+use super::summary::Summary;
+use crate::error::SimError;
+use crate::scenes::Scene;
+
+/// A simulation with all of its states.
+pub struct FinishedRun {
+    /// The scene.
+    pub scene: Scene,
+    /// Its models.
+    pub prepared: PreparedScene,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its states, at least one.
+    pub history: History,
+    /// Its results in numbers.
+    pub summary: Summary,
+    /// States at which the traditional method was measured, and its seconds for all bodies.
+    pub traditional: Vec<(usize, f64)>,
+    /// Why it ended early, if it did.
+    pub failure: Option<SimError>,
+}
+
+impl FinishedRun {
+    /// When a state was (s).
+    pub fn time(&self, state: usize) -> f64 {
+        state as f64 * self.scene.step
+    }
+}

@@ -1,0 +1,242 @@
+//! The states of a simulation and the record of each step, in one array of numbers.
+
+use glam::{DQuat, DVec3};
+
+/// The parts of a step that are timed, in the order of [`StepRecord::seconds`].
+pub const STEP_PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
+
+/// Numbers of a step beside those of its bodies.
+const OF_STEP: usize = STEP_PARTS.len() + 4;
+
+/// Numbers of a body beside its q.
+const OF_BODY: usize = 8;
+
+/// A step: its cost, its sound, and energy and contacts of the state that it begins with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepRecord {
+    /// Processor time of each part (s).
+    pub seconds: [f64; STEP_PARTS.len()],
+    /// Wall-clock time of the step (s).
+    pub wall: f64,
+    /// Kinetic, elastic and potential energy; not a number at the steps at which it was not computed.
+    pub energy: f64,
+    /// The sample of the sound during the step; 0 without.
+    pub sound: f64,
+    /// Pairs of triangles of different bodies that collide in the state.
+    pub inter_pairs: usize,
+}
+
+impl StepRecord {
+    /// Processor time of detecting self-collisions (s).
+    pub fn self_seconds(&self) -> f64 {
+        self.seconds[0]
+    }
+
+    /// Processor time of the whole step (s).
+    pub fn total_seconds(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+
+    fn numbers(&self) -> [f64; OF_STEP] {
+        let mut numbers = [self.energy; OF_STEP];
+        numbers[..STEP_PARTS.len()].copy_from_slice(&self.seconds);
+        numbers[STEP_PARTS.len() + 1] = self.sound;
+        numbers[STEP_PARTS.len() + 2] = self.inter_pairs as f64;
+        numbers[STEP_PARTS.len() + 3] = self.wall;
+        numbers
+    }
+}
+
+/// A body in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyRecord<'a> {
+    /// Pairs of triangles in which it collides with itself.
+    pub pairs: usize,
+    /// Its centre of mass.
+    pub position: DVec3,
+    /// From the axes of its model to those of the world.
+    pub orientation: DQuat,
+    /// Its reduced coordinates.
+    pub q: &'a [f64],
+}
+
+/// How a step is laid out in numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StateLayout {
+    /// Where each body's numbers begin; then the length of a step.
+    starts: Vec<usize>,
+}
+
+impl StateLayout {
+    /// For bodies of these ranks.
+    pub fn new(ranks: impl IntoIterator<Item = usize>) -> Self {
+        let mut starts = vec![OF_STEP];
+        for rank in ranks {
+            starts.push(starts[starts.len() - 1] + OF_BODY + rank);
+        }
+        Self { starts }
+    }
+
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of modes of a body.
+    pub fn rank(&self, body: usize) -> usize {
+        self.starts[body + 1] - self.starts[body] - OF_BODY
+    }
+
+    /// Numbers in a step.
+    pub fn width(&self) -> usize {
+        self.starts[self.bodies()]
+    }
+
+    /// Appends a step; `bodies` are as many as there are, of their ranks.
+    pub fn push<'a>(
+        &self,
+        facts: StepRecord,
+        bodies: impl IntoIterator<Item = BodyRecord<'a>>,
+        numbers: &mut Vec<f64>,
+    ) {
+        numbers.extend(facts.numbers());
+        for BodyRecord { pairs, position, orientation, q } in bodies {
+            numbers.push(pairs as f64);
+            numbers.extend(position.to_array());
+            numbers.extend(orientation.to_array());
+            numbers.extend(q);
+        }
+        debug_assert_eq!(numbers.len() % self.width(), 0);
+    }
+
+    /// Sets the numbers of a state that are known after the step only: its record, and the pairs of each body.
+    pub fn complete(&self, facts: StepRecord, pairs: impl Iterator<Item = usize>, state: &mut [f64]) {
+        state[..OF_STEP].copy_from_slice(&facts.numbers());
+        for (start, pairs) in self.starts.iter().zip(pairs) {
+            state[*start] = pairs as f64;
+        }
+    }
+
+    /// Multiplies the seconds of the parts of all states that are given.
+    pub fn scale_seconds(&self, factor: f64, states: &mut [f64]) {
+        for state in states.chunks_exact_mut(self.width()) {
+            state[..STEP_PARTS.len()].iter_mut().for_each(|seconds| *seconds *= factor);
+        }
+    }
+}
+
+/// The states of a simulation so far, the first of them its beginning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    layout: StateLayout,
+    numbers: Vec<f64>,
+}
+
+impl History {
+    /// Of the numbers of whole steps.
+    pub fn new(layout: StateLayout, numbers: Vec<f64>) -> Self {
+        debug_assert_eq!(numbers.len() % layout.width(), 0);
+        Self { layout, numbers }
+    }
+
+    /// At most so many states.
+    pub fn first(mut self, states: usize) -> Self {
+        self.numbers.truncate(states.saturating_mul(self.layout.width()));
+        self
+    }
+
+    /// How its steps are laid out.
+    pub fn layout(&self) -> &StateLayout {
+        &self.layout
+    }
+
+    /// Number of states.
+    pub fn len(&self) -> usize {
+        self.numbers.len() / self.layout.width()
+    }
+
+    /// Whether there is no state.
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+
+    fn of(&self, state: usize) -> &[f64] {
+        &self.numbers[state * self.layout.width()..][..self.layout.width()]
+    }
+
+    /// The record of the step that begins with a state.
+    pub fn step(&self, state: usize) -> StepRecord {
+        let of = self.of(state);
+        let seconds = std::array::from_fn(|part| of[part]);
+        let [energy, sound, inter_pairs, wall] = [0, 1, 2, 3].map(|n| of[STEP_PARTS.len() + n]);
+        StepRecord { seconds, wall, energy, sound, inter_pairs: inter_pairs as usize }
+    }
+
+    /// A body in a state.
+    pub fn body(&self, state: usize, body: usize) -> BodyRecord<'_> {
+        let of = &self.of(state)[self.layout.starts[body]..self.layout.starts[body + 1]];
+        BodyRecord {
+            pairs: of[0] as usize,
+            position: DVec3::new(of[1], of[2], of[3]),
+            orientation: DQuat::from_array([of[4], of[5], of[6], of[7]]),
+            q: &of[OF_BODY..],
+        }
+    }
+
+    /// All bodies in a state.
+    pub fn bodies(&self, state: usize) -> impl Iterator<Item = BodyRecord<'_>> {
+        (0..self.layout.bodies()).map(move |body| self.body(state, body))
+    }
+
+    /// Pairs of triangles in which bodies collide with themselves.
+    pub fn self_pairs(&self, state: usize) -> usize {
+        self.bodies(state).map(|body| body.pairs).sum()
+    }
+
+    /// How many bodies collide with themselves.
+    pub fn colliding_bodies(&self, state: usize) -> usize {
+        self.bodies(state).filter(|body| body.pairs > 0).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_in_comes_out() {
+        let layout = StateLayout::new([2, 0]);
+        let facts = |x: f64| StepRecord {
+            seconds: std::array::from_fn(|part| x + part as f64),
+            wall: 2.0 * x,
+            energy: x + 0.5,
+            sound: -x,
+            inter_pairs: x as usize + 2,
+        };
+        let q = [[0.5, -1.0], [2.0, 3.0]];
+        let body = |pairs: usize, q| BodyRecord {
+            pairs,
+            position: DVec3::new(1.0, 2.0, pairs as f64),
+            orientation: DQuat::from_array([0.0, 0.6, 0.8, 0.0]),
+            q,
+        };
+        let mut numbers = Vec::new();
+        layout.push(facts(0.0), [body(0, &q[0]), body(0, &[])], &mut numbers);
+        layout.push(facts(0.0), [body(0, &q[1]), body(0, &[])], &mut numbers);
+        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[28..]);
+        let history = History::new(layout, numbers);
+        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 28, 2));
+        assert_eq!(
+            (history.step(1), history.body(1, 0)),
+            (facts(10.0), BodyRecord { position: body(0, &q[1]).position, ..body(3, &q[1]) })
+        );
+        assert_eq!(
+            (history.step(0).total_seconds(), history.step(0).self_seconds(), history.body(1, 1).pairs),
+            (15.0, 0.0, 7)
+        );
+        assert_eq!(
+            (history.colliding_bodies(0), history.colliding_bodies(1), history.self_pairs(1)),
+            (0, 2, 10)
+        );
+    }
+}

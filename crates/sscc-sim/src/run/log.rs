@@ -1,0 +1,286 @@
+//! The log of a simulation's states, and the checkpoint from which a stopped simulation continues.
+//!
+//! States are appended, all of one size. A checkpoint holds their number, their hash, and the memory of the world and its
+//! sounds. States after the last checkpoint are cut off and simulated again, to the same bits, so a checkpoint can be
+//! written seldom. Its cost does not grow with the number of states.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use blake3::Hasher;
+use sscc_io::{read_whole, write_whole};
+
+use super::history::{History, StateLayout};
+use crate::error::{InSystem, Result, SimError};
+use crate::files::remove_file;
+
+const LOG: &str = "states.log";
+const CHECKPOINT: &str = "checkpoint.bin";
+
+/// Both files begin with the digest of the simulation.
+const DIGEST: usize = 32;
+
+/// A checkpoint holds a hash of the states, and ends with one of all before.
+const SEAL: usize = 32;
+
+/// The states of a simulation, on disk.
+pub struct StateLog {
+    folder: PathBuf,
+    digest: [u8; DIGEST],
+    layout: StateLayout,
+    file: File,
+    /// Whole states in the file.
+    len: usize,
+    /// The hash of these.
+    hasher: Hasher,
+}
+
+/// A checkpoint from which a simulation continues.
+pub struct Checkpoint {
+    /// Number of states.
+    pub states: usize,
+    /// The hash of these states.
+    hasher: Hasher,
+    /// The memory of the world and its sounds.
+    pub memory: Vec<f64>,
+}
+
+impl StateLog {
+    /// Opens the log of a folder, with its checkpoint if it has one; to begin again, both are emptied. `digest` is that of
+    /// the simulation.
+    ///
+    /// # Errors
+    /// When the folder cannot be written to, or holds another simulation.
+    pub(super) fn open(
+        folder: &Path,
+        digest: [u8; DIGEST],
+        layout: StateLayout,
+        again: bool,
+    ) -> Result<(Self, Option<Checkpoint>)> {
+        let path = folder.join(LOG);
+        let mut options = OpenOptions::new();
+        let mut file =
+            options.read(true).write(true).create(true).truncate(false).open(&path).system(&path)?;
+        // Two at once would write into each other's states.
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                return Err(SimError::refused(path.display(), "another simulation is writing to it"));
+            }
+            Err(TryLockError::Error(error)) => return Err(error).system(&path),
+            Ok(()) => {}
+        }
+        if again {
+            remove_file(&folder.join(CHECKPOINT))?;
+            file.set_len(0).system(&path)?;
+        }
+        let mut first = Vec::new();
+        (&mut file).take(DIGEST as u64).read_to_end(&mut first).system(&path)?;
+        if first.len() == DIGEST && first != digest {
+            let cause = "it is of another scene, other models or another version of this program: choose another \
+                folder, or begin again by --restart";
+            return Err(SimError::refused(path.display(), cause));
+        }
+        let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0, hasher: Hasher::new() };
+        let checkpoint = log.checkpoint()?;
+        match &checkpoint {
+            None => {
+                log.cut(0)?;
+                log.file.rewind().system(&path)?;
+                log.file.write_all(&digest).system(&path)?;
+            }
+            Some(checkpoint) => {
+                log.hasher = checkpoint.hasher.clone();
+                log.cut(checkpoint.states)?;
+            }
+        }
+        Ok((log, checkpoint))
+    }
+
+    /// Whether the folder has a checkpoint.
+    pub fn is_begun(folder: &Path) -> bool {
+        folder.join(CHECKPOINT).exists()
+    }
+
+    /// The checkpoint of the folder, if it is whole, of this simulation, and the log has its states.
+    fn checkpoint(&mut self) -> Result<Option<Checkpoint>> {
+        let path = self.folder.join(CHECKPOINT);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let bytes = read_whole(&path)?;
+        let damaged = || damaged(&path);
+        let (rest, seal) = bytes.split_at_checked(bytes.len().saturating_sub(SEAL)).ok_or_else(damaged)?;
+        if blake3::hash(rest).as_bytes() != seal {
+            return Err(damaged());
+        }
+        let (digest, rest) = rest.split_at_checked(DIGEST).ok_or_else(damaged)?;
+        if digest != self.digest {
+            return Err(SimError::refused(path.display(), "it is of another simulation"));
+        }
+        let (of_states, rest) = rest.split_at_checked(SEAL).ok_or_else(damaged)?;
+        let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { return Err(damaged()) };
+        let states = usize::try_from(u64::from_le_bytes(*states)).map_err(|_| damaged())?;
+        let log = self.path();
+        let there = self.file.metadata().system(&log)?.len();
+        let end = self.bytes(states).filter(|needed| *needed <= there).ok_or_else(|| {
+            let cause = "the log beside it has fewer states; begin again by --restart";
+            SimError::refused(path.display(), cause)
+        })?;
+        let mut hasher = Hasher::new();
+        self.file.seek(SeekFrom::Start(DIGEST as u64)).system(&log)?;
+        hasher.update_reader((&self.file).take(end - DIGEST as u64)).system(&log)?;
+        if hasher.finalize().as_bytes() != of_states {
+            return Err(self::damaged(&log));
+        }
+        let memory = memory.iter().map(|x| f64::from_le_bytes(*x)).collect();
+        Ok(Some(Checkpoint { states, hasher, memory }))
+    }
+
+    /// Bytes of the log with so many states.
+    fn bytes(&self, states: usize) -> Option<u64> {
+        let width = u64::try_from(8 * self.layout.width()).ok()?;
+        u64::try_from(states).ok()?.checked_mul(width)?.checked_add(DIGEST as u64)
+    }
+
+    /// Keeps so many states, and goes to the end.
+    fn cut(&mut self, states: usize) -> Result<()> {
+        let path = self.path();
+        let too_many = || SimError::refused(path.display(), format!("{states} states fit no file"));
+        let end = self.bytes(states).ok_or_else(too_many)?;
+        self.file.set_len(end).system(&path)?;
+        self.file.seek(SeekFrom::Start(end)).system(&path)?;
+        self.len = states;
+        Ok(())
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.join(LOG)
+    }
+
+    /// Number of states.
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Appends whole states.
+    pub(super) fn append(&mut self, numbers: &[f64]) -> Result<()> {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+        self.file.write_all(&bytes).system(&self.path())?;
+        self.hasher.update(&bytes);
+        self.len += numbers.len() / self.layout.width();
+        Ok(())
+    }
+
+    /// Writes a checkpoint of all states so far.
+    pub(super) fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
+        // The states first: a checkpoint must not count states that are not on the disk.
+        self.file.sync_data().system(&self.path())?;
+        let mut bytes = self.digest.to_vec();
+        bytes.extend(self.hasher.finalize().as_bytes());
+        bytes.extend((self.len as u64).to_le_bytes());
+        bytes.extend(memory.iter().flat_map(|x| x.to_le_bytes()));
+        let seal = blake3::hash(&bytes);
+        bytes.extend(seal.as_bytes());
+        Ok(write_whole(&self.folder.join(CHECKPOINT), &bytes)?)
+    }
+
+    /// All states.
+    pub(super) fn history(&mut self) -> Result<History> {
+        let path = self.path();
+        let mut bytes = vec![0; self.len * self.layout.width() * 8];
+        self.file.seek(SeekFrom::Start(DIGEST as u64)).system(&path)?;
+        self.file.read_exact(&mut bytes).system(&path)?; // and is at the end again
+        let numbers = bytes.as_chunks().0.iter().map(|x| f64::from_le_bytes(*x)).collect();
+        Ok(History::new(self.layout.clone(), numbers))
+    }
+}
+
+fn damaged(path: &Path) -> SimError {
+    SimError::refused(path.display(), "it is damaged; begin again by --restart")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn open(folder: &Path, digest: u8) -> Result<(StateLog, Option<Checkpoint>)> {
+        StateLog::open(folder, [digest; DIGEST], StateLayout::new([1]), false)
+    }
+
+    /// A state of the layout, 19 numbers.
+    fn state(x: f64) -> Vec<f64> {
+        (0..19).map(|i| x + f64::from(i)).collect()
+    }
+
+    #[test]
+    fn a_killed_simulation_goes_on_from_its_checkpoint() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let (mut log, none) = open(path, 1).unwrap();
+        assert!(none.is_none());
+        log.append(&[state(0.0), state(100.0)].concat()).unwrap();
+        log.write_checkpoint(&[0.5, -1.0]).unwrap();
+        log.append(&state(200.0)).unwrap();
+        log.file.write_all(b"half a st").unwrap();
+        assert!(open(path, 1).err().unwrap().to_string().contains("another simulation is writing"));
+        drop(log);
+
+        let (mut log, checkpoint) = open(path, 1).unwrap();
+        let Checkpoint { states, memory, .. } = checkpoint.unwrap();
+        assert_eq!((states, log.len(), memory), (2, 2, vec![0.5, -1.0]));
+        log.append(&state(300.0)).unwrap();
+        let history = log.history().unwrap();
+        assert_eq!((history.len(), history.body(2, 0).q), (3, &[318.0][..]));
+        // History leaves the log at its end.
+        log.append(&state(400.0)).unwrap();
+        assert_eq!(log.history().unwrap().body(3, 0).q, [418.0]);
+        log.write_checkpoint(&[]).unwrap();
+        drop(log);
+        assert_eq!(open(path, 1).unwrap().1.unwrap().states, 4);
+    }
+
+    #[test]
+    fn what_is_not_of_this_simulation_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let (mut log, _) = open(path, 1).unwrap();
+        log.append(&state(0.0)).unwrap();
+        log.write_checkpoint(&[1.0]).unwrap();
+        drop(log);
+        let message = |digest| open(path, digest).err().unwrap().to_string();
+        assert!(message(2).contains("another folder, or begin again by --restart"));
+        let good = fs::read(path.join(CHECKPOINT)).unwrap();
+        for at in [0, 33, 41, good.len() - 1] {
+            let mut bad = good.clone();
+            bad[at] ^= 1;
+            fs::write(path.join(CHECKPOINT), bad).unwrap();
+            assert!(message(1).contains("it is damaged"));
+        }
+        for len in [1, 31, 64, 70, good.len() - 1] {
+            fs::write(path.join(CHECKPOINT), &good[..len]).unwrap();
+            assert!(message(1).contains("it is damaged"), "{len}");
+        }
+        fs::write(path.join(CHECKPOINT), &good).unwrap();
+        let states = fs::read(path.join(LOG)).unwrap();
+        for at in [DIGEST, DIGEST + 70, states.len() - 1] {
+            let mut bad = states.clone();
+            bad[at] ^= 1;
+            fs::write(path.join(LOG), bad).unwrap();
+            assert!(message(1).contains("states.log: it is damaged"));
+        }
+        fs::write(path.join(LOG), &states).unwrap();
+        assert!(open(path, 1).is_ok());
+        fs::write(path.join(LOG), [1; DIGEST]).unwrap();
+        assert!(message(1).contains("the log beside it has fewer states"));
+        // Not while somebody writes to it.
+        let again = || StateLog::open(path, [2; DIGEST], StateLayout::new([1]), true);
+        let (log, none) = again().unwrap();
+        assert!(none.is_none() && log.len() == 0);
+        assert!(again().err().unwrap().to_string().contains("another simulation is writing"));
+        drop(log);
+        assert!(again().unwrap().1.is_none());
+    }
+}

@@ -1,0 +1,183 @@
+//! The models of a scene with certificates, masses and sounds: made once, then from the cache.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use glam::{DMat3, DQuat, DVec3};
+use sscc_dynamics::{Elasticity, Shape, SoundBank};
+use sscc_io::{self as io, read_whole, write_whole};
+use sscc_modes::{MassProperties, ReducedForces};
+
+use crate::error::{Result, SimError};
+use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, recipe_modes};
+use crate::scenes::{ModelSpec, Scene};
+use crate::watch::Watch;
+
+/// The most memory that the sounds of all bodies may take: 2 GB.
+const MOST_SOUND: usize = 2_000_000_000;
+
+/// Bytes that a body takes for each of its triangles: positions and boxes of queries within it and beside others.
+const OF_TRIANGLE: usize = 500;
+
+/// The most memory that all bodies may take: 8 GB.
+const MOST_BODIES: usize = 8_000_000_000;
+
+/// The models of a scene, in its order.
+pub struct PreparedScene {
+    /// One for each of the scene.
+    pub models: Vec<PreparedModel>,
+    /// The hash of this program.
+    pub(super) program: String,
+}
+
+/// One model.
+pub struct PreparedModel {
+    /// The model and its certificates.
+    pub certified: CertifiedModel,
+    /// The shape of its bodies in a world.
+    pub shape: Shape,
+    /// From the axes of its file to those of a shape that stands upright, z up.
+    pub upright: DQuat,
+    /// The sound of a body, if the scene has sound.
+    pub sound: Option<SoundBank>,
+}
+
+impl PreparedScene {
+    /// From the cache, or made now. `models` is the folder of real models.
+    ///
+    /// # Errors
+    /// When a model cannot be made, steps are too long for it, all bodies take too much memory, or `watch` cancels.
+    pub fn get(
+        scene: &Scene,
+        models: Option<&Path>,
+        cache: &Cache,
+        watch: &dyn Watch,
+    ) -> Result<Self, SimError> {
+        let one = |model: &ModelSpec| PreparedModel::get(scene, model, models, cache, watch);
+        let models: Vec<PreparedModel> = scene.models.iter().map(one).collect::<Result<_>>()?;
+        let sum = |of: &dyn Fn(&PreparedModel) -> usize| -> usize {
+            scene.bodies.iter().map(|body| of(&models[body.model])).sum()
+        };
+        let triangles = sum(&|model| model.certified.model.mesh().faces().len());
+        let bytes = triangles * OF_TRIANGLE;
+        if bytes > MOST_BODIES {
+            let cause = format!(
+                "about {} MB for all {} (limit {} MB); take fewer, or of fewer triangles",
+                bytes / 1_000_000,
+                scene.bodies.len(),
+                MOST_BODIES / 1_000_000
+            );
+            return Err(SimError::refused("bodies", cause));
+        }
+        let sounds = sum(&|PreparedModel { certified, sound, .. }| {
+            let vertices = certified.model.mesh().rest_positions().len();
+            sound.as_ref().map_or(0, |sound| 12 * sound.modes() * vertices)
+        });
+        if sounds > MOST_SOUND {
+            let cause = format!("{} MB for all bodies; take fewer modes, or no sound", sounds / 1_000_000);
+            return Err(SimError::refused("sound", cause));
+        }
+        Ok(Self { models, program: cache.program()?.to_owned() })
+    }
+
+    /// The hash of all inputs of a simulation, this program included.
+    pub fn digest(&self, scene: &Scene) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.program.as_bytes()).update(scene.digest.as_bytes());
+        for model in &self.models {
+            let model = &model.certified.model;
+            hasher.update(&sscc::Digest::of(model, &sscc::Scope::of(model)).0);
+        }
+        *hasher.finalize().as_bytes()
+    }
+}
+
+impl PreparedModel {
+    fn get(
+        scene: &Scene,
+        spec: &ModelSpec,
+        models: Option<&Path>,
+        cache: &Cache,
+        watch: &dyn Watch,
+    ) -> Result<Self> {
+        let loaded = LoadedRecipe::load(&spec.recipe, models, watch)?;
+        let mass = mass(&loaded, cache, watch)?;
+        let certified = CertifiedModel::get(&loaded, cache, watch)?;
+        let elasticity = elasticity(&certified, spec.is_linear)?;
+        let first = diagonal(&certified.elasticity).into_iter().fold(f64::INFINITY, f64::min).sqrt();
+        let period = TAU / first;
+        // NaN must fail this test, too.
+        let is_resolved = 2.0 * scene.step < period;
+        if !is_resolved {
+            let cause = format!(
+                "steps of {:.3e} s are longer than half a period of its first mode ({period:.3e} s): take more steps \
+                 in a second",
+                scene.step
+            );
+            return Err(SimError::refused(&certified.name, cause));
+        }
+        let sound = scene.sound.as_ref().map(|sound| -> Result<SoundBank> {
+            let rate = 1.0 / scene.step;
+            let (model, elasticity) = recipe_modes(&loaded, ModesSpec::Linear(sound.modes), cache, watch)?;
+            let damping = sound.damping.unwrap_or(spec.damping);
+            let square = sound.pitch * sound.pitch;
+            let eigenvalues: Vec<f64> = diagonal(&elasticity).iter().map(|x| x * square).collect();
+            Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
+        });
+        let shape =
+            Shape::new(certified.model.clone(), certified.full.certificates.clone(), elasticity, mass)?;
+        Ok(Self { certified, shape, upright: loaded.upright, sound: sound.transpose()? })
+    }
+
+    /// The point about which its bodies turn.
+    pub fn center(&self) -> DVec3 {
+        self.shape.mass().center
+    }
+}
+
+/// The squared angular frequency of each mode.
+fn diagonal(elasticity: &io::Elasticity) -> Vec<f64> {
+    // Of modes without stiffness rounding may leave a little less than nothing.
+    elasticity.stiffness().iter().step_by(elasticity.rank() + 1).map(|x| x.max(0.0)).collect()
+}
+
+fn elasticity(certified: &CertifiedModel, is_linear: bool) -> Result<Elasticity> {
+    Ok(match &certified.elasticity {
+        linear if is_linear => Elasticity::Linear(diagonal(linear)),
+        io::Elasticity::Linear(_) => {
+            let cause = format!("{} modes have no forces of large deformations", certified.model.rank());
+            return Err(SimError::refused(&certified.name, cause));
+        }
+        io::Elasticity::Nonlinear(io::Cubic { rank, linear, quadratic, cubic }) => {
+            Elasticity::Nonlinear(ReducedForces {
+                rank: *rank,
+                linear: linear.clone(),
+                quadratic: quadratic.clone(),
+                cubic: cubic.clone(),
+            })
+        }
+    })
+}
+
+/// Mass, centre and inertia of a solid: 1, 3 and 9 numbers in a file.
+fn mass(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<MassProperties> {
+    let name = format!("{}-{}.mass.json", loaded.recipe().name, loaded.key("mass"));
+    let read = |path: &Path| {
+        let damaged = |cause: String| SimError::refused(path.display(), cause);
+        let numbers: Vec<f64> =
+            serde_json::from_slice(&read_whole(path)?).map_err(|error| damaged(error.to_string()))?;
+        let [mass, x, y, z, inertia @ ..] = &numbers[..] else { return Err(damaged("too short".into())) };
+        let inertia = <[f64; 9]>::try_from(inertia).map_err(|error| damaged(error.to_string()))?;
+        let (center, inertia) = (DVec3::new(*x, *y, *z), DMat3::from_cols_array(&inertia));
+        Ok(MassProperties { mass: *mass, center, inertia })
+    };
+    let write = |path: &Path, mass: &MassProperties| {
+        let mut numbers = vec![mass.mass];
+        numbers.extend(mass.center.to_array());
+        numbers.extend(mass.inertia.to_cols_array());
+        let json = serde_json::to_vec(&numbers);
+        let json = json.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
+        Ok(write_whole(path, &json)?)
+    };
+    cache.get(&name, watch, read, || Ok(loaded.solid(watch)?.solid().mass_properties()), write)
+}

@@ -1,0 +1,158 @@
+//! The steps of a world with its sounds, and the record of each step.
+
+use sscc_dynamics::{DynamicsError, Phase, SoundBank, World};
+
+use super::clock::{Clocks, StepClock, StepTimes};
+use super::history::{BodyRecord, StateLayout, StepRecord};
+
+/// The energy is computed at every so many steps.
+const ENERGY_STEPS: usize = 8;
+
+/// A world at work, with the states that are not yet in the log.
+pub struct Stepper<'a, C> {
+    pub world: World<'a>,
+    sounds: Vec<Option<SoundBank>>,
+    layout: StateLayout,
+    clock: StepClock<C>,
+    /// States that are not yet in the log.
+    numbers: Vec<f64>,
+    /// Where the states begin whose costs are not yet processor time.
+    unsettled: usize,
+}
+
+impl<'a, C: Clocks> Stepper<'a, C> {
+    pub fn new(world: World<'a>, sounds: Vec<Option<SoundBank>>, layout: StateLayout, clocks: C) -> Self {
+        Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), unsettled: 0 }
+    }
+
+    /// Removes the states that are not yet in the log, to append them.
+    pub fn take(&mut self) -> Vec<f64> {
+        self.settle();
+        self.unsettled = 0;
+        std::mem::take(&mut self.numbers)
+    }
+
+    /// Scales the costs of the last steps to processor time.
+    fn settle(&mut self) {
+        let factor = self.clock.settle();
+        self.layout.scale_seconds(factor, &mut self.numbers[self.unsettled..]);
+        self.unsettled = self.numbers.len();
+    }
+
+    /// Numbers that are not yet in the log.
+    pub fn pending(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// States that are not yet in the log.
+    pub fn waiting(&self) -> usize {
+        self.numbers.len() / self.layout.width()
+    }
+
+    /// Makes one step, and records the state before it with the collisions that the step detects.
+    pub fn step(&mut self) -> Result<(), DynamicsError> {
+        let has_energy = self.world.steps().is_multiple_of(ENERGY_STEPS as u64);
+        let energy = if has_energy { self.world.energy() } else { f64::NAN };
+        let start = self.numbers.len();
+        let bodies = self.world.bodies().iter().map(|body| BodyRecord {
+            pairs: 0,
+            position: body.rigid().position,
+            orientation: body.rigid().orientation,
+            q: body.q(),
+        });
+        self.layout.push(StepRecord::default(), bodies, &mut self.numbers);
+        let begin = self.clock.begin();
+        let clock = &mut self.clock;
+        let advanced = self.world.advance(&mut |phase| clock.enter(part(phase)));
+        self.clock.enter(Some(SOUND));
+        let sound = self.hear();
+        let StepTimes { parts: seconds, wall } = self.clock.end(begin);
+        let inter_pairs = self.world.inter_pairs().map(|(_, pairs)| pairs.len()).sum();
+        let facts = StepRecord { seconds, wall, energy, sound, inter_pairs };
+        let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
+        self.layout.complete(facts, pairs, &mut self.numbers[start..]);
+        if self.clock.is_due() {
+            self.settle();
+        }
+        // The last state is kept even if its step failed.
+        advanced.map(drop)
+    }
+
+    fn hear(&mut self) -> f64 {
+        for impulse in self.world.impulses() {
+            if let Some(bank) = &mut self.sounds[impulse.body] {
+                bank.strike(impulse);
+            }
+        }
+        self.sounds.iter_mut().flatten().map(SoundBank::sample).sum()
+    }
+
+    /// The state of world and sounds, for a checkpoint.
+    pub fn memory(&self) -> Vec<f64> {
+        let mut memory = self.world.state().numbers;
+        self.sounds.iter().flatten().for_each(|bank| memory.extend(bank.state()));
+        memory
+    }
+}
+
+/// The part of [`STEP_PARTS`] that is sound.
+const SOUND: usize = 5;
+
+/// The place in [`STEP_PARTS`] of a phase.
+fn part(phase: Phase) -> Option<usize> {
+    match phase {
+        Phase::SelfCollision => Some(0),
+        Phase::InterObject => Some(1),
+        Phase::Ground => Some(2),
+        Phase::Penalty => Some(3),
+        Phase::Dynamics => Some(4),
+        Phase::Done => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use sscc_dynamics::WorldOptions;
+
+    use super::super::history::History;
+
+    use super::*;
+
+    /// Each look at the wall's clock takes a millisecond, a tenth of which this thread works.
+    #[derive(Default)]
+    struct Busy {
+        looks: Cell<u32>,
+    }
+
+    impl Clocks for Busy {
+        fn wall(&self) -> f64 {
+            self.looks.set(self.looks.get() + 1);
+            1e-3 * f64::from(self.looks.get())
+        }
+
+        fn processor(&self) -> f64 {
+            1e-4 * f64::from(self.looks.get())
+        }
+
+        fn is_one_thread(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn costs_are_processor_time() {
+        let world = World::new(WorldOptions::default()).unwrap();
+        let layout = StateLayout::new([]);
+        let mut stepper = Stepper::new(world, Vec::new(), layout.clone(), Busy::default());
+        (0..3).for_each(|_| stepper.step().unwrap());
+        let history = History::new(layout, stepper.take());
+        for state in 0..3 {
+            let facts = history.step(state);
+            // Each part lasts from one look to the next.
+            assert!(facts.seconds.iter().all(|seconds| (0.5e-4..1.5e-4).contains(seconds)), "{facts:?}");
+            assert!(facts.wall > 6e-3, "{facts:?}");
+        }
+    }
+}

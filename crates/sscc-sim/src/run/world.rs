@@ -1,0 +1,52 @@
+//! The world of a scene: its bodies at the beginning, or at a checkpoint.
+
+use sscc_dynamics::{SoundBank, Start, State, World};
+
+use super::prepared::PreparedScene;
+use crate::error::{At, Result, SimError};
+use crate::scenes::{BodySpec, Scene};
+
+/// The bodies of a scene at its beginning.
+pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>> {
+    let mut world = World::new(scene.options())?;
+    for (number, body) in scene.bodies.iter().enumerate() {
+        let BodySpec { model, position, orientation, velocity, angular_velocity, shake } = body;
+        let model = &prepared.models[*model];
+        let mut v = shake.clone();
+        v.resize(model.certified.model.rank(), 0.0);
+        let start = Start {
+            position: Some(*position),
+            orientation: *orientation * model.upright,
+            velocity: *velocity,
+            spin: *angular_velocity,
+            v,
+            damping: scene.models[body.model].damping,
+            detection: scene.detection,
+            ..Start::default()
+        };
+        world.add(&model.shape, &start).at(|| format!("body {number} (counted from 0)"))?;
+    }
+    world.check_start()?;
+    Ok(world)
+}
+
+/// Restores a world and its sounds from the memory of a checkpoint.
+pub fn restore(
+    world: &mut World<'_>,
+    sounds: &mut [Option<SoundBank>],
+    step: usize,
+    memory: &[f64],
+) -> Result<()> {
+    let all: usize = sounds.iter().flatten().map(|bank| bank.state().len()).sum();
+    let (numbers, mut rest) = memory.split_at_checked(memory.len().saturating_sub(all)).unwrap_or_default();
+    let at = || "the checkpoint".to_owned();
+    world.restore(&State { step: step as u64, numbers: numbers.to_vec() }).at(at)?;
+    for bank in sounds.iter_mut().flatten() {
+        let (own, others) = rest
+            .split_at_checked(bank.state().len())
+            .ok_or_else(|| SimError::refused("the checkpoint", "it is too short"))?;
+        bank.restore(own).at(at)?;
+        rest = others;
+    }
+    Ok(())
+}

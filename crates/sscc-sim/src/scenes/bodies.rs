@@ -1,0 +1,110 @@
+//! The bodies of a scene: `[[bodies]]`, each one or a grid of them.
+
+use glam::{DQuat, DVec3};
+
+use super::models::ModelSpec;
+use super::section::Section;
+use crate::error::Result;
+use crate::nearest::nearest;
+
+/// The most bodies of a scene.
+const MOST_BODIES: usize = 4096;
+
+/// A body at the beginning of a scene.
+#[derive(Clone, Debug)]
+pub struct BodySpec {
+    /// Index of its model.
+    pub model: usize,
+    /// Where its centre of mass is (m).
+    pub position: DVec3,
+    /// From the axes of its model to those of the world.
+    pub orientation: DQuat,
+    /// m/s.
+    pub velocity: DVec3,
+    /// 1/s, in axes of the world.
+    pub angular_velocity: DVec3,
+    /// How fast each mode moves (the first ones; the others rest).
+    pub shake: Vec<f64>,
+}
+
+const KEYS: [&str; 9] =
+    ["model", "position", "rotation", "velocity", "angular_velocity", "shake", "grid", "spacing", "turn"];
+
+pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> {
+    let mut bodies = Vec::new();
+    for section in scene.sections("bodies", &KEYS)? {
+        push(&section, models, &mut bodies)?;
+        if bodies.len() > MOST_BODIES {
+            return Err(scene.refused("bodies", format!("there are more than {MOST_BODIES}")));
+        }
+    }
+    if bodies.is_empty() {
+        return Err(scene.refused("bodies", "there are none"));
+    }
+    Ok(bodies)
+}
+
+fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>) -> Result<()> {
+    let name = section.wanted("model", section.text("model")?)?;
+    let Some(model) = models.iter().position(|model| model.recipe.name == name) else {
+        let meant = nearest(name, models.iter().map(|model| model.recipe.name.as_str()));
+        let cause = match meant {
+            None => "there are no models".into(),
+            Some(meant) => format!("there is no such model; did you mean '{meant}'?"),
+        };
+        return Err(section.refused("model", cause));
+    };
+    let shake = section.numbers("shake")?.unwrap_or_default();
+    let rank = models[model].recipe.modes.rank();
+    if shake.len() > rank {
+        return Err(section.refused("shake", format!("{} numbers for {rank} modes", shake.len())));
+    }
+    let first = BodySpec {
+        model,
+        position: section.vector("position")?.unwrap_or(DVec3::ZERO),
+        orientation: rotation(section)?,
+        velocity: section.vector("velocity")?.unwrap_or(DVec3::ZERO),
+        angular_velocity: section.vector("angular_velocity")?.unwrap_or(DVec3::ZERO),
+        shake,
+    };
+    let turn = section.number("turn")?.unwrap_or(0.0).to_radians();
+    let spacing = section.vector("spacing")?;
+    let Some(grid) = section.vector("grid")? else {
+        for key in ["turn", "spacing"] {
+            if section.has(key) {
+                return Err(section.refused(key, "only a grid has it"));
+            }
+        }
+        bodies.push(first);
+        return Ok(());
+    };
+    let is_count = |x: f64| x >= 1.0 && x.fract() == 0.0 && x <= MOST_BODIES as f64;
+    if !grid.to_array().into_iter().all(is_count) || grid.element_product() > MOST_BODIES as f64 {
+        let cause = format!("three whole numbers were expected, whose product is at most {MOST_BODIES}");
+        return Err(section.refused("grid", cause));
+    }
+    let spacing = section.wanted("spacing", spacing)?;
+    let [nx, ny, nz] = grid.to_array().map(|x| x as usize);
+    for (k, j, i) in (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i)))) {
+        let number = i + nx * (j + ny * k);
+        bodies.push(BodySpec {
+            position: first.position + spacing * DVec3::new(i as f64, j as f64, k as f64),
+            // About its own upright axis: turned about the vertical, all would fall alike.
+            orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),
+            ..first.clone()
+        });
+    }
+    Ok(())
+}
+
+fn rotation(section: &Section<'_>) -> Result<DQuat> {
+    let Some(rotation) = section.section("rotation", &["axis", "degrees"])? else {
+        return Ok(DQuat::IDENTITY);
+    };
+    let axis = rotation.wanted("axis", rotation.vector("axis")?)?;
+    let degrees = rotation.wanted("degrees", rotation.number("degrees")?)?;
+    match axis.try_normalize() {
+        Some(axis) => Ok(DQuat::from_axis_angle(axis, degrees.to_radians())),
+        None => Err(rotation.refused("axis", "it has no direction")),
+    }
+}

@@ -1,0 +1,14 @@
+//! Scenes: models, bodies, ground and sound, as TOML files. docs/simulations.md explains the keys.
+
+mod bodies;
+mod models;
+mod scene;
+mod section;
+mod shipped;
+#[cfg(test)]
+mod tests;
+
+pub use bodies::BodySpec;
+pub use models::ModelSpec;
+pub use scene::{Scene, Sound};
+pub use shipped::{SHIPPED, read_scene};

@@ -1,0 +1,146 @@
+//! The models of a scene: `[models.NAME]`.
+
+use std::path::Path;
+
+use sscc_dynamics::{Damping, MATERIALS};
+
+use super::section::Section;
+use crate::error::Result;
+use crate::models::RequestedMaterial;
+use crate::recipes::{ModesSpec, Recipe, Shape};
+
+/// The most modes of a body.
+pub const MOST_RANK: usize = 500;
+
+/// The most cubes along the longest side of a lattice.
+const MOST_CELLS: usize = 2000;
+
+/// A model that bodies are made of.
+#[derive(Clone, Debug)]
+pub struct ModelSpec {
+    /// How it is made.
+    pub recipe: Recipe,
+    /// Whether q moves by the stiffness at rest alone.
+    pub is_linear: bool,
+    /// Of its modes.
+    pub damping: Damping,
+}
+
+/// Modes of the small spring.
+pub const QUICK_RANK: usize = 20;
+
+impl ModelSpec {
+    /// The name of the array of its bodies' coordinates.
+    pub fn array_name(&self) -> String {
+        format!("q_{}", self.recipe.name.replace('-', "_"))
+    }
+
+    /// The small spring in its place.
+    pub fn quicken(&mut self) {
+        let Recipe { shape, modes, cells, spread, .. } = &mut self.recipe;
+        (*shape, *modes, *cells) = (Shape::SMALL_SPRING, ModesSpec::Linear(QUICK_RANK), None);
+        *spread = None;
+        self.is_linear = true;
+    }
+}
+
+const KEYS: [&str; 10] =
+    ["shape", "file", "size", "resolution", "kind", "rank", "material", "damping", "dynamics", "spread"];
+
+/// Names of embedded shapes, and of those that they stand in for.
+const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
+
+pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
+    let mut models: Vec<ModelSpec> = Vec::new();
+    for (name, section) in scene.named("models", &KEYS)? {
+        let model = one(name, &section, folder)?;
+        if let Some(other) = models.iter().find(|other| other.array_name() == model.array_name()) {
+            let cause = format!("'{name}' and '{}' differ by _ and - only", other.recipe.name);
+            return Err(section.refused("models", cause));
+        }
+        models.push(model);
+    }
+    Ok(models)
+}
+
+fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
+    if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') {
+        return Err(model.refused("models", "letters, digits, _ and - make the name of a model"));
+    }
+    let shape = match (model.word("shape", &SHAPES.map(|name| (name, name)))?, model.text("file")?) {
+        (Some(_), Some(_)) => {
+            return Err(model.refused("file", "it has a shape already: leave one of them out"));
+        }
+        (None, None) => return Err(model.refused("shape", "it is missing (or a file)")),
+        (None, Some(file)) => Shape::File(folder.join(file)),
+        (Some("spring"), _) => Shape::SPRING,
+        (Some("spring-4k"), _) => Shape::SMALL_SPRING,
+        (Some("bunny"), _) => Shape::Bunny,
+        (Some(_), _) => Shape::Dragon,
+    };
+    let rank = model.count("rank", MOST_RANK)?;
+    let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
+    let (modes, is_linear) = match model.wanted("kind", word)? {
+        "linear" => (ModesSpec::Linear(rank.unwrap_or(20)), true),
+        "nonlinear" => (ModesSpec::Nonlinear(rank.unwrap_or(30)), false),
+        _ if rank.is_some_and(|rank| rank != 24) => {
+            return Err(model.refused("rank", "polynomial modes are always all 24"));
+        }
+        _ => (ModesSpec::Polynomial, true),
+    };
+    let dynamics = model.word("dynamics", &[("linear", true), ("nonlinear", false)])?;
+    if let (ModesSpec::Linear(_), Some(false)) = (modes, dynamics) {
+        return Err(model.refused("dynamics", "linear modes move linearly"));
+    }
+    let (material, usual) = material(model)?;
+    let recipe = Recipe {
+        name: name.into(),
+        shape,
+        modes,
+        material,
+        cells: model.count("resolution", MOST_CELLS)?,
+        size: model.positive("size")?,
+        spread: spread(model, modes.rank())?,
+    };
+    let damping = damping(model)?.unwrap_or(usual);
+    Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
+}
+
+/// `spread = [...]`, a number for each mode.
+fn spread(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
+    let Some(spread) = model.numbers("spread")? else { return Ok(None) };
+    if spread.len() != rank {
+        return Err(model.refused("spread", format!("{} numbers for {rank} modes", spread.len())));
+    }
+    if spread.iter().any(|far| *far <= 0.0) {
+        return Err(model.refused("spread", "numbers above 0 were expected"));
+    }
+    Ok(Some(spread))
+}
+
+/// `damping = { mass, stiffness }`
+pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
+    let Some(damping) = section.section("damping", &["mass", "stiffness"])? else { return Ok(None) };
+    Ok(Some(Damping {
+        mass: damping.not_negative("mass")?.unwrap_or(0.0),
+        stiffness: damping.not_negative("stiffness")?.unwrap_or(0.0),
+    }))
+}
+
+/// A material by its name, with its usual damping, or by its numbers; those left out are the file's.
+fn material(model: &Section<'_>) -> Result<(RequestedMaterial, Damping)> {
+    if model.is_text("material") {
+        let known = MATERIALS.map(|material| (material.name, material));
+        let found = model.wanted("material", model.word("material", &known)?)?;
+        return Ok((found.elastic.into(), found.damping));
+    }
+    let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {
+        return Ok((RequestedMaterial::default(), Damping::default()));
+    };
+    let poisson = material.number("poisson")?;
+    if poisson.is_some_and(|nu| nu <= -1.0 || nu >= 0.5) {
+        return Err(material.refused("poisson", "a number between -1 and 0.5 was expected"));
+    }
+    let (youngs, density) = (material.positive("youngs")?, material.positive("density")?);
+    Ok((RequestedMaterial { youngs, poisson, density }, Damping::default()))
+}

@@ -1,0 +1,209 @@
+//! Tables of a scene file, with errors that name the file and the line.
+
+use std::fmt::Display;
+use std::ops::Range;
+use std::path::Path;
+
+use glam::DVec3;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::error::{Result, SimError};
+use crate::nearest::nearest;
+use crate::text::one_line;
+
+/// The text of a file, to tell lines.
+#[derive(Clone, Copy)]
+pub struct Text<'a> {
+    pub path: &'a Path,
+    pub text: &'a str,
+}
+
+impl Text<'_> {
+    /// An error at a place in the text.
+    pub fn refused(self, span: &Range<usize>, cause: impl Display) -> SimError {
+        let line = 1 + self.text.bytes().take(span.start).filter(|byte| *byte == b'\n').count();
+        SimError::Scene { path: self.path.to_owned(), line, cause: cause.to_string() }
+    }
+}
+
+/// A table all of whose keys are known.
+pub struct Section<'a> {
+    text: Text<'a>,
+    table: &'a DeTable<'a>,
+    /// Where it begins.
+    span: Range<usize>,
+}
+
+impl<'a> Section<'a> {
+    /// # Errors
+    /// When the table has a key that is not one of those.
+    pub fn new(text: Text<'a>, table: &'a Spanned<DeTable<'a>>, keys: &[&str]) -> Result<Self> {
+        Self::within(text, table.get_ref(), table.span(), keys)
+    }
+
+    fn within(text: Text<'a>, table: &'a DeTable<'a>, span: Range<usize>, keys: &[&str]) -> Result<Self> {
+        // Tables are in the order of their keys; the first in the file is named.
+        let unknown = table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
+        match unknown.min_by_key(|key| key.span().start) {
+            None => Ok(Self { text, table, span }),
+            Some(key) => {
+                let typed: String = key.get_ref().chars().take(40).collect();
+                let meant = nearest(&typed, keys.iter().copied()).unwrap_or_default();
+                let cause = format!("unknown key '{}'; did you mean '{meant}'?", one_line(&typed));
+                Err(text.refused(&key.span(), cause))
+            }
+        }
+    }
+
+    fn value(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.table.get(key)
+    }
+
+    /// An error about a key, where it is; or about the table, where the key is missing.
+    pub fn refused(&self, key: &str, cause: impl Display) -> SimError {
+        let span = self.value(key).map_or(self.span.clone(), Spanned::span);
+        self.text.refused(&span, format_args!("{key}: {cause}"))
+    }
+
+    /// Refuses a value of another type.
+    fn expected<T>(&self, key: &str, what: &str) -> Result<T> {
+        Err(self.refused(key, format_args!("{what} was expected")))
+    }
+
+    /// # Errors
+    /// When the key is missing.
+    pub fn wanted<T>(&self, key: &str, found: Option<T>) -> Result<T> {
+        found.ok_or_else(|| self.refused(key, "it is missing"))
+    }
+
+    pub fn has(&self, key: &str) -> bool {
+        self.value(key).is_some()
+    }
+
+    /// A finite number.
+    pub fn number(&self, key: &str) -> Result<Option<f64>> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        finite(value.get_ref()).map_or_else(|| self.expected(key, "a number"), |x| Ok(Some(x)))
+    }
+
+    pub fn positive(&self, key: &str) -> Result<Option<f64>> {
+        match self.number(key)? {
+            Some(x) if x <= 0.0 => self.expected(key, "a positive number"),
+            found => Ok(found),
+        }
+    }
+
+    pub fn not_negative(&self, key: &str) -> Result<Option<f64>> {
+        match self.number(key)? {
+            Some(x) if x < 0.0 => self.expected(key, "a number that is not negative"),
+            found => Ok(found),
+        }
+    }
+
+    /// A whole number between 1 and `most`.
+    pub fn count(&self, key: &str, most: usize) -> Result<Option<usize>> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        match whole(value.get_ref()) {
+            Some(count) if (1..=most).contains(&count) => Ok(Some(count)),
+            _ => self.expected(key, &format!("a whole number from 1 to {most}")),
+        }
+    }
+
+    pub fn text(&self, key: &str) -> Result<Option<&'a str>> {
+        match self.value(key).map(Spanned::get_ref) {
+            None => Ok(None),
+            Some(DeValue::String(text)) => Ok(Some(text)),
+            Some(_) => self.expected(key, "a text"),
+        }
+    }
+
+    /// Whether there is a text.
+    pub fn is_text(&self, key: &str) -> bool {
+        self.value(key).is_some_and(|value| value.get_ref().is_str())
+    }
+
+    /// One of some words.
+    pub fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
+        let Some(typed) = self.text(key)? else { return Ok(None) };
+        match words.iter().find(|(word, _)| *word == typed) {
+            Some((_, meaning)) => Ok(Some(*meaning)),
+            None => {
+                let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+                self.expected(key, &format!("one of {}", names.join(", ")))
+            }
+        }
+    }
+
+    pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {
+        let Some(array) = self.array(key)? else { return Ok(None) };
+        let numbers: Option<Vec<f64>> = array.iter().map(|value| finite(value.get_ref())).collect();
+        numbers.map_or_else(|| self.expected(key, "a list of numbers"), |numbers| Ok(Some(numbers)))
+    }
+
+    pub fn vector(&self, key: &str) -> Result<Option<DVec3>> {
+        match self.numbers(key)?.as_deref() {
+            None => Ok(None),
+            Some([x, y, z]) => Ok(Some(DVec3::new(*x, *y, *z))),
+            Some(_) => self.expected(key, "a list of three numbers"),
+        }
+    }
+
+    fn array(&self, key: &str) -> Result<Option<&'a DeArray<'a>>> {
+        match self.value(key).map(Spanned::get_ref) {
+            None => Ok(None),
+            Some(DeValue::Array(array)) => Ok(Some(array)),
+            Some(_) => self.expected(key, "a list"),
+        }
+    }
+
+    /// A table within this one.
+    pub fn section(&self, key: &str, keys: &[&str]) -> Result<Option<Section<'a>>> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        match value.get_ref() {
+            DeValue::Table(table) => Ok(Some(Self::within(self.text, table, value.span(), keys)?)),
+            _ => self.expected(key, "a table"),
+        }
+    }
+
+    /// Tables of any names within a table, in the order of the file.
+    pub fn named(&self, key: &str, keys: &[&str]) -> Result<Vec<(&'a str, Section<'a>)>> {
+        let Some(value) = self.value(key) else { return Ok(Vec::new()) };
+        let DeValue::Table(all) = value.get_ref() else { return self.expected(key, "a table") };
+        let mut found = Vec::new();
+        for (name, value) in all.iter() {
+            let DeValue::Table(table) = value.get_ref() else {
+                return self.expected(key, "a table of tables");
+            };
+            found.push((name.get_ref().as_ref(), Self::within(self.text, table, value.span(), keys)?));
+        }
+        found.sort_by_key(|(_, section)| section.span.start);
+        Ok(found)
+    }
+
+    /// A list of tables.
+    pub fn sections(&self, key: &str, keys: &[&str]) -> Result<Vec<Section<'a>>> {
+        let mut found = Vec::new();
+        for value in self.array(key)?.into_iter().flat_map(|array| array.iter()) {
+            let DeValue::Table(table) = value.get_ref() else {
+                return self.expected(key, "a list of tables");
+            };
+            found.push(Self::within(self.text, table, value.span(), keys)?);
+        }
+        Ok(found)
+    }
+}
+
+fn whole(value: &DeValue<'_>) -> Option<usize> {
+    let DeValue::Integer(number) = value else { return None };
+    usize::from_str_radix(number.as_str(), number.radix()).ok()
+}
+
+fn finite(value: &DeValue<'_>) -> Option<f64> {
+    let number = match value {
+        DeValue::Float(number) => number.as_str().parse().ok()?,
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok()? as f64,
+        _ => return None,
+    };
+    f64::is_finite(number).then_some(number)
+}

@@ -1,0 +1,109 @@
+//! A simulation from the name of its scene to its states.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sscc_io::check_writable;
+
+use crate::error::{At, Result, SimError};
+use crate::machine::available_threads;
+use crate::recipes::{Cache, models_folder};
+use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, run, traditional_costs};
+use crate::scenes::{Scene, read_scene};
+use crate::watch::Watch;
+
+/// A simulation that is requested.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// A scene file, or the name of a scene that comes with the program.
+    pub scene: PathBuf,
+    /// The folder to write to; none: the scene's name.
+    pub out: Option<PathBuf>,
+    /// How many steps to make from the beginning; none: those of the scene.
+    pub steps: Option<usize>,
+    /// Begin again, whatever the folder holds.
+    pub restart: bool,
+    /// The folder of the real models; none: the one that the environment variable `SSCC_MODELS` names, if any.
+    pub models: Option<PathBuf>,
+    /// Where models and certificates are kept from one run to the next; none: the system's cache folder.
+    pub cache: Option<PathBuf>,
+    /// Number of threads; none: all cores.
+    pub threads: Option<usize>,
+}
+
+/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the files
+/// of the result. A motion that diverges and a cancellation are no errors but the result's failure: its states are kept.
+///
+/// # Errors
+/// When the scene or a model cannot be read, the folder cannot be written to, or no step was made.
+pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, SimError> {
+    let scene = read_scene(&request.scene)?;
+    let models = models_folder(request.models.as_deref())?;
+    let cache = Cache::open(request.cache.as_deref())?;
+    let folder = match &request.out {
+        Some(folder) => folder.clone(),
+        None => own_folder(&request.scene, &scene.name)?,
+    };
+    make_folder(&folder)?;
+    let threads = request.threads.unwrap_or_else(available_threads);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| SimError::refused("threads", error.to_string()))?;
+    let steps = request.steps.unwrap_or(scene.steps);
+    pool.install(|| finish(scene, models.as_deref(), &cache, folder, steps, request.restart, watch))
+}
+
+fn finish(
+    scene: Scene,
+    models: Option<&Path>,
+    cache: &Cache,
+    folder: PathBuf,
+    steps: usize,
+    again: bool,
+    watch: &dyn Watch,
+) -> Result<FinishedRun> {
+    let in_scene = || scene.name.clone();
+    let prepared = PreparedScene::get(&scene, models, cache, watch).at(in_scene)?;
+    let RunOutcome { history, processor_seconds, failure } =
+        run(&scene, &prepared, &folder, steps, again, watch).at(in_scene)?;
+    if history.is_empty() {
+        let failure = failure.unwrap_or_else(|| SimError::refused("steps", "no step was made"));
+        return Err(failure).at(in_scene);
+    }
+    let summary = Summary::new(&scene, &prepared, &history, processor_seconds);
+    // Not after a cancellation; and states that diverged may be out of range.
+    let traditional = match &failure {
+        None => traditional_costs(&scene, &prepared, &history, watch),
+        Some(_) => Ok(Vec::new()),
+    };
+    let (traditional, unmeasured) = match traditional {
+        Ok(costs) => (costs, None),
+        Err(error) => (Vec::new(), Some(error)),
+    };
+    let failure = failure.or(unmeasured);
+    Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure })
+}
+
+/// Makes a folder, and refuses one that cannot be written to before any long work.
+///
+/// # Errors
+/// When the system refuses.
+pub fn make_folder(folder: &Path) -> Result<(), SimError> {
+    let make = || {
+        fs::create_dir_all(folder)?;
+        check_writable(folder)
+    };
+    make().map_err(|cause| SimError::System {
+        place: format!("{}: no folder that can be written to", folder.display()),
+        cause,
+    })
+}
+
+/// The folder that is named after the scene.
+fn own_folder(path: &Path, name: &str) -> Result<PathBuf> {
+    let folder = PathBuf::from(name);
+    if name.is_empty() || name.starts_with('.') || folder.is_file() {
+        let cause = "no folder can have the scene's name; choose one by --out";
+        return Err(SimError::refused(path.display(), cause));
+    }
+    Ok(folder)
+}

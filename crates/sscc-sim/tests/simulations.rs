@@ -1,0 +1,222 @@
+//! Simulations in this process: several at once, cancelled ones that continue, and what is refused.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Barrier, LazyLock, Mutex};
+use std::thread;
+
+use sscc::Progress;
+use sscc_sim::{FinishedRun, Outputs, Request, SimError, Stage, Watch, simulate};
+use tempfile::TempDir;
+
+/// A small ring falls on the ground.
+const SCENE: &str = r#"
+steps_per_second = 8000
+duration = 0.05
+gravity = [0, 0, -9.81]
+[ground]
+[models.ring]
+file = "ring.obj"
+resolution = 12
+kind = "linear"
+rank = 4
+[[bodies]]
+model = "ring"
+position = [0, 0, 0.5]
+velocity = [0, 0, -2]
+[sound]
+modes = 8
+"#;
+
+/// A torus of 24 x 12 vertices.
+fn ring() -> String {
+    let (around, across) = (24, 12);
+    let mut text = String::new();
+    for (i, j) in (0..around).flat_map(|i| (0..across).map(move |j| (i, j))) {
+        let (u, v) = (TAU * f64::from(i) / f64::from(around), TAU * f64::from(j) / f64::from(across));
+        let far = 1.0 + 0.3 * v.cos();
+        let _ = writeln!(text, "v {} {} {}", far * u.cos(), far * u.sin(), 0.3 * v.sin());
+    }
+    let at = |i: i32, j: i32| 1 + (i % around) * across + j % across;
+    for (i, j) in (0..around).flat_map(|i| (0..across).map(move |j| (i, j))) {
+        let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        let _ = writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}");
+    }
+    text
+}
+
+/// The scene with its ring, and the models that are made once for all tests.
+static SHARED: LazyLock<TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    fs::write(folder.path().join("ring.obj"), ring()).unwrap();
+    let out = tempfile::tempdir().unwrap();
+    simulate(&Request { steps: Some(1), ..request_in(folder.path(), out.path()) }, &()).unwrap();
+    folder
+});
+
+fn request_in(shared: &Path, out: &Path) -> Request {
+    Request {
+        scene: shared.join("scene.toml"),
+        out: Some(out.to_owned()),
+        cache: Some(shared.join("cache")),
+        threads: Some(1),
+        ..Request::default()
+    }
+}
+
+fn request(out: &Path) -> Request {
+    request_in(SHARED.path(), out)
+}
+
+/// Cancels once so many steps are done, and records the stages.
+struct Watched {
+    cancel_at: usize,
+    done: AtomicUsize,
+    stages: Mutex<Vec<Stage>>,
+    notes: Mutex<Vec<String>>,
+}
+
+impl Watched {
+    fn cancelling_at(steps: usize) -> Self {
+        Self {
+            cancel_at: steps,
+            done: AtomicUsize::new(0),
+            stages: Mutex::default(),
+            notes: Mutex::default(),
+        }
+    }
+}
+
+impl Progress for Watched {
+    fn report(&self, done: usize, total: usize) {
+        assert!(done <= total, "{done} of {total}");
+        if let Some(Stage::Steps { .. }) = self.stages.lock().unwrap().last() {
+            self.done.fetch_max(done, Ordering::Relaxed);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.done.load(Ordering::Relaxed) >= self.cancel_at
+    }
+}
+
+impl Watch for Watched {
+    fn begin(&self, stage: Stage) {
+        self.stages.lock().unwrap().push(stage);
+    }
+
+    fn note(&self, note: &str) {
+        self.notes.lock().unwrap().push(note.into());
+    }
+}
+
+/// The files of a run that do not depend on time.
+fn written(run: FinishedRun) -> Result<Vec<Vec<u8>>, SimError> {
+    let outputs = Outputs::write(&run);
+    let is_motion = |name: &str| ["trajectories.npz", "animation.glb", "sound_float.wav"].contains(&name);
+    let files = outputs.files();
+    let motion = files.iter().filter(|file| is_motion(&file.file_name().unwrap().to_string_lossy()));
+    let bytes: Vec<Vec<u8>> = motion.map(|file| fs::read(file).unwrap()).collect();
+    assert_eq!(bytes.len(), 3);
+    outputs.finish(run).map(|()| bytes)
+}
+
+#[test]
+fn two_at_once_neither_disturb_nor_cancel_each_other() {
+    let folders = [(); 3].map(|()| tempfile::tempdir().unwrap());
+    let alone = written(simulate(&request(folders[0].path()), &()).unwrap()).unwrap();
+    let begin = Barrier::new(2);
+    let (whole, cancelled) = thread::scope(|scope| {
+        let run = |folder: usize, watched: Watched| {
+            let (request, begin) = (request(folders[folder].path()), &begin);
+            scope.spawn(move || {
+                begin.wait();
+                simulate(&request, &watched).unwrap()
+            })
+        };
+        let (whole, cancelled) =
+            (run(1, Watched::cancelling_at(usize::MAX)), run(2, Watched::cancelling_at(100)));
+        (whole.join().unwrap(), cancelled.join().unwrap())
+    });
+    assert_eq!((whole.history.len(), cancelled.history.len()), (400, 100));
+    assert!(cancelled.failure.as_ref().unwrap().is_cancelled());
+    assert!(written(whole).unwrap() == alone);
+    let refused = written(cancelled).unwrap_err();
+    assert!(refused.is_cancelled());
+    assert_eq!(refused.to_string(), "interrupted after 100 steps; the same command goes on from there");
+}
+
+#[test]
+fn a_cancelled_simulation_continues_to_the_same_bits() {
+    let folders = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let whole = written(simulate(&request(folders[0].path()), &()).unwrap()).unwrap();
+    let request = request(folders[1].path());
+    for (at, states) in [(70, 70), (300, 300), (usize::MAX, 400)] {
+        let watched = Watched::cancelling_at(at);
+        let run = simulate(&request, &watched).unwrap();
+        assert_eq!((run.history.len(), run.failure.is_some()), (states, at < 400));
+        // What takes long was made before, by the first simulation.
+        let stages = watched.stages.into_inner().unwrap();
+        assert!(!stages.contains(&Stage::Certificates) && !stages.contains(&Stage::Modes), "{stages:?}");
+        assert_eq!(stages.last() == Some(&Stage::Comparison), at > 400);
+        match written(run) {
+            Ok(bytes) => assert!(at > 400 && bytes == whole),
+            Err(error) => assert!(error.is_cancelled()),
+        }
+    }
+}
+
+#[test]
+fn a_damaged_model_is_made_anew_with_a_note() {
+    let (folder, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    for name in ["scene.toml", "ring.obj"] {
+        fs::copy(SHARED.path().join(name), folder.path().join(name)).unwrap();
+    }
+    let request = Request { steps: Some(1), ..request_in(folder.path(), out.path()) };
+    let first = Watched::cancelling_at(usize::MAX);
+    simulate(&request, &first).unwrap();
+    assert!(first.stages.lock().unwrap().contains(&Stage::Modes) && first.notes.lock().unwrap().is_empty());
+    let files = fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path());
+    let mass = files.into_iter().find(|path| path.to_string_lossy().ends_with(".mass.json")).unwrap();
+    fs::write(&mass, "[1, 2]").unwrap();
+    let second = Watched::cancelling_at(usize::MAX);
+    simulate(&request, &second).unwrap();
+    let notes = second.notes.into_inner().unwrap();
+    let [note] = &notes[..] else { panic!("{notes:?}") };
+    assert_eq!(*note, format!("made anew: {}: too short", mass.display()));
+    assert_ne!(fs::read_to_string(&mass).unwrap(), "[1, 2]");
+}
+
+#[test]
+fn refusals_name_the_file_and_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |request: Request| simulate(&request, &()).err().unwrap();
+    let scene = |text: &str| {
+        let path = folder.path().join("bad.toml");
+        fs::write(&path, text).unwrap();
+        Request { scene: path, ..request(&folder.path().join("out")) }
+    };
+    let message = |text: &str| refused(scene(text)).to_string();
+    let unknown = message(&SCENE.replace("gravity", "gravty"));
+    assert!(
+        unknown.ends_with("bad.toml: line 4: unknown key 'gravty'; did you mean 'gravity'?"),
+        "{unknown}"
+    );
+    let missing = refused(scene(SCENE));
+    assert!(missing.file().is_some() && missing.to_string().ends_with("ring.obj: not found"), "{missing}");
+    let large = message(&"#".repeat((1 << 20) + 1));
+    assert!(large.ends_with("bad.toml: file has 1048577 bytes; scenes may have at most 1048576"), "{large}");
+    let models = folder.path().join("none");
+    let named = refused(Request { models: Some(models.clone()), ..request(folder.path()) }).to_string();
+    assert_eq!(named, format!("{}: no folder of models; leave out --models", models.display()));
+    let file = folder.path().join("bad.toml");
+    let error = refused(Request { out: Some(file.clone()), ..request(folder.path()) });
+    let start = format!("{}: no folder that can be written to: ", file.display());
+    assert!(error.is_system() && error.to_string().starts_with(&start), "{error}");
+}

@@ -1,0 +1,85 @@
+//! The report of an animation: the page with one shape whose q is known in every frame.
+
+use sscc::{Certificates, ReducedModel};
+
+use crate::{
+    Arrays, Axis, Body, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series, ViewError,
+};
+
+/// An animation of one shape, and what was found in each of its frames.
+pub struct Animation<'a> {
+    /// The title of the page.
+    pub title: &'a str,
+    /// What the shape is called.
+    pub name: &'a str,
+    /// The shape.
+    pub model: &'a ReducedModel,
+    /// Of the shape.
+    pub certificates: &'a Certificates,
+    /// Of each mode (Hz), where they are known.
+    pub frequencies: Option<Vec<f64>>,
+    /// Frames in a second.
+    pub rate: f64,
+    /// q of each frame, one after the other.
+    pub q: &'a [f64],
+    /// The colliding pairs of triangles of each frame.
+    pub pairs: &'a [Vec<(u32, u32)>],
+    /// Name of each method, and its time for each frame (microseconds).
+    pub costs: Vec<(&'a str, &'a [f64])>,
+    /// Lines of a table: label and value.
+    pub summary: Vec<(String, String)>,
+}
+
+impl Animation<'_> {
+    /// One file of HTML.
+    ///
+    /// # Errors
+    /// When the certificates are of another model, or numbers are beyond what a page can show.
+    pub fn report(self) -> Result<String, ViewError> {
+        let mut arrays = Arrays::default();
+        let mut scene = Scene::new(self.title);
+        let details = ModelDetails { frequencies: self.frequencies, ..ModelDetails::default() };
+        let (model, certificates) = (self.model, self.certificates);
+        scene.models.push(ModelScene::new(0, self.name, model, certificates, details, &mut arrays)?);
+        scene.summary = self.summary;
+        let times: Vec<f64> = (0..self.pairs.len()).map(|frame| frame as f64 / self.rate).collect();
+        let (mut offsets, mut triangles): (Vec<u32>, Vec<u32>) = (vec![0], Vec::new());
+        for pairs in self.pairs {
+            let mut own: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
+            own.sort_unstable();
+            own.dedup();
+            triangles.extend(own);
+            offsets.push(triangles.len() as u32);
+        }
+        let series = |(name, microseconds): (&str, &[f64])| {
+            let milliseconds = microseconds.iter().map(|t| 1e-3 * t);
+            Series::new(name, times.iter().zip(milliseconds).map(|(time, cost)| [*time, cost]))
+        };
+        let costs = Plot {
+            title: "Cost over time".into(),
+            x: Axis::linear("time (s)"),
+            y: Axis::logarithmic("one query, ms"),
+            series: self.costs.into_iter().map(series).collect(),
+        };
+        scene.playback = Some(Playback {
+            bodies: vec![Body {
+                name: self.name.into(),
+                model: 0,
+                q: arrays.add_f32("q-0", self.q.iter().map(|x| *x as f32)),
+                rigid: None,
+                center: [0.0; 3],
+                pairs: Some(self.pairs.iter().map(|pairs| pairs.len() as u64).collect()),
+            }],
+            pairs_since: None,
+            colliding: Some(Colliding {
+                offsets: arrays.add_u32("colliding-offsets", offsets),
+                triangles: arrays.add_u32("colliding-triangles", triangles),
+            }),
+            times,
+            ground: None,
+            sound: None,
+            costs: Some(costs),
+        });
+        Ok(Report { scene, arrays }.html()?)
+    }
+}

@@ -1,0 +1,179 @@
+//! The motion of a simulation, for its report.
+
+use std::ops::Range;
+
+use sscc::{Error, Progress, Query};
+use sscc_io::gltf::key_frames;
+use sscc_io::{WavFormat, wav_to_bytes};
+use sscc_sim::{FinishedRun, History, SoundTrack};
+
+use super::plots::costs;
+use crate::{Arrays, Body, Colliding, Playback};
+
+/// Bytes of all frames at most; longer motions have fewer frames in a second.
+const MOST_MOTION: usize = 24 << 20;
+
+/// Bytes of sound at most: five minutes at 44,100 samples in a second.
+const MOST_SOUND: usize = 28 << 20;
+
+/// Frames of bodies in which colliding triangles are computed at most.
+const MOST_ASKED: usize = 4000;
+
+/// Colliding triangles of all frames at most.
+const MOST_TRIANGLES: usize = 2 << 20;
+
+/// The motion, if a page can show any of it, and notes on what was left out.
+pub fn playback(
+    run: &FinishedRun,
+    progress: &dyn Progress,
+    arrays: &mut Arrays,
+) -> Result<(Option<Playback>, Vec<String>), Error> {
+    let FinishedRun { scene, prepared, history, .. } = run;
+    let mut notes = Vec::new();
+    let bodies = scene.bodies.len();
+    let width: usize = (0..bodies).map(|body| 4 * (history.layout().rank(body) + 7)).sum();
+    let most = (MOST_MOTION / width).max(2) as f64;
+    let duration = run.time(history.len());
+    let rate = scene.frames_per_second.min(most / duration);
+    if rate < scene.frames_per_second {
+        notes.push(format!("{rate:.1} frames in a second instead of {}", scene.frames_per_second));
+    }
+    let mut frames = key_frames(history.len(), scene.step, rate);
+    // Of a motion that diverged, what a page can show.
+    let fits = |state: &usize| {
+        let mut bodies = history.bodies(*state);
+        bodies.all(|body| body.q.iter().chain(&body.position.to_array()).all(|x| x.abs() < 1e30))
+    };
+    let shown = frames.iter().take_while(|state| fits(state)).count();
+    frames.truncate(shown);
+    if frames.is_empty() {
+        return Ok((None, notes));
+    }
+    let tracks = (0..bodies).map(|body| {
+        let at = || frames.iter().map(|state| history.body(*state, body));
+        let spec = &scene.bodies[body];
+        let q = at().flat_map(|facts| facts.q).map(|x| *x as f32);
+        let rigid = at().flat_map(|facts| {
+            let mut numbers = [0.0; 7];
+            numbers[..3].copy_from_slice(&facts.position.to_array());
+            numbers[3..].copy_from_slice(&facts.orientation.to_array());
+            numbers.map(|x| x as f32)
+        });
+        Body {
+            name: format!("{} {body}", prepared.models[spec.model].certified.name),
+            model: spec.model,
+            q: arrays.add_f32(format!("q-{body}"), q),
+            rigid: Some(arrays.add_f32(format!("rigid-{body}"), rigid)),
+            center: prepared.models[spec.model].center().to_array(),
+            pairs: Some(at().map(|facts| facts.pairs as u64).collect()),
+        }
+    });
+    let tracks = tracks.collect();
+    let (colliding, note) = colliding(run, &frames, progress, arrays)?;
+    notes.extend(note);
+    let (sound, note) = sound(run, arrays);
+    notes.extend(note);
+    let playback = Playback {
+        times: frames.iter().map(|state| run.time(*state)).collect(),
+        bodies: tracks,
+        pairs_since: Some(pairs_since(history, &frames)),
+        colliding,
+        ground: scene.ground.map(|ground| ground.height),
+        sound,
+        costs: Some(costs(run)),
+    };
+    Ok((Some(playback), notes))
+}
+
+/// For each frame, the most pairs in which all bodies collide with themselves in one state between the frame before and
+/// this one: contacts shorter than a frame are seen in none.
+fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
+    let most = |states: Range<usize>| states.map(|state| history.self_pairs(state) as u64).max().unwrap_or(0);
+    let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
+    [0].into_iter().chain(between).take(frames.len()).collect()
+}
+
+/// The colliding triangles of each frame, body by body; none of them where they are too many.
+fn colliding(
+    run: &FinishedRun,
+    frames: &[usize],
+    progress: &dyn Progress,
+    arrays: &mut Arrays,
+) -> Result<(Option<Colliding>, Option<String>), Error> {
+    let FinishedRun { scene, prepared, history, .. } = run;
+    let facts = || frames.iter().flat_map(|state| history.bodies(*state));
+    let asked = facts().filter(|body| body.pairs > 0).count();
+    let left_out = |why: String| Ok((None, Some(format!("colliding triangles are left out: {why}"))));
+    if asked > MOST_ASKED {
+        return left_out(format!("bodies collide with themselves in {asked} frames"));
+    }
+    let mut queries = Vec::new();
+    for model in &prepared.models {
+        queries.push(Query::new(&model.certified.model, &model.certified.full.certificates)?);
+    }
+    let (mut offsets, mut triangles): (Vec<u32>, Vec<u32>) = (vec![0], Vec::new());
+    let specs = scene.bodies.iter().cycle();
+    for (facts, spec) in facts().zip(specs) {
+        if facts.pairs > 0 {
+            if progress.is_cancelled() {
+                return left_out("it was interrupted".into());
+            }
+            let start = triangles.len();
+            let pairs = queries[spec.model].discrete(facts.q)?;
+            let mut own: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
+            own.sort_unstable();
+            own.dedup();
+            triangles.extend(own);
+            if triangles.len() > MOST_TRIANGLES {
+                return left_out(format!("more than {start} of them"));
+            }
+        }
+        offsets.push(triangles.len() as u32);
+    }
+    let colliding = Colliding {
+        offsets: arrays.add_u32("colliding-offsets", offsets),
+        triangles: arrays.add_u32("colliding-triangles", triangles),
+    };
+    Ok((Some(colliding), None))
+}
+
+/// The sound as a file within, as loud as `sound.wav`.
+fn sound(run: &FinishedRun, arrays: &mut Arrays) -> (Option<String>, Option<String>) {
+    let Some(sound) = SoundTrack::of(run) else { return (None, None) };
+    if 2 * sound.samples.len() > MOST_SOUND {
+        return (None, Some("the sound is too long for a report: see sound.wav".into()));
+    }
+    match wav_to_bytes(sound.rate, &sound.normalized(), WavFormat::Pcm16) {
+        Ok(bytes) => (Some(arrays.add_bytes("sound", bytes)), None),
+        Err(why) => (None, Some(format!("the sound is left out: {why}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use sscc_sim::{BodyRecord, StateLayout, StepRecord};
+
+    use super::*;
+
+    #[test]
+    fn steps_between_frames_are_told_apart_from_frames() {
+        let pairs = [[0, 0], [7, 0], [3, 5], [0, 0], [4, 0], [0, 2], [0, 0], [0, 9]];
+        let (layout, mut numbers) = (StateLayout::new([0, 0]), Vec::new());
+        for state in pairs {
+            let bodies = state.map(|pairs| BodyRecord {
+                pairs,
+                position: DVec3::ZERO,
+                orientation: DQuat::IDENTITY,
+                q: &[],
+            });
+            layout.push(StepRecord::default(), bodies, &mut numbers);
+        }
+        let history = History::new(layout, numbers);
+        // States 1 and 2 between the first two frames; none between 3 and 4; state 4 is a frame itself.
+        assert_eq!(pairs_since(&history, &[0, 3, 4, 6, 7]), [0, 8, 0, 2, 0]);
+        assert_eq!(pairs_since(&history, &[0, 7]), [0, 8]);
+        assert_eq!(pairs_since(&history, &[0]), [0]);
+    }
+}

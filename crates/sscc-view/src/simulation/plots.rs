@@ -1,0 +1,82 @@
+//! The plots of a simulation's report.
+
+use sscc_sim::FinishedRun;
+
+use crate::{Axis, Plot, Series};
+
+/// Points of a line at most.
+const POINTS: usize = 700;
+
+/// The cost of self-collision detection in each step, as in the paper's Figure 12: of the simulation's own method the
+/// largest of each stretch of steps, of the traditional method at some states.
+pub fn costs(run: &FinishedRun) -> Plot {
+    let own = line(run, |state| 1e3 * run.history.step(state).self_seconds());
+    let of = |(state, seconds): &(usize, f64)| [run.time(*state), 1e3 * seconds];
+    Plot {
+        title: "Cost over time".into(),
+        x: time(),
+        y: Axis::logarithmic("self-collisions, ms in a step"),
+        series: vec![
+            Series::new("traditional", run.traditional.iter().map(of)),
+            Series::new("certified", thinned(&own, POINTS, f64::max)),
+        ],
+    }
+}
+
+/// The energy of all bodies.
+pub fn energy(run: &FinishedRun) -> Plot {
+    let mut points = line(run, |state| run.history.step(state).energy);
+    points.retain(|point| point[1].is_finite());
+    Plot {
+        title: "Energy".into(),
+        x: time(),
+        y: Axis::linear("kinetic, elastic and potential (J)"),
+        series: vec![Series::new("all bodies", thinned(&points, POINTS, f64::max))],
+    }
+}
+
+/// The sound, the largest and the least sample of each stretch of steps.
+pub fn sound(run: &FinishedRun) -> Plot {
+    let points = line(run, |state| run.history.step(state).sound);
+    let series = |name, pick| Series::new(name, thinned(&points, POINTS, pick));
+    Plot {
+        title: "Sound".into(),
+        x: time(),
+        y: Axis::linear("sample"),
+        series: vec![series("largest", f64::max as fn(f64, f64) -> f64), series("least", f64::min)],
+    }
+}
+
+/// A value of each state.
+fn line(run: &FinishedRun, of: impl Fn(usize) -> f64) -> Vec<[f64; 2]> {
+    (0..run.history.len()).map(|state| [run.time(state), of(state)]).collect()
+}
+
+fn time() -> Axis {
+    Axis::linear("time (s)")
+}
+
+/// At most `most` points: of each stretch of a line the mean x, and the largest y or the smallest one by `pick`.
+fn thinned(points: &[[f64; 2]], most: usize, pick: fn(f64, f64) -> f64) -> Vec<[f64; 2]> {
+    let stretch = points.len().div_ceil(most.max(1)).max(1);
+    let one = |part: &[[f64; 2]]| {
+        let x = part.iter().map(|p| p[0]).sum::<f64>() / part.len() as f64;
+        [x, part.iter().map(|p| p[1]).fold(f64::NAN, pick)]
+    };
+    points.chunks(stretch).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thin_lines_keep_their_peaks() {
+        let points: Vec<[f64; 2]> = (0..1000).map(|i| [f64::from(i), f64::from(i % 100)]).collect();
+        let thin = thinned(&points, 10, f64::max);
+        assert_eq!(thin.len(), 10);
+        assert!(thin.iter().all(|p| p[1] == 99.0));
+        assert_eq!(thinned(&points[..3], 10, f64::max), points[..3]);
+        assert!(thinned(&[], 10, f64::max).is_empty());
+    }
+}

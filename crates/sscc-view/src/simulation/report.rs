@@ -1,0 +1,40 @@
+//! The report of a simulation: the page with its motion, one HTML file that needs no other.
+
+use sscc::Progress;
+use sscc_sim::text::one_line;
+use sscc_sim::{FinishedRun, frequencies_of_modes};
+
+use super::playback::playback;
+use super::plots::{energy, sound};
+use crate::{Arrays, ModelDetails, ModelScene, Report, Scene, ViewError};
+
+/// The report of a simulation as one file of HTML. Leaves out the colliding triangles where `progress` cancels.
+///
+/// # Errors
+/// When the numbers of a model are beyond what a page can show.
+pub fn simulation_report(run: &FinishedRun, progress: &dyn Progress) -> Result<String, ViewError> {
+    let mut arrays = Arrays::default();
+    let mut scene = Scene::new(&run.scene.name);
+    for (index, model) in run.prepared.models.iter().enumerate() {
+        let certified = &model.certified;
+        let details = ModelDetails {
+            frequencies: frequencies_of_modes(&certified.elasticity),
+            ..ModelDetails::default()
+        };
+        let (name, certificates) = (&certified.name, &certified.full.certificates);
+        let made = ModelScene::new(index, name, &certified.model, certificates, details, &mut arrays);
+        let named = |error| ViewError::Model { name: name.clone(), error: Box::new(error) };
+        scene.models.push(made.map_err(named)?);
+    }
+    let failure =
+        run.failure.iter().map(|failure| ("stopped early".to_owned(), one_line(&failure.to_string())));
+    scene.summary = failure.chain(run.summary.table()).collect();
+    scene.plots.push(energy(run));
+    if run.scene.sound.is_some() {
+        scene.plots.push(sound(run));
+    }
+    let (playback, notes) = playback(run, progress, &mut arrays)?;
+    scene.playback = playback;
+    scene.summary.extend(notes.into_iter().map(|note| ("note".to_owned(), note)));
+    Ok(Report { scene, arrays }.html()?)
+}
