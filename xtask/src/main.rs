@@ -5,6 +5,7 @@
 
 mod mutants;
 mod page;
+mod program;
 mod python;
 mod tally;
 mod test;
