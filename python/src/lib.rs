@@ -16,7 +16,6 @@ mod metric;
 mod model;
 mod model_methods;
 mod modes;
-mod oracle;
 mod pool;
 mod shards;
 mod simulate;
@@ -49,8 +48,6 @@ mod _sscc {
 
     #[pymodule_export]
     use super::modes::{_elastic, _pca, _polynomial};
-    #[pymodule_export]
-    use super::oracle::_first_contact;
     #[pymodule_export]
     use super::simulate::_simulate;
 
