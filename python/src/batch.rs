@@ -1,7 +1,5 @@
 //! `sscc.Batch`: the answers to many q.
 
-use std::time::Instant;
-
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -10,7 +8,6 @@ use pyo3::types::PyList;
 use crate::answer::{Answer, Pickled, Reduced, pickled, unpickled};
 use crate::arguments::count;
 use crate::arrays::{Cached, cached, copied, floats, line, table};
-use crate::certificates::Certificates;
 use crate::errors::{refused, room, value};
 use crate::interrupt::run_borrowing;
 use crate::pool::{self, Pool};
@@ -143,7 +140,7 @@ pub fn _batch(answers: Vec<Pickled<'_>>) -> PyResult<Batch> {
 }
 
 /// The entries of Q (n, r), which nobody else can write to.
-fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64>> {
+pub fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64>> {
     if array.ndim() != 2 || array.shape()[1] != rank {
         let hint = if array.ndim() == 1 { "; for one q there is check" } else { "" };
         return Err(value(format!("Q has shape {:?}: (n, {rank}) was expected{hint}", array.shape())));
@@ -152,7 +149,7 @@ fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64
 }
 
 /// The rows of the entries of Q.
-fn rows(entries: &[f64], rank: usize) -> PyResult<Vec<&[f64]>> {
+pub fn rows(entries: &[f64], rank: usize) -> PyResult<Vec<&[f64]>> {
     let mut rows = room(entries.len() / rank, "Q")?;
     rows.extend(entries.chunks_exact(rank));
     Ok(rows)
@@ -195,37 +192,4 @@ pub fn check_many(
         Some((row, error)) => refused(&error, &format!("Q[{row}]")),
         None => refused(&error, "Q"),
     })
-}
-
-/// For measurements: seconds that the core takes for the same without Python, `(batch, one by one)`.
-#[pyfunction]
-#[pyo3(signature = (certificates, Q, threads, one_by_one=true))]
-#[allow(non_snake_case)]
-pub fn _core_seconds(
-    py: Python<'_>,
-    certificates: &Certificates,
-    Q: &Bound<'_, PyAny>,
-    threads: Option<usize>,
-    one_by_one: bool,
-) -> PyResult<(f64, Vec<f64>)> {
-    let pool = &certificates.pool;
-    let rank = pool.borrow_owner().loaded.model.rank();
-    let entries = entries(&floats(Q, "Q")?, rank)?;
-    let rows = rows(&entries, rank)?;
-    let measured = py.detach(|| {
-        pool.with_first(|query| {
-            let start = Instant::now();
-            query.batch(&rows, threads, &())?;
-            let batch = start.elapsed().as_secs_f64();
-            let mut query = query.clone();
-            let mut single = Vec::with_capacity(rows.len());
-            for q in rows.iter().filter(|_| one_by_one) {
-                let start = Instant::now();
-                query.discrete(q)?;
-                single.push(start.elapsed().as_secs_f64());
-            }
-            Ok((batch, single))
-        })
-    });
-    measured.map_err(|error: sscc::Error| refused(&error, "Q"))
 }

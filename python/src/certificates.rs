@@ -16,7 +16,8 @@ use crate::hierarchy::Hierarchy;
 use crate::impacts::Impacts;
 use crate::interrupt::answer;
 use crate::kinetic::KineticQuery;
-use crate::model::{Model, factor};
+use crate::metric::factor;
+use crate::model::Model;
 use crate::pool::{Certified, Pool};
 
 #[pyclass(frozen, module = "sscc", name = "Certificates")]

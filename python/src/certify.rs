@@ -10,7 +10,8 @@ use crate::arrays::vector;
 use crate::certificates::Certificates;
 use crate::errors::{refused, value};
 use crate::interrupt::run;
-use crate::model::{Loaded, Model, read_metric};
+use crate::metric::read_metric;
+use crate::model::{Loaded, Model};
 use crate::pool::{Certified, Pool, threads};
 
 pub struct Typed<'a, 'py> {

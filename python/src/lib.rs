@@ -6,14 +6,16 @@ mod arrays;
 mod batch;
 mod certificates;
 mod certify;
+mod core_seconds;
 mod errors;
 mod hierarchy;
 mod impacts;
 mod interrupt;
 mod kinetic;
+mod metric;
 mod model;
+mod model_methods;
 mod modes;
-mod oracle;
 mod pool;
 mod shards;
 mod simulate;
@@ -26,9 +28,11 @@ mod _sscc {
     #[pymodule_export]
     use super::answer::{_answer, Answer};
     #[pymodule_export]
-    use super::batch::{_batch, _core_seconds, Batch};
+    use super::batch::{_batch, Batch};
     #[pymodule_export]
     use super::certificates::{_certificates, Certificates};
+    #[pymodule_export]
+    use super::core_seconds::_core_seconds;
     #[pymodule_export]
     use super::hierarchy::Hierarchy;
     #[pymodule_export]
@@ -36,14 +40,14 @@ mod _sscc {
     #[pymodule_export]
     use super::kinetic::KineticQuery;
     #[pymodule_export]
-    use super::model::{_model, Model};
+    use super::model::Model;
+    #[pymodule_export]
+    use super::model_methods::_model;
     #[pymodule_export]
     use super::shards::{_build, _certify_in_shards, _check_options, _configurations, _joined, ShardWorker};
 
     #[pymodule_export]
     use super::modes::{_elastic, _pca, _polynomial};
-    #[pymodule_export]
-    use super::oracle::_first_contact;
     #[pymodule_export]
     use super::simulate::_simulate;
 

@@ -1,21 +1,16 @@
-//! `sscc.Model`: a mesh and its deformation modes.
+//! The Python object of a model, and meshes from arrays. Its methods are in `model_methods.rs`, above all other classes:
+//! one of them makes certificates.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyString, PyTuple, PyType};
-use sscc::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
-use sscc_io::container::{model_from_bytes, model_to_bytes};
-use sscc_io::npy::Array;
-use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
+use sscc::{ReducedModel, TriMesh};
+use sscc_io::ModelInfo;
 
-use crate::answer::Reduced;
-use crate::arguments::{check_ending, path};
-use crate::arrays::{copied, floats, integers, line, table, vector};
-use crate::certify;
-use crate::errors::{file, kind, refused, room, value};
+use crate::arrays::{floats, integers};
+use crate::errors::{refused, room, value};
 
 /// A model with what is known beside it.
 #[derive(Clone)]
@@ -45,195 +40,9 @@ impl Model {
         Self { loaded: Arc::new(loaded) }
     }
 
-    fn core(&self) -> &ReducedModel {
+    pub fn core(&self) -> &ReducedModel {
         &self.loaded.model
     }
-}
-
-#[pymethods]
-impl Model {
-    #[new]
-    #[pyo3(signature = (vertices, faces, modes, metric=None))]
-    fn new(
-        vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
-        modes: &Bound<'_, PyAny>,
-        metric: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let mesh = mesh(vertices, faces)?;
-        let modes = read_modes(modes, mesh.rest_positions().len())?;
-        let model = ReducedModel::new(mesh, modes).map_err(|error| refused(&error, ""))?;
-        let model = match read_metric(&model, metric)? {
-            Some(metric) => {
-                let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
-                ReducedModel::with_metric(mesh, modes, metric).map_err(|error| refused(&error, "metric"))?
-            }
-            None => model,
-        };
-        Ok(Self::of(Loaded::new(model, ModelInfo::default(), false)))
-    }
-
-    #[classmethod]
-    #[pyo3(signature = (path, modes=None, *, mesh_name=None))]
-    fn load(
-        _class: &Bound<'_, PyType>,
-        py: Python<'_>,
-        path: &Bound<'_, PyAny>,
-        modes: Option<&Bound<'_, PyAny>>,
-        mesh_name: Option<&str>,
-    ) -> PyResult<Self> {
-        let path = crate::arguments::path(path, "path")?;
-        let modes = modes.map(|modes| crate::arguments::path(modes, "modes")).transpose()?;
-        let read = py.detach(|| load_model_with(&path, &LoadOptions::new(modes.as_deref(), mesh_name)));
-        let read = read.map_err(|error| file(&error))?;
-        Ok(Self::of(Loaded {
-            default_q: read.default_q,
-            mode_names: read.mode_names,
-            ..Loaded::new(read.model, read.info, splits_vertices(&path))
-        }))
-    }
-
-    fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {
-        let path = self::path(path, "path")?;
-        check_ending(&path, ".model.safetensors")?;
-        let loaded = &self.loaded;
-        py.detach(|| write_model(&path, &loaded.model, &loaded.info)).map_err(|error| file(&error))
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, neighbours=None, weld=None,
-        ignore_rest=None, max_exceptions=None, threads=None, progress=None))]
-    fn certify(
-        slf: &Bound<'_, Self>,
-        epsilon: Option<&Bound<'_, PyAny>>,
-        metric: Option<&Bound<'_, PyAny>>,
-        center: Option<&Bound<'_, PyAny>>,
-        scheme: Option<&Bound<'_, PyAny>>,
-        budget: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        weld: Option<&Bound<'_, PyAny>>,
-        ignore_rest: Option<&Bound<'_, PyAny>>,
-        max_exceptions: Option<&Bound<'_, PyAny>>,
-        threads: Option<&Bound<'_, PyAny>>,
-        progress: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<crate::certificates::Certificates> {
-        let typed = certify::Typed {
-            epsilon,
-            metric,
-            center,
-            scheme,
-            budget,
-            neighbours,
-            weld,
-            ignore_rest,
-            max_exceptions,
-            threads,
-        };
-        certify::certify(slf, &typed, progress)
-    }
-
-    /// Where the vertices are at q.
-    fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let q = vector(q, "q")?;
-        let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
-        table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
-    }
-
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        table(py, 3, self.core().mesh().rest_positions().iter().flat_map(|p| p.to_array()).collect())
-    }
-
-    #[getter]
-    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        table(py, 3, self.core().mesh().faces().as_flattened().to_vec())
-    }
-
-    #[getter]
-    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let modes = self.core().modes();
-        let mut entries = room(3 * modes.displacements().len(), "modes")?;
-        for of_vertex in modes.displacements().chunks_exact(modes.rank()) {
-            (0..3).for_each(|axis| entries.extend(of_vertex.iter().map(|u| u[axis])));
-        }
-        table(py, modes.rank(), entries)?.call_method1("reshape", (modes.vertices(), 3, modes.rank()))
-    }
-
-    #[getter]
-    fn rank(&self) -> usize {
-        self.core().rank()
-    }
-
-    #[getter]
-    fn metric(&self) -> &'static str {
-        self.core().metric().kind().name()
-    }
-
-    #[getter]
-    fn metric_factor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        factor(py, self.core().metric())
-    }
-
-    #[getter]
-    fn units(&self) -> &str {
-        &self.loaded.info.units
-    }
-
-    #[getter]
-    fn provenance(&self) -> &str {
-        &self.loaded.info.provenance
-    }
-
-    #[getter]
-    fn mode_names(&self) -> Vec<String> {
-        self.loaded.mode_names.clone()
-    }
-
-    #[getter]
-    fn default_q<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        line(py, self.loaded.default_q.clone().unwrap_or_else(|| vec![0.0; self.core().rank()]))
-    }
-
-    #[getter]
-    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let stiffness = match &self.loaded.info.elasticity {
-            None => return Ok(None),
-            Some(Elasticity::Linear(stiffness)) => stiffness,
-            Some(Elasticity::Nonlinear(cubic)) => &cubic.linear,
-        };
-        table(py, self.core().rank(), stiffness.clone()).map(Some)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
-        let py = slf.py();
-        let loaded = &slf.get().loaded;
-        let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;
-        let arguments = (PyBytes::new(py, &bytes), &loaded.default_q, &loaded.mode_names, loaded.is_split)
-            .into_pyobject(py)?;
-        Ok((py.import("sscc._sscc")?.getattr("_model")?, arguments))
-    }
-
-    fn __repr__(&self) -> String {
-        let mesh = self.core().mesh();
-        format!(
-            "<sscc.Model: {} triangles, {} vertices, {} modes>",
-            mesh.faces().len(),
-            mesh.rest_positions().len(),
-            self.core().rank()
-        )
-    }
-}
-
-/// What a pickled model becomes.
-#[pyfunction]
-pub fn _model(
-    bytes: &[u8],
-    default_q: Option<Vec<f64>>,
-    mode_names: Vec<String>,
-    is_split: bool,
-) -> PyResult<Model> {
-    let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
-    Ok(Model::of(Loaded { default_q, mode_names, ..Loaded::new(model, info, is_split) }))
 }
 
 /// A mesh from arrays: (V, 3) numbers and (F, 3) integers.
@@ -270,67 +79,4 @@ pub fn points(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<D
     let mut points = room(array.shape()[0], name)?;
     points.extend(array.as_slice()?.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)));
     Ok(points)
-}
-
-/// Modes for so many vertices, in one of the shapes that the command takes.
-fn read_modes(modes: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Modes> {
-    let array = floats(modes, "modes")?;
-    let entries = array.as_slice()?;
-    // As much again will be needed.
-    let mut copy = room::<f64>(2 * entries.len(), "modes")?;
-    copy.extend_from_slice(entries);
-    let array = Array::from_c_order(array.shape(), copy).ok_or_else(|| kind("modes changed its shape"))?;
-    sscc_io::modes::array::from_array(&array, vertices).map_err(|error| value(format!("modes: {error}")))
-}
-
-/// The metric that was asked for, if any: a name, weights (r) or a matrix (r, r).
-pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Metric>> {
-    let Some(any) = metric else { return Ok(None) };
-    let rank = model.rank();
-    let made = if let Ok(name) = any.cast::<PyString>() {
-        match name.to_str()? {
-            "displacement" => Metric::displacement(model.mesh(), model.modes()),
-            "mass" => Metric::mass(model.mesh(), model.modes()),
-            "identity" => Metric::identity(rank),
-            "energy" if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
-            "energy" => {
-                return Err(value(format!(
-                    "metric: the model's own is '{}', not 'energy': that of a model with its stiffness, such as \
-                     sscc.modes.linear makes",
-                    model.metric().kind().name()
-                )));
-            }
-            other => {
-                return Err(value(format!(
-                    "metric is '{}': 'energy', 'displacement', 'mass', 'identity', weights (r,) or a matrix (r, r) \
-                     was expected",
-                    other.escape_debug()
-                )));
-            }
-        }
-    } else {
-        let array = floats(any, "metric")?;
-        let entries = &copied(&array, "metric")?;
-        let made = match *array.shape() {
-            [n] if n == rank => Metric::from_weights(MetricKind::Given, entries),
-            [n, m] if (n, m) == (rank, rank) => Metric::from_matrix(MetricKind::Given, rank, entries),
-            _ => {
-                let shape = array.shape();
-                return Err(value(format!(
-                    "metric has shape {shape:?}: ({rank},) or ({rank}, {rank}) was expected"
-                )));
-            }
-        };
-        made.map_err(|error| refused(&error, "metric"))?
-    };
-    made.check(model.mesh(), model.modes()).map_err(|error| refused(&error, "metric"))?;
-    Ok(Some(made))
-}
-
-/// The factor S of `|z| = |S q|`: (r) where it is diagonal, else (r, r).
-pub fn factor<'py>(py: Python<'py>, metric: &Metric) -> PyResult<Bound<'py, PyAny>> {
-    match metric.dense_factor() {
-        Some(factor) => table(py, metric.rank(), factor.to_vec()),
-        None => Ok(line(py, metric.scales())),
-    }
 }

@@ -315,7 +315,6 @@ class Batch:
 def _core_seconds(
     certificates: Certificates, Q: ArrayLike, threads: int | None, one_by_one: bool = True
 ) -> tuple[float, list[float]]: ...
-def _first_contact(corners: ArrayLike) -> float | None: ...
 def _elastic(
     source: object,
     kind: Literal["linear", "nonlinear", "polynomial"],

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import sscc
 from exact import MODELS, configurations, load
+from first_contact import first_contact
 from shapes import samples, torus
-from sscc._sscc import _first_contact
 
 F64 = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ TOLERANCE = 2.0**-40
 
 
 def coarse(numbers: F64, bits: int = 5) -> F64:
-    """Numbers of few binary digits, with which exact arithmetic takes a tenth of a second instead of one."""
+    """Numbers of few binary digits, with which exact arithmetic is fast."""
     return np.round(numbers * 2.0**bits) / 2.0**bits
 
 
@@ -38,7 +38,7 @@ def moving(model: sscc.Model, q0: F64, q1: F64) -> F64:
 
 def contact(corners: F64, i: int, j: int) -> float | None:
     """The exact time at which two triangles first meet."""
-    return _first_contact(corners[[i, j]])
+    return first_contact(corners[[i, j]])
 
 
 def candidates(corners: F64, faces: NDArray[np.uint32]) -> Iterator[tuple[int, int]]:

@@ -1,10 +1,13 @@
 //! Tasks of the project: `cargo xtask test` runs every test and says what it skipped, `cargo xtask python` those of the
 //! Python package alone; `cargo xtask page` builds the page, with `--test` it runs the page's own; `cargo xtask mutants`
-//! tries whether the tests of the core catch wrong variants of it.
+//! tries whether the tests of the core catch wrong variants of it; `cargo xtask layers` checks the order of crates and
+//! modules.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod layers;
 mod mutants;
 mod page;
+mod program;
 mod python;
 mod tally;
 mod test;
@@ -16,15 +19,16 @@ fn main() -> ExitCode {
     match args.next().as_deref() {
         Some("test") => test::run(args.collect()),
         Some("python") => python::run(args.collect()),
+        Some("layers") => layers::run(&args.collect::<Vec<_>>()),
         Some("mutants") => mutants::run(&args.collect::<Vec<_>>()),
         Some("page") => page::run(&args.collect::<Vec<_>>()),
         Some(other) => {
-            eprintln!("error: no task '{other}'; there are: test, python, page, mutants");
+            eprintln!("error: no task '{other}'; there are: test, python, page, layers, mutants");
             ExitCode::from(2)
         }
         None => {
             eprintln!(
-                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]\n       cargo xtask mutants [names]"
+                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]\n       cargo xtask layers [--graph [crates]]\n       cargo xtask mutants [names]"
             );
             ExitCode::from(2)
         }

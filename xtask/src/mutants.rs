@@ -10,8 +10,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+use crate::program::cargo;
 use crate::tally::Tally;
-use crate::test::cargo;
 
 /// A wrong variant of some line of the core.
 struct Mutation {

@@ -7,8 +7,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
+use crate::program::{cargo, passed_on};
 use crate::tally::{SkipLog, Tally};
-use crate::test::{cargo, passed_on};
 
 /// Vite needs it (see `engines` in `viewer/package.json`).
 const NODE: (u32, u32) = (20, 19);

@@ -10,8 +10,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+use crate::program::{cargo, passed_on};
 use crate::tally::{SkipLog, Tally};
-use crate::test::{cargo, passed_on};
 
 const OLDEST: (u32, u32) = (3, 11);
 

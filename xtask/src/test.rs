@@ -4,11 +4,10 @@
 //! Output is passed on as it comes. Then follow the tests that found their data missing, and as the last line
 //! `N passed, N failed`. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
 
-use std::env;
-use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 
+use crate::program::{cargo, passed_on};
 use crate::tally::{SkipLog, Tally};
 use crate::{page, python};
 
@@ -39,25 +38,4 @@ fn cargo_test(arguments: &[String], log: &Path) -> Tally {
         Ok(_) => {}
     }
     tally
-}
-
-/// The cargo that runs this.
-pub fn cargo() -> Command {
-    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-}
-
-/// Runs a command and passes its standard output on, line by line; whether it succeeded.
-pub fn passed_on(command: &mut Command, mut each: impl FnMut(&str)) -> io::Result<bool> {
-    let mut child = command.stdout(Stdio::piped()).spawn()?;
-    if let Some(stdout) = child.stdout.take() {
-        let mut out = io::stdout();
-        for line in BufReader::new(stdout).split(b'\n') {
-            let line = line?;
-            let text = String::from_utf8_lossy(&line);
-            each(&text);
-            writeln!(out, "{text}")?;
-            out.flush()?;
-        }
-    }
-    Ok(child.wait()?.success())
 }

@@ -4,6 +4,9 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use sscc::MovingTriangle;
 
+use crate::partition::{corners, meet_at};
+use crate::polynomial::Root;
+
 /// A point or a vector, in exact arithmetic.
 type Vector = [BigRational; 3];
 
@@ -12,7 +15,7 @@ type Vector = [BigRational; 3];
 /// # Panics
 /// When a corner or `t` is not finite.
 pub fn squared_distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> BigRational {
-    if super::meet_at(&super::corners(x, y), &super::Root::at(exact(t)), 5) {
+    if meet_at(&corners(x, y), &Root::at(exact(t)), 5) {
         return BigRational::zero();
     }
     let (x, y) = (at(x, t), at(y, t));

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use sscc::{Certificates, Method, Progress, Query, ReducedModel};
 
 use crate::{Arrays, Scene, ViewError};
+use nodes::ORDER;
 use patience::{LONGEST, Patience};
 
 pub use animation::AnimationRequest;
@@ -53,9 +54,6 @@ pub struct TraditionalAnswer {
     microseconds: f64,
     count: usize,
 }
-
-/// The name of the array with the hierarchy's order of triangles.
-const ORDER: &str = "order";
 
 impl<'a> Live<'a> {
     /// Of a model, with the scene that describes it; queries stop when `progress` cancels.

@@ -4,8 +4,10 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sscc::{Certificates, ReducedModel};
 
-use super::ORDER;
 use crate::ViewError;
+
+/// The name of the array with the hierarchy's order of triangles.
+pub const ORDER: &str = "order";
 
 /// The hierarchy, node by node.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,0 +1,61 @@
+//! Metrics from Python arguments, and their factors as arrays.
+
+use numpy::PyUntypedArrayMethods;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use sscc::{Metric, MetricKind, ReducedModel};
+
+use crate::arrays::{copied, floats, line, table};
+use crate::errors::{refused, value};
+
+/// The metric that was asked for, if any: a name, weights (r) or a matrix (r, r).
+pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Metric>> {
+    let Some(any) = metric else { return Ok(None) };
+    let rank = model.rank();
+    let made = if let Ok(name) = any.cast::<PyString>() {
+        match name.to_str()? {
+            "displacement" => Metric::displacement(model.mesh(), model.modes()),
+            "mass" => Metric::mass(model.mesh(), model.modes()),
+            "identity" => Metric::identity(rank),
+            "energy" if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
+            "energy" => {
+                return Err(value(format!(
+                    "metric: the model's own is '{}', not 'energy': that of a model with its stiffness, such as \
+                     sscc.modes.linear makes",
+                    model.metric().kind().name()
+                )));
+            }
+            other => {
+                return Err(value(format!(
+                    "metric is '{}': 'energy', 'displacement', 'mass', 'identity', weights (r,) or a matrix (r, r) \
+                     was expected",
+                    other.escape_debug()
+                )));
+            }
+        }
+    } else {
+        let array = floats(any, "metric")?;
+        let entries = &copied(&array, "metric")?;
+        let made = match *array.shape() {
+            [n] if n == rank => Metric::from_weights(MetricKind::Given, entries),
+            [n, m] if (n, m) == (rank, rank) => Metric::from_matrix(MetricKind::Given, rank, entries),
+            _ => {
+                let shape = array.shape();
+                return Err(value(format!(
+                    "metric has shape {shape:?}: ({rank},) or ({rank}, {rank}) was expected"
+                )));
+            }
+        };
+        made.map_err(|error| refused(&error, "metric"))?
+    };
+    made.check(model.mesh(), model.modes()).map_err(|error| refused(&error, "metric"))?;
+    Ok(Some(made))
+}
+
+/// The factor S of `|z| = |S q|`: (r) where it is diagonal, else (r, r).
+pub fn factor<'py>(py: Python<'py>, metric: &Metric) -> PyResult<Bound<'py, PyAny>> {
+    match metric.dense_factor() {
+        Some(factor) => table(py, metric.rank(), factor.to_vec()),
+        None => Ok(line(py, metric.scales())),
+    }
+}

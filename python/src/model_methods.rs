@@ -1,0 +1,215 @@
+//! The methods of `sscc.Model`: a mesh and its deformation modes.
+
+use numpy::PyUntypedArrayMethods;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple, PyType};
+use sscc::{Modes, ReducedModel};
+use sscc_io::container::{model_from_bytes, model_to_bytes};
+use sscc_io::npy::Array;
+use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
+
+use crate::answer::Reduced;
+use crate::arguments::{check_ending, path};
+use crate::arrays::{floats, line, table, vector};
+use crate::certificates::Certificates;
+use crate::certify;
+use crate::errors::{file, kind, refused, room, value};
+use crate::metric::{factor, read_metric};
+use crate::model::{Loaded, Model, mesh};
+
+#[pymethods]
+impl Model {
+    #[new]
+    #[pyo3(signature = (vertices, faces, modes, metric=None))]
+    fn new(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        modes: &Bound<'_, PyAny>,
+        metric: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let mesh = mesh(vertices, faces)?;
+        let modes = read_modes(modes, mesh.rest_positions().len())?;
+        let model = ReducedModel::new(mesh, modes).map_err(|error| refused(&error, ""))?;
+        let model = match read_metric(&model, metric)? {
+            Some(metric) => {
+                let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
+                ReducedModel::with_metric(mesh, modes, metric).map_err(|error| refused(&error, "metric"))?
+            }
+            None => model,
+        };
+        Ok(Self::of(Loaded::new(model, ModelInfo::default(), false)))
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (path, modes=None, *, mesh_name=None))]
+    fn load(
+        _class: &Bound<'_, PyType>,
+        py: Python<'_>,
+        path: &Bound<'_, PyAny>,
+        modes: Option<&Bound<'_, PyAny>>,
+        mesh_name: Option<&str>,
+    ) -> PyResult<Self> {
+        let path = self::path(path, "path")?;
+        let modes = modes.map(|modes| self::path(modes, "modes")).transpose()?;
+        let read = py.detach(|| load_model_with(&path, &LoadOptions::new(modes.as_deref(), mesh_name)));
+        let read = read.map_err(|error| file(&error))?;
+        Ok(Self::of(Loaded {
+            default_q: read.default_q,
+            mode_names: read.mode_names,
+            ..Loaded::new(read.model, read.info, splits_vertices(&path))
+        }))
+    }
+
+    fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {
+        let path = self::path(path, "path")?;
+        check_ending(&path, ".model.safetensors")?;
+        let loaded = &self.loaded;
+        py.detach(|| write_model(&path, &loaded.model, &loaded.info)).map_err(|error| file(&error))
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, neighbours=None, weld=None,
+        ignore_rest=None, max_exceptions=None, threads=None, progress=None))]
+    fn certify(
+        slf: &Bound<'_, Self>,
+        epsilon: Option<&Bound<'_, PyAny>>,
+        metric: Option<&Bound<'_, PyAny>>,
+        center: Option<&Bound<'_, PyAny>>,
+        scheme: Option<&Bound<'_, PyAny>>,
+        budget: Option<&Bound<'_, PyAny>>,
+        neighbours: Option<&Bound<'_, PyAny>>,
+        weld: Option<&Bound<'_, PyAny>>,
+        ignore_rest: Option<&Bound<'_, PyAny>>,
+        max_exceptions: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Certificates> {
+        let typed = certify::Typed {
+            epsilon,
+            metric,
+            center,
+            scheme,
+            budget,
+            neighbours,
+            weld,
+            ignore_rest,
+            max_exceptions,
+            threads,
+        };
+        certify::certify(slf, &typed, progress)
+    }
+
+    /// Where the vertices are at q.
+    fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let q = vector(q, "q")?;
+        let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
+        table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
+    }
+
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        table(py, 3, self.core().mesh().rest_positions().iter().flat_map(|p| p.to_array()).collect())
+    }
+
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        table(py, 3, self.core().mesh().faces().as_flattened().to_vec())
+    }
+
+    #[getter]
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let modes = self.core().modes();
+        let mut entries = room(3 * modes.displacements().len(), "modes")?;
+        for of_vertex in modes.displacements().chunks_exact(modes.rank()) {
+            (0..3).for_each(|axis| entries.extend(of_vertex.iter().map(|u| u[axis])));
+        }
+        table(py, modes.rank(), entries)?.call_method1("reshape", (modes.vertices(), 3, modes.rank()))
+    }
+
+    #[getter]
+    fn rank(&self) -> usize {
+        self.core().rank()
+    }
+
+    #[getter]
+    fn metric(&self) -> &'static str {
+        self.core().metric().kind().name()
+    }
+
+    #[getter]
+    fn metric_factor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        factor(py, self.core().metric())
+    }
+
+    #[getter]
+    fn units(&self) -> &str {
+        &self.loaded.info.units
+    }
+
+    #[getter]
+    fn provenance(&self) -> &str {
+        &self.loaded.info.provenance
+    }
+
+    #[getter]
+    fn mode_names(&self) -> Vec<String> {
+        self.loaded.mode_names.clone()
+    }
+
+    #[getter]
+    fn default_q<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        line(py, self.loaded.default_q.clone().unwrap_or_else(|| vec![0.0; self.core().rank()]))
+    }
+
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let stiffness = match &self.loaded.info.elasticity {
+            None => return Ok(None),
+            Some(Elasticity::Linear(stiffness)) => stiffness,
+            Some(Elasticity::Nonlinear(cubic)) => &cubic.linear,
+        };
+        table(py, self.core().rank(), stiffness.clone()).map(Some)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
+        let py = slf.py();
+        let loaded = &slf.get().loaded;
+        let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;
+        let arguments = (PyBytes::new(py, &bytes), &loaded.default_q, &loaded.mode_names, loaded.is_split)
+            .into_pyobject(py)?;
+        Ok((py.import("sscc._sscc")?.getattr("_model")?, arguments))
+    }
+
+    fn __repr__(&self) -> String {
+        let mesh = self.core().mesh();
+        format!(
+            "<sscc.Model: {} triangles, {} vertices, {} modes>",
+            mesh.faces().len(),
+            mesh.rest_positions().len(),
+            self.core().rank()
+        )
+    }
+}
+
+/// What a pickled model becomes.
+#[pyfunction]
+pub fn _model(
+    bytes: &[u8],
+    default_q: Option<Vec<f64>>,
+    mode_names: Vec<String>,
+    is_split: bool,
+) -> PyResult<Model> {
+    let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
+    Ok(Model::of(Loaded { default_q, mode_names, ..Loaded::new(model, info, is_split) }))
+}
+
+/// Modes for so many vertices, in one of the shapes that the command takes.
+fn read_modes(modes: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Modes> {
+    let array = floats(modes, "modes")?;
+    let entries = array.as_slice()?;
+    // As much again will be needed.
+    let mut copy = room::<f64>(2 * entries.len(), "modes")?;
+    copy.extend_from_slice(entries);
+    let array = Array::from_c_order(array.shape(), copy).ok_or_else(|| kind("modes changed its shape"))?;
+    sscc_io::modes::array::from_array(&array, vertices).map_err(|error| value(format!("modes: {error}")))
+}

@@ -1,0 +1,103 @@
+"""The first time at which two moving triangles meet, in exact arithmetic: slow, and as simple as can be.
+
+Two triangles meet exactly when some corners of one and some of the other, at most five together, form a Radon partition:
+their homogeneous coordinates have exactly one linear dependency, which is positive on one side and negative on the
+other. One of five corners stays for a while, so when the triangles first meet after time 0 there is one of at most four,
+which are in one plane then: the time is a root of their determinant. Where that determinant vanishes all the time, some
+coefficient of the dependency changes its sign: the time is a root of a smaller determinant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from itertools import chain, combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polynomial import Polynomial, Root, add, multiply, negate, rational, refine, roots, sign_at, trimmed
+
+Set = tuple[int, ...]
+#: How well the time is known before it is rounded.
+WIDTH = Fraction(1, 2**60)
+
+
+def first_contact(corners: NDArray[np.float64]) -> float | None:
+    """The first time in [0, 1] at which two triangles have a point in common, rounded; None if they never do.
+
+    Corners (2, 2, 3, 3): of each triangle those at the start and those at the end.
+    """
+    pair = Pair(corners)
+    start = rational(Fraction(0))
+    if any(pair.is_partition(some, start) for some in mixed(range(6), 5)):
+        return 0.0
+    times = [(refine(root, WIDTH), some) for some in pair.critical_sets() for root in pair.roots(some)]
+    for root, some in sorted(times, key=lambda time: time[0].low):
+        if any(pair.is_partition(part, root) for part in mixed(some, 4)):
+            return float(root.low)
+    return None
+
+
+def mixed(corners: Iterable[int], most: int) -> Iterator[Set]:
+    """All sets of at most so many corners that has some of each triangle: 0, 1, 2 and 3, 4, 5."""
+    corners = tuple(corners)
+    sets = chain.from_iterable(combinations(corners, size) for size in range(2, most + 1))
+    return (some for some in sets if some[0] < 3 <= some[-1])
+
+
+class Pair:
+    """Two moving triangles."""
+
+    def __init__(self, corners: NDArray[np.float64]) -> None:
+        starts, ends = np.swapaxes(corners, 0, 1).reshape(2, 6, 3).tolist()
+        #: Homogeneous coordinates of each corner, linear in time.
+        self.coordinates = [
+            [trimmed([Fraction(p), Fraction(q) - Fraction(p)]) for p, q in zip(start, end, strict=True)] + [(Fraction(1),)]
+            for start, end in zip(starts, ends, strict=True)
+        ]
+        self.minors: dict[tuple[Set, Set], Polynomial] = {((), ()): (Fraction(1),)}
+
+    def minor(self, some: Set, rows: Set) -> Polynomial:
+        """The determinant of some corners and as many coordinates."""
+        if (some, rows) not in self.minors:
+            total: Polynomial = ()
+            for i, row in enumerate(rows):
+                term = multiply(self.coordinates[some[0]][row], self.minor(some[1:], rows[:i] + rows[i + 1 :]))
+                total = add(total, negate(term) if i % 2 else term)
+            self.minors[some, rows] = total
+        return self.minors[some, rows]
+
+    def critical_sets(self) -> Iterator[Set]:
+        """Sets of corners of which one is a partition when the triangles first meet, unless they do at time 0."""
+        fours = list(combinations(range(6), 4))
+        yield from fours
+        if not all(self.minor(some, (0, 1, 2, 3)) for some in fours):
+            yield from mixed(range(6), 3)
+
+    def roots(self, some: Set) -> list[Root]:
+        """When the corners of a set can become dependent."""
+        minors = {self.minor(some, rows) for rows in combinations(range(4), len(some))}
+        return [root for minor in minors if minor for root in roots(minor)]
+
+    def is_partition(self, some: Set, time: Root) -> bool:
+        """Whether corners have exactly one dependency at a time, positive on one triangle, negative on the other."""
+        for rows in combinations(range(4), len(some) - 1):
+            # By Cramer's rule the only dependency within these rows, unless it is 0.
+            others = [self.minor(some[:i] + some[i + 1 :], rows) for i in range(len(some))]
+            dependency = [negate(minor) if i % 2 else minor for i, minor in enumerate(others)]
+            signs = [sign_at(p, time) for p in dependency]
+            if any(signs):
+                sides = [1 if corner < 3 else -1 for corner in some]
+                return signs in (sides, [-side for side in sides]) and self.is_dependency(some, dependency, time)
+        return False
+
+    def is_dependency(self, some: Set, factors: list[Polynomial], time: Root) -> bool:
+        """Whether the sum of the corners, each with its factor, is 0 in every coordinate."""
+        for row in range(4):
+            total: Polynomial = ()
+            for corner, factor in zip(some, factors, strict=True):
+                total = add(total, multiply(factor, self.coordinates[corner][row]))
+            if sign_at(total, time) != 0:
+                return False
+        return True

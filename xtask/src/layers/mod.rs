@@ -1,0 +1,73 @@
+//! `cargo xtask layers`: whether imports go down the order that `layers.toml` declares, between crates and between the
+//! modules of a crate, and whether files are in circles. `--graph` prints the layers as a diagram, `--graph sscc` those
+//! of one crate.
+//!
+//! An import is any path that leads to an item of another file: in a `use`, in code, in the arguments of a macro or an
+//! attribute, in the body of a `macro_rules!`. The file that defines the item is imported: re-exports are followed to
+//! it, and a re-export is itself an import by the file that has it. `Type::function` also imports the file of the `impl`
+//! block. A glob imports all that it makes visible. `mod x;` is no import, nor is `use` of a module: what is taken from
+//! the module is.
+//!
+//! Left out are items for tests alone (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/`
+//! and `build.rs`: they may import whatever they like.
+//!
+//! What the tool cannot see, because it knows no types: methods called on values, of a trait or of the type itself;
+//! functions of a trait called by the type's path; fields; names that a macro puts together. Text from `include!` is not
+//! read; `include!` from another crate's folder is an import of that crate.
+
+mod diagram;
+mod graph;
+mod imports;
+mod items;
+mod modules;
+mod order;
+mod parse;
+mod read;
+mod resolve;
+mod rules;
+mod summary;
+mod tokens;
+mod toml_file;
+mod workspace;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use order::Order;
+use read::Workspace;
+
+/// Checks the layers of this workspace, or prints them.
+pub fn run(arguments: &[String]) -> ExitCode {
+    let graph_of = match arguments {
+        [] => None,
+        [flag, crates @ ..] if flag == "--graph" => Some(crates),
+        _ => {
+            eprintln!("Usage: cargo xtask layers [--graph [crates]]");
+            return ExitCode::from(2);
+        }
+    };
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let read = Order::read(&root).and_then(|order| Ok((order, Workspace::read(&root)?)));
+    let (order, workspace) = match read {
+        Ok(read) => read,
+        Err(line) => {
+            eprintln!("error: {line}");
+            return ExitCode::from(2);
+        }
+    };
+    if let Some(crates) = graph_of {
+        print!("{}", diagram::diagram(&workspace, &order, crates));
+        return ExitCode::SUCCESS;
+    }
+    let violations = rules::check(&workspace, &order);
+    violations.iter().for_each(|violation| eprintln!("error: {}", violation.message));
+    println!("{}", summary::summary(&workspace));
+    if violations.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("{}", summary::count(&violations));
+    ExitCode::FAILURE
+}

@@ -1,0 +1,100 @@
+//! The modules of a crate with the names in them: all that paths are resolved with.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// All modules of a crate: those of its library and those of its programs.
+#[derive(Default)]
+pub struct Modules {
+    pub files: Vec<SourceFile>,
+    pub modules: Vec<Module>,
+    /// The library's name in paths and its first module.
+    pub library: Option<(String, usize)>,
+    /// Other crates of the workspace: their names in paths and their own.
+    pub dependencies: BTreeMap<String, String>,
+    /// For each `macro_rules!` the files that define it.
+    pub macros: BTreeMap<String, Vec<usize>>,
+    /// The `impl` blocks of types, those of traits apart.
+    pub impls: Vec<Impl>,
+    /// For each type, by its file and name, and each function in its `impl` blocks: the files of these blocks.
+    pub associated: BTreeMap<(usize, String, String), BTreeSet<usize>>,
+}
+
+/// An `impl Type { ... }`.
+pub struct Impl {
+    pub module: usize,
+    /// The path of the type.
+    pub path: Vec<String>,
+    /// The names of its functions and constants.
+    pub names: Vec<String>,
+}
+
+pub struct SourceFile {
+    /// Relative to the root of the workspace.
+    pub path: PathBuf,
+    pub module: usize,
+    pub syntax: Rc<syn::File>,
+}
+
+pub struct Module {
+    /// The names of the modules that lead to it, its own last; empty for the first module of a library or program.
+    pub path: Vec<String>,
+    pub parent: Option<usize>,
+    pub file: usize,
+    /// File and line of its `mod`.
+    pub declared: (usize, usize),
+    pub names: BTreeMap<String, Vec<Name>>,
+    pub globs: Vec<Glob>,
+}
+
+/// One meaning of a name in a module.
+pub struct Name {
+    pub meaning: Meaning,
+    pub visible: Visible,
+}
+
+pub enum Meaning {
+    Module(usize),
+    /// A type or trait: a path can go on behind it.
+    Type,
+    /// A function, constant or macro.
+    Value,
+    /// What a `use` imports by this path.
+    Import(Vec<String>),
+}
+
+/// A `use path::*`.
+pub struct Glob {
+    pub path: Vec<String>,
+    pub visible: Visible,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Visible {
+    Everywhere,
+    /// In this module and in all below it.
+    Within(usize),
+}
+
+impl Modules {
+    /// Whether a module is `ancestor` or below it.
+    pub fn is_within(&self, module: usize, ancestor: usize) -> bool {
+        let mut at = Some(module);
+        while let Some(module) = at {
+            if module == ancestor {
+                return true;
+            }
+            at = self.modules[module].parent;
+        }
+        false
+    }
+
+    /// The first module of the library or program that a module belongs to: `crate`.
+    pub fn first_module(&self, mut module: usize) -> usize {
+        while let Some(parent) = self.modules[module].parent {
+            module = parent;
+        }
+        module
+    }
+}

@@ -1,0 +1,61 @@
+//! The whole workspace as the rules need it: crates, their modules and imports.
+
+use std::path::Path;
+
+use super::imports::{Import, imports};
+use super::modules::Modules;
+use super::parse;
+use super::resolve::Target;
+use super::workspace::{self, Crate};
+
+pub struct Workspace {
+    pub crates: Vec<ReadCrate>,
+}
+
+pub struct ReadCrate {
+    pub manifest: Crate,
+    pub modules: Modules,
+    pub imports: Vec<Import>,
+}
+
+impl Workspace {
+    /// Reads all crates below the root of a workspace; the error names a file.
+    pub fn read(root: &Path) -> Result<Self, String> {
+        let manifests = workspace::read(root)?;
+        let mut read = Vec::new();
+        for manifest in &manifests {
+            let mut modules = parse::read(root, manifest)?;
+            modules.find_associated();
+            let imports = imports(&modules, &manifests);
+            read.push((modules, imports));
+        }
+        let crates = manifests.into_iter().zip(read);
+        Ok(Self {
+            crates: crates
+                .map(|(manifest, (modules, imports))| ReadCrate { manifest, modules, imports })
+                .collect(),
+        })
+    }
+}
+
+impl ReadCrate {
+    /// The path of a file, relative to the root of the workspace.
+    pub fn path(&self, file: usize) -> String {
+        self.modules.files[file].path.display().to_string()
+    }
+
+    /// The name by which `layers.toml` knows a folder of modules, such as `sscc/query`; the crate's own for no modules.
+    pub fn folder(&self, modules: &[String]) -> String {
+        let name = std::slice::from_ref(&self.manifest.name);
+        [name, modules].concat().join("/")
+    }
+
+    /// `file:line: imports path (file)`.
+    pub fn describe(&self, import: &Import) -> String {
+        let at = format!("{}:{}", self.path(import.from), import.line);
+        match import.to {
+            Target::File(file) => format!("{at}: imports {} ({})", import.path, self.path(file)),
+            _ => format!("{at}: imports {}", import.path),
+        }
+    }
+}
