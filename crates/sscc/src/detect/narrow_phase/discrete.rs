@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Hits, NarrowPhase};
+use super::hits::Hits;
+use super::test::NarrowPhase;
 use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 
