@@ -13,7 +13,6 @@ mod test;
 
 pub(crate) use ball::BallHits;
 pub(crate) use discrete::DiscreteHits;
-pub(crate) use hits::Hits;
 pub(crate) use separating_axis::are_separated;
 pub use swept::Impact;
 pub(crate) use swept::SweptHits;
