@@ -98,8 +98,8 @@ pub struct CertificateParts {
     pub epsilon: f64,
     /// `R_global`: radii are resolved up to here (paper, section 5.2); infinite when no mode moves anything.
     pub global_radius: f64,
-    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child. What lies in a
-    /// small node ([`Node::is_small`](crate::hierarchy::Node::is_small)) has its radius.
+    /// `R_n` of each node: no two non-adjacent triangles of the node meet. At most that of any child. Nodes below a
+    /// bucket ([`Node::is_bucket`](crate::hierarchy::Node::is_bucket)) have its radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,

@@ -65,7 +65,7 @@ pub(in crate::certificates) fn round_down(radius: f64) -> f32 {
 /// The pairs of a node's children, from which the tree is grown: none within small nodes, which queries look at as a
 /// whole.
 pub(crate) fn roots_of(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
-    let node = (!hierarchy.is_whole(n)).then(|| &hierarchy.nodes()[n as usize]);
+    let node = (!hierarchy.is_bucket_below_root(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(Node::child_pairs)
 }
 
@@ -154,7 +154,7 @@ impl PairTree {
         let mut at = 0;
         while let Some(&(n, m)) = pairs.get(at) {
             let entry = self.entries[at];
-            match hierarchy.split_large(n, m) {
+            match hierarchy.split_above_buckets(n, m) {
                 None if entry.start() != 0 => return Err("a pair of small nodes has children"),
                 None => {}
                 Some(split) => {

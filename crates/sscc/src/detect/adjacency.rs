@@ -31,7 +31,7 @@ impl Never {
         for block in 0..places.len() - 1 {
             for (lane, &t) in members(block).iter().enumerate() {
                 let own = (LANES * block + lane) as u32;
-                for class in filter.classes(t) {
+                for class in filter.vertex_classes(t) {
                     let all = &mut around[class as usize];
                     if all.last() != Some(&own) {
                         all.push(own);
@@ -44,7 +44,7 @@ impl Never {
         for a in 0..places.len() - 1 {
             found.push((a as u32, NOT_AFTER));
             for (i, &t) in members(a).iter().enumerate() {
-                let around = filter.classes(t).map(|class| &around[class as usize]);
+                let around = filter.vertex_classes(t).map(|class| &around[class as usize]);
                 for &other in around.into_iter().filter(|all| all.len() <= MOST_AROUND).flatten() {
                     let (b, j) = (other as usize / LANES, other as usize % LANES);
                     if b >= a && filter.relation(t, members(b)[j]) == Relation::Adjacent {

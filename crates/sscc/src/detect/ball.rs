@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::detect::tables::Tables;
 use crate::detect::volumes;
 use crate::hierarchy::Hierarchy;
-use crate::model::{ScaledModel, norm_up};
+use crate::model::ScaledModel;
+use crate::model::rounding::norm_up;
 
 /// A ball around the z of a query. By Cauchy and Schwarz, a vertex moves along an axis by at most `|A| |dz|`, where A
 /// is its scaled row of that axis; what both computed positions are rounded by comes on top.
@@ -21,7 +22,7 @@ pub(crate) struct Ball {
 impl Ball {
     pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy, tables: &Tables) -> Self {
         let row = model.row;
-        let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.error.rate(axis)));
+        let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.rounding.per_norm(axis)));
         let mut rates = vec![DVec3::ZERO; tables.vertices.count()];
         for v in model.faces.as_flattened() {
             let modes = model.modes(*v);

@@ -23,7 +23,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
                 }
                 self.statistics.box_tests += 1;
                 let pair = (i as u32, j as u32);
-                if boxes[i].is_disjoint(&boxes[j]) || asked.filter.leaves_out(pair.0, pair.1) {
+                if boxes[i].is_disjoint(&boxes[j]) || asked.filter.is_excluded(pair.0, pair.1) {
                     continue;
                 }
                 self.statistics.triangle_tests += 1;

@@ -10,12 +10,12 @@ use crate::detect::adjacency::Never;
 use crate::detect::packet::LANES;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
-use crate::hierarchy::{Hierarchy, SMALL};
+use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
 
 /// Nodes of at most this many triangles that are in no other such node are clusters.
-pub(crate) const CLUSTER: usize = SMALL;
+pub(crate) const CLUSTER: usize = BUCKET_TRIANGLES;
 
-const _: () = assert!(SMALL == LANES * LANES);
+const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
 
 /// What never changes with q about the clusters of a hierarchy.
 ///

@@ -29,7 +29,7 @@ impl Contours {
         // A class may be named after a vertex that no triangle has.
         let mut place_of_class = vec![0; filter.class_count()];
         for (t, face) in mesh.faces().iter().enumerate() {
-            let classes = filter.classes(t as u32);
+            let classes = filter.vertex_classes(t as u32);
             classes
                 .iter()
                 .zip(face)
@@ -38,7 +38,7 @@ impl Contours {
         let (mut starts, mut vertices) = (vec![0], Vec::new());
         for (n, node) in hierarchy.nodes().iter().enumerate() {
             if is_asked(n as u32) {
-                let faces = hierarchy.triangles(node).iter().map(|t| filter.classes(*t));
+                let faces = hierarchy.triangles(node).iter().map(|t| filter.vertex_classes(*t));
                 let boundary = single_boundary(faces).unwrap_or_default();
                 vertices.extend(boundary.into_iter().map(|class| place_of_class[class as usize]));
             }

@@ -64,14 +64,18 @@ impl Found<2> for Impact {
         let y = MovingTriangle { t0: *y_t0, t1: *y_t1 };
         let time = |x: &MovingTriangle, y: &MovingTriangle| {
             // Boxes that are compared in single precision overlap more often: the answer must not depend on them.
-            if x.swept_box_meets(y) { impact_triangle_triangle(x, y, Impact::TOLERANCE) } else { None }
+            if x.is_swept_aabb_overlapping(y) {
+                impact_triangle_triangle(x, y, Impact::TOLERANCE)
+            } else {
+                None
+            }
         };
         let time = match relation {
             Relation::Adjacent => None,
-            Relation::Apart => time(&x, &y),
-            Relation::OneVertex(_) => filter
+            Relation::NonAdjacent => time(&x, &y),
+            Relation::SharedVertex(_) => filter
                 .hulls_of_corners(pair.0, pair.1)
-                .filter_map(|(i, j)| time(&x.hull(i), &y.hull(j)))
+                .filter_map(|hulls| time(&x.hull(hulls.a), &y.hull(hulls.b)))
                 .reduce(f64::min),
         };
         time.map(|time| Self { pair, time })

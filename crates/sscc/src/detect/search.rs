@@ -154,7 +154,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
         [x, y].iter().for_each(|(_, corners)| self.boxes.move_corners(*corners, ends));
         let [x, y] = [x, y].map(|(_, corners)| self.boxes.corners(corners));
         if let Some(found) = F::of(&asked.filter, relation, pair, &x, &y)
-            && !asked.filter.leaves_out(pair.0, pair.1)
+            && !asked.filter.is_excluded(pair.0, pair.1)
             && !asked.is_exception(pair)
             && !self.is_full()
         {

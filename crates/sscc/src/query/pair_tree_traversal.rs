@@ -93,7 +93,7 @@ impl<F: Found<E>, const E: usize> Finder<F, E> {
             return;
         }
         self.statistics.opened += 1;
-        if let Some(split) = asked.hierarchy.split_large(n, m) {
+        if let Some(split) = asked.hierarchy.split_above_buckets(n, m) {
             for (place, entry) in tree.below(place) {
                 if is_entry_passed!(entry, ends.norm) {
                     let (a, b) = split.pair(entry.which());

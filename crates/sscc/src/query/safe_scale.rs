@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::Query;
-use crate::bounds::{MovingAabb, Path};
+use crate::bounds::{Line, MovingAabb};
 use crate::certificates::PairEntry;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
@@ -26,7 +26,7 @@ impl Query<'_> {
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
         self.begin([q], usize::MAX)?;
-        let path = Path::new(self.asked.model, &self.asked.scope.center, q);
+        let path = Line::new(self.asked.model, &self.asked.scope.center, q);
         let global = self.asked.certificates.map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(path.farthest) * DOWN;
         if self.norm == 0.0 {
@@ -60,7 +60,8 @@ impl Query<'_> {
             let [node_n, node_m] = [n, m].map(|n| self.asked.hierarchy.nodes()[n as usize]);
             let hierarchy = &self.asked.hierarchy;
             if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
-                let ends = place == UNKNOWN || (place != NONE && hierarchy.split_large(n, m).is_none());
+                let ends =
+                    place == UNKNOWN || (place != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
                     [(UNKNOWN, 0.0); MOST_SIBLINGS]
                 } else {
@@ -76,13 +77,13 @@ impl Query<'_> {
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
                     let box_x = &boxes.triangles[x as usize];
-                    if n != m && path.boxes_apart(box_x, &boxes.nodes[m as usize]) >= goal {
+                    if n != m && path.aabbs_separated_until(box_x, &boxes.nodes[m as usize]) >= goal {
                         continue;
                     }
                     let first = if n == m { i + 1 } else { 0 };
                     for &y in &triangles(&node_m)[first..] {
                         self.discrete.statistics.box_tests += 1;
-                        if path.boxes_apart(box_x, &boxes.triangles[y as usize]) < goal {
+                        if path.aabbs_separated_until(box_x, &boxes.triangles[y as usize]) < goal {
                             self.discrete.statistics.triangle_tests += 1;
                             best = best.min(self.follow(&path, (x, y), lower, goal.min(best)));
                         }
@@ -93,7 +94,7 @@ impl Query<'_> {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);
                 }
-                let certified = if self.asked.hierarchy.is_whole(n) {
+                let certified = if self.asked.hierarchy.is_bucket_below_root(n) {
                     [(UNKNOWN, 0.0); MOST_SIBLINGS]
                 } else {
                     let stored = tree.map(|tree| tree.of_node(n));
@@ -138,12 +139,12 @@ impl Query<'_> {
 
     /// Follows two triangles that do not collide before `t`: infinite when they do not before `goal`, or do not count;
     /// else a scale below which they do not, about where they meet.
-    fn follow(&self, path: &Path, (x, y): Pair, t: f64, goal: f64) -> f64 {
-        if self.asked.filter.leaves_out(x, y) {
+    fn follow(&self, path: &Line, (x, y): Pair, t: f64, goal: f64) -> f64 {
+        if self.asked.filter.is_excluded(x, y) {
             return f64::INFINITY;
         }
         let hulls = self.asked.filter.hulls(x, y);
-        hulls.map(|(x, y)| path.follow(x, y, t, goal)).fold(f64::INFINITY, f64::min)
+        hulls.map(|hulls| path.advance(hulls.a, hulls.b, t, goal)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -201,7 +202,7 @@ struct PathBoxes {
 }
 
 impl PathBoxes {
-    fn new(path: &Path, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
+    fn new(path: &Line, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
         let of_face = |face: &[u32; 3]| {
             let of = |all: &[DVec3]| Aabb::of_triangle(face.map(|v| all[v as usize]));
             MovingAabb { positions: of(&path.positions), velocities: of(&path.velocities) }
@@ -223,7 +224,7 @@ impl PathBoxes {
     }
 
     /// A scale below which some axis separates the two nodes all the way.
-    fn apart(&self, path: &Path, (n, m): Pair) -> f64 {
-        path.boxes_apart(&self.nodes[n as usize], &self.nodes[m as usize])
+    fn apart(&self, path: &Line, (n, m): Pair) -> f64 {
+        path.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }
 }

@@ -146,7 +146,10 @@ impl<'a> Work<'a> {
         while let Some(child) = nodes[at].children().find(|n| self.nodes[*n as usize] == self.nodes[0]) {
             at = child as usize;
         }
-        if self.grove.is_empty() || nodes[at].is_leaf() || self.prepared.hierarchy.is_whole(at as u32) {
+        if self.grove.is_empty()
+            || nodes[at].is_leaf()
+            || self.prepared.hierarchy.is_bucket_below_root(at as u32)
+        {
             // It was searched, not grown: what upper bounds that met are known.
             return Ok(f64::INFINITY);
         }
@@ -172,7 +175,7 @@ impl<'a> Work<'a> {
         let hierarchy = &self.prepared.hierarchy;
         let parent = &hierarchy.nodes()[node];
         let node = node as u32;
-        if hierarchy.is_whole(node) || parent.is_leaf() {
+        if hierarchy.is_bucket_below_root(node) || parent.is_leaf() {
             // It is searched within, whatever its parts have: they were not.
             let cap = self.prepared.global_radius;
             return NodeTask { node, cap, enough: cap, pairs: Vec::new() };

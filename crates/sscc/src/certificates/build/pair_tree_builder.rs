@@ -97,7 +97,7 @@ pub(in crate::certificates) fn expand(
             break;
         }
         let (n, m) = list[next].pair;
-        match hierarchy.split_large(n, m) {
+        match hierarchy.split_above_buckets(n, m) {
             None => {
                 let cap = (AHEAD * limit).min(most);
                 let lower = search.roughly(n, m, cap);
@@ -223,7 +223,7 @@ impl Grove {
             }
             open = (before..grown.len() as u32).filter(|at| is_open(&grown[*at as usize])).collect();
         }
-        let is_large = |pair: &Grown| hierarchy.split_large(pair.pair.0, pair.pair.1).is_some();
+        let is_large = |pair: &Grown| hierarchy.split_above_buckets(pair.pair.0, pair.pair.1).is_some();
         if grown.iter().any(|pair| is_open(pair) && is_large(pair)) {
             return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }
@@ -352,7 +352,8 @@ impl Grove {
 
 /// The places of the pairs that a pair is split into.
 fn children(hierarchy: &Hierarchy, pair: &Grown) -> std::ops::Range<usize> {
-    let count = hierarchy.split_large(pair.pair.0, pair.pair.1).map_or(0, |split| split.children().len());
+    let count =
+        hierarchy.split_above_buckets(pair.pair.0, pair.pair.1).map_or(0, |split| split.children().len());
     pair.first as usize..pair.first as usize + count
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BinaryHeap;
 
 use crate::Progress;
-use crate::bounds::{ClusterBounds, ClusterScratch, LeafPair, PairRefiner, Target, cluster_pair};
-use crate::filter::PairFilter;
+use crate::bounds::{LeafPair, NodePairBounds, NodePairScratch, PairRefiner, RefinementTarget};
+use crate::filter::{Hulls, PairFilter};
 use crate::heap::MinFirst;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
@@ -63,15 +63,15 @@ pub(crate) struct Search<'a> {
     model: &'a ScaledModel,
     filter: &'a PairFilter,
     hierarchy: &'a Hierarchy,
-    clusters: &'a ClusterBounds,
+    clusters: &'a NodePairBounds,
     refiner: PairRefiner<'a>,
-    scratch: ClusterScratch,
+    scratch: NodePairScratch,
     waiting: BinaryHeap<MinFirst<Candidate>>,
     leaves: LeafPair<'a>,
     pairs: Vec<HullPair>,
     epsilon: f64,
     precision: Precision,
-    target: Target,
+    target: RefinementTarget,
     /// The smallest upper bound of all searches before.
     upper: f64,
     /// The smallest certified radius among the pairs that are settled.
@@ -86,7 +86,7 @@ impl<'a> Search<'a> {
         model: &'a ScaledModel,
         filter: &'a PairFilter,
         hierarchy: &'a Hierarchy,
-        clusters: &'a ClusterBounds,
+        clusters: &'a NodePairBounds,
         epsilon: f64,
         progress: &'a dyn Progress,
     ) -> Self {
@@ -96,13 +96,13 @@ impl<'a> Search<'a> {
             hierarchy,
             clusters,
             refiner: PairRefiner::new(model),
-            scratch: ClusterScratch::new(model.row),
+            scratch: NodePairScratch::new(model.row),
             waiting: BinaryHeap::new(),
             leaves: LeafPair::new(model),
             pairs: Vec::new(),
             epsilon,
             precision: Precision::Full,
-            target: Target { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
+            target: RefinementTarget { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
             upper: f64::INFINITY,
             settled: 0.0,
             hottest: None,
@@ -117,7 +117,7 @@ impl<'a> Search<'a> {
 
     /// A certified lower bound for all triangle pairs between two nodes; from `enough` on it is not made better.
     pub(crate) fn bound(&mut self, n: u32, m: u32, enough: f64) -> f64 {
-        cluster_pair(self.clusters, self.model, n, m, enough, &mut self.scratch)
+        self.clusters.bound(self.model, n, m, enough, &mut self.scratch)
     }
 
     /// A certified radius, at most `cap`, for all triangle pairs between the two nodes of each given pair.
@@ -143,7 +143,8 @@ impl<'a> Search<'a> {
     /// A certified radius, at most `cap`, for all triangle pairs between two nodes, with a larger relative error.
     pub(crate) fn roughly(&mut self, n: u32, m: u32, cap: f64) -> f64 {
         self.start(cap);
-        self.target = Target { epsilon: self.epsilon.max(ROUGH_PAIR), subdivisions: 0, ..self.target };
+        self.target =
+            RefinementTarget { epsilon: self.epsilon.max(ROUGH_PAIR), subdivisions: 0, ..self.target };
         self.consider(n, m, 0.0);
         self.run()
     }
@@ -155,14 +156,14 @@ impl<'a> Search<'a> {
         self.leaves.load(x, y);
         let direction = if n == m { None } else { self.clusters.direction(n, m, &mut self.scratch) };
         if let Some(direction) = direction {
-            self.leaves.look_along(direction);
+            self.leaves.set_direction(direction);
         }
         self.pairs.clear();
         for (i, &a) in x.iter().enumerate() {
             for &b in if n == m { &y[i + 1..] } else { y } {
-                for (x, y) in self.filter.hulls(a, b) {
-                    let lower = direction.map_or(0.0, |_| self.leaves.along(x, y));
-                    if lower < self.settled && !self.filter.leaves_out(a, b) {
+                for Hulls { a: x, b: y } in self.filter.hulls(a, b) {
+                    let lower = direction.map_or(0.0, |_| self.leaves.bound_along_direction(x, y));
+                    if lower < self.settled && !self.filter.is_excluded(a, b) {
                         self.pairs.push(HullPair { triangles: (a, b), x, y, lower, refined: false });
                     }
                 }
@@ -177,29 +178,31 @@ impl<'a> Search<'a> {
         let mut looks = 0;
         let mut least = self.settled;
         loop {
-            let enough = target.enough().min(least);
+            let enough = target.sufficient().min(least);
             let waiting = pairs.iter_mut().filter(|pair| !pair.refined && pair.lower < enough);
             let Some(worst) = waiting.reduce(|a, b| if b.lower < a.lower { b } else { a }) else { break };
             worst.refined = true;
             let upper = target.upper;
-            worst.lower = worst.lower.max(refiner.bound_once(worst.x, worst.y, target));
+            worst.lower = worst.lower.max(refiner.bound(worst.x, worst.y, target));
             if target.upper < upper {
                 *hottest = Some(worst.triangles);
             }
             least = least.min(worst.lower);
             // What it needed may do for the others, too: the direction, or an affine map of all.
-            let enough = target.enough().min(least);
+            let enough = target.sufficient().min(least);
             let open = |pair: &HullPair| !pair.refined && pair.lower < enough;
             if looks < LOOKS
                 && pairs.iter().any(open)
                 && let Some(n) = refiner.best_direction()
             {
-                leaves.look_along(n);
-                pairs.iter_mut().for_each(|pair| pair.lower = pair.lower.max(leaves.along(pair.x, pair.y)));
+                leaves.set_direction(n);
+                pairs.iter_mut().for_each(|pair| {
+                    pair.lower = pair.lower.max(leaves.bound_along_direction(pair.x, pair.y))
+                });
             }
             if looks == 0 {
                 for pair in pairs.iter_mut().filter(|pair| open(pair)) {
-                    pair.lower = pair.lower.max(leaves.affine(pair.x, pair.y, enough));
+                    pair.lower = pair.lower.max(leaves.bound_by_affine_map(pair.x, pair.y, enough));
                 }
             }
             looks += 1;
@@ -261,7 +264,7 @@ impl<'a> Search<'a> {
             Precision::Rough => (self.epsilon.max(ROUGH), FEW),
             Precision::Full => (self.epsilon, SUBDIVISIONS),
         };
-        self.target = Target { cap, upper: f64::INFINITY, epsilon, subdivisions };
+        self.target = RefinementTarget { cap, upper: f64::INFINITY, epsilon, subdivisions };
         self.settled = cap;
         self.hottest = None;
     }
@@ -286,7 +289,7 @@ impl<'a> Search<'a> {
 
     /// Candidates whose radius is at least this cannot change the result beyond epsilon.
     fn enough(&self) -> f64 {
-        self.target.enough().min(self.settled)
+        self.target.sufficient().min(self.settled)
     }
 
     /// Bounds two nodes, part of two with the bound `inherited`, and keeps them if they matter.
@@ -312,7 +315,7 @@ impl<'a> Search<'a> {
         match candidate {
             Candidate::Triangles(x, y) => {
                 let upper = self.target.upper;
-                for (x, y) in self.filter.hulls(x, y) {
+                for Hulls { a: x, b: y } in self.filter.hulls(x, y) {
                     let refined = self.refiner.refine(x, y, &mut self.target);
                     self.settled = self.settled.min(refined.max(lower));
                 }

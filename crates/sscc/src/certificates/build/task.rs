@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::bounds::ClusterBounds;
+use crate::bounds::NodePairBounds;
 use crate::certificates::build::node_radii::Tally;
 use crate::certificates::build::pair_tree_builder::{Grown, Round, expand};
 use crate::certificates::build::search::{Precision, ROUGH, Search};
@@ -30,7 +30,7 @@ pub(in crate::certificates) struct Prepared {
     pub(in crate::certificates) epsilon: f64,
     scaled: ScaledModel,
     filter: PairFilter,
-    clusters: ClusterBounds,
+    clusters: NodePairBounds,
 }
 
 impl Prepared {
@@ -75,10 +75,10 @@ impl Prepared {
         }
         let scope = Scope { metric, center, rule, exceptions };
         let (digest, clusters) =
-            rayon::join(|| Digest::of(model, &scope), || ClusterBounds::new(&scaled, &hierarchy));
+            rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
         Ok(Self {
             digest,
-            filter: PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions),
+            filter: PairFilter::new(model, &scope.rule).excluding(&scope.exceptions),
             clusters,
             global_radius: global_radius(model, &scope.metric, &scope.center),
             rest_collisions,
@@ -121,7 +121,7 @@ impl NodeTask {
     pub(in crate::certificates) fn solve(self, prepared: &Prepared, search: &mut Search<'_>) -> (f64, f64) {
         let Self { node, cap, enough, pairs } = self;
         let hierarchy = &prepared.hierarchy;
-        let radius = if hierarchy.nodes()[node as usize].is_leaf() || hierarchy.is_whole(node) {
+        let radius = if hierarchy.nodes()[node as usize].is_leaf() || hierarchy.is_bucket_below_root(node) {
             search.within(node, cap)
         } else {
             search.among(pairs, cap, enough)

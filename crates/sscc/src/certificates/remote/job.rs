@@ -159,7 +159,7 @@ pub(in crate::certificates) fn read_grown(
         let mut next = 0;
         while next < list.len() {
             let (n, m) = list[next].pair;
-            let split = hierarchy.split_large(n, m);
+            let split = hierarchy.split_above_buckets(n, m);
             let state = from.u8()?;
             let lower = from.single()?;
             list[next].lower = lower;

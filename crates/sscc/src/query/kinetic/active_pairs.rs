@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::up;
 use crate::Pair;
-use crate::model::DOWN;
+use crate::model::rounding::ROUND_DOWN;
 
 /// Pairs whose margins are remembered, for each that a search finds.
 const MOST_KNOWN: usize = 8;
@@ -50,7 +50,7 @@ impl Front {
 
     /// The way at which z may be as far from here as that, rounded down.
     fn after(&self, distance: f64) -> f64 {
-        (self.way + distance * DOWN) * DOWN
+        (self.way + distance * ROUND_DOWN) * ROUND_DOWN
     }
 
     /// Keeps a pair that stays apart until z is so far from here; false where that is too near, after rounding.

@@ -1,13 +1,13 @@
 //! How far z may go before two triangles that are apart can meet: the separating-direction bound of certificates (see
-//! `bounds/direction.rs`), about the current z in the place of rest.
+//! `bounds/separating_direction.rs`), about the current z in the place of rest.
 
 use glam::DVec3;
 
 use crate::Pair;
-use crate::bounds::{TrianglePair, direction_bound};
+use crate::bounds::{PairCorners, bound_along};
 use crate::filter::PairFilter;
-use crate::geometry::nearest_to_origin;
-use crate::model::{GapError, ScaledModel, direction};
+use crate::geometry::{TwoTriangles, nearest_to_origin};
+use crate::model::{RoundingBound, ScaledModel, scale_direction};
 
 /// Margins are at most so many times the norm that they are measured at.
 const FAR: f64 = 2.0;
@@ -15,7 +15,7 @@ const FAR: f64 = 2.0;
 /// Measures margins. Holds the model in scaled coordinates.
 pub(crate) struct Margins {
     model: ScaledModel,
-    error: GapError,
+    error: RoundingBound,
     /// No margin is larger: the error is granted that far.
     most: f64,
     projections: Vec<f64>,
@@ -23,31 +23,35 @@ pub(crate) struct Margins {
 
 impl Margins {
     pub(crate) fn new(model: ScaledModel) -> Self {
-        Self { error: model.error.within(0.0), most: 0.0, projections: vec![0.0; 6 * model.row], model }
+        Self {
+            error: model.rounding.between_configurations(0.0),
+            most: 0.0,
+            projections: vec![0.0; 6 * model.row],
+            model,
+        }
     }
 
     /// From now on margins are about z of at most this norm.
     pub(crate) fn within(&mut self, norm: f64) {
         self.most = FAR * norm;
-        self.error = self.model.error.within((1.0 + FAR) * norm);
+        self.error = self.model.rounding.between_configurations((1.0 + FAR) * norm);
     }
 
     /// Of two triangles, whose corners are at these computed positions: while z has moved by less, they stay apart.
     pub(crate) fn triangles(&mut self, filter: &PairFilter, pair: Pair, at: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
         let mut margin = self.most;
-        for (i, j) in filter.hulls_of_corners(pair.0, pair.1) {
+        for hulls in filter.hulls_of_corners(pair.0, pair.1) {
             let modes =
                 |which: usize, corners: [usize; 3]| corners.map(|i| self.model.modes(faces[which][i]));
-            let pair = TrianglePair {
-                x: i.map(|i| at[0][i]),
-                y: j.map(|j| at[1][j]),
-                modes_x: modes(0, i),
-                modes_y: modes(1, j),
+            let pair = PairCorners {
+                corners: TwoTriangles { a: hulls.a.map(|i| at[0][i]), b: hulls.b.map(|j| at[1][j]) },
+                modes_a: modes(0, hulls.a),
+                modes_b: modes(1, hulls.b),
             };
             let differences = pair.differences();
-            let Some(n) = direction(nearest_to_origin(&differences).point) else { return 0.0 };
-            margin = margin.min(direction_bound(&pair, &differences, n, &self.error, &mut self.projections));
+            let Some(n) = scale_direction(nearest_to_origin(&differences).point) else { return 0.0 };
+            margin = margin.min(bound_along(&pair, &differences, n, &self.error, &mut self.projections));
         }
         margin
     }
