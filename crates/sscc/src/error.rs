@@ -1,14 +1,17 @@
-//! What can be wrong with a model, its certificates or a query.
+//! The errors of the core.
+//!
+//! A message is one line: the place (a vertex, a triangle, a mode, counted from 0), the cause, and the way out where
+//! there is one. Callers put the file or the argument in front.
 
-/// A refusal of the core. One line, naming the place and the cause.
+/// Why the core refuses a mesh, modes, a metric, q, an option or certificates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A mesh without faces.
     #[error("the mesh has no triangles")]
     NoFaces,
-    /// Counts are stored in 32 bits.
-    #[error("{count} {what}: more than {} are not supported", u32::MAX)]
+    /// More than 32-bit numbers can count.
+    #[error("{count} {what}: at most {} are supported", u32::MAX)]
     TooMany {
         /// What was counted.
         what: &'static str,
@@ -16,7 +19,9 @@ pub enum Error {
         count: usize,
     },
     /// A rest position out of range.
-    #[error("vertex {vertex} (counted from 0) has the position {position:?}: not finite, or beyond 2^200")]
+    #[error(
+        "vertex {vertex} (counted from 0) has the position {position:?}: not finite, or beyond 2^200; change the unit"
+    )]
     Position {
         /// The vertex, from 0.
         vertex: usize,
@@ -24,7 +29,7 @@ pub enum Error {
         position: [f64; 3],
     },
     /// A face names a vertex that does not exist.
-    #[error("triangle {face} (counted from 0) names vertex {vertex}, but there are only {vertices} vertices")]
+    #[error("triangle {face} (counted from 0) names vertex {vertex}, but there are {vertices}")]
     FaceIndex {
         /// The triangle, from 0.
         face: usize,
@@ -36,8 +41,8 @@ pub enum Error {
     /// No modes.
     #[error("the model has no modes (rank 0): at least one is needed")]
     RankZero,
-    /// Displacements that do not fill whole vertices.
-    #[error("{len} displacements are no whole number of vertices with {rank} modes each")]
+    /// A number of displacements that is not a multiple of the rank.
+    #[error("{len} displacements are not a multiple of the {rank} modes")]
     ModesLength {
         /// Number of displacement vectors.
         len: usize,
@@ -45,7 +50,9 @@ pub enum Error {
         rank: usize,
     },
     /// A mode entry out of range.
-    #[error("mode {mode} of vertex {vertex} (both counted from 0) is not finite, or beyond 2^200")]
+    #[error(
+        "mode {mode} of vertex {vertex} (both counted from 0) is not finite, or beyond 2^200; rescale the mode"
+    )]
     ModeEntry {
         /// The vertex, from 0.
         vertex: usize,
@@ -68,7 +75,7 @@ pub enum Error {
         /// Number of modes.
         rank: usize,
     },
-    /// A weight that is no positive number.
+    /// A weight that is not positive and finite.
     #[error("metric weight {index} (counted from 0) is {value}: weights must be positive and finite")]
     MetricWeight {
         /// The mode, from 0.
@@ -84,7 +91,7 @@ pub enum Error {
         /// The largest magnitude of an entry of `U S^-1`.
         largest: f64,
     },
-    /// A dense metric that cannot be used.
+    /// A dense metric that is not symmetric positive definite, too large or nearly singular.
     #[error("the metric's matrix cannot be used: {what}")]
     MetricMatrix {
         /// What is wrong with it.
@@ -106,12 +113,12 @@ pub enum Error {
         /// The entry.
         value: f64,
     },
-    /// q so large that positions leave the range in which predicates are exact.
+    /// A q at which positions leave the range in which predicates are exact.
     #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
     CoordinatesRange,
-    /// So many collisions that no list of them is of use.
+    /// Too many collisions to list.
     #[error(
-        "the shape has more than {most} colliding pairs of triangles at rest or at the centre: is it a surface?"
+        "more than {most} pairs of triangles collide at rest or at the centre: repair the mesh, or choose another centre"
     )]
     TooManyCollisions {
         /// How many would be accepted.
@@ -127,18 +134,18 @@ pub enum Error {
         /// What it must be.
         wanted: &'static str,
     },
-    /// Certificates computed for something else.
+    /// Certificates of another model.
     #[error(
         "the certificates are of another model: their digest is {certificates}, this model's is {model}; certify this model anew"
     )]
     OtherModel {
-        /// Digest that the certificates speak of (first bytes).
+        /// Digest stored in the certificates (first bytes).
         certificates: String,
-        /// Digest of the model at hand (first bytes).
+        /// Digest of the model (first bytes).
         model: String,
     },
-    /// Certificates for other pairs of triangles than those asked for.
-    #[error("the certificates do not speak of the pairs asked for: {what}; certify anew")]
+    /// Certificates of another contact filter than that of the query.
+    #[error("the certificates are of another contact filter: {what}; certify anew")]
     OtherPairs {
         /// What differs.
         what: String,
@@ -146,10 +153,10 @@ pub enum Error {
     /// Parts of certificates that do not fit together.
     #[error("the certificates are damaged: {0}")]
     Certificates(String),
-    /// A job or a result of a computation in shards that cannot be used, or that could not be done.
+    /// A job or a result of certificates computed by several processes that is damaged, foreign or could not be computed.
     #[error("shards: {0}")]
     Shard(String),
-    /// Stopped by the caller: to people an interrupt.
+    /// The caller cancelled.
     #[error("interrupted")]
     Cancelled,
 }

@@ -275,7 +275,7 @@ pub use error::Error;
 pub use filter::{Neighbours, Pair, PairRule};
 pub use geometry::{
     Aabb, MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face,
-    intersect_beyond_vertex, intersect_triangle_triangle,
+    intersect_shared_vertex_pair, intersect_triangle_triangle,
 };
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};

@@ -1,18 +1,18 @@
-//! Progress and cancellation of long work.
+//! Progress and cancellation of long computations.
 
-/// Told how far long work has come; may stop it. Called from several threads.
+/// Receives the progress of a long computation and can cancel it. Several threads call it.
 pub trait Progress: Sync {
-    /// `done` of `total` steps are finished. Threads may report a little out of order.
+    /// Receives that `done` of `total` steps are finished. Threads may report out of order.
     fn report(&self, done: usize, total: usize);
 
-    /// Whether the work should stop soon, with [`Error::Cancelled`](crate::Error::Cancelled). Once true it
-    /// must stay true.
+    /// Whether the computation should end soon, with [`Error::Cancelled`](crate::Error::Cancelled). Once true, it must
+    /// stay true.
     fn is_cancelled(&self) -> bool {
         false
     }
 }
 
-/// Neither shows nor stops anything.
+/// Ignores progress and never cancels.
 impl Progress for () {
     fn report(&self, _done: usize, _total: usize) {}
 }

@@ -9,7 +9,7 @@ use common::{Random, at, random_model};
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, Error, Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope,
-    TriMesh, intersect_beyond_vertex, intersect_triangle_triangle,
+    TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
 };
 
 /// The second triangle without a small neighbourhood of v, as two triangles, against the first. For corners with
@@ -46,12 +46,12 @@ fn beyond_a_vertex_is_decided_exactly() {
             3 | 4 => [x[0].z, x[1].z, y[0].z, y[1].z] = [v.z; 4],
             _ => {}
         }
-        let found = intersect_beyond_vertex(v, x, y);
+        let found = intersect_shared_vertex_pair(v, x, y);
         assert_eq!(found, oracle(v, x, y), "{v} {x:?} {y:?}");
         let others = [
-            intersect_beyond_vertex(v, y, x),
-            intersect_beyond_vertex(v, [x[1], x[0]], y),
-            intersect_beyond_vertex(v, x, [y[1], y[0]]),
+            intersect_shared_vertex_pair(v, y, x),
+            intersect_shared_vertex_pair(v, [x[1], x[0]], y),
+            intersect_shared_vertex_pair(v, x, [y[1], y[0]]),
         ];
         assert_eq!(others, [found; 3], "{v} {x:?} {y:?}");
         met += usize::from(found);

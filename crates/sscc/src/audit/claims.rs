@@ -1,4 +1,5 @@
-//! What certificates claim of a pair of triangles: every radius of a set of pairs to which it belongs.
+//! The claims of certificates: each radius of a node or a node pair says that none of its triangle pairs collides below
+//! it.
 
 use std::fmt;
 
@@ -6,7 +7,8 @@ use super::random::Random;
 use crate::certificates::{StoredPair, sibling_pairs};
 use crate::{CertificateParts, Pair};
 
-/// No pair of triangles between two nodes, or within one where both are the same, collides below the radius.
+/// The claim that no pair of triangles between two nodes, or within one where both are the same, collides below the
+/// radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Claim {
     pub(super) nodes: Pair,
@@ -26,29 +28,29 @@ impl fmt::Display for Claim {
 /// All claims of certificates.
 pub(super) struct Claims<'a> {
     parts: &'a CertificateParts,
-    /// Where each triangle is in the hierarchy's order.
+    /// For each triangle its index in the hierarchy's order.
     places: Vec<u32>,
-    /// The nodes of each entry of the pair tree.
+    /// The node pair of each entry of the pair tree.
     entries: Vec<Pair>,
 }
 
 impl<'a> Claims<'a> {
     pub(super) fn new(parts: &'a CertificateParts) -> Self {
         let mut places = vec![0; parts.hierarchy.order().len()];
-        for (place, t) in parts.hierarchy.order().iter().enumerate() {
-            places[*t as usize] = place as u32;
+        for (place, a) in parts.hierarchy.order().iter().enumerate() {
+            places[*a as usize] = place as u32;
         }
-        // Certificates hold no other trees than those over their hierarchy.
+        // Certificates have checked that the pair tree is one over their hierarchy.
         let entries = parts.pair_tree.pairs(&parts.hierarchy).unwrap_or_default();
         Self { parts, places, entries }
     }
 
-    /// What is claimed of a node against itself.
+    /// The claim of the pairs within a node.
     pub(super) fn node(&self, n: u32) -> Claim {
         Claim { nodes: (n, n), radius: self.parts.node_radii[n as usize] }
     }
 
-    /// What is claimed of the pairs of the root's children beside the pair tree.
+    /// The claims of the pairs of the root's children, outside the pair tree.
     pub(super) fn root_pairs(&self) -> impl Iterator<Item = Claim> {
         let radii = self.parts.root_pair_radii.iter();
         self.parts.hierarchy.nodes()[0]
@@ -57,17 +59,17 @@ impl<'a> Claims<'a> {
             .map(|(nodes, &radius)| Claim { nodes, radius })
     }
 
-    /// How many pairs of nodes the pair tree holds.
+    /// The number of entries of the pair tree.
     pub(super) fn stored_len(&self) -> usize {
         self.entries.len()
     }
 
-    /// What the pair tree claims by the entry of that place.
+    /// The claim of an entry of the pair tree.
     pub(super) fn stored(&self, place: usize) -> Claim {
         Claim { nodes: self.entries[place], radius: f64::from(self.parts.pair_tree.entry(place).radius) }
     }
 
-    /// How many nodes and pairs of nodes there are below which pairs may be missing.
+    /// The number of nodes and node pairs below which pairs may be absent from the pair tree.
     pub(super) fn parents_len(&self) -> usize {
         if self.parts.pair_tree.limit() > 0.0 {
             self.parts.hierarchy.nodes().len() + self.entries.len()
@@ -76,7 +78,7 @@ impl<'a> Claims<'a> {
         }
     }
 
-    /// What the pair tree claims by what it does not hold: the missing pairs below a node or an entry.
+    /// The claims of the pairs below a node or an entry that the pair tree lacks: their radius is at least its limit.
     pub(super) fn absent(&self, parent: usize) -> Vec<Claim> {
         let (tree, hierarchy) = (&self.parts.pair_tree, &self.parts.hierarchy);
         let nodes = self.parts.hierarchy.nodes().len();
@@ -85,7 +87,7 @@ impl<'a> Claims<'a> {
             (sibling_pairs(hierarchy, parent as u32).collect(), stored)
         } else {
             let (n, m) = self.entries[parent - nodes];
-            let Some(split) = hierarchy.split_large(n, m) else { return Vec::new() };
+            let Some(split) = hierarchy.split_above_buckets(n, m) else { return Vec::new() };
             let stored = tree.below((parent - nodes) as u32).map(|stored| stored.entry.which()).collect();
             (split.pairs().collect(), stored)
         };
@@ -93,12 +95,12 @@ impl<'a> Claims<'a> {
         missing.map(|which| Claim { nodes: all[which], radius: tree.limit() }).collect()
     }
 
-    /// A claim of the pair tree, by what it holds or by what it does not; none where it holds nothing.
-    pub(super) fn random_pair(&self, random: &mut Random, of_absent: bool) -> Option<Claim> {
+    /// A random claim of the pair tree, of an entry or of an absent pair; none where the tree is empty.
+    pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
         if self.entries.is_empty() {
             return None;
         }
-        for _ in 0..if of_absent { 100 } else { 0 } {
+        for _ in 0..if is_absent { 100 } else { 0 } {
             let missing = self.absent(random.below(self.parents_len()));
             if !missing.is_empty() {
                 return Some(missing[random.below(missing.len())]);
@@ -107,60 +109,61 @@ impl<'a> Claims<'a> {
         Some(self.stored(random.below(self.entries.len())))
     }
 
-    /// The claim that is broken by two triangles that count and collide at a q of that norm, if any is.
-    pub(super) fn broken_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
+    /// The claim that two triangles refute that count and collide at a q of that norm, if any.
+    fn refuted_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
         let (hierarchy, tree) = (&self.parts.hierarchy, &self.parts.pair_tree);
         let nodes = hierarchy.nodes();
-        let [i, j] = [faces.0, faces.1].map(|t| self.places[t as usize]);
+        let [place_a, place_b] = [faces.0, faces.1].map(|a| self.places[a as usize]);
         let has = |n: u32, place: u32| {
             let node = &nodes[n as usize];
             (node.first_triangle..node.first_triangle + node.triangle_count).contains(&place)
         };
-        let is_broken = |claim: &Claim| norm < claim.radius;
-        // Down to the last node that holds both.
+        let is_refuted = |claim: &Claim| norm < claim.radius;
+        // Down to the smallest node that contains both.
         let mut n = 0;
-        let (a, b) = loop {
-            if let Some(claim) = Some(self.node(n)).filter(is_broken) {
+        let (child_a, child_b) = loop {
+            if let Some(claim) = Some(self.node(n)).filter(is_refuted) {
                 return Some(claim);
             }
             let child = |place| nodes[n as usize].children().find(|child| has(*child, place));
-            match (child(i), child(j)) {
+            match (child(place_a), child(place_b)) {
                 (Some(a), Some(b)) if a == b => n = a,
                 (Some(a), Some(b)) => break (a.min(b), a.max(b)),
                 _ => return None,
             }
         };
-        let of_root = self.root_pairs().find(|claim| n == 0 && claim.nodes == (a, b));
-        if let Some(claim) = of_root.filter(is_broken) {
+        let of_root = self.root_pairs().find(|claim| n == 0 && claim.nodes == (child_a, child_b));
+        if let Some(claim) = of_root.filter(is_refuted) {
             return Some(claim);
         }
-        if tree.limit() <= 0.0 || hierarchy.is_whole(n) {
+        if tree.limit() <= 0.0 || hierarchy.is_bucket_below_root(n) {
             return None;
         }
-        // And from there down the pairs of nodes that hold one each.
-        let mut pair = (a, b);
+        // From there down the node pairs that contain one triangle each.
+        let mut pair = (child_a, child_b);
         let mut siblings: Vec<_> = {
             let all: Vec<Pair> = nodes[n as usize].child_pairs().collect();
             tree.of_node(n).map(|StoredPair { place, entry }| (place, all[entry.which() as usize])).collect()
         };
         loop {
             let Some(&(place, _)) = siblings.iter().find(|(_, nodes)| *nodes == pair) else {
-                return Some(Claim { nodes: pair, radius: tree.limit() }).filter(is_broken);
+                return Some(Claim { nodes: pair, radius: tree.limit() }).filter(is_refuted);
             };
-            if let Some(claim) = Some(self.stored(place as usize)).filter(is_broken) {
+            if let Some(claim) = Some(self.stored(place as usize)).filter(is_refuted) {
                 return Some(claim);
             }
-            let split = hierarchy.split_large(pair.0, pair.1)?;
-            let holds = |&(n, m): &Pair| has(n, i) && has(m, j) || has(n, j) && has(m, i);
-            pair = split.pairs().find(holds)?;
+            let split = hierarchy.split_above_buckets(pair.0, pair.1)?;
+            let contains_both =
+                |&(n, m): &Pair| has(n, place_a) && has(m, place_b) || has(n, place_b) && has(m, place_a);
+            pair = split.pairs().find(contains_both)?;
             let pair_of = |StoredPair { place, entry }| (place, split.pair(entry.which()));
             siblings = tree.below(place).map(pair_of).collect();
         }
     }
 
-    /// The violation by two triangles that count and collide at q, if there is one.
+    /// The violation by two triangles that count and collide at q, if they refute a claim.
     pub(super) fn violation(&self, faces: Pair, norm: f64, q: &[f64]) -> Option<String> {
-        let claim = self.broken_by(faces, norm)?;
+        let claim = self.refuted_by(faces, norm)?;
         Some(format!(
             "triangles {} and {} collide at |z| = {norm:e}, below the radius {:e} of {claim}; q = {q:?}",
             faces.0, faces.1, claim.radius

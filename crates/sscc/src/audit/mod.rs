@@ -1,16 +1,21 @@
-//! Attacks on certificates: everything they claim is tried to be proven wrong.
+//! Audits of certificates: attempts to refute every claim they make.
 //!
-//! Three attacks, none of which uses the code that it attacks to decide: q just inside radii, in random
-//! directions and in the directions of the closest collisions known ([`attack`]); the true minimum searched
-//! near the hottest pairs ([`minimum`]), which also says how tight radii are ([`tightness`]); and the answers of
-//! certified queries, continuous ones too, compared with the traditional method, itself compared with brute force
-//! ([`compare`]). Whatever is found to collide is held against all radii that speak of it ([`claims`]): those of nodes,
-//! of pairs of nodes, and the limit of the pair tree where that lacks a pair.
+//! None of the attacks uses the bounds that made a claim to decide whether it is refuted; exact collision tests do.
+//! - Configurations q just inside radii, in random directions and in those of known collisions ([`attack`]).
+//! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum`]), which also measures how tight radii
+//!   are ([`tightness`]).
+//! - Answers of certified queries, continuous ones too, compared with the traditional method, itself compared with brute
+//!   force ([`compare`]).
+//!
+//! Each collision found is compared with all radii that cover it ([`claims`]): of nodes, of node pairs, and the limit of the
+//! pair tree where it lacks a pair.
 
 mod attack;
 mod claims;
 mod compare;
 mod minimum;
+mod options;
+mod point_pairs;
 mod random;
 mod tightness;
 
@@ -19,37 +24,22 @@ use crate::model::ScaledModel;
 use crate::threads::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
-/// How hard to attack.
-#[derive(Clone, Copy, Debug)]
-pub struct AuditOptions {
-    /// Number of configurations q to try.
-    pub samples: usize,
-    /// Start of the pseudo-random numbers: the same seed gives the same attacks.
-    pub seed: u64,
-    /// Number of threads; none: all cores. The report is the same for any number.
-    pub threads: Option<usize>,
-}
-
-impl Default for AuditOptions {
-    fn default() -> Self {
-        Self { samples: 10_000, seed: 1, threads: None }
-    }
-}
+pub use options::AuditOptions;
 
 /// What the attacks found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of configurations really tried: 0 where every radius is 0, for nothing is claimed then.
+    /// Number of configurations really tried: 0 where every radius is 0, because nothing is claimed then.
     pub samples: usize,
-    /// Every broken claim, one line each. Empty for sound certificates.
+    /// Every refuted claim, one line each. Empty for sound certificates.
     pub violations: Vec<String>,
     /// The root's radius over the smallest `|z|` found at which the model really collides; none when the
     /// radius is 0 or capped, or no collision was found.
     pub root_tightness: Option<f64>,
     /// The median of the same quotient over the root, its pairs of children, and samples of nodes and of the pair
-    /// tree, those with radius 0 or capped left out.
+    /// tree, without those of radius 0 or capped.
     pub tightness_median: Option<f64>,
-    /// The least of them.
+    /// The smallest of these quotients.
     pub tightness_min: Option<f64>,
 }
 
@@ -67,24 +57,26 @@ pub fn audit(
     let run = || {
         let parts = certificates.parts();
         let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
-        let filter = PairFilter::new(model, &parts.scope.rule).leaving_out(&parts.scope.exceptions);
-        let minimum = &minimum::Minimum { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
+        let filter = PairFilter::new(model, &parts.scope.rule).excluding(&parts.scope.exceptions);
+        let minimum =
+            &minimum::MinimumSearch { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
         let claims = &claims::Claims::new(parts);
         let tightness = tightness::measure(certificates, claims, minimum, options.seed, progress);
-        let hot = &tightness.hot;
-        let attack = attack::Attack { model, certificates, claims, minimum, hot, options, progress };
+        let collisions = &tightness.collisions;
+        let attack = attack::Attack { model, certificates, claims, minimum, collisions, options, progress };
         let mut violations = tightness.violations;
-        let (samples, broken) = attack.run()?;
-        violations.extend(broken);
-        violations.extend(compare::compare(model, certificates, (claims, minimum), options, progress)?);
-        let mut all = tightness.quotients;
-        all.sort_by(f64::total_cmp);
+        let attacks = attack.run()?;
+        violations.extend(attacks.violations);
+        let comparison = compare::Comparison { model, certificates, claims, minimum, options, progress };
+        violations.extend(comparison.run()?);
+        let mut quotients = tightness.quotients;
+        quotients.sort_by(f64::total_cmp);
         Ok(AuditReport {
-            samples,
+            samples: attacks.samples,
             violations,
             root_tightness: tightness.root,
-            tightness_median: (!all.is_empty()).then(|| all[all.len() / 2]),
-            tightness_min: all.first().copied(),
+            tightness_median: (!quotients.is_empty()).then(|| quotients[quotients.len() / 2]),
+            tightness_min: quotients.first().copied(),
         })
     };
     let report = on_threads(options.threads, run);

@@ -1,4 +1,4 @@
-//! Small deterministic pseudo-random numbers (SplitMix64): the same on every machine.
+//! Deterministic pseudo-random numbers (SplitMix64), the same on every machine.
 
 /// A stream of pseudo-random numbers.
 #[derive(Clone, Debug)]
@@ -29,13 +29,13 @@ impl Random {
         ((self.uniform() * n as f64) as usize).min(n.saturating_sub(1))
     }
 
-    /// So many of [`Random::normal`].
+    /// `count` numbers of [`Random::normal`].
     pub(super) fn normals(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.normal()).collect()
     }
 
-    /// Nearly normal, mean 0 and variance 1 (a sum of twelve uniform numbers: no library functions, so the
-    /// same bits everywhere).
+    /// Approximately normal, mean 0 and variance 1: a sum of twelve uniform numbers, which needs no library functions and
+    /// so has the same bits on every machine.
     pub(super) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

@@ -1,4 +1,4 @@
-//! How fast an affine deformation can close gaps along the directions that occur between two triangles.
+//! The rate at which an affine map closes gaps, bounded over the cone of directions between two triangles.
 //!
 //! `f(u) = |G(u)'u|` over unit directions u is the norm of a quadratic form. On the cone spanned by three
 //! directions, `u = sum m_i u_i` with `m >= 0`, let `c_ij = u_i' sym(G) u_j` (one number for each mode). Then
@@ -12,10 +12,10 @@
 
 use glam::DVec3;
 
-use super::affine::StrainGram;
+use super::strain::StrainGram;
 
-/// Cones looked at for one pair of triangles. More than this gained nothing on bunny and spring.
-const CONES: usize = 48;
+/// Cones of one triangle pair, at most (docs/notes/2026-11-23-bounds.md).
+const MAX_CONES: usize = 48;
 
 struct Cone {
     rate: f64,
@@ -24,47 +24,46 @@ struct Cone {
 
 /// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite where the directions do not fit into a narrow cone.
-pub(super) fn cone_rate(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wanted: f64) -> f64 {
-    let Some(corners) = pyramid(d) else { return f64::INFINITY };
+pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wanted: f64) -> f64 {
+    let Some(corners) = enclose_in_pyramid(d) else { return f64::INFINITY };
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if !trace.is_finite() {
         return f64::INFINITY;
     }
-    let error = right_or!((row as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
-    let forms = Forms { gram, error };
-    let [a, b, c, e] = corners;
-    let mut cones: Vec<Cone> = Vec::with_capacity(2 * CONES);
-    for directions in [[a, b, c], [a, c, e]] {
-        cones.push(Cone { rate: forms.rate(&directions), directions });
+    let rounding = right_or!((row as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
+    let forms = Forms { gram, rounding };
+    let [u0, u1, u2, u3] = corners;
+    let mut cones: Vec<Cone> = Vec::with_capacity(2 * MAX_CONES);
+    for directions in [[u0, u1, u2], [u0, u2, u3]] {
+        cones.push(Cone { rate: forms.bound(&directions), directions });
     }
-    for _ in 0..CONES {
+    for _ in 0..MAX_CONES {
         let worst = (0..cones.len()).fold(0, |w, i| if cones[i].rate > cones[w].rate { i } else { w });
         let rate = cones[worst].rate;
         if rate <= wanted {
             break;
         }
         // Halve across the longest edge. Rounding leaves a gap between the halves about an ulp wide, 48 of them at
-        // most; over it f^2 changes by less than 3e-14 of the trace, which the error of the forms covers.
-        let [a, b, c] = cones[worst].directions;
-        let edges = [(a, b, c), (b, c, a), (c, a, b)];
-        let longest = edges
+        // most; over it f^2 changes by less than 3e-14 of the trace, which the rounding bound of the forms covers.
+        let [u0, u1, u2] = cones[worst].directions;
+        let edges = [(u0, u1, u2), (u1, u2, u0), (u2, u0, u1)];
+        let (u0, u1, u2) = edges
             .into_iter()
             .fold(edges[0], |l, e| if e.0.distance_squared(e.1) > l.0.distance_squared(l.1) { e } else { l });
-        let (a, b, c) = longest;
-        let middle = (a + b).normalize();
-        // Where a direction that occurs is itself too fast, only that much can be had.
-        wanted = wanted.max(forms.single(middle) * 1.05);
-        let halves = [[a, middle, c], [middle, b, c]];
-        let rates = halves.map(|h| forms.rate(&h));
+        let middle = (u0 + u1).normalize();
+        // A direction of the cone that is itself too fast limits what halving can reach.
+        wanted = wanted.max(forms.evaluate(middle) * 1.05);
+        let halves = [[u0, middle, u2], [middle, u1, u2]];
+        let rates = halves.map(|half| forms.bound(&half));
         cones[worst] = Cone { rate: rates[0].min(rate), directions: halves[0] };
         cones.push(Cone { rate: rates[1].min(rate), directions: halves[1] });
     }
-    cones.iter().map(|c| c.rate).fold(0.0, f64::max)
+    cones.iter().map(|cone| cone.rate).fold(0.0, f64::max)
 }
 
 /// Four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
-/// their widest spread. None where they do not lie well within a half space.
-fn pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
+/// their widest extent. None where they do not lie well within a half-space.
+fn enclose_in_pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
     let axis = d.iter().map(|d| d.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
     let mut flat = [DVec3::ZERO; 9];
     for (flat, d) in flat.iter_mut().zip(d) {
@@ -85,28 +84,28 @@ fn pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
         // The frame is orthonormal, and the points lie in its plane, up to a few roundings (at most 20 long).
         (lower - 1e-12, upper + 1e-12)
     };
-    let ((a0, a1), (b0, b1)) = (range(along), range(across));
-    let corner = |a: f64, b: f64| (axis + along * a + across * b).normalize();
-    Some([corner(a0, b0), corner(a1, b0), corner(a1, b1), corner(a0, b1)])
+    let ((s0, s1), (t0, t1)) = (range(along), range(across));
+    let corner = |s: f64, t: f64| (axis + along * s + across * t).normalize();
+    Some([corner(s0, t0), corner(s1, t0), corner(s1, t1), corner(s0, t1)])
 }
 
-/// Evaluates `|c_ij|` from above.
+/// Evaluates `|c_ij|` for directions.
 struct Forms<'a> {
     gram: &'a StrainGram,
-    /// Error of `|c_ij|^2` for unit directions.
-    error: f64,
+    /// The rounding bound of `|c_ij|^2` for unit directions.
+    rounding: f64,
 }
 
 impl Forms<'_> {
-    fn square(&self, a: DVec3, b: DVec3) -> f64 {
+    fn square(&self, u: DVec3, v: DVec3) -> f64 {
         let root = std::f64::consts::FRAC_1_SQRT_2;
         let m = [
-            a.x * b.x,
-            a.y * b.y,
-            a.z * b.z,
-            (a.y * b.z + a.z * b.y) * root,
-            (a.x * b.z + a.z * b.x) * root,
-            (a.x * b.y + a.y * b.x) * root,
+            u.x * v.x,
+            u.y * v.y,
+            u.z * v.z,
+            (u.y * v.z + u.z * v.y) * root,
+            (u.x * v.z + u.z * v.x) * root,
+            (u.x * v.y + u.y * v.x) * root,
         ];
         let mut square = 0.0;
         for (row, m_row) in self.gram.iter().zip(m) {
@@ -116,13 +115,13 @@ impl Forms<'_> {
         square.max(0.0)
     }
 
-    /// `f(u)`, not rounded: only to see whether refining can help.
-    fn single(&self, u: DVec3) -> f64 {
+    /// `f(u)`, rounded to nearest: only to decide whether refinement can help.
+    fn evaluate(&self, u: DVec3) -> f64 {
         self.square(u, u).sqrt()
     }
 
     /// An upper bound of `f` on the cone of three unit directions.
-    fn rate(&self, u: &[DVec3; 3]) -> f64 {
+    fn bound(&self, u: &[DVec3; 3]) -> f64 {
         let mut largest = 0.0_f64;
         for i in 0..3 {
             for j in i..3 {
@@ -132,7 +131,7 @@ impl Forms<'_> {
                 if cosine <= 0.1 {
                     return f64::INFINITY;
                 }
-                largest = largest.max((self.square(u[i], u[j]) + self.error).sqrt() / cosine);
+                largest = largest.max((self.square(u[i], u[j]) + self.rounding).sqrt() / cosine);
             }
         }
         largest * (1.0 + 32.0 * f64::EPSILON)

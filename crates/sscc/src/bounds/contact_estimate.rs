@@ -1,7 +1,9 @@
-//! First contact of two triangles whose corners move along straight lines, in plain floating point: only for upper
+//! An estimate of the first contact of two triangles whose corners move linearly, in plain floating point: for upper
 //! bounds, which steer the search and never enter a radius.
 
 use glam::DVec3;
+
+use crate::geometry::TwoTriangles;
 
 /// Samples of each determinant along the way; roots closer together than this are missed.
 const SAMPLES: usize = 24;
@@ -9,14 +11,13 @@ const SAMPLES: usize = 24;
 /// How far outside a feature a contact may seem to lie, in barycentric units.
 const TOLERANCE: f64 = 1e-7;
 
-/// The least t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
-/// `at(t)` gives the corners of both triangles.
-pub(super) fn first_contact(at: impl Fn(f64) -> ([DVec3; 3], [DVec3; 3])) -> Option<f64> {
+/// The smallest t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
+pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -> Option<f64> {
     let mut first = f64::INFINITY;
-    let mut consider = |feature: &dyn Fn(f64) -> [DVec3; 4], inside: fn(&[DVec3; 4]) -> bool| {
+    let mut consider = |feature: &dyn Fn(f64) -> [DVec3; 4], is_contact: fn(&[DVec3; 4]) -> bool| {
         let volume = |t: f64| {
-            let [a, b, c, d] = feature(t);
-            (b - a).dot((c - a).cross(d - a))
+            let [p, q, r, s] = feature(t);
+            (q - p).dot((r - p).cross(s - p))
         };
         let mut before = (0.0, volume(0.0));
         for i in 1..=SAMPLES {
@@ -27,7 +28,7 @@ pub(super) fn first_contact(at: impl Fn(f64) -> ([DVec3; 3], [DVec3; 3])) -> Opt
             let here = (t, volume(t));
             if (before.1 < 0.0) != (here.1 < 0.0) {
                 let root = bisect(before.0, here.0, before.1 < 0.0, &volume);
-                if root < first && inside(&feature(root)) {
+                if root < first && is_contact(&feature(root)) {
                     first = root;
                     return;
                 }
@@ -35,28 +36,28 @@ pub(super) fn first_contact(at: impl Fn(f64) -> ([DVec3; 3], [DVec3; 3])) -> Opt
             before = here;
         }
     };
-    for v in 0..3 {
+    for i in 0..3 {
         consider(
             &|t| {
-                let (x, y) = at(t);
-                [x[v], y[0], y[1], y[2]]
+                let TwoTriangles { a, b } = corners_at(t);
+                [a[i], b[0], b[1], b[2]]
             },
-            vertex_in_face,
+            is_vertex_in_face,
         );
         consider(
             &|t| {
-                let (x, y) = at(t);
-                [y[v], x[0], x[1], x[2]]
+                let TwoTriangles { a, b } = corners_at(t);
+                [b[i], a[0], a[1], a[2]]
             },
-            vertex_in_face,
+            is_vertex_in_face,
         );
-        for w in 0..3 {
+        for j in 0..3 {
             consider(
                 &|t| {
-                    let (x, y) = at(t);
-                    [x[v], x[(v + 1) % 3], y[w], y[(w + 1) % 3]]
+                    let TwoTriangles { a, b } = corners_at(t);
+                    [a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]]
                 },
-                edges_cross,
+                is_edge_crossing_edge,
             );
         }
     }
@@ -64,31 +65,31 @@ pub(super) fn first_contact(at: impl Fn(f64) -> ([DVec3; 3], [DVec3; 3])) -> Opt
 }
 
 /// The root between two ends of different sign.
-fn bisect(mut a: f64, mut b: f64, negative_at_a: bool, f: &dyn Fn(f64) -> f64) -> f64 {
+fn bisect(mut lower: f64, mut upper: f64, is_negative_at_lower: bool, f: &dyn Fn(f64) -> f64) -> f64 {
     for _ in 0..48 {
-        let middle = 0.5 * (a + b);
-        if (f(middle) < 0.0) == negative_at_a {
-            a = middle;
+        let middle = 0.5 * (lower + upper);
+        if (f(middle) < 0.0) == is_negative_at_lower {
+            lower = middle;
         } else {
-            b = middle;
+            upper = middle;
         }
     }
-    b
+    upper
 }
 
-/// Whether v, in the plane of the triangle abc, lies in it.
-fn vertex_in_face([v, a, b, c]: &[DVec3; 4]) -> bool {
-    let normal = (*b - *a).cross(*c - *a);
+/// Whether a vertex v in the plane of the triangle p, q, r lies in it.
+fn is_vertex_in_face([v, p, q, r]: &[DVec3; 4]) -> bool {
+    let normal = (*q - *p).cross(*r - *p);
     let area = normal.length_squared();
-    let weight = |p: &DVec3, q: &DVec3| (*q - *p).cross(*v - *p).dot(normal) / area;
-    [weight(a, b), weight(b, c), weight(c, a)].into_iter().all(|w| w >= -TOLERANCE)
+    let weight = |start: &DVec3, end: &DVec3| (*end - *start).cross(*v - *start).dot(normal) / area;
+    [weight(p, q), weight(q, r), weight(r, p)].into_iter().all(|w| w >= -TOLERANCE)
 }
 
-/// Whether two edges ab and cd in one plane cross.
-fn edges_cross([a, b, c, d]: &[DVec3; 4]) -> bool {
-    let normal = (*b - *a).cross(*d - *c);
+/// Whether two edges pq and rs in one plane cross.
+fn is_edge_crossing_edge([p, q, r, s]: &[DVec3; 4]) -> bool {
+    let normal = (*q - *p).cross(*s - *r);
     let area = normal.length_squared();
-    let s = (*c - *a).cross(*d - *c).dot(normal) / area;
-    let t = (*c - *a).cross(*b - *a).dot(normal) / area;
-    [s, 1.0 - s, t, 1.0 - t].into_iter().all(|w| w >= -TOLERANCE)
+    let u = (*r - *p).cross(*s - *r).dot(normal) / area;
+    let v = (*r - *p).cross(*q - *p).dot(normal) / area;
+    [u, 1.0 - u, v, 1.0 - v].into_iter().all(|w| w >= -TOLERANCE)
 }

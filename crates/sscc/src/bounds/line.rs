@@ -1,59 +1,62 @@
-//! How far a shape can move along a straight path before two of its parts can meet: conservative advancement.
+//! How far a shape can move along a straight line in q-space before two of its parts can meet: conservative advancement
+//! (Mirtich 1996).
 //!
-//! Vertex v is at `x_v + t w_v`. For a fixed direction n two triangles stay apart as long as all nine pairs of
-//! corners do: `n.(d_ab + t (w_b - w_a)) > 0`, which is linear in t. So a direction that separates them at t_0
-//! certifies them up to some t_1; there a new direction is chosen, and so on until that gains nothing.
+//! Vertex i is at `x_i + t w_i`. Along a fixed direction n two triangles are separated as long as all nine pairs of
+//! corners are: `n.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
+//! certifies them up to a later one; there a new direction is chosen, until that gains nothing.
 
 use glam::DVec3;
 
 use crate::ReducedModel;
 use crate::geometry::{Aabb, nearest_to_origin};
-use crate::model::{direction, quotient_down};
+use crate::limits;
+use crate::model::rounding::quotient_down;
+use crate::model::scale_direction;
 
 /// A step that gains less than this share of t is the last one: with it t is about where the triangles meet.
-const GAIN: f64 = 1e-4;
+const MIN_GAIN: f64 = 1e-4;
 
-/// Steps at the most; what is reached by then is safe, if not as far as it could be. A few dozen are common.
-const STEPS: usize = 1000;
+/// Steps, at most. The t reached by then is certified, but may be smaller than the contact.
+const MAX_STEPS: usize = 1000;
 
-/// The vertices of a model on the way from `center` through q: at `x + t w`, `center` at t = 0 and q at t = 1.
-pub(crate) struct Path {
+/// The vertices of a model along the line from `center` (t = 0) through q (t = 1): at `x + t w`.
+pub(crate) struct Line {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) velocities: Vec<DVec3>,
-    /// By how much a computed gap along a direction with components up to 1 may differ from the linear one:
-    /// at most `rest + rate t`.
-    rest: f64,
-    rate: f64,
-    /// Up to this t positions stay in range.
+    /// The rounding bound of a gap along a direction with components up to 1: `at_rest + per_step t`.
+    at_rest: f64,
+    per_step: f64,
+    /// Up to this t positions stay in the range of [`limits`].
     pub(crate) farthest: f64,
 }
 
-impl Path {
+impl Line {
     pub(crate) fn new(model: &ReducedModel, center: &[f64], q: &[f64]) -> Self {
         let offset: Vec<f64> = q.iter().zip(center).map(|(q, c)| q - c).collect();
         let vertices = 0..model.mesh().rest_positions().len() as u32;
-        let velocity = |v| {
-            let modes = model.modes().of_vertex(v);
+        let velocity = |i| {
+            let modes = model.modes().of_vertex(i);
             modes.iter().zip(&offset).fold(DVec3::ZERO, |w, (u, x)| w + *u * *x)
         };
-        let (reach, moved) = (model.reach(center), model.moved(&offset));
+        let (reach, moved) = (model.reach(center), model.displacement_bound(&offset));
         // Positions, velocities, q itself, gaps and sums of t are rounded at most 4 (r + 16) times, two vertices,
         // three components each; and once more as much as room.
         let gamma = 12.0 * (4 * q.len() + 64) as f64 * f64::EPSILON;
         Self {
-            positions: vertices.clone().map(|v| model.position(v, center)).collect(),
+            positions: vertices.clone().map(|i| model.position(i, center)).collect(),
             velocities: vertices.map(velocity).collect(),
-            rest: gamma * reach + f64::MIN_POSITIVE,
-            rate: gamma * moved + f64::MIN_POSITIVE,
-            farthest: ((crate::limits::LARGEST / 2.0 - reach) / moved.max(f64::MIN_POSITIVE)).max(0.0),
+            at_rest: gamma * reach + f64::MIN_POSITIVE,
+            per_step: gamma * moved + f64::MIN_POSITIVE,
+            farthest: ((limits::LARGEST / 2.0 - reach) / moved.max(f64::MIN_POSITIVE)).max(0.0),
         }
     }
 
-    /// The t up to which a gap that is at least `gap` at `t` and closes no faster than `-opening` stays positive.
+    /// The t up to which a gap that is at least `gap` at `t` and grows at least at the rate `opening` stays positive; 0
+    /// where it is not positive at `t`.
     #[inline]
     pub(crate) fn closes_at(&self, t: f64, gap: f64, opening: f64) -> f64 {
-        let gap = right_or!(gap - self.rest - t * self.rate, PathExact, gap);
-        let opening = right_or!(opening - self.rate, PathExact, opening);
+        let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
+        let opening = right_or!(opening - self.per_step, LineExact, opening);
         if gap.is_nan() || gap <= 0.0 {
             0.0
         } else if opening >= 0.0 {
@@ -63,27 +66,27 @@ impl Path {
         }
     }
 
-    /// Follows two triangles that do not meet before `t`: infinite when they do not meet before `goal`; else a scale
-    /// before which they do not, about where they meet.
-    pub(crate) fn follow(&self, x: [u32; 3], y: [u32; 3], mut t: f64, goal: f64) -> f64 {
-        let (d, rates) = (self.differences(&self.positions, x, y), self.differences(&self.velocities, x, y));
-        for _ in 0..STEPS {
-            let now: [DVec3; 9] = std::array::from_fn(|i| d[i] + rates[i] * t);
-            let separated_until = |n: DVec3| {
-                let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, n.dot(*d), n.dot(*w)));
+    /// Advances two triangles, by their vertices, that do not meet before `t`: infinite when they do not meet before
+    /// `goal`; else a t before which they do not, about where they meet.
+    pub(crate) fn advance(&self, a: [u32; 3], b: [u32; 3], mut t: f64, goal: f64) -> f64 {
+        let (d, rates) = (differences(&self.positions, a, b), differences(&self.velocities, a, b));
+        for _ in 0..MAX_STEPS {
+            let now: [DVec3; 9] = std::array::from_fn(|ij| d[ij] + rates[ij] * t);
+            let separates_until = |dir: DVec3| {
+                let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, dir.dot(*d), dir.dot(*w)));
                 until.fold(f64::INFINITY, f64::min)
             };
-            // Each direction is a proof by itself. Between the centroids is cheap and often enough; the one that
-            // separates them best at t leads to the contact.
-            if direction(now.iter().sum()).is_some_and(|n| separated_until(n) >= goal) {
+            // Each direction is a proof by itself. The one between the centroids is cheap and often sufficient; the one
+            // between the closest points at t leads to the contact.
+            if scale_direction(now.iter().sum()).is_some_and(|dir| separates_until(dir) >= goal) {
                 return f64::INFINITY;
             }
-            let Some(n) = direction(nearest_to_origin(&now).point) else { return t };
-            let until = separated_until(n);
+            let Some(dir) = scale_direction(nearest_to_origin(&now).point) else { return t };
+            let until = separates_until(dir);
             if until >= goal {
                 return f64::INFINITY;
             }
-            if until <= t * (1.0 + GAIN) {
+            if until <= t * (1.0 + MIN_GAIN) {
                 return until.max(t);
             }
             t = until;
@@ -93,11 +96,11 @@ impl Path {
 
     /// A t before which some axis separates all points with positions and velocities in two pairs of boxes.
     #[inline]
-    pub(crate) fn boxes_apart(&self, x: &MovingAabb, y: &MovingAabb) -> f64 {
+    pub(crate) fn aabbs_separated_until(&self, a: &MovingAabb, b: &MovingAabb) -> f64 {
         let mut bound = 0.0_f64;
-        let gap = |x: &Aabb, y: &Aabb| y.lower - x.upper;
-        for (x, y) in [(x, y), (y, x)] {
-            let (gap, opening) = (gap(&x.positions, &y.positions), gap(&x.velocities, &y.velocities));
+        let gap = |a: &Aabb, b: &Aabb| b.lower - a.upper;
+        for (a, b) in [(a, b), (b, a)] {
+            let (gap, opening) = (gap(&a.positions, &b.positions), gap(&a.velocities, &b.velocities));
             for axis in 0..3 {
                 if gap[axis] > 0.0 {
                     bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
@@ -106,14 +109,16 @@ impl Path {
         }
         bound
     }
-
-    fn differences(&self, of: &[DVec3], x: [u32; 3], y: [u32; 3]) -> [DVec3; 9] {
-        let (x, y) = (x.map(|v| of[v as usize]), y.map(|v| of[v as usize]));
-        std::array::from_fn(|i| y[i % 3] - x[i / 3])
-    }
 }
 
-/// The boxes of some points at the start of a line and of their velocities.
+/// The nine differences of the vectors of two triangles' vertices.
+#[inline]
+fn differences(of: &[DVec3], a: [u32; 3], b: [u32; 3]) -> [DVec3; 9] {
+    let (a, b) = (a.map(|i| of[i as usize]), b.map(|j| of[j as usize]));
+    std::array::from_fn(|ij| b[ij % 3] - a[ij / 3])
+}
+
+/// The AABBs of some points at the start of a line and of their velocities.
 #[derive(Clone, Copy)]
 pub(crate) struct MovingAabb {
     pub(crate) positions: Aabb,
@@ -123,7 +128,7 @@ pub(crate) struct MovingAabb {
 impl MovingAabb {
     pub(crate) const EMPTY: Self = Self { positions: Aabb::EMPTY, velocities: Aabb::EMPTY };
 
-    /// The boxes of both sets of points.
+    /// The AABBs of both sets of points.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self {
             positions: self.positions.union(&other.positions),

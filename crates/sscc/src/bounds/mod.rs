@@ -1,27 +1,33 @@
-//! Lower bounds of the distance, in reduced coordinates, at which two parts of a model can first meet
-//! (paper, section 5), and how they are rounded.
+//! Lower bounds of `|z|`, the distance in q-space from the centre, at which two parts of a model can first meet (paper,
+//! section 5).
 //!
-//! Every bound here is *certified*: it is at most the exact minimum of `|z|` over all z at which the
-//! **computed** f64 positions of the two parts meet. Directions, affine maps and mean modes may come from
-//! any heuristic in any precision; only the last evaluation is rounded with care.
+//! Each file is named by what it bounds, or by what it bounds with. Every lower bound is certified: it is at most the
+//! exact minimum of `|z|` over all z at which the **computed** f64 positions of the two parts meet. Directions, affine
+//! maps and mean modes are candidates: any heuristic in any precision may choose them, because only the final evaluation
+//! needs rounding bounds.
+//!
+//! `sufficient` is always a lower bound from which on the caller needs no larger one: computations end there.
 
 mod affine;
+mod affine_fit;
 mod cone;
 mod contact_estimate;
 mod leaf_pair;
 mod line;
+mod node_modes;
 mod node_pair;
-#[cfg(test)]
-mod reference;
-#[cfg(test)]
-mod rounding_tests;
+mod pair_corners;
 mod separating_direction;
+mod strain;
+mod sub_triangle;
 #[cfg(test)]
 mod tests;
 mod triangle_pair;
+mod upper_bound;
 
 pub(crate) use leaf_pair::LeafPair;
-pub(crate) use line::{MovingAabb, Path};
-pub(crate) use node_pair::{ClusterBounds, ClusterScratch, cluster_pair};
-pub(crate) use separating_direction::{TrianglePair, direction_bound};
-pub(crate) use triangle_pair::{PairRefiner, Target};
+pub(crate) use line::{Line, MovingAabb};
+pub(crate) use node_pair::{NodePairBounds, NodePairScratch};
+pub(crate) use pair_corners::PairCorners;
+pub(crate) use separating_direction::bound_along;
+pub(crate) use triangle_pair::{PairRefiner, RefinementTarget};

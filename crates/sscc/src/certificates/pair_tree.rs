@@ -3,7 +3,7 @@
 //! With radii of nodes alone a query opens node pairs along every common border of siblings that are not certified
 //! together: their boxes always overlap. The tree stores the radius of every node pair below a limit, so a query ends
 //! at a pair whose radius it has not reached. Node pairs follow from the splitting rule alone
-//! ([`Hierarchy::split_large`]), never from boxes: boxes that are apart at rest may meet later. So below the limit a pair
+//! ([`Hierarchy::split_above_buckets`]), never from boxes: boxes that are apart at rest may meet later. So below the limit a pair
 //! that is missing is certified; at the limit and beyond, absence means nothing. The tree says nothing of the pairs
 //! within a bucket.
 
@@ -71,7 +71,7 @@ pub(crate) fn round_down(radius: f64) -> f32 {
 
 /// The pairs of a node's children with which the tree begins: none within a bucket, where traversals end.
 pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
-    let node = (!hierarchy.is_whole(n)).then(|| &hierarchy.nodes()[n as usize]);
+    let node = (!hierarchy.is_bucket_below_root(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(Node::child_pairs)
 }
 

@@ -46,7 +46,7 @@ impl PairTree {
         let mut place = 0;
         while let Some(&(n, m)) = pairs.get(place) {
             let entry = self.entry(place);
-            match hierarchy.split_large(n, m) {
+            match hierarchy.split_above_buckets(n, m) {
                 None if entry.start() != 0 => return Err("a pair of small nodes has children"),
                 None => {}
                 Some(split) => {

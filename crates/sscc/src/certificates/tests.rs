@@ -23,7 +23,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
         open.extend(x.iter().flat_map(|a| y.iter().map(|b| (*a.min(b), *a.max(b)))));
     };
     for (n, node) in hierarchy.nodes().iter().enumerate() {
-        if node.is_leaf() || hierarchy.is_whole(n as u32) {
+        if node.is_leaf() || hierarchy.is_bucket_below_root(n as u32) {
             add(n as u32, n as u32);
             continue;
         }
@@ -34,7 +34,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
             if f64::from(stored.entry.radius) > norm {
                 continue;
             }
-            match hierarchy.split_large(n, m) {
+            match hierarchy.split_above_buckets(n, m) {
                 None => add(n, m),
                 Some(split) => stack
                     .extend(tree.below(stored.place).map(|below| (below, split.pair(below.entry.which())))),

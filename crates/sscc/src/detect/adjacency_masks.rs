@@ -38,7 +38,7 @@ impl AdjacencyMasks {
         for packet in 0..slots.len() - 1 {
             for (lane, &t) in members(packet).iter().enumerate() {
                 let own = (LANES * packet + lane) as u32;
-                for class in filter.classes(t) {
+                for class in filter.vertex_classes(t) {
                     let all = &mut around[class as usize];
                     if all.last() != Some(&own) {
                         all.push(own);
@@ -51,7 +51,7 @@ impl AdjacencyMasks {
         for first in 0..slots.len() - 1 {
             found.push(PacketMask { other: first as u32, pairs: NOT_AFTER });
             for (i, &t) in members(first).iter().enumerate() {
-                let around = filter.classes(t).map(|class| &around[class as usize]);
+                let around = filter.vertex_classes(t).map(|class| &around[class as usize]);
                 for &other in around.into_iter().filter(|all| all.len() <= MAX_VERTEX_TRIANGLES).flatten() {
                     let (second, j) = (other as usize / LANES, other as usize % LANES);
                     if second >= first && filter.relation(t, members(second)[j]) == Relation::Adjacent {

@@ -6,7 +6,8 @@ use super::layout::Layout;
 use super::vertex_motion::{VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
-use crate::model::{ScaledModel, norm_up};
+use crate::model::ScaledModel;
+use crate::model::rounding::norm_up;
 
 /// For each vertex and each node how fast positions can change with z. By Cauchy and Schwarz, a vertex moves along an axis
 /// by at most `|A| |dz|`, where A is its scaled row of that axis; the rounding of both computed positions is added.
@@ -20,7 +21,7 @@ pub(crate) struct BallRates {
 impl BallRates {
     pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy, layout: &Layout) -> Self {
         let row = model.row;
-        let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.error.rate(axis)));
+        let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.rounding.per_norm(axis)));
         let mut vertices = vec![DVec3::ZERO; layout.vertices.count()];
         for v in model.faces.as_flattened() {
             let modes = model.modes(*v);

@@ -30,7 +30,7 @@ impl NodeBoundaries {
         // A class may be named after a vertex that no triangle has.
         let mut index_of_class = vec![0; filter.class_count()];
         for (t, face) in mesh.faces().iter().enumerate() {
-            let classes = filter.classes(t as u32);
+            let classes = filter.vertex_classes(t as u32);
             classes
                 .iter()
                 .zip(face)
@@ -39,7 +39,7 @@ impl NodeBoundaries {
         let (mut starts, mut vertices) = (vec![0], Vec::new());
         for (n, node) in hierarchy.nodes().iter().enumerate() {
             if is_wanted(n as u32) {
-                let faces = hierarchy.triangles(node).iter().map(|t| filter.classes(*t));
+                let faces = hierarchy.triangles(node).iter().map(|t| filter.vertex_classes(*t));
                 let boundary = single_boundary(faces).unwrap_or_default();
                 vertices.extend(boundary.into_iter().map(|class| index_of_class[class as usize]));
             }

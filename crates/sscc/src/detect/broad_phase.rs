@@ -140,7 +140,7 @@ impl<const E: usize> BroadPhase<E> {
         [a, b].iter().for_each(|t| self.volumes.move_corners(t.vertices, motion));
         let [a, b] = [a, b].map(|t| self.volumes.corners(t.vertices));
         if let Some(hit) = N::test(&context.filter, relation, pair, &a, &b)
-            && !context.filter.leaves_out(pair.0, pair.1)
+            && !context.filter.is_excluded(pair.0, pair.1)
             && !context.is_exception(pair)
             && !narrow.hits().is_full()
         {

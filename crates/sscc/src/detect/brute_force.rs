@@ -28,7 +28,7 @@ impl<const E: usize> BroadPhase<E> {
                 }
                 self.counters.box_tests += 1;
                 let pair = (a as u32, b as u32);
-                if boxes[a].is_disjoint(&boxes[b]) || context.filter.leaves_out(pair.0, pair.1) {
+                if boxes[a].is_disjoint(&boxes[b]) || context.filter.is_excluded(pair.0, pair.1) {
                     continue;
                 }
                 self.counters.triangle_tests += 1;

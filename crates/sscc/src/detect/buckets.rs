@@ -10,12 +10,12 @@ use super::packet::LANES;
 use crate::TriMesh;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
-use crate::hierarchy::{Hierarchy, SMALL};
+use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
 
 /// Nodes of at most this many triangles that are in no other such node are buckets.
-pub(crate) const BUCKET: usize = SMALL;
+pub(crate) const BUCKET: usize = BUCKET_TRIANGLES;
 
-const _: () = assert!(SMALL == LANES * LANES);
+const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
 
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///

@@ -52,7 +52,11 @@ impl Quantization {
             if vertices.count() == 0 { Aabb::default() } else { Aabb::of_points(at_rest) };
         let center = lower * 0.5 + upper * 0.5;
         let half = (upper - center).max(center - lower).max_element();
-        Self { center, half, sizes: (0..model.rank()).map(|k| model.moved_by(k, 1.0)).collect() }
+        Self {
+            center,
+            half,
+            sizes: (0..model.rank()).map(|k| model.mode_displacement_bound(k, 1.0)).collect(),
+        }
     }
 
     /// Quantizes a rest position and its displacements by each mode.

@@ -1,8 +1,8 @@
-//! Axis-aligned bounding boxes in double precision.
+//! Axis-aligned bounding boxes (AABBs) in double precision.
 
 use glam::DVec3;
 
-/// An axis-aligned bounding box (model unit). Both ends belong to it.
+/// An axis-aligned bounding box (model unit), closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Aabb {
     /// The smallest coordinate along each axis.
@@ -12,23 +12,23 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Contains no point; the union with another box is that box.
+    /// The empty box; its union with another box is that box.
     pub const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
 
-    /// The smallest box around points; [`Aabb::EMPTY`] for none.
+    /// The smallest box that contains the points; [`Aabb::EMPTY`] for none.
     pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         points
             .into_iter()
             .fold(Self::EMPTY, |all, p| Self { lower: all.lower.min(p), upper: all.upper.max(p) })
     }
 
-    /// The box of a triangle.
+    /// The AABB of a triangle.
     #[inline]
     pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
         Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
     }
 
-    /// The swept box of a triangle: around its corners at all `E` ends of a motion.
+    /// The swept AABB of a triangle: the AABB of its corners at all `E` configurations of a motion.
     #[inline]
     pub(crate) fn of_swept_triangle<const E: usize>(corners: &[[DVec3; 3]; E]) -> Self {
         corners.map(Self::of_triangle).into_iter().reduce(|a, b| a.union(&b)).unwrap_or_default()

@@ -1,8 +1,12 @@
-//! Orientation signs where the floating-point filter cannot tell: expansions, or big integers.
+//! Exact signs of orientation determinants, where the floating-point filter does not decide: by the adaptive expansions of
+//! Shewchuk (1997, *Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates*; the crate
+//! `robust`), or by integers where these would underflow.
 
 use glam::{DVec2, DVec3};
 use num_bigint::{BigInt, Sign};
 use robust::{Coord, Coord3D};
+
+use super::binary64::Binary64;
 
 /// Smallest magnitude, other than 0, of a coordinate for which the crate `robust` is exact: 2^-240.
 ///
@@ -12,13 +16,13 @@ use robust::{Coord, Coord3D};
 /// with their roundoff, are multiples of `g^3 = 2^-876`, and no operation on them underflows. Its error
 /// bounds multiply sums of such products by no less than 2^-104 (those of the last stage, second order
 /// in the rounding unit), which gives 0 or at least 2^-980: normal numbers as well.
-const ROBUST_FROM: f64 = f64::from_bits((1023 - 240) << 52);
+const ROBUST_MIN: f64 = f64::from_bits((1023 - 240) << 52);
 
 /// The exact sign of `det(b - a, c - a, d - a)`.
 #[cold]
 #[inline(never)]
 pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
-    if [a, b, c, d].iter().flat_map(DVec3::as_ref).all(|x| robust_is_exact(*x)) {
+    if [a, b, c, d].iter().flat_map(DVec3::as_ref).all(|x| is_robust_exact(*x)) {
         let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
         // Of the opposite sign convention: positive if the last point is below the plane.
         return -sign(robust::orient3d(coord(a), coord(b), coord(c), coord(d)));
@@ -30,14 +34,14 @@ pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
 #[cold]
 #[inline(never)]
 pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
-    if [a, b, c].iter().flat_map(DVec2::as_ref).all(|x| robust_is_exact(*x)) {
+    if [a, b, c].iter().flat_map(DVec2::as_ref).all(|x| is_robust_exact(*x)) {
         let coord = |p: DVec2| Coord { x: p.x, y: p.y };
         return sign(robust::orient2d(coord(a), coord(b), coord(c)));
     }
     orient2d_integer(a, b, c)
 }
 
-/// [`orient3d`] in integers: right for all finite coordinates, at the cost of allocations.
+/// [`orient3d`] in integers: exact for all finite coordinates, but allocates.
 fn orient3d_integer(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     let [a, b, c, d] = integers([a, b, c, d].map(|p| p.to_array()));
     let [q, r, s] = [b, c, d].map(|p| [&p[0] - &a[0], &p[1] - &a[1], &p[2] - &a[2]]);
@@ -45,40 +49,28 @@ fn orient3d_integer(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     integer_sign(&(minor(1, 2) * &s[0] + minor(2, 0) * &s[1] + minor(0, 1) * &s[2]))
 }
 
-/// [`orient2d`] in integers: right for all finite coordinates, at the cost of allocations.
+/// [`orient2d`] in integers: exact for all finite coordinates, but allocates.
 fn orient2d_integer(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     let [a, b, c] = integers([a, b, c].map(|p| p.to_array()));
     let [q, r] = [b, c].map(|p| [&p[0] - &a[0], &p[1] - &a[1]]);
     integer_sign(&(&q[0] * &r[1] - &q[1] * &r[0]))
 }
 
-/// Whether `robust` is exact for determinants with this coordinate; see [`ROBUST_FROM`].
-fn robust_is_exact(x: f64) -> bool {
-    x == 0.0 || x.abs() >= ROBUST_FROM
+/// Whether `robust` is exact for determinants with this coordinate; see [`ROBUST_MIN`].
+fn is_robust_exact(x: f64) -> bool {
+    x == 0.0 || x.abs() >= ROBUST_MIN
 }
 
 /// The points multiplied by one power of two (which changes no sign) that makes all coordinates integers.
 fn integers<const DIM: usize, const COUNT: usize>(points: [[f64; DIM]; COUNT]) -> [[BigInt; DIM]; COUNT] {
-    let parts = points.map(|p| p.map(decode));
-    // Zeros decode to the smallest exponent of all; they must not ask for longer integers.
-    let nonzero = parts.iter().flatten().filter(|(mantissa, _)| *mantissa != 0);
-    let smallest = nonzero.map(|(_, exponent)| *exponent).min().unwrap_or(0);
-    parts.map(|p| p.map(|(mantissa, exponent)| BigInt::from(mantissa) << exponent.saturating_sub(smallest)))
+    let numbers = points.map(|p| p.map(Binary64::of));
+    // Zeros have the smallest exponent of all, but need no longer integers.
+    let nonzero = numbers.iter().flatten().filter(|x| x.mantissa != 0);
+    let smallest = nonzero.map(|x| x.exponent).min().unwrap_or(0);
+    numbers.map(|p| p.map(|x| BigInt::from(x.mantissa) << x.exponent.saturating_sub(smallest)))
 }
 
-/// A finite number as `mantissa * 2^(exponent - 1075)`, exactly; the exponent is at least 1.
-pub(crate) fn decode(x: f64) -> (i64, u32) {
-    const FRACTION_BITS: u32 = 52;
-    let bits = x.to_bits();
-    let biased = (bits >> FRACTION_BITS) as u32 & 0x7ff;
-    let fraction = (bits & ((1 << FRACTION_BITS) - 1)) as i64;
-    // A denormal number has the exponent of the smallest normal ones, without their leading 1.
-    let (mantissa, exponent) =
-        if biased == 0 { (fraction, 1) } else { (fraction | 1 << FRACTION_BITS, biased) };
-    (if x < 0.0 { -mantissa } else { mantissa }, exponent)
-}
-
-/// -1, 0 or 1; 0 for NaN, which no valid input leads to.
+/// -1, 0 or 1; 0 for NaN, which valid input never gives.
 fn sign(x: f64) -> i8 {
     i8::from(x > 0.0) - i8::from(x < 0.0)
 }
@@ -96,21 +88,7 @@ fn integer_sign(x: &BigInt) -> i8 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn numbers_decode_exactly() {
-        for (x, decoded) in [
-            (0.0, (0, 1)),
-            (-0.0, (0, 1)),
-            (f64::from_bits(1), (1, 1)),
-            (-f64::MIN_POSITIVE, (-(1 << 52), 1)),
-            (1.5, (3 << 51, 1023)),
-            (-f64::MAX, (1 - (1 << 53), 2046)),
-        ] {
-            assert_eq!(decode(x), decoded, "{x:e}");
-        }
-    }
-
-    /// At the smallest numbers that `robust` gets, both exact ways agree; far below, it loses the sign.
+    /// At the smallest numbers that `robust` is used for, both exact ways agree; far below, `robust` loses the sign.
     #[test]
     fn robust_agrees_with_integers_where_it_is_used() {
         let corners = |g: f64| {
@@ -120,10 +98,10 @@ mod tests {
             d.z = d.z.next_up();
             [a, b, c, d].map(|p| p * g)
         };
-        for (g, used) in [(1.0, true), (ROBUST_FROM, true), (ROBUST_FROM / 8.0, false), (1e-110, false)] {
+        for (g, used) in [(1.0, true), (ROBUST_MIN, true), (ROBUST_MIN / 8.0, false), (1e-110, false)] {
             let points = corners(g);
             let [a, b, c, d] = points;
-            assert_eq!(points.iter().flat_map(DVec3::as_ref).all(|x| robust_is_exact(*x)), used);
+            assert_eq!(points.iter().flat_map(DVec3::as_ref).all(|x| is_robust_exact(*x)), used);
             assert_eq!(orient3d(a, b, c, d), orient3d_integer(a, b, c, d));
             assert_eq!(orient3d(a, b, c, d), -orient3d(b, a, c, d));
             let [a, b, c] = [a, b, d].map(DVec3::truncate);

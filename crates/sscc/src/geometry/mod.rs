@@ -1,14 +1,15 @@
-//! Exact intersection tests of closed shapes, named `intersect_shape_shape`.
+//! Geometry of boxes and triangles: AABBs, exact intersection tests, nearest points, continuous tests of moving triangles
+//! ([`ccd`]).
 //!
-//! Every shape is the convex hull of its corners, touching counts, and the answer is that of exact
-//! arithmetic on the given `f64` coordinates: never a tolerance, never a rounding. This holds for
-//! coordinates up to [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal.
+//! Intersection tests are named `intersect_shape_shape`. Every shape is the closed convex hull of its corners, so touching
+//! counts, and the answer is that of exact arithmetic on the given f64 coordinates. This holds for coordinates up to
+//! [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal number.
 //!
-//! All tests are Boolean formulas over comparisons of coordinates and signs of determinants
-//! ([`orientation`]); only those signs need arithmetic. Most are settled in a few dozen
-//! floating-point operations with a proven error bound, the rest exactly ([`exact`]).
+//! All tests are Boolean formulas over comparisons of coordinates and signs of determinants ([`orientation`]). A
+//! floating-point filter with a proven error bound decides most signs, exact arithmetic ([`exact`]) the others.
 
 mod aabb;
+mod binary64;
 pub(crate) mod ccd;
 mod exact;
 mod nearest_point;
@@ -18,10 +19,11 @@ mod segment_segment;
 mod segment_triangle;
 mod shared_vertex;
 mod triangle_triangle;
+mod two_triangles;
 
 pub use aabb::Aabb;
 pub use ccd::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
-pub(crate) use exact::decode;
 pub(crate) use nearest_point::nearest_to_origin;
-pub use shared_vertex::intersect_beyond_vertex;
+pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_triangle::intersect_triangle_triangle;
+pub(crate) use two_triangles::TwoTriangles;

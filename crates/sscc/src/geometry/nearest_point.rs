@@ -1,6 +1,8 @@
-//! The point of smallest norm in the convex hull of a few points in space (Wolfe's algorithm).
+//! The point of smallest norm in the convex hull of a few points in space (Wolfe 1976, *Finding the Nearest Point in a
+//! Polytope*).
 //!
-//! It only chooses directions and points for other code to evaluate, so its own rounding never matters.
+//! Its results are candidates: directions and weights that other code evaluates with rounding bounds. So its own rounding
+//! makes bounds weaker, never wrong.
 
 use glam::DVec3;
 
@@ -12,14 +14,14 @@ pub(crate) struct Nearest<const N: usize> {
 
 /// Minimises `|sum w_i d_i|` over convex weights w.
 pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
-    let start = place_of_least(&d.map(|d| d.length_squared()));
+    let start = index_of_smallest(&d.map(|d| d.length_squared()));
     let mut corners = [start, 0, 0, 0];
     let mut weights = [1.0, 0.0, 0.0, 0.0];
     let mut count = 1;
     let mut point = d[start];
     for _ in 0..3 * N {
         let along = d.map(|d| d.dot(point));
-        let entering = place_of_least(&along);
+        let entering = index_of_smallest(&along);
         let norm = point.length_squared();
         let done = norm - along[entering] <= 1e-10 * norm;
         if done || count == 4 || corners[..count].contains(&entering) {
@@ -29,7 +31,7 @@ pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
         weights[count] = 0.0;
         count += 1;
         // Move to the smallest point of the affine hull; while that lies outside, stop at the
-        // border and drop the corner whose weight vanishes there.
+        // boundary and remove the corner whose weight vanishes there.
         while let Some(goal) = affine_minimum(&corners, count, d) {
             let mut step = 1.0;
             let mut leaving = None;
@@ -64,12 +66,12 @@ pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
     Nearest { weights: all, point }
 }
 
-fn place_of_least<const N: usize>(values: &[f64; N]) -> usize {
+fn index_of_smallest<const N: usize>(values: &[f64; N]) -> usize {
     (0..N).fold(0, |best, i| if values[i] < values[best] { i } else { best })
 }
 
-/// The weights (they sum to 1) of the smallest point in the affine hull of the corners, or none when the
-/// corners are affinely dependent: least squares over the edges from the first corner.
+/// The weights (their sum is 1) of the smallest point in the affine hull of the corners, by least squares over the edges
+/// from the first corner. None when the corners are affinely dependent.
 fn affine_minimum<const N: usize>(corners: &[usize; 4], count: usize, d: &[DVec3; N]) -> Option<[f64; 4]> {
     let first = d[corners[0]];
     let edges: [DVec3; 3] = std::array::from_fn(|i| d[corners[(i + 1) % 4]] - first);
@@ -106,7 +108,7 @@ fn affine_minimum<const N: usize>(corners: &[usize; 4], count: usize, d: &[DVec3
 mod tests {
     use super::*;
 
-    /// Smallest distance found by trying all corners, edges and faces of the hull.
+    /// The smallest distance over all corners, edges and faces of the hull.
     fn naive(d: &[DVec3; 9]) -> f64 {
         let mut best = f64::INFINITY;
         let mut seen = vec![vec![]];

@@ -1,13 +1,13 @@
-//! Closed shapes in the plane, and how shapes in space are brought there.
+//! Exact intersection tests of closed shapes in the plane, and the projections that bring shapes in space there.
 //!
-//! A coordinate projection drops one coordinate, which is exact. On a plane (or a line) in space, at least
-//! one of the three is injective, and an affine map that is injective keeps every intersection as it is.
+//! A coordinate projection drops one coordinate, which is exact. On a plane (or a line) in space at least
+//! one of the three projections is injective, and an injective affine map preserves intersections.
 
 use glam::{DVec2, DVec3};
 
-use super::orientation::{orient2d, strictly_one_side};
+use super::orientation::{is_strictly_one_side, orient2d};
 
-/// The coordinate projections, by the axis that they drop.
+/// The coordinate projections, by the axis of the dropped coordinate.
 pub(super) const AXES: [usize; 3] = [0, 1, 2];
 
 /// The point without the coordinate of that axis.
@@ -39,7 +39,7 @@ pub(super) fn injective_projection(triangle: &[DVec3; 3]) -> Option<usize> {
 /// is if 0 is strictly beyond one of its edges, which is if one triangle is strictly beyond an edge of the
 /// other.
 pub(super) fn intersect_triangle_triangle_2d(a: [DVec2; 3], b: [DVec2; 3]) -> bool {
-    !beyond_an_edge(a, &b) && !beyond_an_edge(b, &a)
+    !is_beyond_an_edge(a, &b) && !is_beyond_an_edge(b, &a)
 }
 
 /// Whether a closed segment, which may be a point, and a closed triangle that is not degenerate have a
@@ -48,7 +48,7 @@ pub(super) fn intersect_triangle_triangle_2d(a: [DVec2; 3], b: [DVec2; 3]) -> bo
 /// As for two triangles; the segment is an edge with two normals, and a point has no edge at all.
 pub(super) fn intersect_segment_triangle_2d(segment: [DVec2; 2], triangle: [DVec2; 3]) -> bool {
     let [p, q] = segment;
-    !beyond_an_edge(triangle, &segment) && !strictly_one_side(&triangle.map(|c| orient2d(p, q, c)))
+    !is_beyond_an_edge(triangle, &segment) && !is_strictly_one_side(&triangle.map(|c| orient2d(p, q, c)))
 }
 
 /// Whether two closed segments, each of which may be a point, have a point in common.
@@ -61,12 +61,12 @@ pub(super) fn intersect_segment_triangle_2d(segment: [DVec2; 2], triangle: [DVec
 pub(super) fn intersect_segment_segment_2d(a: [DVec2; 2], b: [DVec2; 2]) -> bool {
     let boxes_meet = a[0].min(a[1]).cmple(b[0].max(b[1])).all() && b[0].min(b[1]).cmple(a[0].max(a[1])).all();
     boxes_meet
-        && !strictly_one_side(&b.map(|p| orient2d(a[0], a[1], p)))
-        && !strictly_one_side(&a.map(|p| orient2d(b[0], b[1], p)))
+        && !is_strictly_one_side(&b.map(|p| orient2d(a[0], a[1], p)))
+        && !is_strictly_one_side(&a.map(|p| orient2d(b[0], b[1], p)))
 }
 
 /// Whether all points are strictly beyond the same edge of a triangle that is not degenerate.
-fn beyond_an_edge(triangle: [DVec2; 3], points: &[DVec2]) -> bool {
+fn is_beyond_an_edge(triangle: [DVec2; 3], points: &[DVec2]) -> bool {
     let [a, b, c] = triangle;
     let inside = orient2d(a, b, c);
     [(a, b), (b, c), (c, a)]

@@ -1,4 +1,4 @@
-//! Two closed segments in space.
+//! The exact intersection test of two closed segments in space.
 
 use glam::DVec3;
 
@@ -9,8 +9,8 @@ use super::planar::{AXES, intersect_segment_segment_2d, project};
 ///
 /// Segments that meet are in one plane and meet in every projection. Conversely, if the four ends are in
 /// one plane, some coordinate projection is injective on what they span (the plane, a line or a point),
-/// and if the segments meet there then they meet in space. Which one it is need not be known: all three
-/// are asked, and the others can only agree.
+/// and if the segments meet there then they meet in space. The test takes all three projections; those
+/// that are not injective do not change the result.
 pub(super) fn intersect_segment_segment(a: [DVec3; 2], b: [DVec3; 2]) -> bool {
     let meet_along =
         |axis| intersect_segment_segment_2d(a.map(|p| project(p, axis)), b.map(|p| project(p, axis)));

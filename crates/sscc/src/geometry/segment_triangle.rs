@@ -1,8 +1,8 @@
-//! A closed segment and a closed triangle in space.
+//! The exact intersection test of a closed segment and a closed triangle in space.
 
 use glam::DVec3;
 
-use super::orientation::{Plane, orient3d, strictly_one_side};
+use super::orientation::{Plane, is_strictly_one_side, orient3d};
 use super::planar::{injective_projection, intersect_segment_triangle_2d, project};
 
 /// Whether a closed segment, which may be a point, and a closed triangle that is not degenerate have a
@@ -11,7 +11,7 @@ pub(super) fn intersect_segment_triangle(segment: [DVec3; 2], triangle: &[DVec3;
     let plane = Plane::through(triangle);
     let [p, q] = segment;
     let sides = [plane.side(p), plane.side(q)];
-    if strictly_one_side(&sides) {
+    if is_strictly_one_side(&sides) {
         return false;
     }
     if sides == [0, 0] {
@@ -33,7 +33,7 @@ pub(super) fn intersect_segment_triangle(segment: [DVec3; 2], triangle: &[DVec3;
 mod tests {
     use super::*;
 
-    /// The caller has ruled out segments strictly on one side, but this test must not rely on it.
+    /// A segment that ends strictly on one side of the plane is disjoint from the triangle.
     #[test]
     fn segment_that_ends_before_the_plane() {
         let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];

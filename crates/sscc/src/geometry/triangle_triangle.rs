@@ -1,4 +1,8 @@
-//! Two closed triangles in space.
+//! The exact intersection test of two closed triangles in space.
+//!
+//! Two triangles in crossing planes are compared as intervals of the planes' common line, by signs of orientation
+//! determinants alone (Guigue and Devillers 2003, *Fast and Robust Triangle-Triangle Overlap Test Using Orientation
+//! Predicates*). All else is reduced to segments or to the plane.
 
 use glam::DVec3;
 
@@ -16,11 +20,10 @@ use crate::limits;
 /// as given, without any tolerance: "no" is a proof that the triangles are disjoint, "yes" that they meet.
 ///
 /// Coordinates must be finite and at most [`limits::LARGEST`] in magnitude (checked in debug builds only;
-/// beyond, the answer may be wrong). They may be as small as they like, denormal numbers included.
+/// beyond, the answer may be wrong). They may be arbitrarily small, denormal numbers included.
 ///
-/// Fast where one triangle is clearly on one side of the other's plane. Boxes are not compared here: where
-/// many pairs are far apart, or in one plane (the slow case: signs that are 0 need exact arithmetic), do that
-/// first.
+/// Fast where one triangle is clearly on one side of the other's plane. The test does not compare AABBs: compare them
+/// first where many pairs are far apart, or in one plane (the slow case: signs that are 0 need exact arithmetic).
 ///
 /// ```
 /// use glam::DVec3;
@@ -34,10 +37,10 @@ use crate::limits;
 /// ```
 pub fn intersect_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     debug_assert!(a.iter().chain(b).all(|p| limits::contains(*p)), "corner out of range: {a:?} {b:?}");
-    let Some(sides_of_b) = Plane::through(a).sides_unless_apart(b) else {
+    let Some(sides_of_b) = Plane::through(a).sides_unless_separated(b) else {
         return false;
     };
-    let Some(sides_of_a) = Plane::through(b).sides_unless_apart(a) else {
+    let Some(sides_of_a) = Plane::through(b).sides_unless_separated(a) else {
         return false;
     };
     if sides_of_a == [0; 3] || sides_of_b == [0; 3] {
@@ -65,19 +68,24 @@ pub fn intersect_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 /// `b0 - b1` points to the upper side of a within the plane of b, `D x (b0 - b1)` is a positive multiple of N,
 /// and `(a0 - a1) . N > 0`: the determinant has the sign of t. The same holds for any two of the ends.
 fn intersect_crossing(a: &[DVec3; 3], sides_of_a: [i8; 3], b: &[DVec3; 3], sides_of_b: [i8; 3]) -> bool {
-    let (apex_a, a_above) = apex(sides_of_a);
-    let (apex_b, b_above) = apex(sides_of_b);
-    let [a0, a1, a2] = turned(a, apex_a, b_above);
-    let [b0, b1, b2] = turned(b, apex_b, a_above);
+    let (apex_a, apex_b) = (find_apex(sides_of_a), find_apex(sides_of_b));
+    let [a0, a1, a2] = reorder(a, apex_a.corner, apex_b.is_above);
+    let [b0, b1, b2] = reorder(b, apex_b.corner, apex_a.is_above);
     let touch = right_or!(0, TouchingIsFree, 1);
     orient3d(a0, a1, b0, b1) <= -touch && orient3d(a0, a2, b0, b2) >= touch
 }
 
-/// The corner that is alone on its side: its index, and whether its side is the greatest (else the least).
-///
-/// Three numbers that are not all equal have an only greatest or an only least one.
+/// The corner of a triangle that is alone on its side of the other's plane.
+#[derive(Clone, Copy)]
+struct Apex {
+    corner: usize,
+    /// Whether its side is the greatest of the three, else the least.
+    is_above: bool,
+}
+
+/// Finds the apex: three numbers that are not all equal have an only greatest or an only least one.
 #[inline]
-fn apex(sides: [i8; 3]) -> (usize, bool) {
+fn find_apex(sides: [i8; 3]) -> Apex {
     let [s0, s1, s2] = sides;
     let corner = if s1 == s2 {
         0
@@ -89,14 +97,14 @@ fn apex(sides: [i8; 3]) -> (usize, bool) {
         // -1, 0, 1 in some order: the greatest and the least are both alone. The greatest.
         usize::from(s1 > 0) + 2 * usize::from(s2 > 0)
     };
-    (corner, sides[corner] > sides[(corner + 1) % 3])
+    Apex { corner, is_above: sides[corner] > sides[(corner + 1) % 3] }
 }
 
-/// The corners from the given one on, in the same order of turning, or the opposite one.
+/// The corners, beginning with the given one, in the same orientation or the opposite one.
 #[inline]
-fn turned(corners: &[DVec3; 3], first: usize, same_turn: bool) -> [DVec3; 3] {
+fn reorder(corners: &[DVec3; 3], first: usize, same_orientation: bool) -> [DVec3; 3] {
     let (second, third) = ((first + 1) % 3, (first + 2) % 3);
-    let (second, third) = if same_turn { (second, third) } else { (third, second) };
+    let (second, third) = if same_orientation { (second, third) } else { (third, second) };
     [corners[first], corners[second], corners[third]]
 }
 
@@ -117,8 +125,8 @@ fn intersect_flat(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 
 /// The ends of the segment that three collinear corners span.
 ///
-/// Along a line, points are ordered by the first coordinate that is not the same for all of them; hence the
-/// lexicographically least and greatest corners are the ends.
+/// Points on a line are ordered by the first coordinate that differs; hence the lexicographically least and greatest
+/// corners are the ends.
 fn hull_of_collinear(corners: &[DVec3; 3]) -> [DVec3; 2] {
     let mut ends = [corners[0]; 2];
     for &corner in &corners[1..] {

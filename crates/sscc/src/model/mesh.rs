@@ -1,4 +1,4 @@
-//! A triangle mesh at rest, and which of its triangles are adjacent.
+//! A triangle mesh at rest.
 
 use glam::DVec3;
 
@@ -6,12 +6,11 @@ use crate::{Error, limits};
 
 /// A triangle mesh: rest positions (V, model unit) and faces (N, three vertex indices each).
 ///
-/// Any triangle soup is accepted: closed, open, or with edges of more than two triangles. What the
-/// odd cases mean:
-/// - a vertex that no face uses is no part of the shape: it never collides and never counts in a box;
+/// Any triangle soup is valid: closed, open, or with edges of more than two triangles. Special cases:
+/// - a vertex that no face uses is not part of the shape: it never collides, and no AABB contains it;
 /// - two faces with the same three vertices are adjacent (they share a vertex), so they never collide;
-/// - a face of zero area (a repeated index, or collinear corners) is the closed segment or point
-///   that its corners span, and collides as such.
+/// - a face of zero area (a repeated index, or collinear corners) is the closed segment or point that its corners span,
+///   and collides as such.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriMesh {
     rest_positions: Vec<DVec3>,
@@ -37,7 +36,7 @@ impl TriMesh {
             return Err(Error::Position { vertex, position: rest_positions[vertex].to_array() });
         }
         for (face, corners) in faces.iter().enumerate() {
-            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= rest_positions.len()) {
+            if let Some(&vertex) = corners.iter().find(|&&i| i as usize >= rest_positions.len()) {
                 return Err(Error::FaceIndex { face, vertex, vertices: rest_positions.len() });
             }
         }
@@ -54,19 +53,19 @@ impl TriMesh {
         &self.faces
     }
 
-    /// Whether two faces share a vertex by its number. What that means for collisions, and for vertices that are
-    /// split, says a [`PairRule`](crate::PairRule).
-    pub fn are_adjacent(&self, face_a: u32, face_b: u32) -> bool {
-        let (a, b) = (self.faces[face_a as usize], self.faces[face_b as usize]);
-        a.iter().any(|v| b.contains(v))
+    /// Whether two faces share a vertex index. Whether such pairs count as collisions, and which vertices are welded, is
+    /// up to a [`PairRule`](crate::PairRule).
+    pub fn are_adjacent(&self, a: u32, b: u32) -> bool {
+        let (corners_a, corners_b) = (self.faces[a as usize], self.faces[b as usize]);
+        corners_a.iter().any(|i| corners_b.contains(i))
     }
 
-    /// The vertices that at least one face uses, ascending.
+    /// The vertices that at least one face uses, in ascending order.
     pub fn used_vertices(&self) -> Vec<u32> {
         let mut used = vec![false; self.rest_positions.len()];
-        for &v in self.faces.iter().flatten() {
-            used[v as usize] = true;
+        for &i in self.faces.iter().flatten() {
+            used[i as usize] = true;
         }
-        (0..used.len() as u32).filter(|&v| used[v as usize]).collect()
+        (0..used.len() as u32).filter(|&i| used[i as usize]).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! Deformation modes U, and the one shape that every answer speaks of.
+//! Deformation modes U, and the definition of the deformed shape that all answers refer to.
 
 use glam::DVec3;
 
@@ -26,8 +26,8 @@ impl Modes {
         if !displacements.len().is_multiple_of(rank) {
             return Err(Error::ModesLength { len: displacements.len(), rank });
         }
-        if let Some(at) = displacements.iter().position(|u| !limits::contains(*u)) {
-            return Err(Error::ModeEntry { vertex: at / rank, mode: at % rank });
+        if let Some(index) = displacements.iter().position(|u| !limits::contains(*u)) {
+            return Err(Error::ModeEntry { vertex: index / rank, mode: index % rank });
         }
         Ok(Self { rank, displacements })
     }
@@ -42,8 +42,8 @@ impl Modes {
         entry: impl Fn(usize, usize) -> f64,
     ) -> Result<Self, Error> {
         let displacements = (0..vertices)
-            .flat_map(|v| (0..rank).map(move |k| (v, k)))
-            .map(|(v, k)| DVec3::new(entry(3 * v, k), entry(3 * v + 1, k), entry(3 * v + 2, k)))
+            .flat_map(|i| (0..rank).map(move |k| (i, k)))
+            .map(|(i, k)| DVec3::new(entry(3 * i, k), entry(3 * i + 1, k), entry(3 * i + 2, k)))
             .collect();
         Self::new(rank, displacements)
     }
@@ -70,8 +70,8 @@ impl Modes {
 }
 
 /// The deformed position of one vertex: `x = p`, then `x += U_k q_k` for k = 0 .. r-1 in this order, each
-/// product and sum rounded once (no fused multiply-add). This function **is** the shape: every
-/// method, test and certificate speaks of these f64 positions and no others.
+/// product and sum rounded once (no fused multiply-add). This function **defines** the shape: all methods, tests and
+/// certificates refer to these f64 positions.
 #[inline]
 pub fn deformed_position(rest: DVec3, modes: &[DVec3], q: &[f64]) -> DVec3 {
     let mut x = rest;

@@ -1,12 +1,11 @@
-//! A reduced deformable model: mesh, modes and a default metric.
+//! A reduced deformable model `x = p + U q`: mesh, modes and a default metric.
 
 use glam::DVec3;
 
 use crate::model::check_scaled_modes;
 use crate::{Error, Metric, Modes, TriMesh, deformed_position, limits};
 
-/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric that certificates use
-/// unless they are given another.
+/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric of certificates that name no other.
 #[derive(Clone, Debug)]
 pub struct ReducedModel {
     mesh: TriMesh,
@@ -22,7 +21,7 @@ impl ReducedModel {
     /// Joins a mesh and its modes, with the displacement metric.
     ///
     /// # Errors
-    /// When the modes are for another number of vertices, or so small or large that no proof holds.
+    /// When the modes are for another number of vertices, or out of the range in which the proofs hold.
     pub fn new(mesh: TriMesh, modes: Modes) -> Result<Self, Error> {
         let metric = Metric::displacement(&mesh, &modes);
         Self::with_metric(mesh, modes, metric)
@@ -40,8 +39,8 @@ impl ReducedModel {
         check_scaled_modes(&mesh, &modes, &metric)?;
         let rest_reach = mesh.rest_positions().iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         let mut mode_reach = vec![0.0_f64; modes.rank()];
-        for (i, u) in modes.displacements().iter().enumerate() {
-            let reach = &mut mode_reach[i % modes.rank()];
+        for (index, u) in modes.displacements().iter().enumerate() {
+            let reach = &mut mode_reach[index % modes.rank()];
             *reach = reach.max(u.abs().max_element());
         }
         Ok(Self { mesh, modes, metric, rest_reach, mode_reach })
@@ -67,7 +66,7 @@ impl ReducedModel {
         self.modes.rank()
     }
 
-    /// Where vertex `vertex` is at `q` (model unit): see [`deformed_position`].
+    /// The position of a vertex at `q` (model unit): see [`deformed_position`].
     pub fn position(&self, vertex: u32, q: &[f64]) -> DVec3 {
         deformed_position(self.mesh.rest_positions()[vertex as usize], self.modes.of_vertex(vertex), q)
     }
@@ -75,21 +74,22 @@ impl ReducedModel {
     /// All deformed positions at `q` (V, model unit).
     ///
     /// # Errors
-    /// When q has the wrong length, an entry is not finite, or vertices would leave the range of numbers.
+    /// When q has the wrong length, an entry is not finite, or a vertex would leave the range of [`limits`].
     pub fn positions(&self, q: &[f64]) -> Result<Vec<DVec3>, Error> {
         self.check_coordinates(q)?;
-        Ok((0..self.mesh.rest_positions().len() as u32).map(|v| self.position(v, q)).collect())
+        Ok((0..self.mesh.rest_positions().len() as u32).map(|i| self.position(i, q)).collect())
     }
 
-    /// An upper bound (up to rounding) of every `|p| + sum_k |U_k q_k|`.
+    /// An upper bound (rounded to nearest) of every coordinate of `|p| + sum_k |U_k q_k|`.
     pub(crate) fn reach(&self, q: &[f64]) -> f64 {
-        self.rest_reach + self.moved(q)
+        self.rest_reach + self.displacement_bound(q)
     }
 
-    /// An upper bound (up to rounding) of every `sum_k |U_k q_k|`. Not finite where an entry of q is not.
+    /// An upper bound (rounded to nearest) of every coordinate of `sum_k |U_k q_k|`. Not finite where an entry of q is
+    /// not.
     #[inline]
-    pub(crate) fn moved(&self, q: &[f64]) -> f64 {
-        // Four sums side by side.
+    pub(crate) fn displacement_bound(&self, q: &[f64]) -> f64 {
+        // Four partial sums.
         let mut lanes = [0.0; 4];
         let (reaches, rest) = self.mode_reach.as_chunks::<4>();
         let (coordinates, last) = q.as_chunks::<4>();
@@ -102,13 +102,13 @@ impl ReducedModel {
         (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last
     }
 
-    /// An upper bound (up to rounding) of every `|U_k q_k|` of one mode.
-    pub(crate) fn moved_by(&self, k: usize, q_k: f64) -> f64 {
+    /// An upper bound (rounded to nearest) of every coordinate of `|U_k q_k|`, for one mode k.
+    pub(crate) fn mode_displacement_bound(&self, k: usize, q_k: f64) -> f64 {
         self.mode_reach[k] * q_k.abs()
     }
 
-    /// Refuses a q that is no configuration of this model; else gives the reach of the shape at q, an upper
-    /// bound of every `|p| + sum_k |U_k q_k|` (up to rounding), from which error terms are made.
+    /// Refuses a q that is not a configuration of this model. Returns an upper bound (rounded to nearest) of every
+    /// coordinate of `|p| + sum_k |U_k q_k|`, which rounding bounds are multiples of.
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or the reach is beyond [`limits::LARGEST`].
@@ -119,10 +119,10 @@ impl ReducedModel {
         let reach = self.reach(q);
         if !reach.is_finite() {
             let index = q.iter().position(|x| !x.is_finite());
-            let refused = |index| Error::CoordinatesValue { index, value: q[index] };
-            return Err(index.map_or(Error::CoordinatesRange, refused));
+            let not_finite = |index| Error::CoordinatesValue { index, value: q[index] };
+            return Err(index.map_or(Error::CoordinatesRange, not_finite));
         }
-        // Rounding may carry a position a little beyond the exact reach.
+        // Rounding may move a computed position beyond the exact reach.
         let rounding = 1.0 + (2 * q.len() + 8) as f64 * f64::EPSILON;
         if reach * rounding > limits::LARGEST {
             return Err(Error::CoordinatesRange);

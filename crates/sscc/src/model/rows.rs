@@ -1,12 +1,15 @@
-//! Sums over the modes, four lanes at a time (rows are padded with zeros to a multiple of four).
+//! Sums over the modes, for the bounds of section 5.
+//!
+//! A row has one number for each mode, padded with zeros to a multiple of four. Sums run over four lanes in a fixed order,
+//! so that they have the same bits on every machine. The modes of a vertex are three rows: x, y, z.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-/// Modes are stored in rows of this multiple.
+/// Lengths of rows are multiples of this.
 pub(crate) const LANES: usize = 4;
 
-/// `rank` rounded up to whole lanes.
-pub(crate) fn padded(rank: usize) -> usize {
+/// The length of a row: `rank` rounded up to a multiple of [`LANES`].
+pub(crate) fn padded_rank(rank: usize) -> usize {
     rank.div_ceil(LANES) * LANES
 }
 
@@ -39,14 +42,14 @@ pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     sum(lanes)
 }
 
-/// `out = A' n` for a point's modes `A` (three rows: x, y, z).
+/// `out = A' dir` for the modes `A` of a point (three rows: x, y, z).
 #[inline]
-pub(crate) fn project(modes: &[f64], n: DVec3, out: &mut [f64]) {
+pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
     let row = out.len();
     let (x, rest) = modes.split_at(row);
     let (y, z) = rest.split_at(row);
     for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
-        *out = n.x * x + n.y * y + n.z * z;
+        *out = dir.x * x + dir.y * y + dir.z * z;
     }
 }
 
@@ -56,9 +59,9 @@ pub(crate) fn add_scaled(out: &mut [f64], weight: f64, a: &[f64]) {
     out.iter_mut().zip(a).for_each(|(o, a)| *o += weight * a);
 }
 
-/// The 3 x 3 Gram matrix `B B'` of three rows, as (xx, xy, xz, yy, yz, zz).
+/// The 3 x 3 Gram matrix `B B'` of three rows.
 #[inline]
-pub(crate) fn gram(rows: &[f64]) -> [f64; 6] {
+pub(crate) fn gram(rows: &[f64]) -> DMat3 {
     let row = rows.len() / 3;
     let (x, rest) = rows.split_at(row);
     let (y, z) = rest.split_at(row);
@@ -74,5 +77,6 @@ pub(crate) fn gram(rows: &[f64]) -> [f64; 6] {
             lanes[5][i] += z[i] * z[i];
         }
     }
-    lanes.map(sum)
+    let [xx, xy, xz, yy, yz, zz] = lanes.map(sum);
+    DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz))
 }

@@ -1,9 +1,9 @@
-// All mutations: what is wrong with each, and its fate. Read by this crate, which has the wrong code, and by
-// `cargo xtask mutants`, which runs the tests.
+// The list of mutations: what is wrong with each, and the test that catches it. Included by this crate, which contains
+// the wrong code, and by `cargo xtask mutants`, which runs the tests.
 //
-// `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for the tests
-// within the crate, or the name of a file in `tests/`.
-// `Covered("REASON")`: another term makes up for it; the argument stands in the code.
+// `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for tests within
+// the crate, or the name of a file in `tests/`.
+// `Covered("REASON")`: no test can fail, because another term is large enough; the code has the proof.
 
 mutants! {
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
@@ -23,29 +23,29 @@ mutants! {
     /// |z| is not rounded up.
     NormToNearest: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// Norms in bounds are not rounded up.
-    NormUpToNearest: CaughtBy("lib bounds::rounding_tests::roots_are_rounded_up_and_quotients_down");
+    NormUpToNearest: CaughtBy("lib bounds::tests::rounding::roots_are_rounded_up_and_quotients_down");
     /// Quotients of bounds are not rounded down.
-    QuotientToNearest: CaughtBy("lib bounds::rounding_tests::roots_are_rounded_up_and_quotients_down");
+    QuotientToNearest: CaughtBy("lib bounds::tests::rounding::roots_are_rounded_up_and_quotients_down");
     /// The bound along a separating direction omits the rounding error of rest positions (e0).
-    DirectionWithoutRestError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_positions_at_rest_are_rounded");
+    DirectionWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_positions_at_rest_are_rounded");
     /// The bound along a separating direction omits the rounding error of motion (e1).
-    DirectionWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
+    DirectionWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
     /// The bound of two nodes omits the rounding error of rest positions (e0).
-    ClusterWithoutRestError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_positions_at_rest_are_rounded");
+    NodePairWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_positions_at_rest_are_rounded");
     /// The bound of two nodes omits the rounding error of motion (e1).
-    ClusterWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
+    NodePairWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
     /// The affine residual of a node omits its rounding error.
-    ClusterFitExact: CaughtBy("lib bounds::node_pair::tests::residuals_hold_what_the_fit_has_rounded");
+    NodeFitExact: CaughtBy("lib bounds::node_modes::tests::residuals_hold_what_the_fit_has_rounded");
     /// Norms from the Gram matrix of two nodes omit its rounding error.
-    ClusterProductsExact: CaughtBy("lib bounds::node_pair::tests::corners_that_cancel_keep_their_rate");
+    NodePairProductsExact: CaughtBy("lib bounds::node_pair::tests::corners_that_cancel_keep_their_rate");
     /// The affine bound omits the rounding error of motion (e1).
-    AffineWithoutRateError: CaughtBy("lib bounds::rounding_tests::bounds_know_that_motion_is_rounded");
+    AffineWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
     /// The affine residual of two triangles omits its rounding error.
-    AffineResidualExact: CaughtBy("lib bounds::affine::tests::residuals_hold_what_rounding_moves_corners_by");
+    AffineResidualExact: CaughtBy("lib bounds::affine_fit::tests::residuals_hold_what_rounding_moves_corners_by");
     /// Closing rates on a cone of directions omit the rounding error of their Gram matrix.
     ConeExact: CaughtBy("lib bounds::cone::tests::rates_that_cancel_are_not_too_small");
     /// Safe scales omit the rounding error of positions along the line.
-    PathExact: CaughtBy("rounding safe_scales_end_before_rounding_closes_a_gap");
+    LineExact: CaughtBy("rounding safe_scales_end_before_rounding_closes_a_gap");
     /// A |z| that equals the root's radius is certified.
     RootRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals a node's radius is certified in a traversal.
@@ -101,7 +101,7 @@ mutants! {
     /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("impact_tolerance what_touches_at_the_end_is_listed");
     /// The error bound of a rounded number omits its own rounding.
-    BoundedExact: CaughtBy("lib geometry::ccd::number::tests::both_kinds_agree_with_rational_arithmetic");
+    BoundedExact: CaughtBy("lib geometry::ccd::tests::both_kinds_agree_with_rational_arithmetic");
     /// Pairs that rounded directions do not settle are listed at the time reached.
     FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.

@@ -1,15 +1,15 @@
-//! Mutations: small wrong variants of the core, each of which some test must catch. `cargo xtask mutants` tries them
-//! all; `list.rs` names them.
+//! Mutations: wrong variants of single terms of the core, each of which some test must catch.
 //!
-//! The wrong variant stands beside the right one:
+//! `list.rs` lists them, and `cargo xtask mutants` runs the test named for each. The macro has the right code first, then
+//! the wrong one:
 //!
 //! ```text
 //! let norm = right_or!(up(ends.norm + radius), KineticBallAtCentre, ends.norm);
 //! ```
 //!
-//! The macro is its first argument and nothing else, unless the feature `mutants` is on in a build with debug
-//! assertions. Then the environment variable `SSCC_MUTANT` names the mutation that a process runs with, so that one
-//! build serves all of them.
+//! Without the feature `mutants`, and in every build without debug assertions, the macro expands to its first argument
+//! alone. With it the environment variable `SSCC_MUTANT` names the mutation of a process, so that one build serves all
+//! mutations.
 
 #[cfg(not(all(feature = "mutants", debug_assertions)))]
 macro_rules! right_or {
@@ -58,7 +58,7 @@ mod switch {
 
     include!("list.rs");
 
-    /// The mutation that this process runs with, read once.
+    /// The mutation of this process, read once.
     pub(crate) fn active() -> Option<Mutant> {
         static ACTIVE: OnceLock<Option<Mutant>> = OnceLock::new();
         *ACTIVE.get_or_init(|| {
@@ -69,7 +69,7 @@ mod switch {
         })
     }
 
-    /// Says once that wrong code runs. The test harness keeps back what `eprintln!` writes, but not this.
+    /// Writes once to standard error that wrong code ran. (The test harness captures `eprintln!`, but not this.)
     pub(crate) fn reached() {
         static REACHED: Once = Once::new();
         REACHED.call_once(|| {

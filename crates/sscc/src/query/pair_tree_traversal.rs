@@ -86,7 +86,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             continue;
         }
         broad.counters.opened += 1;
-        if let Some(split) = context.hierarchy.split_large(n, m) {
+        if let Some(split) = context.hierarchy.split_above_buckets(n, m) {
             for StoredPair { place, entry: stored } in tree.below(entry) {
                 if is_entry_reached!(stored, norm) {
                     stack.push(Visit { nodes: split.pair(stored.which()), entry: place });

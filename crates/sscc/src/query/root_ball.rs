@@ -24,7 +24,7 @@ impl RootBall {
             return none;
         };
         // How far a mode alone moves vertices at |z| = 1.
-        let unit = |(k, scale): (usize, f64)| model.moved_by(k, UP / scale);
+        let unit = |(k, scale): (usize, f64)| model.mode_displacement_bound(k, UP / scale);
         let rate = scope.metric.scales().into_iter().enumerate().map(unit).map(|x| x * x).sum::<f64>().sqrt();
         let radius = parts.node_radii[0];
         let reach = (model.reach(&scope.center) + radius * rate) * UP;

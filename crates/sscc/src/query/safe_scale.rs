@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::query::Query;
-use crate::bounds::{MovingAabb, Path};
+use crate::bounds::{Line, MovingAabb};
 use crate::certificates::StoredPair;
 use crate::geometry::Aabb;
 use crate::heap::MinFirst;
@@ -28,7 +28,7 @@ impl Query<'_> {
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
         self.begin(usize::MAX);
         self.norm = self.measure(q)?.norm;
-        let path = Path::new(self.context.detect.model, &self.context.scope.center, q);
+        let path = Line::new(self.context.detect.model, &self.context.scope.center, q);
         let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(path.farthest) * DOWN;
         if self.norm == 0.0 {
@@ -63,7 +63,8 @@ impl Query<'_> {
             let [node_n, node_m] = [n, m].map(|n| self.context.detect.hierarchy.nodes()[n as usize]);
             let hierarchy = &self.context.detect.hierarchy;
             if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
-                let ends = place == UNKNOWN || (place != NONE && hierarchy.split_large(n, m).is_none());
+                let ends =
+                    place == UNKNOWN || (place != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
                     [(UNKNOWN, 0.0); MAX_SIBLINGS]
                 } else {
@@ -79,13 +80,13 @@ impl Query<'_> {
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
                     let box_x = &boxes.triangles[x as usize];
-                    if n != m && path.boxes_apart(box_x, &boxes.nodes[m as usize]) >= goal {
+                    if n != m && path.aabbs_separated_until(box_x, &boxes.nodes[m as usize]) >= goal {
                         continue;
                     }
                     let first = if n == m { i + 1 } else { 0 };
                     for &y in &triangles(&node_m)[first..] {
                         self.statistics.box_tests += 1;
-                        if path.boxes_apart(box_x, &boxes.triangles[y as usize]) < goal {
+                        if path.aabbs_separated_until(box_x, &boxes.triangles[y as usize]) < goal {
                             self.statistics.triangle_tests += 1;
                             best = best.min(self.follow(&path, (x, y), lower, goal.min(best)));
                         }
@@ -96,7 +97,7 @@ impl Query<'_> {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);
                 }
-                let certified = if self.context.detect.hierarchy.is_whole(n) {
+                let certified = if self.context.detect.hierarchy.is_bucket_below_root(n) {
                     [(UNKNOWN, 0.0); MAX_SIBLINGS]
                 } else {
                     let stored = tree.map(|tree| tree.of_node(n));
@@ -141,12 +142,12 @@ impl Query<'_> {
 
     /// Advances two triangles that do not collide before `t`: infinite if they do not before `goal` either, or do not
     /// count; else a scale below which they do not, close to where they collide.
-    fn follow(&self, path: &Path, (x, y): Pair, t: f64, goal: f64) -> f64 {
-        if self.context.detect.filter.leaves_out(x, y) {
+    fn follow(&self, path: &Line, (x, y): Pair, t: f64, goal: f64) -> f64 {
+        if self.context.detect.filter.is_excluded(x, y) {
             return f64::INFINITY;
         }
         let hulls = self.context.detect.filter.hulls(x, y);
-        hulls.map(|(x, y)| path.follow(x, y, t, goal)).fold(f64::INFINITY, f64::min)
+        hulls.map(|hulls| path.advance(hulls.a, hulls.b, t, goal)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -175,7 +176,7 @@ struct PathBoxes {
 }
 
 impl PathBoxes {
-    fn new(path: &Path, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
+    fn new(path: &Line, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
         let of_face = |face: &[u32; 3]| {
             let of = |all: &[DVec3]| Aabb::of_triangle(face.map(|v| all[v as usize]));
             MovingAabb { positions: of(&path.positions), velocities: of(&path.velocities) }
@@ -197,7 +198,7 @@ impl PathBoxes {
     }
 
     /// A scale below which some axis separates the two nodes all the way.
-    fn apart(&self, path: &Path, (n, m): Pair) -> f64 {
-        path.boxes_apart(&self.nodes[n as usize], &self.nodes[m as usize])
+    fn apart(&self, path: &Line, (n, m): Pair) -> f64 {
+        path.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }
 }

@@ -1,7 +1,7 @@
 //! The BVTT under construction: node pairs with lower bounds of their radii, from which the pair tree is made.
 //!
 //! The BVTT begins with the pairs of children of each node that is not within a bucket. A pair is split by
-//! [`Hierarchy::split_large`] alone, so pairs are not stored with what they are split into: children are side by side,
+//! [`Hierarchy::split_above_buckets`] alone, so pairs are not stored with what they are split into: children are side by side,
 //! in the order of the split.
 
 use std::ops::Range;
@@ -93,7 +93,7 @@ impl Bvtt {
     pub(super) fn children(&self, hierarchy: &Hierarchy, pair: &BvttPair) -> Range<usize> {
         let PairState::Split(first) = pair.state() else { return 0..0 };
         let (n, m) = pair.nodes;
-        let count = hierarchy.split_large(n, m).map_or(0, |split| split.children().len());
+        let count = hierarchy.split_above_buckets(n, m).map_or(0, |split| split.children().len());
         first as usize..first as usize + count
     }
 

@@ -1,6 +1,6 @@
 //! The data that searches for radii read: one model about its centre, its hierarchy, and bounds of its nodes.
 
-use crate::bounds::ClusterBounds;
+use crate::bounds::NodePairBounds;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
@@ -12,5 +12,5 @@ pub(crate) struct SearchContext<'a> {
     /// Which triangle pairs count; exceptions are left out.
     pub(crate) filter: &'a PairFilter,
     pub(crate) hierarchy: &'a Hierarchy,
-    pub(crate) nodes: &'a ClusterBounds,
+    pub(crate) nodes: &'a NodePairBounds,
 }

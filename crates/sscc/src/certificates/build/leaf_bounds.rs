@@ -8,7 +8,8 @@ use glam::DVec3;
 
 use super::context::SearchContext;
 use crate::Pair;
-use crate::bounds::{LeafPair, PairRefiner, Target};
+use crate::bounds::{LeafPair, PairRefiner, RefinementTarget};
+use crate::filter::Hulls;
 
 /// Directions along which all pairs are bounded, beside the first one.
 const MAX_SHARED_DIRECTIONS: usize = 3;
@@ -49,14 +50,14 @@ impl<'a> LeafBounds<'a> {
         let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
         self.leaves.load(x, y);
         if let Some(dir) = dir {
-            self.leaves.look_along(dir);
+            self.leaves.set_direction(dir);
         }
         self.hulls.clear();
         for (i, &a) in x.iter().enumerate() {
             for &b in if n == m { &y[i + 1..] } else { y } {
-                for (x, y) in filter.hulls(a, b) {
-                    let lower = dir.map_or(0.0, |_| self.leaves.along(x, y));
-                    if lower < certified && !filter.leaves_out(a, b) {
+                for Hulls { a: x, b: y } in filter.hulls(a, b) {
+                    let lower = dir.map_or(0.0, |_| self.leaves.bound_along_direction(x, y));
+                    if lower < certified && !filter.is_excluded(a, b) {
                         self.hulls.push(HullPair { triangles: (a, b), x, y, lower, is_refined: false });
                     }
                 }
@@ -69,35 +70,37 @@ impl<'a> LeafBounds<'a> {
     pub(super) fn refine(
         &mut self,
         refiner: &mut PairRefiner<'_>,
-        target: &mut Target,
+        target: &mut RefinementTarget,
         certified: f64,
     ) -> Option<Pair> {
         let Self { leaves, hulls, .. } = self;
         let mut closest = None;
         let mut smallest_refined = certified;
         for round in 0.. {
-            let goal = target.enough().min(smallest_refined);
+            let goal = target.sufficient().min(smallest_refined);
             let open = hulls.iter_mut().filter(|hull| !hull.is_refined && hull.lower < goal);
             let Some(worst) = open.reduce(|a, b| if b.lower < a.lower { b } else { a }) else { break };
             worst.is_refined = true;
             let upper = target.upper;
-            worst.lower = worst.lower.max(refiner.bound_once(worst.x, worst.y, target));
+            worst.lower = worst.lower.max(refiner.bound(worst.x, worst.y, target));
             if target.upper < upper {
                 closest = Some(worst.triangles);
             }
             smallest_refined = smallest_refined.min(worst.lower);
-            let goal = target.enough().min(smallest_refined);
+            let goal = target.sufficient().min(smallest_refined);
             let is_open = |hull: &HullPair| !hull.is_refined && hull.lower < goal;
             if round < MAX_SHARED_DIRECTIONS
                 && hulls.iter().any(is_open)
                 && let Some(dir) = refiner.best_direction()
             {
-                leaves.look_along(dir);
-                hulls.iter_mut().for_each(|hull| hull.lower = hull.lower.max(leaves.along(hull.x, hull.y)));
+                leaves.set_direction(dir);
+                hulls.iter_mut().for_each(|hull| {
+                    hull.lower = hull.lower.max(leaves.bound_along_direction(hull.x, hull.y))
+                });
             }
             if round == 0 {
                 for hull in hulls.iter_mut().filter(|hull| is_open(hull)) {
-                    hull.lower = hull.lower.max(leaves.affine(hull.x, hull.y, goal));
+                    hull.lower = hull.lower.max(leaves.bound_by_affine_map(hull.x, hull.y, goal));
                 }
             }
         }

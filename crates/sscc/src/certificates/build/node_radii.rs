@@ -118,7 +118,7 @@ impl Passes<'_> {
         while let Some(child) = nodes[n].children().find(|n| radii.nodes[*n as usize] == radii.nodes[0]) {
             n = child as usize;
         }
-        if self.builder.is_empty() || nodes[n].is_leaf() || hierarchy.is_whole(n as u32) {
+        if self.builder.is_empty() || nodes[n].is_leaf() || hierarchy.is_bucket_below_root(n as u32) {
             return Ok(f64::INFINITY);
         }
         let siblings = match radii.root_pairs.iter().position(|radius| *radius == radii.nodes[0]) {
@@ -147,7 +147,7 @@ impl Passes<'_> {
     fn task(&self, precision: Precision, n: usize, siblings: Range<usize>, cap: f64) -> NodeRadiusTask {
         let hierarchy = &self.prepared.hierarchy;
         let node = n as u32;
-        if hierarchy.is_whole(node) || hierarchy.nodes()[n].is_leaf() {
+        if hierarchy.is_bucket_below_root(node) || hierarchy.nodes()[n].is_leaf() {
             // The radii of its parts are not known: they were not searched.
             return NodeRadiusTask::within(node, precision, self.prepared.global_radius);
         }

@@ -101,7 +101,7 @@ impl PairTreeBuilder {
             }
             open = open_pairs(bvtt, before_stage..bvtt.pairs.len(), limit);
         }
-        let is_large = |(n, m): (u32, u32)| hierarchy.split_large(n, m).is_some();
+        let is_large = |(n, m): (u32, u32)| hierarchy.split_above_buckets(n, m).is_some();
         if bvtt.pairs.iter().any(|pair| pair.is_open_below(limit) && is_large(pair.nodes)) {
             return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }

@@ -6,7 +6,7 @@ use super::context::SearchContext;
 use super::global_radius::global_radius;
 use super::goal::coarse_cap;
 use super::search::RadiusSearch;
-use crate::bounds::ClusterBounds;
+use crate::bounds::NodePairBounds;
 use crate::certificates::{CertifyOptions, Digest, Scope};
 use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
@@ -24,7 +24,7 @@ pub(crate) struct Prepared {
     pub(crate) epsilon: f64,
     scaled: ScaledModel,
     filter: PairFilter,
-    nodes: ClusterBounds,
+    nodes: NodePairBounds,
 }
 
 impl Prepared {
@@ -69,10 +69,10 @@ impl Prepared {
         let exceptions = exceptions(at_center, &rule, max_exceptions);
         let scope = Scope { metric, center, rule, exceptions };
         let (digest, nodes) =
-            rayon::join(|| Digest::of(model, &scope), || ClusterBounds::new(&scaled, &hierarchy));
+            rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
         Ok(Self {
             digest,
-            filter: PairFilter::new(model, &scope.rule).leaving_out(&scope.exceptions),
+            filter: PairFilter::new(model, &scope.rule).excluding(&scope.exceptions),
             nodes,
             global_radius: global_radius(model, &scope.metric, &scope.center),
             rest_collisions,

@@ -13,7 +13,8 @@ use super::goal::{
 };
 use super::leaf_bounds::{BoundedTriangles, LeafBounds};
 use super::radius_bound::{KnownPair, RadiusBound};
-use crate::bounds::{ClusterScratch, PairRefiner, Target, cluster_pair};
+use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
+use crate::filter::Hulls;
 use crate::heap::MinFirst;
 use crate::{Pair, Progress};
 
@@ -34,11 +35,11 @@ pub(crate) struct RadiusSearch<'a> {
     context: SearchContext<'a>,
     epsilon: f64,
     refiner: PairRefiner<'a>,
-    scratch: ClusterScratch,
+    scratch: NodePairScratch,
     leaves: LeafBounds<'a>,
     triangle_pairs: Vec<BoundedTriangles>,
     queue: BinaryHeap<MinFirst<Candidate>>,
-    target: Target,
+    target: RefinementTarget,
     /// The smallest certified radius among the pairs that need no more refinement.
     certified: f64,
     /// The triangle pair with the smallest upper bound.
@@ -52,11 +53,11 @@ impl<'a> RadiusSearch<'a> {
             context,
             epsilon,
             refiner: PairRefiner::new(context.model),
-            scratch: ClusterScratch::new(context.model.row),
+            scratch: NodePairScratch::new(context.model.row),
             leaves: LeafBounds::new(context),
             triangle_pairs: Vec::new(),
             queue: BinaryHeap::new(),
-            target: Target { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
+            target: RefinementTarget { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
             certified: 0.0,
             closest: None,
             progress,
@@ -71,7 +72,7 @@ impl<'a> RadiusSearch<'a> {
     /// A certified lower bound for all triangle pairs between two nodes, by the nodes alone; a bound of at least
     /// `refine_up_to` is not made better.
     pub(crate) fn bound_nodes(&mut self, (n, m): Pair, refine_up_to: f64) -> f64 {
-        cluster_pair(self.context.nodes, self.context.model, n, m, refine_up_to, &mut self.scratch)
+        self.context.nodes.bound(self.context.model, n, m, refine_up_to, &mut self.scratch)
     }
 
     /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
@@ -95,7 +96,8 @@ impl<'a> RadiusSearch<'a> {
     /// subdivision. None if cancelled.
     pub(crate) fn between_coarse(&mut self, nodes: Pair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::full(cap));
-        self.target = Target { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
+        self.target =
+            RefinementTarget { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
         self.add_nodes(nodes, 0.0);
         self.run()
     }
@@ -133,7 +135,7 @@ impl<'a> RadiusSearch<'a> {
             Precision::Full => (self.epsilon, FULL_SUBDIVISIONS),
         };
         let cap = goal.cap.min(goal.refine_up_to);
-        self.target = Target { cap, upper: f64::INFINITY, epsilon, subdivisions };
+        self.target = RefinementTarget { cap, upper: f64::INFINITY, epsilon, subdivisions };
         self.certified = goal.cap;
         self.closest = None;
     }
@@ -160,7 +162,7 @@ impl<'a> RadiusSearch<'a> {
 
     /// A candidate with a lower bound of at least this cannot lower the result by more than epsilon.
     fn refine_up_to(&self) -> f64 {
-        self.target.enough().min(self.certified)
+        self.target.sufficient().min(self.certified)
     }
 
     /// Bounds two nodes and queues them if they matter. `inherited`: a lower bound of a pair that contains this one.
@@ -208,7 +210,7 @@ impl<'a> RadiusSearch<'a> {
     /// Refines a triangle pair by subdivision, as far as it matters.
     fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
         let upper = self.target.upper;
-        for (x, y) in self.context.filter.hulls(a, b) {
+        for Hulls { a: x, b: y } in self.context.filter.hulls(a, b) {
             let refined = self.refiner.refine(x, y, &mut self.target);
             self.certified = self.certified.min(refined.max(lower));
         }

@@ -45,7 +45,7 @@ pub(super) fn split(
         let nodes @ (n, m) = subtree[next].nodes;
         let first = subtree.len() as u32;
         let pair = &mut subtree[next];
-        match prepared.hierarchy.split_large(n, m) {
+        match prepared.hierarchy.split_above_buckets(n, m) {
             None => {
                 let cap = (BUCKET_LOOKAHEAD * limit).min(prepared.global_radius);
                 let radius = search.between_coarse(nodes, cap)?.radius;

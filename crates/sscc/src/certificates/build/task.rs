@@ -65,7 +65,7 @@ impl NodeRadiusTask {
 
     fn run(&self, prepared: &Prepared, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {
         let hierarchy = &prepared.hierarchy;
-        if hierarchy.nodes()[self.node as usize].is_leaf() || hierarchy.is_whole(self.node) {
+        if hierarchy.nodes()[self.node as usize].is_leaf() || hierarchy.is_bucket_below_root(self.node) {
             search.within(self.node, self.goal)
         } else {
             search.between(&self.pairs, self.goal)

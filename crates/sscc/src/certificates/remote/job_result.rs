@@ -95,7 +95,7 @@ fn read_subtree(hierarchy: &Hierarchy, nodes: Pair, from: &mut Reader<'_>) -> Op
     let mut next = 0;
     while next < subtree.len() {
         let (n, m) = subtree[next].nodes;
-        let split = hierarchy.split_large(n, m);
+        let split = hierarchy.split_above_buckets(n, m);
         let (state, lower) = (from.u8()?, from.single_radius()?);
         let state = match (state, &split) {
             (OPEN, _) => PairState::Open,

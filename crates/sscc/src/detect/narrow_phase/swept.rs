@@ -41,14 +41,18 @@ impl NarrowPhase<2> for SweptHits {
         let b = MovingTriangle { t0: *b_t0, t1: *b_t1 };
         let time = |a: &MovingTriangle, b: &MovingTriangle| {
             // Boxes in single precision overlap more often than exact ones: the answer must not depend on them.
-            if a.swept_box_meets(b) { impact_triangle_triangle(a, b, Impact::TOLERANCE) } else { None }
+            if a.is_swept_aabb_overlapping(b) {
+                impact_triangle_triangle(a, b, Impact::TOLERANCE)
+            } else {
+                None
+            }
         };
         let time = match relation {
             Relation::Adjacent => None,
-            Relation::Apart => time(&a, &b),
-            Relation::OneVertex(_) => filter
+            Relation::NonAdjacent => time(&a, &b),
+            Relation::SharedVertex(_) => filter
                 .hulls_of_corners(pair.0, pair.1)
-                .filter_map(|(i, j)| time(&a.hull(i), &b.hull(j)))
+                .filter_map(|hulls| time(&a.hull(hulls.a), &b.hull(hulls.b)))
                 .reduce(f64::min),
         };
         time.map(|time| Impact { pair, time })

@@ -1,6 +1,8 @@
-//! Corners on straight lines.
+//! Triangles whose corners move linearly.
 
 use glam::DVec3;
+
+use crate::geometry::Aabb;
 
 /// A triangle whose corners move linearly, from `t0` at time 0 to `t1` at time 1. Degenerate ones are segments and
 /// points.
@@ -13,18 +15,18 @@ pub struct MovingTriangle {
 }
 
 impl MovingTriangle {
-    /// A vertex on its way from one position to another.
+    /// A moving vertex.
     pub fn vertex(v_t0: DVec3, v_t1: DVec3) -> Self {
         Self { t0: [v_t0; 3], t1: [v_t1; 3] }
     }
 
-    /// An edge, by its two ends.
+    /// A moving edge, by its two ends.
     pub fn edge(e_t0: [DVec3; 2], e_t1: [DVec3; 2]) -> Self {
-        let corners = |[a, b]: [DVec3; 2]| [a, b, b];
+        let corners = |[p, q]: [DVec3; 2]| [p, q, q];
         Self { t0: corners(e_t0), t1: corners(e_t1) }
     }
 
-    /// The hull of some of the corners.
+    /// The moving hull of some of the corners.
     pub(crate) fn hull(&self, corners: [usize; 3]) -> Self {
         Self { t0: corners.map(|i| self.t0[i]), t1: corners.map(|i| self.t1[i]) }
     }
@@ -34,21 +36,15 @@ impl MovingTriangle {
         Self { t0: self.t0.map(|p| p * factor), t1: self.t1.map(|p| p * factor) }
     }
 
-    /// The corners at time t, rounded (t = 0 and t = 1 are exact).
+    /// The corners at time t, rounded (exact at t = 0 and t = 1).
     pub(super) fn at(&self, t: f64) -> [DVec3; 3] {
         std::array::from_fn(|i| self.t0[i] * (1.0 - t) + self.t1[i] * t)
     }
 
-    /// Whether the boxes around the two ways overlap, exactly. Triangles whose boxes do not never meet.
+    /// Whether the swept AABBs of both overlap, exactly. Triangles whose swept AABBs are disjoint never meet.
     #[inline]
-    pub(crate) fn swept_box_meets(&self, other: &Self) -> bool {
-        let [(a, b), (c, d)] = [self, other].map(|m| {
-            let corners = || m.t0.iter().chain(&m.t1);
-            (
-                corners().fold(DVec3::INFINITY, |l, p| l.min(*p)),
-                corners().fold(DVec3::NEG_INFINITY, |u, p| u.max(*p)),
-            )
-        });
-        a.cmple(d).all() && c.cmple(b).all()
+    pub(crate) fn is_swept_aabb_overlapping(&self, other: &Self) -> bool {
+        let [a, b] = [self, other].map(|triangle| Aabb::of_swept_triangle(&[triangle.t0, triangle.t1]));
+        !a.is_disjoint(&b)
     }
 }

@@ -1,17 +1,19 @@
-//! `|S q|`, never short.
+//! The length `|S q|` of q, rounded up.
+//!
+//! Squares overflow or underflow where entries are extreme; only there is the largest entry divided out first.
 
-use super::{Factor, Metric};
+use super::metric::{Factor, Metric};
 
-/// Squares of numbers in this range neither overflow nor lose anything that counts: the largest is at least
-/// 1e-280, and what underflows in the others is at most r 2^-1074.
-const FAST: std::ops::Range<f64> = 1e-140..1e140;
+/// Where the largest number lies in this range, squares do not overflow, and their underflow is negligible: the largest
+/// square is at least 1e-280, and the others lose at most r 2^-1074.
+const SAFE_TO_SQUARE: std::ops::Range<f64> = 1e-140..1e140;
 
-/// The same for the sum of squares.
-const FAST_SUM: std::ops::Range<f64> = 1e-280..1e280;
+/// The same range for the sum of squares.
+const SAFE_SUM: std::ops::Range<f64> = 1e-280..1e280;
 
 impl Metric {
-    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is not a
-    /// number. (For radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
+    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is NaN. (For
+    /// radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
     ///
     /// # Panics
     /// When q has not one entry for each mode.
@@ -23,21 +25,21 @@ impl Metric {
         }
     }
 
-    /// `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once, relatively
-    /// to itself, which the room in [`Metric::norm`] covers.
+    /// `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once,
+    /// relative to itself; the 16 units in the last place of [`up`] cover that.
     pub(crate) fn norm_from(&self, q: &[f64], center: &[f64], offset: &mut [f64]) -> f64 {
         offset.iter_mut().zip(q).zip(center).for_each(|((d, q), c)| *d = q - c);
         self.norm(offset)
     }
 }
 
-/// Rounds up what `count` products, squares and sums have rounded.
+/// The factor that rounds up a root of a sum of `count` squares of products.
 fn up(count: usize) -> f64 {
     right_or!(1.0 + (count as f64 + 16.0) * f64::EPSILON, NormToNearest, 1.0)
 }
 
 fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
-    // Four sums side by side: [`up`] covers any order.
+    // Four partial sums; [`up`] covers any order of summation.
     let mut lanes = [0.0_f64; 4];
     let (scale_chunks, scale_rest) = scales.as_chunks::<4>();
     let (chunks, rest) = q.as_chunks::<4>();
@@ -49,24 +51,24 @@ fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
     }
     let last: f64 = scale_rest.iter().zip(rest).map(|(s, x)| (s * x) * (s * x)).sum();
     let sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last;
-    if FAST_SUM.contains(&sum) {
+    if SAFE_SUM.contains(&sum) {
         return sum.sqrt() * up(q.len());
     }
     if sum.is_nan() {
         return f64::INFINITY;
     }
-    // A product that underflows is rounded up to the smallest normal number: it is not 0.
+    // A product that underflows is rounded up to the smallest normal number.
     let scaled = |(s, x): (&f64, &f64)| if *x == 0.0 { 0.0 } else { (s * x).abs().max(f64::MIN_POSITIVE) };
     norm_by_largest(scales.iter().zip(q).map(scaled), q.len())
 }
 
-/// The norm of numbers that are not negative, given by an iterator that can be asked for twice.
+/// The norm of non-negative numbers. `numbers` may be called twice.
 fn norm_of<I: Iterator<Item = f64> + Clone>(numbers: impl Fn() -> I, count: usize) -> f64 {
     let (sum, largest) = numbers().fold((0.0, 0.0_f64), |(sum, l), z| (sum + z * z, l.max(z)));
-    if FAST.contains(&largest) { sum.sqrt() * up(count) } else { norm_by_largest(numbers(), count) }
+    if SAFE_TO_SQUARE.contains(&largest) { sum.sqrt() * up(count) } else { norm_by_largest(numbers(), count) }
 }
 
-/// The length where squares would overflow or vanish: by the largest component first.
+/// The norm where squares would overflow or underflow: all numbers are divided by the largest one.
 #[cold]
 fn norm_by_largest(numbers: impl Iterator<Item = f64> + Clone, count: usize) -> f64 {
     let largest = numbers.clone().fold(0.0, f64::max);
@@ -96,7 +98,7 @@ mod tests {
         let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 2.0, 0.0, 4.0]).unwrap();
         let norm = dense.norm(&[1.0, 1.0]);
         assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
-        // What cancels is still covered: the exact sum is 2^-52.
+        // Products that cancel are covered: the exact sum is 2^-52.
         let tiny = 2.0_f64.powi(-40);
         let factor = vec![1.0, 1.0, 0.0, tiny];
         let dense = Metric::from_factor(MetricKind::Given, 2, factor).unwrap();
@@ -112,7 +114,7 @@ mod tests {
         }
     }
 
-    /// The norm against the sum of squares in exact arithmetic, also where the products of a dense factor cancel.
+    /// The norm against the sum of squares in exact arithmetic, with dense factors whose products cancel.
     #[test]
     fn norm_is_at_least_the_exact_one() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
@@ -129,7 +131,7 @@ mod tests {
             }
             let is_cancelling = case % 3 == 2 && rank > 1;
             if is_cancelling {
-                // All rows are 0 but for rounding, and the last one is hardly larger.
+                // All rows are 0 up to rounding, and the last one is hardly larger.
                 factor[rank * rank - 1] = 1e-12;
                 for i in (0..rank - 1).rev() {
                     let known: f64 = (i + 1..rank).map(|j| factor[i * rank + j] * q[j]).sum();

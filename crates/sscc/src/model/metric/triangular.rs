@@ -1,23 +1,23 @@
-//! The triangular factor of a dense metric.
+//! The upper triangular factor of a dense metric, and an upper bound of how its inverse magnifies rounding errors.
 
 use glam::DVec3;
 
 use crate::{Error, limits};
 
-/// More modes than this take gigabytes and minutes for the factor alone; no reduced model comes near.
-const MOST_MODES: usize = 1024;
+/// The factor of more modes than this takes gigabytes and minutes; reduced models have far fewer.
+const MAX_MODES: usize = 1024;
 
-/// A matrix is taken for symmetric when no entry differs by more than this from its mirror image, in units of
-/// the diagonal: far above what computing it in another order rounds, far below a mistake.
+/// A matrix counts as symmetric when no entry differs by more than this from its mirror image, in units of the diagonal:
+/// far above the rounding of a matrix that was computed in another order, far below a mistake.
 const ASYMMETRY: f64 = 1e-9;
 
-/// An upper triangular factor S with a positive diagonal, and what rounding does to solutions with it.
+/// An upper triangular factor S with a positive diagonal.
 #[derive(Clone, Debug)]
 pub(super) struct Triangular {
     rank: usize,
     /// S by rows, zeros below the diagonal.
     entries: Vec<f64>,
-    /// `|S||S^-1|` from above, by rows.
+    /// An upper bound of `|S||S^-1|`, by rows.
     growth: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ impl Triangular {
         if rank == 0 {
             return Err(Error::RankZero);
         }
-        if rank > MOST_MODES {
+        if rank > MAX_MODES {
             return Err(wrong("it has more than 1024 rows; use a diagonal one"));
         }
         if entries.len() != rank * rank {
@@ -60,7 +60,7 @@ impl Triangular {
     /// The factor of a symmetric positive definite matrix, `M = S'S`.
     pub(super) fn cholesky(rank: usize, matrix: &[f64]) -> Result<Self, Error> {
         let wrong = |what: &'static str| Error::MetricMatrix { what };
-        if rank > MOST_MODES {
+        if rank > MAX_MODES {
             return Err(wrong("it has more than 1024 rows; use a diagonal one"));
         }
         if matrix.len() != rank * rank {
@@ -102,14 +102,14 @@ impl Triangular {
         &self.entries[i * self.rank..][..self.rank]
     }
 
-    /// Length of column k.
+    /// The length of column k, rounded to nearest.
     pub(super) fn column_length(&self, k: usize) -> f64 {
         let column = || (0..=k).map(|i| self.entries[i * self.rank + k]);
         let largest = column().fold(0.0_f64, |l, s| l.max(s.abs()));
         largest * column().map(|s| (s / largest) * (s / largest)).sum::<f64>().sqrt()
     }
 
-    /// `S^-1 z`, from the last entry on.
+    /// `S^-1 z` by back substitution, rounded to nearest.
     pub(super) fn solve(&self, z: &[f64]) -> Vec<f64> {
         let mut q = z.to_vec();
         for i in (0..self.rank).rev() {
@@ -120,8 +120,8 @@ impl Triangular {
         q
     }
 
-    /// `A = U S^-1` from the first mode on: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. `A S` is off by at most
-    /// `gamma_r |A||S|` (as with any triangular matrix), so A itself by that times `|S^-1|`.
+    /// `A = U S^-1` by forward substitution: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. The backward error of a triangular
+    /// solve is at most `gamma_r |A||S|`, so the error of A is at most that times `|S^-1|`.
     pub(super) fn divide(&self, modes: &[DVec3], out: &mut [DVec3]) {
         out.copy_from_slice(modes);
         for j in 0..self.rank {
@@ -134,7 +134,7 @@ impl Triangular {
         }
     }
 
-    /// `|A||S||S^-1|` from above.
+    /// An upper bound of `|A||S||S^-1|`.
     pub(super) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         out.fill(DVec3::ZERO);
         for (a, row) in scaled.iter().zip(self.growth.chunks_exact(self.rank)) {
@@ -142,20 +142,20 @@ impl Triangular {
         }
     }
 
-    /// `|S q|_i` from above, for each row i.
+    /// An upper bound of `|S q|_i` for each row i.
     pub(super) fn products_up(&self, q: &[f64]) -> impl Iterator<Item = f64> + Clone {
         let gamma = right_or!((self.rank as f64 + 8.0) * f64::EPSILON, DenseProductsExact, 0.0);
         (0..self.rank).map(move |i| {
             let products = self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x);
             let (sum, size) = products.fold((0.0_f64, 0.0_f64), |(sum, size), p| (sum + p, size + p.abs()));
             let moves = self.row(i)[i..].iter().zip(&q[i..]).any(|(s, x)| *s != 0.0 && *x != 0.0);
-            // Infinite where sums overflow; products that underflow count as the smallest normal number.
+            // A sum that overflows gives infinity; products that underflow count as the smallest normal number.
             let bound = sum.abs() + gamma * size + if moves { f64::MIN_POSITIVE } else { 0.0 };
             if bound.is_nan() { f64::INFINITY } else { bound }
         })
     }
 
-    /// `|S||S^-1|` from above; none where S is so close to singular that the inverse is not known.
+    /// An upper bound of `|S||S^-1|`; none where S is so nearly singular that the computed inverse proves nothing.
     ///
     /// With a computed inverse T and `R = I - S T`: `S^-1 = T (I - R)^-1`, so where the row sums of `|R|` are at most
     /// `rho < 1`, `|S^-1| <= |T| + rho / (1 - rho) times the row sums of |T|`.
@@ -203,56 +203,4 @@ impl Triangular {
 }
 
 #[cfg(test)]
-mod tests {
-    use num_rational::BigRational;
-    use num_traits::Signed;
-
-    use super::*;
-
-    /// `|S||S^-1|` in exact arithmetic, for factors that are more or less singular.
-    #[test]
-    fn growth_is_at_least_the_exact_one() {
-        let exact = |x: f64| BigRational::from_float(x).unwrap();
-        let mut state = 1_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
-        let (mut checked, mut largest) = (0, 0.0_f64);
-        for case in 0..300 {
-            let r = 2 + case % 6;
-            let size = 10.0_f64.powf(2.0 * random());
-            let mut entries = vec![0.0; r * r];
-            for i in 0..r {
-                (i..r).for_each(|j| entries[i * r + j] = random() * size);
-                entries[i * (r + 1)] = 0.2 + random().abs();
-            }
-            if r == 4 {
-                // An entry of the inverse that is nothing but rounding, and with it all of one of the product.
-                entries[7] = entries[6] * entries[11] / entries[10];
-                (entries[2], entries[3]) = (0.0, 0.0);
-            }
-            let Ok(factor) = Triangular::new(r, entries.clone()) else { continue };
-            // Row by row from the last: S T = I.
-            let mut inverse = vec![exact(0.0); r * r];
-            for j in 0..r {
-                for i in (0..=j).rev() {
-                    let one = exact(if i == j { 1.0 } else { 0.0 });
-                    let known: BigRational =
-                        (i + 1..=j).map(|k| exact(entries[i * r + k]) * &inverse[k * r + j]).sum();
-                    inverse[i * r + j] = (one - known) / exact(entries[i * (r + 1)]);
-                }
-            }
-            for i in 0..r {
-                for j in 0..r {
-                    let growth: BigRational =
-                        (0..r).map(|k| exact(entries[i * r + k].abs()) * inverse[k * r + j].abs()).sum();
-                    assert!(exact(factor.growth[i * r + j]) >= growth, "case {case}: {i} {j}");
-                    largest = largest.max(factor.growth[i * r + j]);
-                }
-            }
-            checked += 1;
-        }
-        assert!(checked > 200 && largest > 1e9, "{checked} {largest:e}");
-    }
-}
+mod tests;

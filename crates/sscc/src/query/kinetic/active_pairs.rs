@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 
 use crate::Pair;
 use crate::heap::MinFirst;
-use crate::model::DOWN;
+use crate::model::rounding::ROUND_DOWN;
 
 /// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
 const MAX_REMEMBERED: usize = 8;
@@ -53,7 +53,7 @@ impl ActivePairs {
 
     /// The travelled distance at which z may be that far from here, rounded down.
     fn travelled_after(&self, distance: f64) -> f64 {
-        (self.travelled + distance * DOWN) * DOWN
+        (self.travelled + distance * ROUND_DOWN) * ROUND_DOWN
     }
 
     /// Stores a pair with its safe distance; false if that vanishes in rounding.

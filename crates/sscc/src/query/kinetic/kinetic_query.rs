@@ -131,8 +131,8 @@ impl<'a> KineticQuery<'a> {
         self.last_q.clear();
         self.last_q.extend_from_slice(q);
         let had_ball = self.active.has_ball();
-        let is_small = step <= MAX_SHARE * norm;
-        if is_small {
+        let is_bucket = step <= MAX_SHARE * norm;
+        if is_bucket {
             self.active.advance(step);
         } else {
             self.active.forget();
@@ -141,7 +141,7 @@ impl<'a> KineticQuery<'a> {
             self.active.leave_ball();
             self.control.left(self.active.steps);
         }
-        if is_small {
+        if is_bucket {
             self.control.stepped(step);
         } else {
             step = self.control.step_after_jump().unwrap_or(step);

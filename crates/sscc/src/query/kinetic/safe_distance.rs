@@ -1,13 +1,13 @@
 //! Safe distances: how far z may move before two triangles that are apart can collide. This is the separating-direction
-//! bound of certificates ([`direction_bound`]) about the current z instead of the centre.
+//! bound of certificates ([`bound_along`]) about the current z instead of the centre.
 
 use glam::DVec3;
 
 use crate::Pair;
-use crate::bounds::{TrianglePair, direction_bound};
+use crate::bounds::{PairCorners, bound_along};
 use crate::filter::PairFilter;
-use crate::geometry::nearest_to_origin;
-use crate::model::{GapError, ScaledModel, direction};
+use crate::geometry::{TwoTriangles, nearest_to_origin};
+use crate::model::{RoundingBound, ScaledModel, scale_direction};
 
 /// Safe distances are at most this many times the norm of the z about which they are computed.
 const MAX_NORMS: f64 = 2.0;
@@ -15,7 +15,7 @@ const MAX_NORMS: f64 = 2.0;
 /// Computes safe distances, from the model in scaled coordinates.
 pub(super) struct SafeDistances {
     model: ScaledModel,
-    error: GapError,
+    error: RoundingBound,
     /// No distance is larger: the rounding bound holds that far.
     largest: f64,
     projections: Vec<f64>,
@@ -23,13 +23,18 @@ pub(super) struct SafeDistances {
 
 impl SafeDistances {
     pub(super) fn new(model: ScaledModel) -> Self {
-        Self { error: model.error.within(0.0), largest: 0.0, projections: vec![0.0; 6 * model.row], model }
+        Self {
+            error: model.rounding.between_configurations(0.0),
+            largest: 0.0,
+            projections: vec![0.0; 6 * model.row],
+            model,
+        }
     }
 
     /// Safe distances are about z of at most this norm from now on.
     pub(super) fn begin(&mut self, norm: f64) {
         self.largest = MAX_NORMS * norm;
-        self.error = self.model.error.within((1.0 + MAX_NORMS) * norm);
+        self.error = self.model.rounding.between_configurations((1.0 + MAX_NORMS) * norm);
     }
 
     /// The safe distance of two triangles whose corners are at these computed positions: they stay apart until z has moved
@@ -37,18 +42,20 @@ impl SafeDistances {
     pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
         let mut distance = self.largest;
-        for (i, j) in filter.hulls_of_corners(pair.0, pair.1) {
+        for hulls in filter.hulls_of_corners(pair.0, pair.1) {
             let modes = |which: usize, hull: [usize; 3]| hull.map(|i| self.model.modes(faces[which][i]));
-            let pair = TrianglePair {
-                x: i.map(|i| corners[0][i]),
-                y: j.map(|j| corners[1][j]),
-                modes_x: modes(0, i),
-                modes_y: modes(1, j),
+            let pair = PairCorners {
+                corners: TwoTriangles {
+                    a: hulls.a.map(|i| corners[0][i]),
+                    b: hulls.b.map(|j| corners[1][j]),
+                },
+                modes_a: modes(0, hulls.a),
+                modes_b: modes(1, hulls.b),
             };
             let differences = pair.differences();
-            let Some(n) = direction(nearest_to_origin(&differences).point) else { return 0.0 };
+            let Some(dir) = scale_direction(nearest_to_origin(&differences).point) else { return 0.0 };
             distance =
-                distance.min(direction_bound(&pair, &differences, n, &self.error, &mut self.projections));
+                distance.min(bound_along(&pair, &differences, dir, &self.error, &mut self.projections));
         }
         distance
     }

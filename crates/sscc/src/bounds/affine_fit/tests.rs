@@ -1,16 +1,17 @@
-//! What an affine map of the modes leaves over, against exact arithmetic.
+//! Residuals of an affine map of the modes, against exact arithmetic.
 
 use num_rational::BigRational;
 
-use super::super::reference::Random;
-use super::super::rounding_tests::exact;
-use super::super::triangle_pair::{WHOLE, Weights, quarters, sub_pair};
 use super::*;
+use crate::bounds::pair_corners::PairCorners;
+use crate::bounds::sub_triangle::{SubPair, UNDIVIDED, Weights, quarter};
+use crate::bounds::tests::random::Random;
+use crate::bounds::tests::rounding::exact;
 use crate::model::ScaledModel;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
-/// Corners of small parts of triangles far from the origin are rounded by more than the modes. Where all turns about
-/// a point nearby, nothing but that is left over.
+/// Corners of small sub-triangles far from the origin are rounded by more than the modes. Where the triangles turn about
+/// a point nearby, residuals are this rounding alone.
 #[test]
 fn residuals_hold_what_rounding_moves_corners_by() {
     let mut positive = 0;
@@ -26,46 +27,39 @@ fn residuals_hold_what_rounding_moves_corners_by() {
         let model = ReducedModel::with_metric(mesh, modes, Metric::identity(rank)).unwrap();
         let scaled = ScaledModel::new(&model, model.metric(), &vec![0.0; rank]);
         let row = scaled.row;
-        let corners = |first: u32| [0, 1, 2].map(|v| first + v);
-        let whole = TrianglePair {
-            x: corners(0).map(|v| scaled.positions[v as usize]),
-            y: corners(3).map(|v| scaled.positions[v as usize]),
-            modes_x: corners(0).map(|v| scaled.modes(v)),
-            modes_y: corners(3).map(|v| scaled.modes(v)),
-        };
-        let [x, y] = [(); 2].map(|()| {
-            (0..1 + case % 12).fold(WHOLE, |weights: Weights, _| quarters(&weights)[random.below(4)])
+        let pair = PairCorners::of(&scaled, [0, 1, 2], [3, 4, 5]);
+        let [a, b] = [(); 2].map(|()| {
+            (0..1 + case % 12).fold(UNDIVIDED, |weights: Weights, _| quarter(&weights)[random.below(4)])
         });
         let mut memory = vec![0.0; 18 * row];
-        let part = sub_pair(&whole, &x, &y, &mut memory);
-        let points = [part.x, part.y].concat();
-        let modes = [part.modes_x, part.modes_y].concat();
+        let part = SubPair { a, b, ..SubPair::UNDIVIDED }.corners(&pair, &mut memory);
+        let points = [part.corners.a, part.corners.b].concat();
+        let modes = [part.modes_a, part.modes_b].concat();
         let offsets: Vec<DVec3> = points.iter().map(|p| *p - points[0]).collect();
         let mut affine = AffineFit::new(row);
-        assert!(affine.fit(&offsets, |v| modes[v]));
-        // Both sides exactly: sums over the corners of the whole triangles, whose weights are exact.
+        assert!(affine.fit(&offsets, |i| modes[i]));
+        // Both sides exactly: sums over the corners of the triangles, whose weights are exact.
         let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> BigRational {
             (0..3).map(|corner| exact(weights[corner]) * exact(of(corner))).sum()
         };
-        for a in 0..3 {
-            for b in 0..3 {
+        for i in 0..3 {
+            for j in 0..3 {
                 let d: [BigRational; 3] = std::array::from_fn(|axis| {
-                    sum(y[b], &|v| whole.y[v][axis]) - sum(x[a], &|v| whole.x[v][axis])
+                    sum(b[j], &|v| pair.corners.b[v][axis]) - sum(a[i], &|v| pair.corners.a[v][axis])
                 });
                 let mut square = exact(0.0);
                 for (axis, k) in (0..3).flat_map(|axis| (0..rank).map(move |k| (axis, k))) {
                     let at = axis * row + k;
-                    let relative =
-                        sum(y[b], &|v| whole.modes_y[v][at]) - sum(x[a], &|v| whole.modes_x[v][at]);
+                    let relative = sum(b[j], &|v| pair.modes_b[v][at]) - sum(a[i], &|v| pair.modes_a[v][at]);
                     let fitted: BigRational =
-                        (0..3).map(|j| exact(affine.gradient[(3 * axis + j) * row + k]) * &d[j]).sum();
+                        (0..3).map(|c| exact(affine.gradient[(3 * axis + c) * row + k]) * &d[c]).sum();
                     let left = relative - fitted;
                     square += &left * &left;
                 }
-                let residual = affine.residual_up(affine.residual(a, 3 + b), &scaled.error);
-                // One of the two rate errors that the bound grants.
-                let allowed = exact(residual) + exact(scaled.error.rate(DVec3::ONE));
-                assert!(square <= &allowed * &allowed, "case {case}: {a} {b}");
+                let residual = affine.residual_up(affine.squared_residual(i, 3 + j), &scaled.rounding);
+                // The rounding bound of one of the two points.
+                let allowed = exact(residual) + exact(scaled.rounding.per_norm(DVec3::ONE));
+                assert!(square <= &allowed * &allowed, "case {case}: {i} {j}");
                 positive += usize::from(square > exact(0.0));
             }
         }

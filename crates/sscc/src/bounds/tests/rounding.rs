@@ -1,17 +1,17 @@
-//! Bounds where rounding decides: against exact arithmetic, and against computed positions that meet though those of
-//! real numbers are still apart.
+//! Bounds where rounding decides: against exact arithmetic, and against computed positions that meet although those in
+//! exact arithmetic do not.
 
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::reference::Random;
-use super::tests::{all_bounds, cluster_bound};
-use crate::model::rows::{dot, padded};
-use crate::model::{norm_up, quotient_down};
+use super::models::{all_bounds, node_pair_bound};
+use super::random::Random;
+use crate::model::rounding::{norm_up, quotient_down};
+use crate::model::rows::{dot, padded_rank};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
 /// A number in exact arithmetic.
-pub(super) fn exact(x: f64) -> BigRational {
+pub(crate) fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
@@ -39,8 +39,8 @@ fn check(heights: [f64; 2], modes: &[[f64; 2]], q: &[f64]) {
     }
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     let square = stacked(&corners, &[[0, 1, 2], [0, 2, 3]], heights, modes);
-    let bound = cluster_bound(&square, 2);
-    assert!(bound <= norm, "cluster {bound:e} above {norm:e}, {heights:?}");
+    let bound = node_pair_bound(&square, 2);
+    assert!(bound <= norm, "node pair {bound:e} above {norm:e}, {heights:?}");
 }
 
 /// Far from the origin the last 0.4 units of the gap are closed by rounding.
@@ -72,7 +72,7 @@ fn roots_are_rounded_up_and_quotients_down() {
     let random = &mut Random::new(3);
     let larger = exact(1.0 + 1e-13);
     for case in 0..2000 {
-        let mut row = vec![0.0; padded(1 + case % 30)];
+        let mut row = vec![0.0; padded_rank(1 + case % 30)];
         row.iter_mut().for_each(|x| *x = random.power(-3.0, 3.0));
         let square: BigRational = row.iter().map(|x| exact(*x) * exact(*x)).sum();
         let norm = exact(norm_up(dot(&row, &row), row.len()));

@@ -1,0 +1,101 @@
+//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form.
+
+use glam::{DMat3, DVec3};
+
+use super::random::Random;
+use crate::filter::Hulls;
+use crate::model::ScaledModel;
+
+/// Steps of the barycentric grid along each edge.
+pub(super) const GRID: usize = 6;
+
+/// Points of two hulls, given by barycentric weights.
+pub(super) struct PointPairs<'a> {
+    pub(super) scaled: &'a ScaledModel,
+    pub(super) hulls: Hulls<u32>,
+}
+
+/// Barycentric weights of a point of each hull.
+#[derive(Clone, Copy)]
+pub(super) struct Weights {
+    pub(super) a: DVec3,
+    pub(super) b: DVec3,
+}
+
+/// The relative position and modes of two points.
+pub(super) struct Relative {
+    /// The difference d at rest.
+    pub(super) difference: DVec3,
+    /// The columns of B.
+    pub(super) modes: Vec<DVec3>,
+}
+
+impl Weights {
+    /// The centroids.
+    pub(super) const CENTROIDS: Self = Self { a: DVec3::splat(1.0 / 3.0), b: DVec3::splat(1.0 / 3.0) };
+
+    /// Random points.
+    pub(super) fn random(random: &mut Random) -> Self {
+        let mut point = || {
+            let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
+            w / (w.x + w.y + w.z).max(f64::MIN_POSITIVE)
+        };
+        Self { a: point(), b: point() }
+    }
+
+    /// The weights of both points, changed alike.
+    pub(super) fn map(self, mut f: impl FnMut(DVec3) -> DVec3) -> Self {
+        Self { a: f(self.a), b: f(self.b) }
+    }
+}
+
+impl PointPairs<'_> {
+    /// The difference d and the relative modes B of two points.
+    pub(super) fn relative(&self, weights: Weights) -> Relative {
+        let row = self.scaled.row;
+        let mut difference = DVec3::ZERO;
+        let mut relative = vec![DVec3::ZERO; row];
+        for (corners, weights, sign) in [(self.hulls.a, weights.a, -1.0), (self.hulls.b, weights.b, 1.0)] {
+            for (&i, w) in corners.iter().zip(weights.to_array()) {
+                let modes = self.scaled.modes(i);
+                difference += self.scaled.positions[i as usize] * (w * sign);
+                for (k, b) in relative.iter_mut().enumerate() {
+                    *b += DVec3::new(modes[k], modes[row + k], modes[2 * row + k]) * (w * sign);
+                }
+            }
+        }
+        Relative { difference, modes: relative }
+    }
+
+    /// The smallest `|z|` that brings the two points together; infinite where modes do not reach.
+    pub(super) fn radius(&self, weights: Weights) -> f64 {
+        let relative = self.relative(weights);
+        relative.multiplier().map_or(f64::INFINITY, |y| relative.difference.dot(y).max(0.0).sqrt())
+    }
+
+    /// That z; 0 where modes do not reach.
+    pub(super) fn solution(&self, weights: Weights) -> Vec<f64> {
+        let relative = self.relative(weights);
+        let y = relative.multiplier().unwrap_or(DVec3::ZERO);
+        relative.modes.iter().map(|b| -b.dot(y)).collect()
+    }
+}
+
+impl Relative {
+    /// `(B B')^-1 d`, where B has full rank.
+    fn multiplier(&self) -> Option<DVec3> {
+        let mut gram = DMat3::ZERO;
+        for b in &self.modes {
+            gram += DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z);
+        }
+        let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
+        (gram.determinant() > 1e-15 * trace * trace * trace).then(|| gram.inverse() * self.difference)
+    }
+}
+
+/// Barycentric weights on a regular grid.
+pub(super) fn grid() -> impl Iterator<Item = DVec3> {
+    (0..=GRID).flat_map(|i| {
+        (0..=GRID - i).map(move |j| DVec3::new(i as f64, j as f64, (GRID - i - j) as f64) / GRID as f64)
+    })
+}

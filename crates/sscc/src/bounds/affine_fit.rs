@@ -1,0 +1,165 @@
+//! An affine map fitted to the modes of a few points, and the residuals of the fit.
+
+use glam::{DMat3, DVec3};
+
+use crate::model::RoundingBound;
+use crate::model::rounding::norm_up;
+use crate::model::rows::{dot, padded_rank, squared_distance};
+
+/// An affine map of the modes of some points, `A_i = A_0 + G (p_i - p_0) + E_i`, with residuals E. Owns its memory.
+pub(super) struct AffineFit {
+    row: usize,
+    /// Nine rows: `G_cj` at `3 c + j`.
+    gradient: Vec<f64>,
+    /// For each point three rows.
+    residuals: Vec<f64>,
+    weights: Vec<DVec3>,
+    /// An upper bound of the Frobenius norm of the gradient.
+    frobenius: f64,
+    /// The largest distance of a point from the first one.
+    longest: f64,
+}
+
+impl AffineFit {
+    pub(super) fn new(row: usize) -> Self {
+        debug_assert_eq!(row, padded_rank(row));
+        Self {
+            row,
+            gradient: vec![0.0; 9 * row],
+            residuals: Vec::new(),
+            weights: Vec::new(),
+            frobenius: 0.0,
+            longest: 0.0,
+        }
+    }
+
+    /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
+    pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
+        let row = self.row;
+        let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
+        // Gradient: G[c][j] = sum_i weight_i[j] (A_i - A_0)[c], a row over the modes for each of 3 x 3 entries.
+        let first = modes(0);
+        self.gradient.fill(0.0);
+        for (i, weight) in self.weights.iter().enumerate().skip(1) {
+            let modes = modes(i);
+            for c in 0..3 {
+                let a = &modes[c * row..][..row];
+                let a0 = &first[c * row..][..row];
+                let rows = &mut self.gradient[3 * c * row..][..3 * row];
+                let (g0, rest) = rows.split_at_mut(row);
+                let (g1, g2) = rest.split_at_mut(row);
+                for k in 0..row {
+                    let difference = a[k] - a0[k];
+                    g0[k] += weight.x * difference;
+                    g1[k] += weight.y * difference;
+                    g2[k] += weight.z * difference;
+                }
+            }
+        }
+        complete_as_rotation(&mut self.gradient, row, plane);
+        // Residuals: E_i = (A_i - A_0) - G (p_i - p_0); that of the first is 0.
+        self.residuals.clear();
+        self.residuals.resize(3 * row * offsets.len(), 0.0);
+        for (i, offset) in offsets.iter().enumerate().skip(1) {
+            let modes = modes(i);
+            for c in 0..3 {
+                let a = &modes[c * row..][..row];
+                let a0 = &first[c * row..][..row];
+                let g = &self.gradient[3 * c * row..][..3 * row];
+                let e = &mut self.residuals[(3 * i + c) * row..][..row];
+                for k in 0..row {
+                    let affine = offset.x * g[k] + offset.y * g[row + k] + offset.z * g[2 * row + k];
+                    e[k] = (a[k] - a0[k]) - affine;
+                }
+            }
+        }
+        self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row);
+        self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
+        true
+    }
+
+    /// Nine rows: `G_cj` at `3 c + j`.
+    pub(super) fn gradient(&self) -> &[f64] {
+        &self.gradient
+    }
+
+    /// An upper bound of the Frobenius norm of the gradient.
+    pub(super) fn frobenius(&self) -> f64 {
+        self.frobenius
+    }
+
+    /// `|E_j - E_i|^2`, rounded to nearest.
+    pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
+        let width = 3 * self.row;
+        squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
+    }
+
+    /// An upper bound of `|E_j - E_i|` from a [`Self::squared_residual`], up to the rounding bound of one of the two points
+    /// (the affine bound adds that of both).
+    ///
+    /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to
+    /// `|G| |p_i - p_0|`; and corners of sub-triangles are themselves rounded, which moves both the offsets here and the
+    /// directions in the bound.
+    pub(super) fn residual_up(&self, squared_residual: f64, rounding: &RoundingBound) -> f64 {
+        let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
+        norm_up(squared_residual, 3 * self.row) + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
+    }
+}
+
+/// The plane in which points (nearly) lie.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: DVec3,
+    /// The share of the gradient across the plane that the points leave undetermined: 1 in a plane, 0 where they fill
+    /// space.
+    undetermined: f64,
+}
+
+/// The weights of a regularised least-squares fit of a gradient to values at points, `G = sum_i value_i weights_i'`. None
+/// where all points coincide.
+fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
+    let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
+    let mut moment = DMat3::ZERO;
+    for d in offsets {
+        let d = *d - mean;
+        moment += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+    }
+    let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+    // Points that nearly lie in a plane do not determine the gradient across it; the regularisation
+    // keeps that part small instead of fitting noise.
+    let ridge = 1e-4 * trace;
+    let inverse = (moment + DMat3::from_diagonal(DVec3::splat(ridge))).inverse();
+    weights.clear();
+    weights.extend(offsets.iter().map(|d| inverse * (*d - mean)));
+    // The inverse is largest across the plane; in its fourth power little else is left.
+    let power = inverse * inverse * (1.0 / (inverse.x_axis.length_squared() + f64::MIN_POSITIVE));
+    let power = power * power;
+    let columns = [power.x_axis, power.y_axis, power.z_axis];
+    let largest = columns
+        .into_iter()
+        .fold(DVec3::ZERO, |l, c| if c.length_squared() > l.length_squared() { c } else { l });
+    let normal = largest.try_normalize()?;
+    let thickness = normal.dot(moment * normal);
+    let undetermined = ridge / (thickness + ridge);
+    weights.iter().all(|w| w.is_finite()).then_some(Plane { normal, undetermined })
+}
+
+/// Sets the undetermined part of the gradient, across the plane of the points, so that the whole is as close to a
+/// rotation as possible: `t' G n = -n' G t` for all t in the plane. If it were zero, every rotation of the plane
+/// would look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
+fn complete_as_rotation(gradient: &mut [f64], row: usize, Plane { normal: n, undetermined }: Plane) {
+    for k in 0..row {
+        let entry = |c: usize, j: usize| gradient[(3 * c + j) * row + k];
+        // G' n, without its part along n.
+        let turned = DVec3::from_array(std::array::from_fn(|j| (0..3).map(|c| n[c] * entry(c, j)).sum()));
+        let tilt = (turned - n * turned.dot(n)) * -undetermined;
+        for c in 0..3 {
+            for j in 0..3 {
+                gradient[(3 * c + j) * row + k] += tilt[c] * n[j];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

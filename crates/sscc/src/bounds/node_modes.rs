@@ -1,0 +1,86 @@
+//! The affine modes of a node: its AABB, an affine map of its modes, and what the map leaves over.
+
+use glam::{DMat3, DVec3};
+
+use crate::geometry::Aabb;
+use crate::model::ScaledModel;
+use crate::model::rounding::{ROUND_UP, norm_up};
+use crate::model::rows::{add_scaled, dot};
+
+/// The AABB of a node at rest with centre c, and its modes `A_i = A_c + G (p_i - c) + E_i`. Rows are over the modes.
+pub(super) struct NodeModes {
+    pub(super) centre: DVec3,
+    /// Half extents of the AABB, rounded up.
+    pub(super) half: DVec3,
+    /// An upper bound of the residuals: `|E_i' n| <= n.abs().dot(residual)`.
+    pub(super) residual: DVec3,
+    /// Modes at the centre: three rows.
+    pub(super) modes: Vec<f64>,
+    /// Three rows for each direction j: `(G e_j)_c` at `3 j + c`.
+    pub(super) gradient: Vec<f64>,
+}
+
+impl NodeModes {
+    /// Fits the vertices of a node.
+    pub(super) fn fit(model: &ScaledModel, vertices: &[u32]) -> Self {
+        let row = model.row;
+        let aabb = Aabb::of_points(vertices.iter().map(|&i| model.positions[i as usize]));
+        let centre = aabb.center();
+        // A little larger than the difference of the rounded corners.
+        let half = (aabb.upper - centre).max(centre - aabb.lower) * ROUND_UP;
+        let count = vertices.len() as f64;
+        let mean = vertices.iter().map(|&i| model.positions[i as usize] - centre).sum::<DVec3>() / count;
+        let mut moment = DMat3::ZERO;
+        for &i in vertices {
+            let d = model.positions[i as usize] - centre - mean;
+            moment += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        }
+        let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+        // Vertices nearly in a plane do not determine the gradient across it: keep that part small.
+        let inverse = (moment + DMat3::from_diagonal(DVec3::splat(1e-4 * trace))).inverse();
+        let mut modes = vec![0.0; 3 * row];
+        let mut gradient = vec![0.0; 9 * row];
+        for &i in vertices {
+            let a = model.modes(i);
+            let weight = inverse * (model.positions[i as usize] - centre - mean);
+            add_scaled(&mut modes, 1.0 / count, a);
+            if weight.is_finite() {
+                for (j, rows) in gradient.chunks_exact_mut(3 * row).enumerate() {
+                    add_scaled(rows, weight[j], a);
+                }
+            }
+        }
+        for (j, rows) in gradient.chunks_exact(3 * row).enumerate() {
+            add_scaled(&mut modes, -mean[j], rows);
+        }
+        let mut residual = DVec3::ZERO;
+        let mut rest = vec![0.0; 3 * row];
+        for &i in vertices {
+            let offset = model.positions[i as usize] - centre;
+            rest.iter_mut().zip(model.modes(i)).zip(&modes).for_each(|((e, a), m)| *e = a - m);
+            for (j, rows) in gradient.chunks_exact(3 * row).enumerate() {
+                add_scaled(&mut rest, -offset[j], rows);
+            }
+            let norm = |axis: usize| {
+                let e = &rest[axis * row..][..row];
+                norm_up(dot(e, e), row)
+            };
+            residual = residual.max(DVec3::new(norm(0), norm(1), norm(2)));
+        }
+        // Rounding of residuals and corners: relative to the modes the rounding bound covers it, relative
+        // to `|G| |h|` this does.
+        let frobenius = norm_up(dot(&gradient, &gradient), 9 * row);
+        let lost = right_or!(64.0 * f64::EPSILON * frobenius * half.length(), NodeFitExact, 0.0);
+        residual += DVec3::splat(lost);
+        Self { centre, half, residual, modes, gradient }
+    }
+
+    /// The vector between the closest points of the AABBs of two nodes, from this one to the other; 0 where they touch.
+    pub(super) fn gap(&self, other: &Self) -> DVec3 {
+        let (between, half) = (other.centre - self.centre, self.half + other.half);
+        (between - half).max(DVec3::ZERO) + (between + half).min(DVec3::ZERO)
+    }
+}
+
+#[cfg(test)]
+mod tests;

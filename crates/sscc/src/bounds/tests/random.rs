@@ -1,0 +1,53 @@
+//! Pseudo-random numbers of the tests (SplitMix64).
+
+use glam::DVec3;
+
+/// A stream of pseudo-random numbers, the same in every run.
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut this = Self(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+        this.bits();
+        this
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+
+    /// In [0, 1).
+    pub(crate) fn uniform(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// In 0 .. n.
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    /// Each component in [-1, 1).
+    pub(crate) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.uniform(), self.uniform(), self.uniform()) * 2.0 - 1.0
+    }
+
+    /// `10^x` for x between the two exponents.
+    pub(crate) fn power(&mut self, from: f64, to: f64) -> f64 {
+        10.0_f64.powf(from + (to - from) * self.uniform())
+    }
+
+    /// Barycentric weights.
+    pub(crate) fn weights(&mut self) -> DVec3 {
+        normalize(DVec3::new(self.uniform(), self.uniform(), self.uniform()))
+    }
+}
+
+/// Barycentric weights from any vector: negative ones become 0.
+pub(super) fn normalize(w: DVec3) -> DVec3 {
+    let w = w.max(DVec3::ZERO);
+    let sum = w.x + w.y + w.z;
+    if sum > 0.0 { w / sum } else { DVec3::X }
+}

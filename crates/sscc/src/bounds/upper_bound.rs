@@ -1,0 +1,89 @@
+//! Upper bounds of the radius of a triangle pair: the norm of a z that brings two of its points together. They decide when
+//! refinement ends, and never enter a radius.
+
+use glam::{DMat3, DVec3};
+
+use super::contact_estimate::estimate_first_contact;
+use super::pair_corners::PairCorners;
+use crate::geometry::{TwoTriangles, nearest_to_origin};
+use crate::model::rows::{add_scaled, dot, gram, project};
+
+/// The relative modes of two points, one of each triangle. Owns its memory.
+pub(super) struct RelativeModes {
+    /// Three rows.
+    rows: Vec<f64>,
+}
+
+impl RelativeModes {
+    pub(super) fn new(row: usize) -> Self {
+        Self { rows: vec![0.0; 3 * row] }
+    }
+
+    /// The Gram matrix of the relative modes of two points, which weights of the nine differences of corners define.
+    pub(super) fn gram_at(&mut self, pair: &PairCorners<'_>, weights: &[f64; 9]) -> DMat3 {
+        self.rows.fill(0.0);
+        for i in 0..3 {
+            let a: f64 = weights[3 * i..3 * i + 3].iter().sum();
+            let b: f64 = weights[i..].iter().step_by(3).sum();
+            if a != 0.0 {
+                add_scaled(&mut self.rows, -a, pair.modes_a[i]);
+            }
+            if b != 0.0 {
+                add_scaled(&mut self.rows, b, pair.modes_b[i]);
+            }
+        }
+        gram(&self.rows)
+    }
+
+    /// The smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite where the
+    /// modes cannot move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
+    pub(super) fn bound_at(
+        &mut self,
+        pair: &PairCorners<'_>,
+        differences: &[DVec3; 9],
+        weights: &[f64; 9],
+    ) -> f64 {
+        let gram = self.gram_at(pair, weights);
+        let d: DVec3 = differences.iter().zip(weights).map(|(d, w)| *d * *w).sum();
+        let scale = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
+        if gram.determinant() <= 1e-18 * scale * scale * scale {
+            return f64::INFINITY;
+        }
+        let square = d.dot(gram.inverse() * d);
+        if square > 0.0 { square.sqrt() } else { f64::INFINITY }
+    }
+
+    /// Whether the relative modes at the centroids move in all three directions.
+    pub(super) fn can_reach_everywhere(&mut self, pair: &PairCorners<'_>) -> bool {
+        self.bound_at(pair, &pair.differences(), &[1.0 / 9.0; 9]).is_finite()
+    }
+
+    /// The norm of a z along which the closest points of the sub-triangles approach and at which the triangles first
+    /// touch, if that is at most `farthest`: for rank 1 or 2, or modes that do not reach all directions. `z` is scratch of
+    /// one row.
+    pub(super) fn bound_along_ray(
+        &mut self,
+        pair: &PairCorners<'_>,
+        sub_pair: &PairCorners<'_>,
+        farthest: f64,
+        z: &mut [f64],
+    ) -> Option<f64> {
+        let closest = nearest_to_origin(&sub_pair.differences());
+        self.gram_at(sub_pair, &closest.weights);
+        project(&self.rows, closest.point, z);
+        let length = dot(z, z).sqrt();
+        let velocities = |modes: &[&[f64]; 3]| {
+            modes.map(|modes| {
+                let along = |axis: usize| dot(&modes[axis * z.len()..][..z.len()], z) * (-farthest / length);
+                DVec3::new(along(0), along(1), along(2))
+            })
+        };
+        let (velocities_a, velocities_b) = (velocities(&pair.modes_a), velocities(&pair.modes_b));
+        let at = |p: &[DVec3; 3], v: &[DVec3; 3], t: f64| std::array::from_fn(|i| p[i] + v[i] * t);
+        let contact = estimate_first_contact(|t| TwoTriangles {
+            a: at(&pair.corners.a, &velocities_a, t),
+            b: at(&pair.corners.b, &velocities_b, t),
+        });
+        contact.map(|t| t * farthest)
+    }
+}

@@ -1,0 +1,64 @@
+//! The contact filter: what decides which pairs of triangles count as collisions, for any mesh.
+
+/// Two triangles, the lower number first.
+pub type Pair = (u32, u32);
+
+/// Whether triangles that share a vertex count. Those that share two or three vertices never count: they always touch
+/// along an edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Neighbours {
+    /// They do not count (paper, section 3).
+    #[default]
+    Exclude,
+    /// Shared-vertex pairs, which share exactly one vertex, count when they have another point in common than that vertex.
+    IncludeOneVertex,
+}
+
+impl Neighbours {
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exclude => "exclude",
+            Self::IncludeOneVertex => "include-one-vertex",
+        }
+    }
+
+    /// The value of that name; none for any other name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Exclude, Self::IncludeOneVertex].into_iter().find(|neighbours| neighbours.name() == name)
+    }
+}
+
+/// Which pairs of triangles count as collisions when they have a point in common. By default: all that share
+/// no vertex.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PairRule {
+    /// Whether triangles that share a vertex count.
+    pub neighbours: Neighbours,
+    /// Whether vertices of exactly equal rest position and modes are welded, for adjacency only: vertex numbers and
+    /// positions stay the file's. For files that split vertices along seams (STL, glTF).
+    pub weld: bool,
+    ignored: Vec<Pair>,
+}
+
+impl PairRule {
+    /// A filter that ignores no pair.
+    pub fn new(neighbours: Neighbours, weld: bool) -> Self {
+        Self { neighbours, weld, ignored: Vec::new() }
+    }
+
+    /// The same filter, which also ignores these pairs (in any order).
+    #[must_use]
+    pub fn ignoring(mut self, pairs: impl IntoIterator<Item = Pair>) -> Self {
+        let pairs = pairs.into_iter().filter(|(a, b)| a != b);
+        self.ignored.extend(pairs.map(|(a, b)| (a.min(b), a.max(b))));
+        self.ignored.sort_unstable();
+        self.ignored.dedup();
+        self
+    }
+
+    /// The pairs that never count, sorted.
+    pub fn ignored(&self) -> &[Pair] {
+        &self.ignored
+    }
+}

@@ -1,0 +1,176 @@
+//! The contact filter applied to one mesh: the relation of any two triangles, and the exact test that follows from it.
+
+use glam::DVec3;
+
+use super::contact_filter::{Neighbours, Pair, PairRule};
+use super::weld::weld_classes;
+use crate::{ReducedModel, intersect_shared_vertex_pair, intersect_triangle_triangle};
+
+/// The relation of two triangles under a contact filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Relation {
+    /// They share no vertex: they count when they have any point in common.
+    NonAdjacent,
+    /// They share the vertex of this class alone, and such pairs count when they have another point in common.
+    SharedVertex(u32),
+    /// They never count.
+    Adjacent,
+}
+
+/// A contact filter applied to one mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct PairFilter {
+    faces: Vec<[u32; 3]>,
+    /// The vertex class of each corner: the lowest vertex that it is welded to; without welding the vertex itself.
+    classes: Vec<[u32; 3]>,
+    neighbours: Neighbours,
+    /// Sorted.
+    excluded: Vec<Pair>,
+}
+
+/// Two hulls of three vertices each, one of triangle a and one of triangle b. An edge has one vertex twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Hulls<T> {
+    pub(crate) a: [T; 3],
+    pub(crate) b: [T; 3],
+}
+
+impl PairFilter {
+    pub(crate) fn new(model: &ReducedModel, filter: &PairRule) -> Self {
+        let faces = model.mesh().faces().to_vec();
+        let classes = if filter.weld {
+            let classes = weld_classes(model);
+            faces.iter().map(|face| face.map(|i| classes[i as usize])).collect()
+        } else {
+            faces.clone()
+        };
+        Self { faces, classes, neighbours: filter.neighbours, excluded: filter.ignored().to_vec() }
+    }
+
+    /// The same filter, which also excludes these pairs: exceptions, which radii of certificates do not cover.
+    pub(crate) fn excluding(mut self, pairs: &[Pair]) -> Self {
+        self.excluded.extend_from_slice(pairs);
+        self.excluded.sort_unstable();
+        self
+    }
+
+    /// Vertex classes are numbers below this.
+    pub(crate) fn class_count(&self) -> usize {
+        self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
+    }
+
+    /// The vertex classes of a triangle's corners.
+    #[inline]
+    pub(crate) fn vertex_classes(&self, triangle: u32) -> [u32; 3] {
+        self.classes[triangle as usize]
+    }
+
+    /// The relation of two triangles, whether or not their pair is excluded.
+    #[inline]
+    pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
+        let (classes_a, classes_b) = (self.classes[a as usize], self.classes[b as usize]);
+        if classes_a.iter().any(|class| classes_b.contains(class)) {
+            self.relation_of_neighbours(classes_a, classes_b)
+        } else {
+            Relation::NonAdjacent
+        }
+    }
+
+    fn relation_of_neighbours(&self, classes_a: [u32; 3], classes_b: [u32; 3]) -> Relation {
+        let mut shared = classes_a.into_iter().filter(|class| classes_b.contains(class));
+        match (shared.next(), self.neighbours) {
+            (Some(class), Neighbours::IncludeOneVertex) if shared.all(|other| other == class) => {
+                Relation::SharedVertex(class)
+            }
+            _ => Relation::Adjacent,
+        }
+    }
+
+    /// Whether a pair is excluded, whatever its relation.
+    #[inline]
+    pub(crate) fn is_excluded(&self, a: u32, b: u32) -> bool {
+        !self.excluded.is_empty() && self.excluded.binary_search(&(a.min(b), a.max(b))).is_ok()
+    }
+
+    /// Whether two triangles with these corners collide, exactly, and by their relation count. Callers check
+    /// [`Self::is_excluded`].
+    pub(crate) fn collide(&self, pair: Pair, corners_a: &[DVec3; 3], corners_b: &[DVec3; 3]) -> bool {
+        self.collide_as(self.relation(pair.0, pair.1), pair, corners_a, corners_b)
+    }
+
+    /// The same where their relation is known.
+    #[inline]
+    pub(crate) fn collide_as(
+        &self,
+        relation: Relation,
+        pair: Pair,
+        corners_a: &[DVec3; 3],
+        corners_b: &[DVec3; 3],
+    ) -> bool {
+        match relation {
+            Relation::Adjacent => false,
+            Relation::NonAdjacent => intersect_triangle_triangle(corners_a, corners_b),
+            Relation::SharedVertex(class) => {
+                self.collide_as_shared_vertex_pair(class, pair, corners_a, corners_b)
+            }
+        }
+    }
+
+    fn collide_as_shared_vertex_pair(
+        &self,
+        class: u32,
+        (a, b): Pair,
+        corners_a: &[DVec3; 3],
+        corners_b: &[DVec3; 3],
+    ) -> bool {
+        match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
+            (Some(edge_a), Some(edge_b)) => {
+                let shared = self.classes[a as usize].iter().position(|other| *other == class).unwrap_or(0);
+                intersect_shared_vertex_pair(
+                    corners_a[shared],
+                    edge_a.map(|i| corners_a[i]),
+                    edge_b.map(|i| corners_b[i]),
+                )
+            }
+            // A face that is the vertex alone.
+            _ => false,
+        }
+    }
+
+    /// The pairs of hulls, by their vertices, at least one of which meets wherever the pair counts as a collision. Two
+    /// triangles of a shared-vertex pair that meet elsewhere do so on the edge opposite to the vertex of one of them:
+    /// follow the ray from the vertex through a common point until it leaves the first of the two.
+    pub(crate) fn hulls(&self, a: u32, b: u32) -> impl Iterator<Item = Hulls<u32>> {
+        let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
+        self.hulls_of_corners(a, b)
+            .map(move |corners| Hulls { a: corners.a.map(|i| face_a[i]), b: corners.b.map(|i| face_b[i]) })
+    }
+
+    /// The same, by the corners (0 to 2) of each triangle.
+    pub(crate) fn hulls_of_corners(&self, a: u32, b: u32) -> impl Iterator<Item = Hulls<usize>> {
+        let triangle = [0, 1, 2];
+        let edge = |[i, j]: [usize; 2]| [i, j, j];
+        let hulls = match self.relation(a, b) {
+            Relation::Adjacent => [None, None],
+            Relation::NonAdjacent => [Some(Hulls { a: triangle, b: triangle }), None],
+            Relation::SharedVertex(class) => {
+                match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
+                    (Some(edge_a), Some(edge_b)) => [
+                        Some(Hulls { a: edge(edge_a), b: triangle }),
+                        right_or!(Some(Hulls { a: triangle, b: edge(edge_b) }), OneHullOfTwo, None),
+                    ],
+                    _ => [None, None],
+                }
+            }
+        };
+        hulls.into_iter().flatten()
+    }
+
+    /// The corners (0 to 2) of a face that are not of the class: two, or one twice.
+    fn opposite_edge(&self, face: u32, class: u32) -> Option<[usize; 2]> {
+        let classes = self.classes[face as usize];
+        let mut others = (0..3).filter(|&i| classes[i] != class);
+        let first = others.next()?;
+        Some([first, others.next().unwrap_or(first)])
+    }
+}

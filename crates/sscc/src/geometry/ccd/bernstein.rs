@@ -1,0 +1,77 @@
+//! Polynomials of time in the Bernstein basis of an interval: where all coefficients are positive, so is the polynomial.
+//!
+//! Coefficients are stored multiplied by their binomial. That changes no sign, and makes products of polynomials plain
+//! convolutions.
+
+use super::number::Number;
+
+/// The largest degree of a polynomial: that of a gap along the direction perpendicular to an edge.
+const DEGREE: usize = 4;
+
+/// A polynomial on an interval of time: Bernstein coefficients times their binomials.
+#[derive(Clone)]
+pub(super) struct Polynomial<T> {
+    degree: usize,
+    coefficients: [T; DEGREE + 1],
+}
+
+impl<T: Number> Polynomial<T> {
+    pub(super) fn constant(x: T) -> Self {
+        let mut coefficients = std::array::from_fn(|_| T::zero());
+        coefficients[0] = x;
+        Self { degree: 0, coefficients }
+    }
+
+    pub(super) fn linear(from: T, to: T) -> Self {
+        let mut polynomial = Self::constant(from);
+        (polynomial.degree, polynomial.coefficients[1]) = (1, to);
+        polynomial
+    }
+
+    /// Combines the coefficients of two polynomials of the same degree.
+    fn zip_with(&self, other: &Self, f: impl Fn(&T, &T) -> T) -> Self {
+        debug_assert_eq!(self.degree, other.degree);
+        let mut result = self.clone();
+        for i in 0..=self.degree {
+            result.coefficients[i] = f(&self.coefficients[i], &other.coefficients[i]);
+        }
+        result
+    }
+
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        self.zip_with(other, T::plus)
+    }
+
+    pub(super) fn minus(&self, other: &Self) -> Self {
+        self.zip_with(other, T::minus)
+    }
+
+    pub(super) fn times(&self, other: &Self) -> Self {
+        let mut product = Self::constant(T::zero());
+        product.degree = self.degree + other.degree;
+        for (i, a) in self.coefficients[..=self.degree].iter().enumerate() {
+            for (j, b) in other.coefficients[..=other.degree].iter().enumerate() {
+                product.coefficients[i + j] = product.coefficients[i + j].plus(&a.times(b));
+            }
+        }
+        product
+    }
+
+    /// The coefficients: degree + 1 of them. The first is the value at the beginning of the interval.
+    pub(super) fn coefficients(&self) -> &[T] {
+        &self.coefficients[..=self.degree]
+    }
+}
+
+pub(super) fn subtract<T: Number>(a: &[Polynomial<T>; 3], b: &[Polynomial<T>; 3]) -> [Polynomial<T>; 3] {
+    std::array::from_fn(|k| a[k].minus(&b[k]))
+}
+
+pub(super) fn dot<T: Number>(a: &[Polynomial<T>; 3], b: &[Polynomial<T>; 3]) -> Polynomial<T> {
+    a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
+}
+
+pub(super) fn cross<T: Number>(a: &[Polynomial<T>; 3], b: &[Polynomial<T>; 3]) -> [Polynomial<T>; 3] {
+    let minor = |i: usize, j: usize| a[i].times(&b[j]).minus(&a[j].times(&b[i]));
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}

@@ -1,0 +1,105 @@
+//! Signs of orientation determinants against exact arithmetic.
+
+use super::*;
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive};
+
+/// `x` in exact arithmetic.
+fn rational(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap()
+}
+
+/// The sign of the 3 x 3 determinant of differences, in exact arithmetic, by its six products.
+fn naive_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
+    let m = [b, c, d].map(|p| [0, 1, 2].map(|k| rational(p[k]) - rational(a[k])));
+    let product = |i: usize, j: usize, k: usize| &m[0][i] * &m[1][j] * &m[2][k];
+    let plus = product(0, 1, 2) + product(1, 2, 0) + product(2, 0, 1);
+    let minus = product(2, 1, 0) + product(1, 0, 2) + product(0, 2, 1);
+    (plus - minus).signum().to_i8().unwrap()
+}
+
+/// The sign of the 2 x 2 determinant of differences, in exact arithmetic.
+fn naive_2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
+    let m = [b, c].map(|p| [0, 1].map(|k| rational(p[k]) - rational(a[k])));
+    (&m[0][0] * &m[1][1] - &m[0][1] * &m[1][0]).signum().to_i8().unwrap()
+}
+
+/// Numbers in `-1..1`, the same in every run.
+fn random() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Denormal numbers, those where `robust` fails, those where the filter fails, ordinary ones, the largest.
+const SCALES: [f64; 8] = [1e-322, 1e-300, 1e-110, 1e-87, 1e-72, 1e-3, 1.0, crate::limits::LARGEST];
+
+#[test]
+fn convention() {
+    assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), 1);
+    assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NEG_Z), -1);
+    assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(5.0, 7.0, 0.0)), 0);
+    assert_eq!(orient2d(DVec2::ZERO, DVec2::X, DVec2::Y), 1);
+    assert_eq!(orient2d(DVec2::ZERO, DVec2::Y, DVec2::X), -1);
+    assert_eq!(orient2d(DVec2::ZERO, DVec2::X, DVec2::NEG_X), 0);
+}
+
+/// Points nearly on the plane (the line) through the others: closer than the filter decides.
+#[test]
+fn signs_are_exact() {
+    let mut random = random();
+    let mut counts = [0; 3];
+    for i in 0..4_000 {
+        let scale = SCALES[i % SCALES.len()];
+        let mut point = || DVec3::new(random(), random(), random()) * scale;
+        let (a, b, c) = (point(), point(), point());
+        let (s, t) = (random(), random());
+        let mut d = a + ((b - a) * s + (c - a) * t) / 4.0;
+        if i % 3 == 0 {
+            d.x = d.x.next_up();
+        }
+        let d = d.clamp(DVec3::splat(-scale), DVec3::splat(scale));
+        let sign = orient3d(a, b, c, d);
+        assert_eq!(sign, naive_3d(a, b, c, d), "{a:?} {b:?} {c:?} {d:?}");
+        counts[(sign + 1) as usize] += 1;
+
+        let (a, b) = (a.truncate(), b.truncate());
+        let c = a + (b - a) * (s / 4.0);
+        assert_eq!(orient2d(a, b, c), naive_2d(a, b, c), "{a:?} {b:?} {c:?}");
+    }
+    assert!(counts[0] > 500 && counts[2] > 500, "one-sided: {counts:?}");
+}
+
+/// In exact arithmetic the first product is the smaller one. Rounded, its difference of coordinates goes up
+/// and those of the second go down, to the two sides of half the smallest denormal number.
+#[test]
+fn underflow_does_not_deceive_the_planar_filter() {
+    let power = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
+    let a = DVec2::new(-(power(-591) + power(-598)), -(power(-591) - power(-598)));
+    let b = DVec2::splat(power(-538));
+    let c = DVec2::new(power(-537), power(-537).next_down());
+    assert!((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0);
+    assert_eq!(orient2d(a, b, c), -1);
+    assert_eq!(naive_2d(a, b, c), -1);
+}
+
+/// Cancellation of very different numbers, with zeros.
+#[test]
+fn signs_are_exact_for_mixed_magnitudes() {
+    let mut random = random();
+    for _ in 0..1_500 {
+        let mut coordinate = || {
+            let exponent = (random() * 637.0 - 437.0) as i32;
+            // -1074 to 200; the smallest in two steps, as 2^-1074 is no normal number.
+            let half = 2.0_f64.powi(exponent / 2);
+            if random() < -0.5 { 0.0 } else { random() * half * 2.0_f64.powi(exponent - exponent / 2) }
+        };
+        let mut point = || DVec3::new(coordinate(), coordinate(), coordinate());
+        let (a, b, c, d) = (point(), point(), point(), point());
+        assert_eq!(orient3d(a, b, c, d), naive_3d(a, b, c, d), "{a:?} {b:?} {c:?} {d:?}");
+        let [a, b, c] = [a, b, c].map(DVec3::truncate);
+        assert_eq!(orient2d(a, b, c), naive_2d(a, b, c), "{a:?} {b:?} {c:?}");
+    }
+}

@@ -1,0 +1,109 @@
+//! 4-means clustering of a node's triangles (paper, section 3).
+
+use super::features::{FEATURES, Feature};
+use super::node::BRANCHING;
+
+/// Iterations of k-means (docs/notes/2026-11-23-hierarchy.md).
+const ITERATIONS: usize = 6;
+
+/// A child may have at most this share of its parent's triangles, 7/8; otherwise the parent is cut evenly. So no input
+/// makes the tree deep: its depth is at most log N / log(8/7).
+const MAX_CHILD_NUMERATOR: usize = 7;
+const MAX_CHILD_DENOMINATOR: usize = 8;
+
+/// Reorders `triangles` into 2 to 4 clusters and returns their sizes, each positive.
+pub(super) fn cluster(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
+    let mut centres = find_starting_centres(features, triangles);
+    let mut labels = vec![0_u8; triangles.len()];
+    for iteration in 0..ITERATIONS {
+        for (label, &a) in labels.iter_mut().zip(triangles.iter()) {
+            *label = find_nearest(&centres, &features[a as usize]);
+        }
+        if iteration + 1 < ITERATIONS {
+            move_centres(&mut centres, features, triangles, &labels);
+        }
+    }
+    let mut sizes = [0_u32; BRANCHING];
+    labels.iter().for_each(|&label| sizes[label as usize] += 1);
+    let largest = sizes.iter().max().map_or(0, |&size| size as usize);
+    if largest * MAX_CHILD_DENOMINATOR > triangles.len() * MAX_CHILD_NUMERATOR {
+        return cut_evenly(features, triangles);
+    }
+    let mut sorted: Vec<(u8, u32)> = labels.iter().copied().zip(triangles.iter().copied()).collect();
+    sorted.sort_by_key(|&(label, a)| (label, a));
+    triangles.iter_mut().zip(sorted).for_each(|(slot, (_, a))| *slot = a);
+    sizes.into_iter().filter(|&size| size > 0).collect()
+}
+
+/// Cuts into four equal parts along the widest feature: for clusters that k-means splits too unevenly.
+fn cut_evenly(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
+    let width = |i: usize| {
+        let values = triangles.iter().map(|&a| features[a as usize][i]);
+        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+    };
+    let widest = (0..FEATURES).fold(0, |best, i| if width(i) > width(best) { i } else { best });
+    triangles.sort_by(|&a, &b| {
+        features[a as usize][widest].total_cmp(&features[b as usize][widest]).then(a.cmp(&b))
+    });
+    let count = triangles.len();
+    (0..BRANCHING)
+        .map(|i| ((i + 1) * count / BRANCHING - i * count / BRANCHING) as u32)
+        .filter(|&size| size > 0)
+        .collect()
+}
+
+/// Starting centres: the triangle farthest from the mean, then always the one farthest from those chosen.
+fn find_starting_centres(features: &[Feature], triangles: &[u32]) -> [Feature; BRANCHING] {
+    let mut mean = [0.0; FEATURES];
+    for &a in triangles {
+        mean.iter_mut().zip(&features[a as usize]).for_each(|(m, f)| *m += f);
+    }
+    mean.iter_mut().for_each(|m| *m /= triangles.len() as f64);
+    let farthest = |distances: &mut [f64], from: &Feature| {
+        let mut best = 0;
+        for (i, &a) in triangles.iter().enumerate() {
+            distances[i] = distances[i].min(squared_distance(from, &features[a as usize]));
+            if distances[i] > distances[best] {
+                best = i;
+            }
+        }
+        features[triangles[best] as usize]
+    };
+    let mut centres = [farthest(&mut vec![f64::INFINITY; triangles.len()], &mean); BRANCHING];
+    let mut distances = vec![f64::INFINITY; triangles.len()];
+    for i in 1..BRANCHING {
+        centres[i] = farthest(&mut distances, &centres[i - 1]);
+    }
+    centres
+}
+
+/// The index of the nearest centre, the first of equals.
+fn find_nearest(centres: &[Feature; BRANCHING], feature: &Feature) -> u8 {
+    let mut best = (f64::INFINITY, 0);
+    for (i, centre) in centres.iter().enumerate() {
+        let d = squared_distance(centre, feature);
+        if d < best.0 {
+            best = (d, i as u8);
+        }
+    }
+    best.1
+}
+
+/// Moves each centre to the mean of its cluster; centres of empty clusters stay.
+fn move_centres(centres: &mut [Feature; BRANCHING], features: &[Feature], triangles: &[u32], labels: &[u8]) {
+    let mut sums = [[0.0; FEATURES]; BRANCHING];
+    let mut counts = [0.0; BRANCHING];
+    for (&label, &a) in labels.iter().zip(triangles) {
+        counts[label as usize] += 1.0;
+        sums[label as usize].iter_mut().zip(&features[a as usize]).for_each(|(s, f)| *s += f);
+    }
+    for ((centre, sum), count) in centres.iter_mut().zip(sums).zip(counts) {
+        if count > 0.0 {
+            *centre = sum.map(|s| s / count);
+        }
+    }
+}
+
+fn squared_distance(a: &Feature, b: &Feature) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
+}

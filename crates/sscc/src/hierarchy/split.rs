@@ -1,0 +1,49 @@
+//! The split of a node pair: one of the two nodes is replaced by its children.
+
+use std::ops::Range;
+
+use super::node::Node;
+
+/// A node pair (n, m) of which one node is split.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Split {
+    /// The first node is split.
+    First {
+        /// The first node.
+        node: Node,
+        /// The index of the second one.
+        m: u32,
+    },
+    /// The second node is split.
+    Second {
+        /// The index of the first node.
+        n: u32,
+        /// The second one.
+        node: Node,
+    },
+}
+
+impl Split {
+    /// The children of the node that is split.
+    #[inline]
+    pub(crate) fn children(&self) -> Range<u32> {
+        match self {
+            Self::First { node, .. } | Self::Second { node, .. } => node.children(),
+        }
+    }
+
+    /// The node pair with the child of that number (0 to 3).
+    #[inline]
+    pub(crate) fn pair(&self, child: u32) -> (u32, u32) {
+        match self {
+            Self::First { node, m } => (node.first_child + child, *m),
+            Self::Second { n, node } => (*n, node.first_child + child),
+        }
+    }
+
+    /// All node pairs, child by child.
+    #[inline]
+    pub(crate) fn pairs(self) -> impl Iterator<Item = (u32, u32)> {
+        (0..self.children().len() as u32).map(move |child| self.pair(child))
+    }
+}

@@ -1,0 +1,65 @@
+//! Metrics that follow from mesh and modes alone: displacement and mass (paper, section 6).
+
+use glam::DVec3;
+
+use super::kind::MetricKind;
+use super::metric::Metric;
+use crate::{Modes, TriMesh};
+
+impl Metric {
+    /// Each mode by its largest displacement of a vertex that some face uses. A mode that moves nothing
+    /// gets the smallest scale of the others, or 1.
+    pub fn displacement(mesh: &TriMesh, modes: &Modes) -> Self {
+        let mut scales = vec![0.0_f64; modes.rank()];
+        for i in mesh.used_vertices() {
+            for (scale, u) in scales.iter_mut().zip(modes.of_vertex(i)) {
+                *scale = scale.max(length(*u));
+            }
+        }
+        Self::diagonal(MetricKind::Displacement, fill_zeros(scales))
+    }
+
+    /// Each mode by the surface it moves: `sqrt(sum_i area_i |U_i|^2)`, with [`vertex_areas`]. A mode that moves
+    /// nothing gets the smallest scale of the others, or 1.
+    pub fn mass(mesh: &TriMesh, modes: &Modes) -> Self {
+        let areas = vertex_areas(mesh);
+        let mut squares = vec![0.0_f64; modes.rank()];
+        for i in mesh.used_vertices() {
+            for (square, u) in squares.iter_mut().zip(modes.of_vertex(i)) {
+                let moved = length(*u);
+                *square += areas[i as usize] * moved * moved;
+            }
+        }
+        Self::diagonal(MetricKind::Mass, fill_zeros(squares.into_iter().map(f64::sqrt).collect()))
+    }
+}
+
+/// A third of the area of each face at each of its corners (unit squared), unused vertices 0.
+pub fn vertex_areas(mesh: &TriMesh) -> Vec<f64> {
+    let p = mesh.rest_positions();
+    let mut areas = vec![0.0; p.len()];
+    for face in mesh.faces() {
+        let [p0, p1, p2] = face.map(|i| p[i as usize]);
+        let area = length((p1 - p0).cross(p2 - p0)) / 2.0;
+        for &i in face {
+            areas[i as usize] += area / 3.0;
+        }
+    }
+    areas
+}
+
+/// The length of a vector without overflow or underflow of the squares.
+fn length(x: DVec3) -> f64 {
+    let largest = x.abs().max_element();
+    if largest == 0.0 { 0.0 } else { largest * (x / largest).length() }
+}
+
+/// Replaces zero scales (modes that move nothing) by the smallest positive one, or 1.
+fn fill_zeros(mut scales: Vec<f64>) -> Vec<f64> {
+    let smallest = scales.iter().copied().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+    let fill = if smallest.is_finite() { smallest } else { 1.0 };
+    for scale in scales.iter_mut().filter(|s| **s <= 0.0) {
+        *scale = fill;
+    }
+    scales
+}

@@ -1,0 +1,36 @@
+//! The kinds of metrics, and their names on the command line and in files.
+
+/// Where the factor of a [`Metric`](crate::Metric) comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MetricKind {
+    /// All weights 1.
+    Identity,
+    /// Each mode by its largest vertex displacement, so that `|z|` is a length (paper, section 6).
+    Displacement,
+    /// Each mode by the root of `sum_i area_i |U_i|^2`: how much surface it moves (paper, section 6).
+    Mass,
+    /// Each mode by the strain energy of a unit of it (paper, section 6).
+    Energy,
+    /// Weights or a matrix from the caller.
+    Given,
+}
+
+impl MetricKind {
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identity => "identity",
+            Self::Displacement => "displacement",
+            Self::Mass => "mass",
+            Self::Energy => "energy",
+            Self::Given => "given",
+        }
+    }
+
+    /// The kind of that name; none for any other name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Identity, Self::Displacement, Self::Mass, Self::Energy, Self::Given]
+            .into_iter()
+            .find(|kind| kind.name() == name)
+    }
+}

@@ -1,0 +1,151 @@
+//! The metric of q-space by its factor, diagonal or triangular (paper, section 6: the scaling matrix M).
+
+use glam::DVec3;
+
+use super::kind::MetricKind;
+use super::triangular::Triangular;
+use crate::Error;
+
+/// A metric, given by its factor `S`, diagonal or upper triangular: `M = S'S`, scaled coordinates `z = S q`,
+/// scaled modes `A = U S^-1`. The factor itself is stored, not M: the length of q is `|S q|`, never `sqrt(q'Mq)`,
+/// which loses half the digits when weights differ much.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metric {
+    kind: MetricKind,
+    pub(super) factor: Factor,
+}
+
+/// The factor `S`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Factor {
+    /// One positive number for each mode.
+    Diagonal(Vec<f64>),
+    /// Upper triangular, with a positive diagonal.
+    Triangular(Triangular),
+}
+
+impl Metric {
+    /// All weights 1.
+    pub fn identity(rank: usize) -> Self {
+        Self::diagonal(MetricKind::Identity, vec![1.0; rank])
+    }
+
+    /// A metric with the given factor: `scales[k]` is the root of the weight of mode k.
+    ///
+    /// # Errors
+    /// When a scale is not positive and finite.
+    pub fn from_scales(kind: MetricKind, scales: Vec<f64>) -> Result<Self, Error> {
+        if scales.is_empty() {
+            return Err(Error::RankZero);
+        }
+        match scales.iter().position(|s| !(s.is_finite() && *s > 0.0)) {
+            Some(index) => Err(Error::MetricWeight { index, value: scales[index] }),
+            None => Ok(Self::diagonal(kind, scales)),
+        }
+    }
+
+    /// A metric with the given weights, the diagonal of `M` (paper, section 4).
+    ///
+    /// # Errors
+    /// When a weight is not positive and finite.
+    pub fn from_weights(kind: MetricKind, weights: &[f64]) -> Result<Self, Error> {
+        if let Some(index) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
+            return Err(Error::MetricWeight { index, value: weights[index] });
+        }
+        Self::from_scales(kind, weights.iter().map(|w| w.sqrt()).collect())
+    }
+
+    /// A metric with the given dense matrix `M` (r x r, by rows): its factor is Cholesky's, transposed.
+    ///
+    /// # Errors
+    /// When M is not square, not symmetric up to rounding (1e-9) or not positive definite, or as
+    /// [`Metric::from_factor`].
+    pub fn from_matrix(kind: MetricKind, rank: usize, matrix: &[f64]) -> Result<Self, Error> {
+        let factor = Factor::Triangular(Triangular::cholesky(rank, matrix)?);
+        Ok(Self { kind, factor })
+    }
+
+    /// A metric with the given upper triangular factor `S` (r x r, by rows, zeros below the diagonal).
+    ///
+    /// # Errors
+    /// When there are more than 1024 modes, the factor is not square or not upper triangular, an entry is beyond
+    /// 2^200, a diagonal entry is not positive or below 2^-200, or the factor is nearly singular (condition beyond
+    /// about 1e13, its square for M).
+    pub fn from_factor(kind: MetricKind, rank: usize, factor: Vec<f64>) -> Result<Self, Error> {
+        Ok(Self { kind, factor: Factor::Triangular(Triangular::new(rank, factor)?) })
+    }
+
+    pub(super) fn diagonal(kind: MetricKind, scales: Vec<f64>) -> Self {
+        Self { kind, factor: Factor::Diagonal(scales) }
+    }
+
+    /// Where the factor comes from.
+    pub fn kind(&self) -> MetricKind {
+        self.kind
+    }
+
+    /// Number of modes r.
+    pub fn rank(&self) -> usize {
+        match &self.factor {
+            Factor::Diagonal(scales) => scales.len(),
+            Factor::Triangular(factor) => factor.rank(),
+        }
+    }
+
+    /// The diagonal of the factor `S`, one positive number for each mode.
+    pub fn scales(&self) -> Vec<f64> {
+        match &self.factor {
+            Factor::Diagonal(scales) => scales.clone(),
+            Factor::Triangular(factor) => factor.diagonal().collect(),
+        }
+    }
+
+    /// The factor `S` of a dense metric (r x r, by rows); none where it is diagonal.
+    pub fn dense_factor(&self) -> Option<&[f64]> {
+        match &self.factor {
+            Factor::Diagonal(_) => None,
+            Factor::Triangular(factor) => Some(factor.entries()),
+        }
+    }
+
+    /// `q = S^-1 z`, rounded to nearest.
+    pub fn unscaled(&self, z: &[f64]) -> Vec<f64> {
+        match &self.factor {
+            Factor::Diagonal(scales) => z.iter().zip(scales).map(|(z, s)| z / s).collect(),
+            Factor::Triangular(factor) => factor.solve(z),
+        }
+    }
+
+    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within
+    /// `gamma_r |A||S||S^-1|`.
+    pub(crate) fn scaled_modes(&self, modes: &[DVec3], out: &mut [DVec3]) {
+        match &self.factor {
+            Factor::Diagonal(scales) => {
+                out.iter_mut().zip(modes).zip(scales).for_each(|((a, u), s)| *a = *u / *s);
+            }
+            Factor::Triangular(factor) => factor.divide(modes, out),
+        }
+    }
+
+    /// The magnitudes of which rounding errors are a share: an upper bound of `|A||S||S^-1|`, for the rows of scaled
+    /// modes; `|A|` itself where the factor is diagonal. Errors of positions at z are at most `gamma` times this times
+    /// `|z|`, component by component.
+    pub(crate) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
+        match &self.factor {
+            Factor::Diagonal(_) => out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
+            Factor::Triangular(factor) => right_or!(
+                factor.magnitudes(scaled, out),
+                DenseRateOfModesAlone,
+                out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
+            ),
+        }
+    }
+
+    /// `|S e_k|`, the length of a unit of mode k, rounded to nearest.
+    pub(crate) fn mode_length(&self, k: usize) -> f64 {
+        match &self.factor {
+            Factor::Diagonal(scales) => scales[k],
+            Factor::Triangular(factor) => factor.column_length(k),
+        }
+    }
+}

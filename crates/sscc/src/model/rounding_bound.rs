@@ -1,0 +1,81 @@
+//! The rounding bound of a gap: by how much the computed gap of two points of the shape along a direction may be smaller
+//! than the gap in exact arithmetic.
+//!
+//! For a direction n and the exact gap `n.(d + B z)` the bound is `at_rest(n) + per_norm(n) |z|`. It covers two errors:
+//!
+//! - Positions are computed with r products and r sums, each rounded once. Their error is at most
+//!   `gamma_(r+1) sum_c |n_c| ((|p_a| + |p_b|)_c + sum_k (|A_a| + |A_b|)_ck |z_k|)`, plus underflow. About a centre c, p is
+//!   `|p| + |U||c|`, and the positions there are rounded once more in the same way. In a dense metric A is
+//!   `|A||S||S^-1|`, which also covers the rounding of A itself.
+//! - The bounds of section 5 evaluate `n.d`, `B'n`, scaled modes, midpoints and box corners with a few more roundings of
+//!   the same magnitudes.
+//!
+//! One gamma large enough for both serves all points of the model; Cauchy-Schwarz over k turns the sum over modes into
+//! `|z|` times the 2-norm of a row of A.
+
+use glam::DVec3;
+
+use super::rounding::ROUND_UP;
+
+/// A rounding bound for all points of a model, along any direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoundingBound {
+    /// For each axis, independent of z.
+    at_rest: DVec3,
+    /// For each axis, per unit of `|z|`.
+    per_norm: DVec3,
+}
+
+/// The rounding bound along one direction: `at_rest + per_norm |z|`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoundingAlong {
+    pub(crate) at_rest: f64,
+    pub(crate) per_norm: f64,
+}
+
+/// Roundings granted beside the r of the positions: those of scaling, differences, midpoints, dot products
+/// and norms in the bounds, none of which chains more than a third of this many.
+const EXTRA_ROUNDINGS: usize = 96;
+
+impl RoundingBound {
+    /// From the largest magnitudes, for each axis, of positions and of rows of scaled modes.
+    pub(crate) fn new(rest_reach: DVec3, mode_reach: DVec3, rank: usize) -> Self {
+        let n = (2 * rank + EXTRA_ROUNDINGS) as f64 * (f64::EPSILON / 2.0);
+        let gamma = n / (1.0 - n);
+        let underflow = (rank + EXTRA_ROUNDINGS) as f64 * 4.0 * f64::from_bits(1);
+        Self {
+            at_rest: rest_reach * (2.0 * gamma) + DVec3::splat(underflow),
+            per_norm: mode_reach * (2.0 * gamma),
+        }
+    }
+
+    /// The rounding bound for gaps measured from one z instead of from rest, where both z have at most the given norm: the
+    /// gap is rounded at both. Twice that again covers the evaluation of bounds about z.
+    pub(crate) fn between_configurations(&self, norm: f64) -> Self {
+        let moved = right_or!(self.per_norm * norm, MarginErrorAtRest, DVec3::ZERO);
+        Self { at_rest: (self.at_rest + moved) * (4.0 * ROUND_UP), per_norm: self.per_norm }
+    }
+
+    /// The part of the bound that does not depend on z, along a direction, rounded up.
+    pub(crate) fn at_rest(&self, dir: DVec3) -> f64 {
+        dir.abs().dot(self.at_rest) * ROUND_UP + f64::MIN_POSITIVE
+    }
+
+    /// The part of the bound per unit of `|z|`, along a direction, rounded up; 0 only when no mode moves anything.
+    pub(crate) fn per_norm(&self, dir: DVec3) -> f64 {
+        dir.abs().dot(self.per_norm) * ROUND_UP
+    }
+
+    /// Both parts along a direction.
+    #[inline]
+    pub(crate) fn along(&self, dir: DVec3) -> RoundingAlong {
+        RoundingAlong { at_rest: self.at_rest(dir), per_norm: self.per_norm(dir) }
+    }
+}
+
+/// A direction scaled so that its largest component is 1 (none when it is 0 or not finite). Rounding bounds assume such
+/// directions: products with them do not underflow.
+pub(crate) fn scale_direction(dir: DVec3) -> Option<DVec3> {
+    let dir = dir / dir.abs().max_element();
+    dir.is_finite().then_some(dir)
+}
