@@ -58,6 +58,12 @@ impl<'a> QueryContext<'a> {
         )
     }
 
+    /// Whether the root's certificate proves the shape free at this norm, and there are no exceptions to test.
+    #[inline]
+    pub(super) fn is_proven_free(&self, norm: f64) -> bool {
+        self.is_root_certified(norm) && self.detect.exceptions.is_empty()
+    }
+
     /// Whether the root's certificate alone proves the shape free at this norm, exceptions apart. Like any radius, the
     /// root's proves nothing at a norm that equals it: where it is 0, the shape may collide at the centre. (Other norms are
     /// rounded up strictly, so equality would do no harm.)

@@ -31,7 +31,6 @@ impl DiscreteSearch {
     ///
     /// # Errors
     /// When it was cancelled.
-    #[inline]
     pub(super) fn find(
         &mut self,
         context: &QueryContext<'_>,

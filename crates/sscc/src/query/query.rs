@@ -112,10 +112,17 @@ impl<'a> Query<'a> {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
-        self.begin(limit);
+        self.statistics = Statistics::default();
+        self.discrete.narrow.0.found.clear();
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
-        self.discrete.find(&self.context, configuration, &mut self.statistics)?;
+        // Most queries of a simulation end here, so nothing but the answer is reset before.
+        if self.context.is_proven_free(configuration.norm) {
+            (self.statistics.root_certified, self.statistics.complete) = (true, true);
+        } else {
+            self.discrete.begin(limit);
+            self.discrete.find(&self.context, configuration, &mut self.statistics)?;
+        }
         Ok(&self.discrete.narrow.0.found)
     }
 
@@ -143,7 +150,7 @@ impl<'a> Query<'a> {
     }
 
     /// Checks that q is a configuration of the model, and measures it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn measure<'q>(&mut self, q: &'q [f64]) -> Result<Configuration<'q>, Error> {
         let scope = &self.context.scope;
         let norm = if q.len() != scope.center.len() {
