@@ -10,7 +10,6 @@ mod kinetic;
 mod method;
 mod node_pair;
 mod pair_tree_traversal;
-#[expect(clippy::module_inception, reason = "the file is named after its type")]
 mod query;
 mod root_ball;
 mod safe_scale;

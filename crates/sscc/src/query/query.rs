@@ -16,9 +16,9 @@ use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
 /// and the rare exact signs of extreme numbers aside). One query serves one thread; clone it for another, or use
 /// [`Query::batch`].
 ///
-/// "Free" (no pairs) is exact, and so are the pairs: two triangles are listed exactly when they count under the
-/// [`PairRule`] (by default: when they share no vertex) and their closed hulls, at the positions given by
-/// [`deformed_position`](crate::deformed_position), have a point in common.
+/// Two triangles are listed exactly when they count under the contact filter ([`PairRule`](crate::PairRule); by default
+/// when they share no vertex) and have a point in common at the positions given by
+/// [`deformed_position`](crate::deformed_position); see `docs/guarantees.md`.
 #[derive(Clone)]
 pub struct Query<'a> {
     pub(super) context: QueryContext<'a>,
