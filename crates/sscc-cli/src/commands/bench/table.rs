@@ -1,6 +1,7 @@
-//! Reports of one model as a table for people.
+//! Records of one model as a table.
 
-use super::report::{Means, Report};
+use sscc_bench::{Means, Record};
+
 use crate::output::{counted, grouped};
 
 /// What ratios are of: the time of the others over this one's.
@@ -9,7 +10,7 @@ const OVER: [&str; 2] = ["parry", "traditional"];
 
 /// Rows with a time for each column.
 pub struct Table<'a> {
-    reports: &'a [Report],
+    records: &'a [Record],
 }
 
 /// A line of the table: what it is, how many of the steps collide or fail at the root, the times.
@@ -20,13 +21,13 @@ struct Row<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Reports of the same model.
-    pub fn of(reports: &'a [Report]) -> Self {
-        Self { reports }
+    /// Of records of the same model.
+    pub fn of(records: &'a [Record]) -> Self {
+        Self { records }
     }
 
     pub fn lines(&self) -> Vec<String> {
-        let Some(first) = self.reports.first() else { return Vec::new() };
+        let Some(first) = self.records.first() else { return Vec::new() };
         let bodies = if first.objects == 1 { "one body".into() } else { format!("{} bodies", first.objects) };
         let mut lines = vec![format!(
             "{}: {bodies} of {} triangles, {} modes ({})",
@@ -59,7 +60,7 @@ impl<'a> Table<'a> {
             ));
         }
         lines.extend(first.note.iter().map(|note| format!("note: {note}")));
-        if self.reports.len() == 1 && first.scene_steps > first.compared_steps {
+        if self.records.len() == 1 && first.scene_steps > first.compared_steps {
             let [scene, compared] = first.strata;
             let scene = scene.map(|steps| grouped(steps as u64));
             lines.push(format!(
@@ -67,30 +68,30 @@ impl<'a> Table<'a> {
                 scene[0], compared[0], scene[1], compared[1], scene[2], compared[2]
             ));
         }
-        let label = |report: &Report| format!("{}%", (report.share * 10.0).round() / 10.0);
-        let discrete = self.reports.iter().flat_map(|report| {
+        let label = |record: &Record| format!("{}%", (record.share * 10.0).round() / 10.0);
+        let discrete = self.records.iter().flat_map(|record| {
             let all = Row {
-                label: label(report),
-                steps: format!("{} of {}", report.colliding_steps, report.steps),
-                means: &report.discrete_ms,
+                label: label(record),
+                steps: format!("{} of {}", record.colliding_steps, record.steps),
+                means: &record.discrete_ms,
             };
             let failed = Row {
                 label: "  root fails".into(),
-                steps: format!("{} of {}", report.root_failed_steps, report.steps),
-                means: &report.discrete_ms_root_failed,
+                steps: format!("{} of {}", record.root_failed_steps, record.steps),
+                means: &record.discrete_ms_root_failed,
             };
             // Where it fails always, it would be the same line again.
-            let same = report.root_failed_steps == report.steps || report.root_failed_steps == 0;
+            let same = record.root_failed_steps == record.steps || record.root_failed_steps == 0;
             [Some(all), (!same).then_some(failed)].into_iter().flatten()
         });
         lines.extend(block("discrete, ms", discrete));
-        let continuous = self.reports.iter().map(|report| Row {
-            label: label(report),
-            steps: counted(report.continuous_steps as u64, "step"),
-            means: &report.continuous_ms,
+        let continuous = self.records.iter().map(|record| Row {
+            label: label(record),
+            steps: counted(record.continuous_steps as u64, "step"),
+            means: &record.continuous_ms,
         });
         lines.extend(block("continuous, ms", continuous));
-        let mismatches: usize = self.reports.iter().map(|report| report.mismatches).sum();
+        let mismatches: usize = self.records.iter().map(|record| record.mismatches).sum();
         lines.push(match mismatches {
             0 => "all exact methods list the same pairs".into(),
             n => format!("DEFECT: exact methods differ in {n} of the steps"),

@@ -1,0 +1,57 @@
+//! Whether a pair that only some methods list for a motion is a mismatch.
+
+use glam::DVec3;
+use sscc::{Impact, MovingTriangle, ReducedModel};
+use sscc_exact::first_contact;
+
+use super::distance::distance_triangle_triangle;
+
+/// Whether a pair that some methods list for a motion and others do not proves one of them wrong: if the two triangles
+/// truly meet during the motion (exact arithmetic on the positions at both ends), or if they are farther apart than
+/// [`Impact::TOLERANCE`] at the time for which they are listed. Every other pair may be listed or not.
+pub fn is_mismatch(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Impact) -> bool {
+    let faces = model.mesh().faces();
+    let moving = |t: u32| {
+        let at = |q: &[f64]| faces[t as usize].map(|v| model.position(v, q));
+        MovingTriangle { t0: at(q_t0), t1: at(q_t1) }
+    };
+    let (x, y) = (moving(impact.pair.0), moving(impact.pair.1));
+    first_contact(&x, &y).is_some() || !are_close(&x, &y, impact.time)
+}
+
+/// Whether the two are within twice the tolerance at a time, in floating-point arithmetic.
+fn are_close(x: &MovingTriangle, y: &MovingTriangle, time: f64) -> bool {
+    // Relative to a corner, so that small differences far from the origin are not lost.
+    let origin = [x.t0[0], x.t1[0]];
+    let ends = |m: &MovingTriangle| [m.t0.map(|p| p - origin[0]), m.t1.map(|p| p - origin[1])];
+    let (x, y) = (ends(x), ends(y));
+    let size = [x, y].as_flattened().as_flattened().iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let at = |[t0, t1]: [[DVec3; 3]; 2]| [0, 1, 2].map(|i: usize| t0[i] + (t1[i] - t0[i]) * time);
+    distance_triangle_triangle(&at(x), &at(y)) <= 2.0 * Impact::TOLERANCE * size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sscc::{Modes, TriMesh};
+
+    /// A triangle at rest, and one above it at this height which mode 0 lowers.
+    fn model(height: f64) -> ReducedModel {
+        let lower = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let upper = lower.map(|p| p + DVec3::Z * height);
+        let mesh = TriMesh::new([lower, upper].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::from_matrix(6, 1, |row, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 });
+        ReducedModel::new(mesh, modes.unwrap()).unwrap()
+    }
+
+    #[test]
+    fn pairs_within_the_tolerance_are_no_mismatch() {
+        let model = model(1.0);
+        let listed = |q: f64, time: f64| is_mismatch(&model, &[0.0], &[q], &Impact { pair: (0, 1), time });
+        assert!(listed(1.0, 1.0), "they touch at the end");
+        assert!(listed(2.0, 0.5), "they pass");
+        assert!(listed(1.0 - 1e-9, 1.0), "they stay apart");
+        assert!(listed(1.0 - 1e-13, 0.5), "they are close, but not then");
+        assert!(!listed(1.0 - 1e-13, 1.0), "within the tolerance");
+    }
+}

@@ -1,0 +1,101 @@
+//! Times by step and method, and their means over a scene.
+
+use super::timer::Milliseconds;
+use crate::methods::COLUMNS;
+use crate::sampling::{Strata, weighted_mean};
+
+/// The name of kinetic queries in tables and JSON. They depend on the steps before, so they are no column of the
+/// interleaved ones.
+const KINETIC: &str = "kinetic";
+
+/// Milliseconds of the queries of all bodies.
+#[derive(Clone, Debug)]
+pub struct Times {
+    /// The steps on which every method ran.
+    pub compared: Vec<usize>,
+    /// By step and column.
+    pub interleaved: Milliseconds,
+    /// By step, of kinetic queries; empty where they did not run.
+    pub kinetic: Vec<f64>,
+}
+
+impl Times {
+    /// Milliseconds of one method, of the steps on which it ran; where it has several engines, of the faster one.
+    pub fn of(&self, key: &str) -> Vec<(usize, f64)> {
+        if key == KINETIC {
+            return self.kinetic.iter().copied().enumerate().collect();
+        }
+        let faster = |times: &Vec<Option<f64>>| {
+            let own = COLUMNS.iter().zip(times).filter(|(column, _)| column.key == key);
+            own.filter_map(|(_, time)| *time).reduce(f64::min)
+        };
+        let steps = self.interleaved.iter().enumerate();
+        steps.filter_map(|(step, times)| Some((step, faster(times)?))).collect()
+    }
+
+    /// Mean milliseconds over the scene, estimated from some steps, of the methods that ran on all of these.
+    pub fn means(&self, steps: &[usize], strata: &Strata) -> Vec<(&'static str, f64)> {
+        let mut means: Vec<(&'static str, f64)> = Vec::new();
+        if steps.is_empty() {
+            return means;
+        }
+        let weights = strata.weights(steps);
+        for (at, column) in COLUMNS.iter().enumerate() {
+            let times: Option<Vec<f64>> = steps.iter().map(|&step| self.interleaved[step][at]).collect();
+            let Some(times) = times else { continue };
+            let mean = weighted_mean(times, &weights);
+            match means.iter_mut().find(|(key, _)| *key == column.key) {
+                Some((_, known)) => *known = known.min(mean),
+                None => means.push((column.key, mean)),
+            }
+        }
+        if !self.kinetic.is_empty() {
+            means.push((KINETIC, weighted_mean(steps.iter().map(|step| self.kinetic[*step]), &weights)));
+        }
+        means
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Stratum;
+
+    #[test]
+    fn means_are_of_the_same_steps_and_the_better_of_two_engines() {
+        let row = |common: f64| {
+            let mut times = 0.0;
+            COLUMNS
+                .iter()
+                .map(|_| {
+                    times += 1.0;
+                    Some(common + times)
+                })
+                .collect::<Vec<_>>()
+        };
+        let mut partial = row(0.0);
+        partial[0] = None;
+        let kinetic = vec![1.0, 3.0, 9.0];
+        let times = Times { compared: vec![0, 1], interleaved: vec![row(0.0), row(2.0), partial], kinetic };
+        let strata = Strata::new(vec![Stratum::RootCertified; 3], None);
+        let means = times.means(&[0, 1], &strata);
+        let of =
+            |means: &[(&str, f64)], key: &str| means.iter().find(|mean| mean.0 == key).map(|mean| mean.1);
+        let at = COLUMNS.iter().position(|column| column.key == "parry").unwrap();
+        assert_eq!((of(&means, "parry"), of(&means, COLUMNS[0].key)), (Some(at as f64 + 2.0), Some(2.0)));
+        assert_eq!(of(&times.means(&[0, 2], &strata), COLUMNS[0].key), None);
+        assert_eq!(of(&means, "kinetic"), Some(2.0));
+        assert!(times.means(&[], &strata).is_empty());
+        // A step that stands for three of the scene, and one that stands for itself.
+        let strata = Strata::new(
+            vec![Stratum::RootCertified, Stratum::Colliding, Stratum::Colliding],
+            Some([3, 0, 1]),
+        );
+        let means = times.means(&[0, 1], &strata);
+        assert_eq!((of(&means, COLUMNS[0].key), of(&means, "kinetic")), (Some(1.5), Some(1.5)));
+        // Each step on which the method ran, and no other.
+        assert_eq!(times.of(COLUMNS[0].key), [(0, 1.0), (1, 3.0)]);
+        assert_eq!(times.of("parry")[1], (1, at as f64 + 3.0));
+        assert_eq!(times.of("kinetic"), [(0, 1.0), (1, 3.0), (2, 9.0)]);
+    }
+}

@@ -1,0 +1,75 @@
+//! The methods that are compared: a line for each.
+
+use parry3d_f64::partitioning::BvhBuildStrategy;
+use sscc::{Method, Query};
+use sscc_sim::CertifiedModel;
+
+use super::approximate_cones::ApproximateCones;
+use super::engine::Engine;
+use super::parry::Parry;
+use crate::error::Error;
+
+/// One column of the tables. Where several have the same key, the one with the smallest mean counts.
+pub struct Column {
+    /// Its name in tables and JSON.
+    pub key: &'static str,
+    /// On which steps it runs, and whether its answers are compared.
+    pub role: Role,
+    make: for<'a> fn(&'a CertifiedModel) -> Result<Box<dyn Engine + 'a>, Error>,
+}
+
+/// Where a method takes part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Ours: runs on all steps.
+    Certified,
+    /// A method that ours is compared with: runs on some of the steps, where these are many.
+    Comparator,
+    /// A comparator that may miss pairs.
+    Approximate,
+}
+
+use Role::{Approximate, Certified, Comparator};
+
+/// All of them, in the order in which they are interleaved.
+pub const COLUMNS: &[Column] = &[
+    Column { key: "traditional", role: Comparator, make: |model| uncertified(model, Method::Traditional) },
+    Column { key: "bdtree", role: Comparator, make: |model| uncertified(model, Method::BdTree) },
+    Column { key: "normal_cones", role: Comparator, make: |model| uncertified(model, Method::NormalCones) },
+    Column { key: "normal_cones_approx", role: Approximate, make: approximate_cones },
+    Column { key: "paper", role: Certified, make: paper },
+    Column { key: "full", role: Certified, make: full },
+    Column { key: "parry", role: Comparator, make: |model| parry(model, BvhBuildStrategy::Binned) },
+    Column { key: "parry", role: Comparator, make: |model| parry(model, BvhBuildStrategy::Ploc) },
+];
+
+impl Column {
+    /// The method, for one model.
+    ///
+    /// # Errors
+    /// When the model lacks the certificates that the method needs.
+    pub fn engine<'a>(&self, model: &'a CertifiedModel) -> Result<Box<dyn Engine + 'a>, Error> {
+        (self.make)(model)
+    }
+}
+
+fn uncertified(model: &CertifiedModel, method: Method) -> Result<Box<dyn Engine + '_>, Error> {
+    Ok(Box::new(Query::with_method(&model.model, &model.full.certificates, method)?))
+}
+
+fn approximate_cones(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {
+    Ok(Box::new(ApproximateCones::new(&model.model, &model.full.certificates)?))
+}
+
+fn paper(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {
+    let paper = model.paper.as_ref().ok_or(Error::NoPaperCertificates)?;
+    Ok(Box::new(Query::new(&model.model, &paper.certificates)?))
+}
+
+fn full(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {
+    Ok(Box::new(Query::new(&model.model, &model.full.certificates)?))
+}
+
+fn parry(model: &CertifiedModel, strategy: BvhBuildStrategy) -> Result<Box<dyn Engine + '_>, Error> {
+    Ok(Box::new(Parry::new(&model.model, strategy)))
+}

@@ -1,0 +1,22 @@
+//! The cost of each step of a scene, in the manner of the paper's Figure 12.
+
+use sscc_view::{Axis, Plot, Series};
+
+use crate::measure::Times;
+
+/// The methods that are drawn, where they ran.
+const METHODS: [&str; 3] = ["traditional", "full", "kinetic"];
+
+/// Milliseconds of discrete queries over time; `seconds` gives the time of a measured step.
+pub fn cost_over_time(scenario: &str, times: &Times, seconds: impl Fn(usize) -> f64) -> Plot {
+    let shown = METHODS.map(|key| (key, times.of(key)));
+    let line = |(key, times): (&str, Vec<(usize, f64)>)| {
+        Series::new(key, times.into_iter().map(|(step, ms)| [seconds(step), ms]))
+    };
+    Plot {
+        title: format!("Cost over time: {scenario}"),
+        x: Axis::linear("time (s)"),
+        y: Axis::logarithmic("discrete query, ms in a step"),
+        series: shown.into_iter().filter(|(_, times)| !times.is_empty()).map(line).collect(),
+    }
+}

@@ -1,0 +1,169 @@
+//! A plot as SVG, its y axis logarithmic.
+
+use std::fmt::Write;
+
+/// Pixels of a plot, and where its axes are.
+const WIDTH: f64 = 860.0;
+const HEIGHT: f64 = 260.0;
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 34.0;
+const BOTTOM: f64 = 44.0;
+
+/// Lines over a common x axis.
+pub struct SvgPlot<'a> {
+    /// The title, for readers of the file.
+    pub title: &'a str,
+    /// The label of the x axis.
+    pub x_label: &'a str,
+    /// The label of the y axis.
+    pub y_label: &'a str,
+    /// The lines.
+    pub lines: Vec<Line<'a>>,
+}
+
+/// A line of a plot, with a dot at each point.
+pub struct Line<'a> {
+    /// Its label.
+    pub label: &'a str,
+    /// Its colour, as SVG has it.
+    pub color: &'a str,
+    /// x and y, x ascending. Points whose y is not positive are left out.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl SvgPlot<'_> {
+    /// The SVG element.
+    pub fn svg(&self) -> String {
+        let is_seen = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite() && p[1] > 0.0;
+        let all = || self.lines.iter().flat_map(|line| &line.points).filter(|p| is_seen(p));
+        let [x_low, x_high] = range(all().map(|p| p[0]));
+        let [low, high] = range(all().map(|p| p[1]));
+        let [low, high] = [low.log10().floor(), high.log10().ceil()];
+        let high = high.max(low + 1.0);
+        let span = if x_high > x_low { x_high - x_low } else { 1.0 };
+        let x = |at: f64| LEFT + (at - x_low) / span * (WIDTH - LEFT - RIGHT);
+        let height =
+            |exponent: f64| HEIGHT - BOTTOM - (exponent - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
+        let y = |at: f64| height(at.log10());
+        // Writing to a String never fails.
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" \
+             font-family=\"sans-serif\" font-size=\"12\">\n<title>{}</title>\n",
+            escaped(self.title)
+        );
+        for exponent in ticks(low, high, 1.0) {
+            let (at, label) = (height(exponent), tick_label(10_f64.powf(exponent)));
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{LEFT} {at:.1}H{:.1}\" stroke=\"#ddd\"/><text x=\"{:.1}\" y=\"{:.1}\" \
+                 text-anchor=\"end\">{label}</text>",
+                WIDTH - RIGHT,
+                LEFT - 6.0,
+                at + 4.0
+            );
+        }
+        for tick in ticks(x_low, x_low + span, 0.0) {
+            let _ = writeln!(
+                svg,
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                x(tick),
+                HEIGHT - BOTTOM + 22.0,
+                tick_label(tick)
+            );
+        }
+        for line in &self.lines {
+            let seen = line.points.iter().filter(|p| is_seen(p));
+            let points: Vec<String> = seen.map(|[a, b]| format!("{:.1},{:.1}", x(*a), y(*b))).collect();
+            let _ = writeln!(
+                svg,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>",
+                points.join(" "),
+                line.color
+            );
+            for point in &points {
+                let (cx, cy) = point.split_once(',').unwrap_or_default();
+                let _ = writeln!(svg, "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"2.5\" fill=\"{}\"/>", line.color);
+            }
+        }
+        let mut at = LEFT;
+        for Line { label, color, .. } in &self.lines {
+            let _ = writeln!(
+                svg,
+                "<rect x=\"{at:.1}\" y=\"12\" width=\"14\" height=\"4\" fill=\"{color}\"/><text x=\"{:.1}\" \
+                 y=\"18\">{}</text>",
+                at + 18.0,
+                escaped(label)
+            );
+            at += 40.0 + 6.6 * label.chars().count() as f64;
+        }
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text><text x=\"16\" y=\"{:.1}\" \
+             text-anchor=\"middle\" transform=\"rotate(-90 16 {:.1})\">{}</text>\n</svg>",
+            (LEFT + WIDTH - RIGHT) / 2.0,
+            HEIGHT - 6.0,
+            escaped(self.x_label),
+            HEIGHT / 2.0,
+            HEIGHT / 2.0,
+            escaped(self.y_label)
+        );
+        svg
+    }
+}
+
+/// Text between tags.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+    if low <= high { [low, high] } else { [0.1, 1.0] }
+}
+
+/// Round numbers of a range, at most about six, at least `smallest_step` apart.
+fn ticks(low: f64, high: f64, smallest_step: f64) -> Vec<f64> {
+    let rough = (high - low) / 6.0;
+    let power = 10_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= rough);
+    let step = step.unwrap_or(rough).max(smallest_step);
+    let first = (low / step).ceil();
+    (0..20).map(|i| (first + f64::from(i)) * step).take_while(|tick| *tick <= high + 1e-9 * step).collect()
+}
+
+fn tick_label(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        x if (1e-3..1e5).contains(&x) => format!("{}", (value * 1e6).round() / 1e6),
+        _ => format!("{value:.0e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(ticks(0.0, 2.0, 0.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks(-4.0, 1.0, 1.0), [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0]);
+        assert_eq!([1e-4, 1.0, 1000.0].map(tick_label), ["1e-4", "1", "1000"]);
+        assert_eq!([0.0, 0.25, -1.5].map(tick_label), ["0", "0.25", "-1.5"]);
+    }
+
+    #[test]
+    fn any_numbers_and_texts_make_a_plot() {
+        for points in
+            [vec![], vec![[0.0, 0.0]], vec![[0.0, f64::NAN], [1.0, 1e-300]], vec![[0.0, -1.0], [1.0, 5.0]]]
+        {
+            let line = Line { label: "<a & b>", color: "#000", points };
+            let svg = SvgPlot { title: "\"", x_label: "x", y_label: "y", lines: vec![line] }.svg();
+            assert!(
+                !svg.contains("NaN") && !svg.contains("inf") && svg.contains("&lt;a &amp; b&gt;"),
+                "{svg}"
+            );
+            assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+        }
+    }
+}

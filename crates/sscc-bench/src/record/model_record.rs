@@ -1,0 +1,183 @@
+//! The record of one model in a scenario: the keys that scripts rely on.
+
+use serde::Serialize;
+use sscc_sim::{CertifiedModel, STEP_PARTS};
+
+use super::means::Means;
+use crate::measure::Comparison;
+use crate::sampling::Counts;
+
+/// One line of JSON. Times are means over the whole scene, estimated from steps that are weighted by the shares of their
+/// strata. Where comparators did not run on all steps, the times of every method are those of the steps on which they
+/// ran, so that ratios are of the same steps.
+#[derive(Clone, Debug, Serialize)]
+pub struct Record {
+    /// With the model, where the scenario has several.
+    pub scenario: String,
+    /// The name of the model.
+    pub model: String,
+    /// Where its mesh is from.
+    pub source: String,
+    /// A stand-in, or strata that are missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// The largest displacement in percent of half the diagonal of the AABB.
+    pub share: f64,
+    /// Triangles of one body.
+    pub triangles: usize,
+    /// Modes of one body.
+    pub rank: usize,
+    /// Bodies.
+    pub objects: usize,
+    /// Steps that were measured.
+    pub steps: usize,
+    /// Those of them in which some body collides with itself.
+    pub colliding_steps: usize,
+    /// Those of them in which some body's root certificate fails.
+    pub root_failed_steps: usize,
+    /// Those of them on which all methods ran.
+    pub compared_steps: usize,
+    /// Those of the compared ones in which some body's root certificate fails.
+    pub compared_root_failed_steps: usize,
+    /// Steps with continuous queries.
+    pub continuous_steps: usize,
+    /// Steps of the whole scene.
+    pub scene_steps: usize,
+    /// Those of them in which some body collides with itself.
+    pub scene_colliding_steps: usize,
+    /// Steps times bodies.
+    pub scene_body_steps: usize,
+    /// Those of them in which the body collides with itself.
+    pub scene_colliding_body_steps: usize,
+    /// Steps in which two exact methods differ.
+    pub mismatches: usize,
+    /// Wall-clock seconds of the certificates.
+    pub certify_seconds: f64,
+    /// Threads that computed them.
+    pub certify_threads: usize,
+    /// Peak memory of the process meanwhile.
+    pub certify_peak_bytes: Option<u64>,
+    /// Seconds of one discrete query of one body by parry.
+    pub parry_query_seconds: Option<f64>,
+    /// Steps of each stratum in the scene, and among the compared ones.
+    #[serde(skip)]
+    pub strata: [Counts; 2],
+    /// Processor time of the whole scene, by the detection that its file names; none where nothing is simulated.
+    pub simulation_seconds: Option<f64>,
+    /// The share of it that finds self-collisions.
+    pub self_collision_share: Option<f64>,
+    /// The time it would take with the traditional method over the time it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation_speedup: Option<f64>,
+    /// Mean milliseconds of the processor of the parts of a step, over the whole scene.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub simulation_ms: Means,
+    /// Mean milliseconds of discrete queries.
+    pub discrete_ms: Means,
+    /// Mean milliseconds of continuous queries.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub continuous_ms: Means,
+    /// Of discrete queries in the compared steps in which the root certificate fails.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub discrete_ms_root_failed: Means,
+    /// Of the methods that ran on all steps, where others did not.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub discrete_ms_all_steps: Means,
+    /// The machine.
+    pub machine: String,
+}
+
+/// The whole scene that the measured steps represent.
+pub struct SceneTotals {
+    /// Steps.
+    pub steps: usize,
+    /// Steps in which some body collides with itself.
+    pub colliding_steps: usize,
+    /// Steps times bodies.
+    pub body_steps: usize,
+    /// Those of them in which the body collides with itself.
+    pub colliding_body_steps: usize,
+    /// Processor seconds of the parts of its simulation; none where nothing is simulated.
+    pub seconds: Option<[f64; STEP_PARTS.len()]>,
+}
+
+impl Record {
+    /// The record of `objects` bodies of one model. `scene` is the whole scene; none where the measured steps are.
+    pub fn new(
+        scenario: String,
+        share: f64,
+        model: &CertifiedModel,
+        comparison: &Comparison,
+        objects: usize,
+        scene: Option<SceneTotals>,
+    ) -> Self {
+        let count = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
+        let (steps, colliding_steps) = (comparison.colliding.len(), count(&comparison.colliding));
+        let scene = scene.unwrap_or(SceneTotals {
+            steps,
+            colliding_steps,
+            body_steps: steps * objects,
+            colliding_body_steps: colliding_steps,
+            seconds: None,
+        });
+        let seconds = scene.seconds.unwrap_or_default();
+        let simulation_seconds = scene.seconds.map(|parts| parts.iter().sum::<f64>());
+        let per_step = |seconds: f64| seconds * 1e3 / scene.steps as f64;
+        let simulation_ms = match scene.seconds {
+            Some(parts) => {
+                STEP_PARTS.iter().zip(parts).map(|(part, seconds)| (*part, per_step(seconds))).collect()
+            }
+            None => Vec::new(),
+        };
+        let Comparison { discrete, continuous, strata, .. } = comparison;
+        let (compared, all): (&[usize], Vec<usize>) = (&discrete.compared, (0..steps).collect());
+        let root_failed: Vec<usize> =
+            compared.iter().copied().filter(|step| comparison.root_failed[*step]).collect();
+        let all_steps = if compared.len() < steps { discrete.means(&all, strata) } else { Vec::new() };
+        let discrete_ms = Means(discrete.means(compared, strata));
+        Self {
+            scenario,
+            model: model.name.clone(),
+            source: model.source.clone(),
+            note: notes(model.note.clone(), strata.missing()),
+            share,
+            triangles: model.model.mesh().faces().len(),
+            rank: model.model.rank(),
+            objects,
+            steps,
+            colliding_steps,
+            root_failed_steps: count(&comparison.root_failed),
+            compared_steps: compared.len(),
+            compared_root_failed_steps: root_failed.len(),
+            continuous_steps: continuous.compared.len(),
+            strata: [strata.scene(), strata.counts(compared)],
+            scene_steps: scene.steps,
+            scene_colliding_steps: scene.colliding_steps,
+            scene_body_steps: scene.body_steps,
+            scene_colliding_body_steps: scene.colliding_body_steps,
+            mismatches: comparison.mismatches,
+            certify_seconds: model.full.cost.seconds,
+            certify_threads: model.full.cost.threads,
+            certify_peak_bytes: model.full.cost.peak_bytes,
+            parry_query_seconds: discrete_ms.get("parry").map(|ms| ms / 1e3 / objects as f64),
+            simulation_seconds,
+            self_collision_share: simulation_seconds.map(|all| seconds[0] / all),
+            simulation_speedup: simulation_seconds.and_then(|all| {
+                let traditional = discrete_ms.get("traditional")?;
+                Some((per_step(all - seconds[0]) + traditional) / per_step(all))
+            }),
+            simulation_ms: Means(simulation_ms),
+            discrete_ms,
+            continuous_ms: Means(continuous.means(&continuous.compared, strata)),
+            discrete_ms_root_failed: Means(discrete.means(&root_failed, strata)),
+            discrete_ms_all_steps: Means(all_steps),
+            machine: sscc_sim::machine_description(),
+        }
+    }
+}
+
+/// Both notes, if there are any.
+fn notes(first: Option<String>, second: Option<String>) -> Option<String> {
+    let notes: Vec<String> = first.into_iter().chain(second).collect();
+    (!notes.is_empty()).then(|| notes.join("; "))
+}

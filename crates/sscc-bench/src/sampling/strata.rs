@@ -1,0 +1,214 @@
+//! Strata of the steps of a scene: which steps are compared, and the weight of each.
+//!
+//! A query costs nanoseconds where the root's certificate holds and milliseconds where bodies nearly touch, and in most
+//! scenes the first is by far the most frequent. So steps fall into three strata, and means are those of stratified
+//! sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted by the stratum's share
+//! of the whole scene, however many of its steps were drawn. Such a mean estimates the one over the whole scene without
+//! bias, as far as the measured steps of a stratum represent the others.
+
+use crate::random::Random;
+
+const SEED: u64 = 13;
+
+/// The state of a step, all bodies together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stratum {
+    /// The root's certificate proves every body free.
+    RootCertified,
+    /// The root's certificate fails for some body, and no body collides with itself.
+    RootFailed,
+    /// Some body collides with itself.
+    Colliding,
+}
+
+/// Number of steps of each stratum.
+pub type Counts = [usize; 3];
+
+impl Stratum {
+    /// The stratum of a step: whether some body's root certificate fails, and whether some body collides.
+    pub fn of(root_failed: bool, colliding: bool) -> Self {
+        match (colliding, root_failed) {
+            (true, _) => Self::Colliding,
+            (false, true) => Self::RootFailed,
+            (false, false) => Self::RootCertified,
+        }
+    }
+
+    /// Number of steps of each stratum.
+    pub fn counts(steps: impl IntoIterator<Item = Self>) -> Counts {
+        let mut counts = [0; 3];
+        steps.into_iter().for_each(|stratum| counts[stratum as usize] += 1);
+        counts
+    }
+}
+
+/// The strata of some steps of a scene.
+#[derive(Clone, Debug)]
+pub struct Strata {
+    /// Of each step.
+    of: Vec<Stratum>,
+    /// Of all steps of the scene.
+    scene: Counts,
+}
+
+impl Strata {
+    /// `scene` counts all steps of the scene; none where the given steps are the whole scene.
+    pub fn new(of: Vec<Stratum>, scene: Option<Counts>) -> Self {
+        let scene = scene.unwrap_or_else(|| Stratum::counts(of.iter().copied()));
+        Self { of, scene }
+    }
+
+    /// Steps of the whole scene.
+    pub fn scene(&self) -> Counts {
+        self.scene
+    }
+
+    /// The strata of some of the steps.
+    pub fn counts(&self, steps: &[usize]) -> Counts {
+        Stratum::counts(steps.iter().map(|step| self.of[*step]))
+    }
+
+    /// At most `count` of the steps, ascending: equally many of each stratum that occurs, as far as it has steps, and at
+    /// least one. In most scenes the root certifies nearly all steps, and these cost nearly the same. The others differ;
+    /// drawn in proportion, they would be one or two.
+    pub fn draw(&self, count: usize) -> Vec<usize> {
+        self.draw_by(count, &mut Random(SEED))
+    }
+
+    /// In each stratum one step in each of equally long stretches, at a random place that is the same in all of them:
+    /// every step of the stratum is drawn with the same probability.
+    fn draw_by(&self, count: usize, random: &mut Random) -> Vec<usize> {
+        let own = |stratum: usize| -> Vec<usize> {
+            (0..self.of.len()).filter(|step| self.of[*step] as usize == stratum).collect()
+        };
+        let mut strata: Vec<Vec<usize>> = (0..3).map(own).filter(|steps| !steps.is_empty()).collect();
+        // The larger strata get the steps that a small one does not have.
+        strata.sort_by_key(Vec::len);
+        let mut drawn = Vec::new();
+        for (at, steps) in strata.iter().enumerate() {
+            let count = (count - drawn.len()).div_ceil(strata.len() - at).min(steps.len());
+            let place = random.uniform();
+            let stretch = steps.len() as f64 / count.max(1) as f64;
+            let step = |i: usize| steps[(((i as f64 + place) * stretch) as usize).min(steps.len() - 1)];
+            drawn.extend((0..count).map(step));
+        }
+        drawn.sort_unstable();
+        drawn
+    }
+
+    /// The weight of each of some steps in a mean over the scene. The strata that are among them are weighted by their
+    /// number of steps in the scene.
+    pub fn weights(&self, steps: &[usize]) -> Vec<f64> {
+        let counts = self.counts(steps);
+        let weight = |step: &usize| {
+            let stratum = self.of[*step] as usize;
+            self.scene[stratum] as f64 / counts[stratum] as f64
+        };
+        steps.iter().map(weight).collect()
+    }
+
+    /// Names the strata of the scene that none of the steps is in: means leave them out.
+    pub fn missing(&self) -> Option<String> {
+        let counts = Stratum::counts(self.of.iter().copied());
+        let names = ["the root certifies", "the root leaves open", "collide"];
+        let missing: Vec<String> = (0..3)
+            .filter(|stratum| counts[*stratum] == 0 && self.scene[*stratum] > 0)
+            .map(|stratum| format!("none of the {} steps that {}", self.scene[stratum], names[stratum]))
+            .collect();
+        (!missing.is_empty()).then(|| format!("{} is measured: take more by --steps", missing.join(" and ")))
+    }
+}
+
+/// The weighted mean of values.
+pub fn weighted_mean(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> f64 {
+    let sum: f64 = values.into_iter().zip(weights).map(|(value, weight)| value * weight).sum();
+    sum / weights.iter().sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stratum::{Colliding, RootCertified, RootFailed};
+    use super::*;
+
+    /// Stretches of strata.
+    fn scene(stretches: &[(Stratum, usize)]) -> Vec<Stratum> {
+        stretches.iter().flat_map(|(stratum, steps)| vec![*stratum; *steps]).collect()
+    }
+
+    /// As of a dragon that lands early and then lies still.
+    fn landing() -> Vec<Stratum> {
+        scene(&[
+            (RootCertified, 310),
+            (RootFailed, 90),
+            (Colliding, 55),
+            (RootFailed, 84),
+            (RootCertified, 7461),
+        ])
+    }
+
+    #[test]
+    fn each_stratum_is_drawn_and_weighted_by_its_share_of_the_scene() {
+        let strata = Strata::new(landing(), None);
+        let drawn = strata.draw(20);
+        assert_eq!((drawn.len(), strata.counts(&drawn)), (20, [6, 7, 7]));
+        assert!(drawn.windows(2).all(|pair| pair[0] < pair[1]));
+        let weights = strata.weights(&drawn);
+        assert!((weights.iter().sum::<f64>() - 8000.0).abs() < 1e-9);
+        // Where costs are the same within each stratum, the mean is that of the scene.
+        let cost = |step: &usize| [1e-5, 8.0, 9.0][strata.of[*step] as usize];
+        let whole = (0..8000).map(|step| cost(&step)).sum::<f64>() / 8000.0;
+        let mean = weighted_mean(drawn.iter().map(cost), &weights);
+        assert!((mean / whole - 1.0).abs() < 1e-12, "{mean} {whole}");
+        // Also of some steps of a scene, where the strata have other shares.
+        let some: Vec<usize> = (300..600).collect();
+        let strata = Strata::new(some.iter().map(|step| strata.of[*step]).collect(), Some(strata.scene()));
+        let drawn = strata.draw(20);
+        let mean = weighted_mean(drawn.iter().map(|step| cost(&some[*step])), &strata.weights(&drawn));
+        assert!((mean / whole - 1.0).abs() < 1e-12, "{mean} {whole}");
+        let all: Vec<usize> = (0..300).collect();
+        let mean = weighted_mean(some.iter().map(cost), &strata.weights(&all));
+        assert!((mean / whole - 1.0).abs() < 1e-12, "{mean} {whole}");
+    }
+
+    #[test]
+    fn a_stratum_of_one_step_is_drawn() {
+        let of = scene(&[(RootCertified, 500), (Colliding, 1), (RootCertified, 300), (RootFailed, 2)]);
+        let strata = Strata::new(of, None);
+        let drawn = strata.draw(20);
+        assert_eq!(strata.counts(&drawn), [17, 2, 1]);
+        let weight = |step: usize| strata.weights(&drawn)[drawn.binary_search(&step).unwrap()];
+        assert_eq!((weight(500), weight(801)), (1.0, 1.0));
+        // Fewer than are wanted, and than there are strata.
+        assert_eq!(strata.counts(&strata.draw(3)), [1, 1, 1]);
+        assert_eq!(strata.counts(&strata.draw(2)), [0, 1, 1]);
+        let few = Strata::new(scene(&[(Colliding, 2), (RootFailed, 3)]), None);
+        assert_eq!((few.draw(20), few.weights(&few.draw(20))), ((0..5).collect(), vec![1.0; 5]));
+        assert!(Strata::new(Vec::new(), None).draw(20).is_empty());
+    }
+
+    #[test]
+    fn means_are_unbiased() {
+        // Costs that grow within each stratum, so that it matters which steps are drawn.
+        let strata = Strata::new(landing(), None);
+        let cost = |step: usize| (1.0 + step as f64) * [1e-4, 1.0, 3.0][strata.of[step] as usize];
+        let whole = (0..8000).map(cost).sum::<f64>() / 8000.0;
+        let mut sum = 0.0;
+        let mut random = Random(1);
+        for _ in 0..4000 {
+            let drawn = strata.draw_by(20, &mut random);
+            sum += weighted_mean(drawn.iter().map(|step| cost(*step)), &strata.weights(&drawn));
+        }
+        assert!((sum / 4000.0 / whole - 1.0).abs() < 1e-3, "{} {whole}", sum / 4000.0);
+    }
+
+    #[test]
+    fn missing_strata_are_named() {
+        let strata = Strata::new(vec![RootCertified; 10], Some([700, 90, 10]));
+        assert_eq!(
+            strata.missing().unwrap(),
+            "none of the 90 steps that the root leaves open and none of the 10 steps that collide is measured: take \
+             more by --steps"
+        );
+        assert!(Strata::new(vec![Colliding], None).missing().is_none());
+    }
+}

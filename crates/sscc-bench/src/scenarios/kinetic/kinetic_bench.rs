@@ -1,0 +1,174 @@
+//! `kinetic`: the cost of queries that follow a motion in small steps.
+
+use std::iter;
+
+use sscc::{KineticQuery, Query};
+use sscc_sim::{CertifiedModel, ModesSpec, Recipe, Shape};
+
+use super::kinetic_record::KineticRecord;
+use super::vibration::Vibration;
+use crate::error::Error;
+use crate::measure::{REPETITIONS, median, seconds};
+use crate::methods::{COLUMNS, Engine, Role};
+use crate::progress::check_cancelled;
+use crate::record::Means;
+use crate::sampling::{Strata, Stratum, weighted_mean};
+use crate::setup::Setup;
+
+/// Steps in a second: each is a sample of sound.
+const RATE: f64 = 44_100.0;
+
+/// Natural frequencies of the first mode (Hz) beside the spring's own: stiffer materials.
+const STIFFER: [f64; 3] = [2.0, 20.0, 200.0];
+
+/// Periods of the first mode that the motion lasts; the steps are in blocks spread over it.
+const PERIODS: f64 = 5.0;
+const BLOCKS: usize = 10;
+
+/// Comparators run on this number of steps, drawn of each stratum.
+const COMPARED: usize = 20;
+
+/// A spring that vibrates.
+pub struct KineticBench<'a> {
+    setup: Setup<'a>,
+    model: CertifiedModel,
+    vibration: Vibration,
+}
+
+/// The steps of one vibration, and the times of the methods that run on all of them.
+#[derive(Default)]
+struct Motion {
+    states: Vec<Vec<f64>>,
+    strata: Vec<Stratum>,
+    mismatches: usize,
+    /// Seconds of kinetic queries, of those in steps that collide, and of plain ones.
+    kinetic: f64,
+    kinetic_colliding: f64,
+    full: f64,
+    /// Length of a step over the length of z, the mean over blocks.
+    step: f64,
+}
+
+impl<'a> KineticBench<'a> {
+    /// Steps by default.
+    pub const STEPS: usize = 20_000;
+
+    /// Makes the spring, and chooses how far it swings.
+    ///
+    /// # Errors
+    /// When the cache cannot be written to, or the work is cancelled.
+    pub fn new(setup: Setup<'a>) -> Result<Self, Error> {
+        let model = setup.certified_model(&Recipe::new("spring", Shape::SPRING, ModesSpec::Linear(20)))?;
+        let vibration = Vibration::new(&model, setup.watch)?;
+        Ok(Self { setup, model, vibration })
+    }
+
+    /// The spring.
+    pub fn model(&self) -> &CertifiedModel {
+        &self.model
+    }
+
+    /// Frequencies of the first mode (Hz): the spring's own, and those of stiffer ones.
+    pub fn frequencies(&self) -> impl Iterator<Item = f64> + use<> {
+        iter::once(self.vibration.first_frequency()).chain(STIFFER)
+    }
+
+    /// Measures some steps of the spring, as if its first mode had a frequency (Hz).
+    ///
+    /// # Errors
+    /// When the work is cancelled.
+    pub fn measure(&self, frequency: f64, steps: usize) -> Result<KineticRecord, Error> {
+        self.setup.begin_measuring();
+        let mut motion = self.follow(frequency, steps)?;
+        let microseconds = |seconds: f64| seconds * 1e6 / steps as f64;
+        let mut times = vec![("kinetic", microseconds(motion.kinetic)), ("full", microseconds(motion.full))];
+        let colliding = motion.strata.iter().filter(|stratum| **stratum == Stratum::Colliding).count();
+        let compared_steps = self.compare(&mut motion, &mut times)?;
+        Ok(KineticRecord {
+            scenario: "kinetic",
+            source: self.model.source.clone(),
+            note: self.model.note.clone(),
+            frequency,
+            share: self.vibration.share,
+            triangles: self.model.model.mesh().faces().len(),
+            rank: self.model.model.rank(),
+            step: motion.step,
+            steps,
+            colliding_steps: colliding,
+            compared_steps,
+            mismatches: motion.mismatches,
+            kinetic_us_colliding: (colliding > 0).then(|| motion.kinetic_colliding * 1e6 / colliding as f64),
+            microseconds: Means(times),
+            machine: sscc_sim::machine_description(),
+        })
+    }
+
+    /// Runs kinetic and plain queries with certificates on all steps.
+    fn follow(&self, frequency: f64, steps: usize) -> Result<Motion, Error> {
+        let (model, certificates) = (&self.model.model, &self.model.full.certificates);
+        let mut compared = KineticQuery::new(model, certificates)?;
+        let mut kinetic = KineticQuery::new(model, certificates)?;
+        let mut full = Query::new(model, certificates)?;
+        let mut motion = Motion::default();
+        let blocks = BLOCKS.min(steps);
+        for block in 0..blocks {
+            check_cancelled(self.setup.watch)?;
+            let count = steps / blocks + usize::from(block < steps % blocks);
+            let start = PERIODS * block as f64 / blocks as f64;
+            let states: Vec<Vec<f64>> =
+                (0..count).map(|i| self.vibration.at(start + i as f64 * frequency / RATE)).collect();
+            // Untimed: what collides, and whether both agree.
+            let mut hits = Vec::with_capacity(count);
+            for q in &states {
+                let expected = full.discrete(q)?;
+                motion.mismatches += usize::from(compared.discrete(q)? != expected);
+                hits.push(!expected.is_empty());
+                motion.strata.push(Stratum::of(!self.model.is_root_certified(q), !expected.is_empty()));
+            }
+            // Each method by itself, as in a simulation; stretches of steps that all collide or are all free share a
+            // reading of the clock.
+            let mut at = 0;
+            while at < count {
+                let end = (at..count).find(|i| hits[*i] != hits[at]).unwrap_or(count);
+                let time =
+                    seconds(|| states[at..end].iter().try_for_each(|q| kinetic.discrete(q).map(drop)))?;
+                motion.kinetic += time;
+                motion.kinetic_colliding += if hits[at] { time } else { 0.0 };
+                at = end;
+            }
+            motion.full += seconds(|| states.iter().try_for_each(|q| full.discrete(q).map(drop)))?;
+            if let [a, b, ..] = &states[..] {
+                let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
+                motion.step += certificates.metric().norm(&difference) / certificates.norm(a) / blocks as f64;
+            }
+            motion.states.extend(states);
+            self.setup.watch.report(block + 1, blocks);
+        }
+        Ok(motion)
+    }
+
+    /// Runs comparators on some of the steps and adds their mean microseconds. Gives the number of these steps.
+    fn compare(&self, motion: &mut Motion, times: &mut Vec<(&'static str, f64)>) -> Result<usize, Error> {
+        let mut full = Query::new(&self.model.model, &self.model.full.certificates)?;
+        let strata = Strata::new(motion.strata.clone(), None);
+        let steps = strata.draw(COMPARED);
+        let weights = strata.weights(&steps);
+        for column in COLUMNS.iter().filter(|column| column.role == Role::Comparator) {
+            let mut engine = column.engine(&self.model)?;
+            let mut own = Vec::with_capacity(steps.len());
+            for q in steps.iter().map(|step| &motion.states[*step]) {
+                motion.mismatches += usize::from(engine.discrete(q)? != full.discrete(q)?);
+                let repetitions: Result<Vec<f64>, sscc::Error> = (0..REPETITIONS)
+                    .map(|_| seconds(|| Engine::discrete(engine.as_mut(), q).map(drop)))
+                    .collect();
+                own.push(median(repetitions?));
+            }
+            let mean = 1e6 * weighted_mean(own, &weights);
+            match times.iter_mut().find(|(key, _)| *key == column.key) {
+                Some((_, known)) => *known = known.min(mean),
+                None => times.push((column.key, mean)),
+            }
+        }
+        Ok(steps.len())
+    }
+}

@@ -1,0 +1,41 @@
+//! The record of one vibration: the keys that scripts rely on.
+
+use serde::Serialize;
+
+use crate::record::Means;
+
+/// One line of JSON. Times are means over steps.
+#[derive(Clone, Debug, Serialize)]
+pub struct KineticRecord {
+    /// The name of the scenario.
+    pub scenario: &'static str,
+    /// Where the mesh is from.
+    pub source: String,
+    /// A stand-in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// Of the first mode, in Hz.
+    pub frequency: f64,
+    /// The largest displacement in percent of half the diagonal of the AABB.
+    pub share: f64,
+    /// Triangles of the body.
+    pub triangles: usize,
+    /// Its modes.
+    pub rank: usize,
+    /// Length of a step over the length of z, the mean over blocks.
+    pub step: f64,
+    /// Steps that were measured.
+    pub steps: usize,
+    /// Those of them that collide.
+    pub colliding_steps: usize,
+    /// Those of them on which comparators ran.
+    pub compared_steps: usize,
+    /// Steps in which two exact methods differ.
+    pub mismatches: usize,
+    /// Of kinetic queries, over the steps that collide.
+    pub kinetic_us_colliding: Option<f64>,
+    /// Of comparators over `compared_steps`, each of which is weighted by its stratum's share of all steps.
+    pub microseconds: Means,
+    /// The machine.
+    pub machine: String,
+}

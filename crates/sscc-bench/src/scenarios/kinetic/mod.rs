@@ -1,0 +1,8 @@
+//! The scenario `kinetic`: a spring that vibrates, 44,100 steps in a second.
+
+mod kinetic_bench;
+mod kinetic_record;
+mod vibration;
+
+pub use kinetic_bench::KineticBench;
+pub use kinetic_record::KineticRecord;

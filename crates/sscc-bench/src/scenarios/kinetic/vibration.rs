@@ -1,0 +1,92 @@
+//! Free vibration: without forces each mode swings with its natural frequency.
+
+use std::f64::consts::TAU;
+
+use sscc::{Method, Progress, Query};
+use sscc_sim::CertifiedModel;
+
+use crate::error::Error;
+use crate::random::Random;
+use crate::sampling::{directions, half_diagonal, largest_displacement, scaled};
+
+/// The states by which the amplitude is chosen: periods of the first mode, and states in each.
+const PERIODS: usize = 5;
+const STATES_PER_PERIOD: usize = 12;
+const STATES: usize = PERIODS * STATES_PER_PERIOD;
+
+/// How many of them collide.
+const COLLIDING: usize = STATES / 8;
+
+const SEED: u64 = 11;
+
+/// The amplitude is searched between these shares (percent), by this number of bisections of its logarithm.
+const SHARES: [f64; 2] = [0.1, 100.0];
+const BISECTIONS: usize = 10;
+
+/// A body that vibrates: `q_k(t) = a_k cos(omega_k t + phase_k)`, the amplitudes in proportion to the first of the random
+/// [`directions`].
+pub struct Vibration {
+    amplitudes: Vec<f64>,
+    oscillators: Oscillators,
+    /// The largest displacement of a vertex in percent of half the diagonal of the AABB, in the states by which the
+    /// amplitude was chosen.
+    pub share: f64,
+}
+
+/// Angular frequencies (1/s) and phases of all modes.
+struct Oscillators {
+    frequencies: Vec<f64>,
+    phases: Vec<f64>,
+}
+
+impl Vibration {
+    /// With an amplitude at which one in eight states collides.
+    ///
+    /// # Errors
+    /// When `progress` cancels.
+    pub fn new(model: &CertifiedModel, progress: &dyn Progress) -> Result<Self, Error> {
+        let dir = directions(&model.model, 1).remove(0);
+        let oscillators = Oscillators::of(model);
+        let unit: Vec<Vec<f64>> =
+            (0..STATES).map(|i| oscillators.at(&dir, i as f64 / STATES_PER_PERIOD as f64)).collect();
+        let largest = unit.iter().map(|q| largest_displacement(&model.model, q)).fold(0.0, f64::max);
+        let per_percent = half_diagonal(&model.model) / largest / 100.0;
+        let query = Query::with_method(&model.model, &model.full.certificates, Method::Traditional)?;
+        let [mut lower, mut upper] = SHARES;
+        for _ in 0..BISECTIONS {
+            let share = (lower * upper).sqrt();
+            let states: Vec<Vec<f64>> = unit.iter().map(|q| scaled(q, share * per_percent)).collect();
+            let answers = query.batch(&states, None, progress)?;
+            let colliding = answers.iter().filter(|answer| !answer.pairs.is_empty()).count();
+            if colliding < COLLIDING { lower = share } else { upper = share }
+        }
+        Ok(Self { amplitudes: scaled(&dir, upper * per_percent), oscillators, share: upper })
+    }
+
+    /// Frequency of the first mode (Hz).
+    pub fn first_frequency(&self) -> f64 {
+        self.oscillators.frequencies[0] / TAU
+    }
+
+    /// q after a number of periods of the first mode.
+    pub fn at(&self, periods: f64) -> Vec<f64> {
+        self.oscillators.at(&self.amplitudes, periods)
+    }
+}
+
+impl Oscillators {
+    fn of(model: &CertifiedModel) -> Self {
+        let random = &mut Random(SEED);
+        let (rank, stiffness) = (model.model.rank(), model.elasticity.stiffness());
+        Self {
+            frequencies: (0..rank).map(|k| stiffness[k * (rank + 1)].max(0.0).sqrt()).collect(),
+            phases: (0..rank).map(|_| TAU * random.uniform()).collect(),
+        }
+    }
+
+    fn at(&self, amplitudes: &[f64], periods: f64) -> Vec<f64> {
+        let time = TAU * periods / self.frequencies[0];
+        let swing = |k: usize| amplitudes[k] * libm::cos(self.frequencies[k] * time + self.phases[k]);
+        (0..amplitudes.len()).map(swing).collect()
+    }
+}

@@ -1,0 +1,105 @@
+//! The scenarios by name.
+
+use sscc_sim::{SHIPPED, Scene, nearest};
+
+use crate::error::Error;
+use crate::paper::PaperTable;
+
+/// What can be measured.
+#[derive(Clone, Copy, Debug)]
+pub enum Scenario {
+    /// Models over their displacement: see [`amplitudes_models`](crate::amplitudes_models).
+    Amplitudes,
+    /// Springs of several sizes: see [`GROWTH_SIZES`](crate::GROWTH_SIZES).
+    Growth,
+    /// Motions in small steps: see [`KineticBench`](crate::KineticBench).
+    Kinetic,
+    /// Scenes that come with the program, see [`measure_scene`](crate::measure_scene).
+    Scenes {
+        /// Their names and texts.
+        scenes: &'static [(&'static str, &'static str)],
+        /// The table of the paper that has them, if it is to be shown.
+        table: Option<PaperTable>,
+    },
+}
+
+/// A scenario in a list.
+#[derive(Clone, Debug)]
+pub struct ListedScenario {
+    /// Its name.
+    pub name: &'static str,
+    /// What it measures, in one line.
+    pub about: String,
+}
+
+/// Scenarios that are no single scene.
+const OTHERS: [(&str, Scenario, &str); 6] = [
+    ("amplitudes", Scenario::Amplitudes, "bunny, dragon and spring at random q, displaced by 0.5 to 40%"),
+    ("growth", Scenario::Growth, "springs of 4,000 to a million triangles"),
+    ("kinetic", Scenario::Kinetic, "a spring that swings, 44,100 steps in a second: kinetic queries"),
+    (
+        "table1",
+        Scenario::Scenes { scenes: &SHIPPED, table: Some(PaperTable::One) },
+        "the five scenes, beside the paper's Table 1",
+    ),
+    (
+        "table2",
+        Scenario::Scenes { scenes: &[SHIPPED[1]], table: Some(PaperTable::Two) },
+        "bunny16, discrete and continuous, beside the paper's Table 2",
+    ),
+    (
+        "table3",
+        Scenario::Scenes { scenes: &[SHIPPED[0]], table: Some(PaperTable::Three) },
+        "spring, what its time goes to, beside the paper's Table 3",
+    ),
+];
+
+/// All by name; those that are one scene first.
+fn all() -> impl Iterator<Item = (&'static str, Scenario)> {
+    let single = |shipped: &'static (&'static str, &'static str)| {
+        (shipped.0, Scenario::Scenes { scenes: std::slice::from_ref(shipped), table: None })
+    };
+    SHIPPED.iter().map(single).chain(OTHERS.iter().map(|(name, scenario, _)| (*name, *scenario)))
+}
+
+impl Scenario {
+    /// The scenario of a name.
+    ///
+    /// # Errors
+    /// When there is none of that name; the message has the nearest one.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        if let Some((_, scenario)) = all().find(|(known, _)| *known == name) {
+            return Ok(scenario);
+        }
+        let nearest = nearest(name, all().map(|(known, _)| known)).unwrap_or_default();
+        Err(Error::NoScenario { name: name.to_owned(), nearest })
+    }
+
+    /// All scenarios.
+    ///
+    /// # Errors
+    /// When a scene cannot be parsed.
+    pub fn list() -> Result<Vec<ListedScenario>, Error> {
+        let mut list = Vec::new();
+        for (name, text) in SHIPPED {
+            list.push(ListedScenario { name, about: Scene::parse(name.as_ref(), text)?.about });
+        }
+        list.extend(OTHERS.iter().map(|(name, _, about)| ListedScenario { name, about: (*about).into() }));
+        Ok(list)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique() {
+        let mut names: Vec<&str> = all().map(|(name, _)| name).collect();
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+        let list = Scenario::list().unwrap();
+        assert!(list.iter().all(|listed| listed.about.len() > 20 && Scenario::named(listed.name).is_ok()));
+        assert_eq!(list.len(), names.len());
+    }
+}
