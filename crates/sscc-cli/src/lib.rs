@@ -8,7 +8,6 @@ mod interrupt;
 mod load;
 mod meter;
 mod output;
-mod picture;
 mod progress;
 mod stages;
 mod usage;

@@ -30,6 +30,10 @@ pub enum ViewError {
     /// What cannot be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
+    /// A picture that cannot be encoded.
+    #[cfg(feature = "picture")]
+    #[error("the picture cannot be encoded: {0}")]
+    Picture(#[from] png::EncodingError),
     /// No random numbers for the token.
     #[cfg(feature = "server")]
     #[error("the system gives no random numbers: {0}")]

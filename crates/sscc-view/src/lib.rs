@@ -3,7 +3,8 @@
 //!
 //! The page is one HTML file that needs no other, built from the folder `viewer/` and kept in `page/`. A report holds its
 //! data in the file; a live page requests them. Both use the same JSON and the same arrays. The server of live pages is
-//! behind the cargo feature `server`: programs that only write reports link no HTTP parser.
+//! behind the cargo feature `server`: programs that only write reports link no HTTP parser. Pictures of certified
+//! deformations (`Picture`) are behind the feature `picture`.
 
 mod animation_report;
 mod arrays;
@@ -13,6 +14,8 @@ mod levels;
 mod live;
 mod metric_comparison;
 mod page;
+#[cfg(feature = "picture")]
+mod picture;
 mod playback;
 mod plot;
 mod report;
@@ -29,6 +32,8 @@ pub use levels::{Level, levels};
 pub use live::Live;
 pub use metric_comparison::metric_comparison;
 pub use page::PAGE;
+#[cfg(feature = "picture")]
+pub use picture::Picture;
 pub use playback::{Body, Colliding, Playback};
 pub use plot::{Axis, Plot, Series};
 pub use report::Report;

@@ -4,8 +4,8 @@ use sscc::Progress;
 use sscc_sim::CertifiedModel;
 
 use super::agreement::{agree_on_motion, compare_discrete};
-use super::interleaved::{Interleaved, REPETITIONS};
 use super::step::Step;
+use super::timer::{REPETITIONS, Timer};
 use super::times::Times;
 use crate::error::Error;
 use crate::methods::{COLUMNS, Column, Engine, Role};
@@ -92,11 +92,11 @@ pub fn compare(
         differs[*at] |= !is_equal;
         counter.count()?;
     }
-    let mut discrete = Interleaved::new(&mut engines, steps, &mut counter);
+    let mut discrete = Timer::new(&mut engines, steps, &mut counter);
     discrete.time(&compared, |_| true, &discrete_queries)?;
     discrete.time(&others, is_certified, &discrete_queries)?;
     let discrete = Times { compared, interleaved: discrete.times, kinetic: Vec::new() };
-    let mut moving = Interleaved::new(&mut engines, steps, &mut counter);
+    let mut moving = Timer::new(&mut engines, steps, &mut counter);
     moving.time(&continuous, |_| true, &continuous_queries)?;
     let continuous = Times { compared: continuous, interleaved: moving.times, kinetic: Vec::new() };
     let mismatches = differs.into_iter().filter(|differs| *differs).count();

@@ -5,8 +5,8 @@ use sscc::{KineticQuery, Progress, Query};
 use sscc_sim::CertifiedModel;
 
 use super::clock::{median, seconds};
-use super::interleaved::REPETITIONS;
 use super::step::Step;
+use super::timer::REPETITIONS;
 use crate::error::Error;
 use crate::progress::check_cancelled;
 

@@ -4,15 +4,15 @@ mod agreement;
 mod clock;
 mod comparison;
 mod distance;
-mod interleaved;
 mod kinetic;
 mod mismatch;
 mod step;
+mod timer;
 mod times;
 
 pub use clock::{median, seconds};
 pub use comparison::{Comparison, Kinds, compare};
-pub use interleaved::REPETITIONS;
 pub use kinetic::time_kinetic;
 pub use step::Step;
+pub use timer::REPETITIONS;
 pub use times::Times;

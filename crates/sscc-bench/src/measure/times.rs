@@ -1,6 +1,6 @@
 //! Times by step and method, and their means over a scene.
 
-use super::interleaved::Milliseconds;
+use super::timer::Milliseconds;
 use crate::methods::COLUMNS;
 use crate::sampling::{Strata, weighted_mean};
 

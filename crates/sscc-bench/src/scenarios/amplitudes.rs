@@ -2,7 +2,7 @@
 
 use sscc_sim::{ModesSpec, Recipe, Shape};
 
-use super::displaced::displaced_steps;
+use super::displacement::displacement_steps;
 use crate::error::Error;
 use crate::measure::{Kinds, compare};
 use crate::record::Record;
@@ -40,7 +40,8 @@ impl AmplitudesModel {
         let unit = unit_displacements(&model.model, &directions(&model.model, samples));
         let record = |share: f64| {
             setup.begin_measuring();
-            let comparison = compare(&model, &displaced_steps(&unit, share), None, Kinds::Both, setup.watch)?;
+            let comparison =
+                compare(&model, &displacement_steps(&unit, share), None, Kinds::Both, setup.watch)?;
             Ok(Record::new(format!("amplitudes/{}", self.name), share, &model, &comparison, 1, None))
         };
         SHARES.into_iter().map(record).collect()

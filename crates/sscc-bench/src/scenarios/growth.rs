@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sscc_sim::{ModesSpec, Recipe, SPRING_RINGS, Shape};
 
-use super::displaced::displaced_steps;
+use super::displacement::displacement_steps;
 use crate::error::Error;
 use crate::measure::{Kinds, compare};
 use crate::record::{Means, Record};
@@ -50,7 +50,8 @@ impl GrowthSize {
         let model = setup.certified_model(&recipe)?;
         let unit = unit_displacements(&model.model, &directions(&model.model, samples));
         setup.begin_measuring();
-        let comparison = compare(&model, &displaced_steps(&unit, SHARE), None, Kinds::Discrete, setup.watch)?;
+        let comparison =
+            compare(&model, &displacement_steps(&unit, SHARE), None, Kinds::Discrete, setup.watch)?;
         Ok(Record::new(format!("growth/{}", self.name), SHARE, &model, &comparison, 1, None))
     }
 }

@@ -5,21 +5,21 @@ use crate::plots::{Line, SvgPlot};
 use crate::record::Record;
 
 /// A line of the plot.
-struct Drawn {
+struct GrowthLine {
     value: fn(&Record) -> Option<f64>,
     label: &'static str,
     color: &'static str,
 }
 
-const LINES: [Drawn; 4] = [
-    Drawn { value: |record| record.discrete_ms.get("parry"), label: "parry (ms)", color: "#777777" },
-    Drawn {
+const LINES: [GrowthLine; 4] = [
+    GrowthLine { value: |record| record.discrete_ms.get("parry"), label: "parry (ms)", color: "#777777" },
+    GrowthLine {
         value: |record| record.discrete_ms.get("traditional"),
         label: "traditional (ms)",
         color: "#cc6600",
     },
-    Drawn { value: |record| record.discrete_ms.get("full"), label: "certified (ms)", color: "#0066cc" },
-    Drawn { value: |record| Some(record.certify_seconds), label: "certificates (s)", color: "#009966" },
+    GrowthLine { value: |record| record.discrete_ms.get("full"), label: "certified (ms)", color: "#0066cc" },
+    GrowthLine { value: |record| Some(record.certify_seconds), label: "certificates (s)", color: "#009966" },
 ];
 
 impl GrowthRecord {
@@ -27,7 +27,7 @@ impl GrowthRecord {
     /// element.
     pub fn svg(&self) -> String {
         let records: Vec<&Record> = self.sizes.iter().filter(|record| record.rank == GROWTH_RANK).collect();
-        let line = |Drawn { value, label, color }: &Drawn| {
+        let line = |GrowthLine { value, label, color }: &GrowthLine| {
             let point = |record: &&Record| Some([(record.triangles as f64).log10(), value(record)?]);
             Line { label, color, points: records.iter().filter_map(point).collect() }
         };

@@ -8,11 +8,12 @@ use serde::Serialize;
 use sscc::{Certificates, CertifyOptions, Query, ReducedModel};
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
+use sscc_view::Picture;
 
 use crate::args::Certify;
 use crate::interrupt::{self, Interrupt};
 use crate::output::{Output, counted, grouped, length, note};
-use crate::{Outcome, load, picture};
+use crate::{Outcome, load};
 
 /// Triangles that a note names.
 const LISTED: usize = 8;
@@ -41,7 +42,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
             .collect();
     load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
     if let Some(path) = &args.picture {
-        picture::check(path, &inputs)?;
+        load::check_output(path, ".png", &inputs)?;
     }
     let model = load::model(&args.model)?.model;
     let options = load::options(&model, &args.model, &args.options)?;
@@ -52,7 +53,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     let picture = args
         .picture
         .as_ref()
-        .map(|path| picture::draw(&model, &certificates).with_context(|| path.display().to_string()));
+        .map(|path| Picture::draw(&model, &certificates).with_context(|| path.display().to_string()));
     let picture = picture.transpose()?;
     interrupt::check()?;
     if let (Some(path), Some(picture)) = (&args.picture, &picture) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::camera::Camera;
-use super::color::{BACKGROUND, Linear, lit, mean};
+use super::color::{BACKGROUND, Linear, Palette, mean};
 use super::raster::Raster;
 
 /// Samples along each side of a pixel.
@@ -29,6 +29,7 @@ impl Panel<'_> {
     /// The pixels, RGB, row by row.
     pub fn draw(&self, camera: &Camera) -> Vec<u8> {
         let mut raster = Raster::new(camera.size().map(|n| n * SAMPLES), Linear::of(BACKGROUND));
+        let palette = Palette::new();
         let seen: Vec<DVec3> = self.positions.iter().map(|p| camera.project(*p, SAMPLES)).collect();
         for (face, normals) in self.faces.iter().zip(self.normals) {
             let corners = face.map(|v| v as usize);
@@ -39,7 +40,7 @@ impl Panel<'_> {
             let [na, nb, nc] = normals.map(|n| camera.turn(n).normalize_or_zero() * side);
             let [ta, tb, tc] = corners.map(|v| self.amounts[v]);
             raster.fill(corners.map(|v| seen[v]), |[a, b, c]| {
-                lit((na * a + nb * b + nc * c).normalize_or_zero(), ta * a + tb * b + tc * c)
+                palette.lit((na * a + nb * b + nc * c).normalize_or_zero(), ta * a + tb * b + tc * c)
             });
         }
         raster.blocks(SAMPLES).flat_map(|block| mean(block).to_bytes()).collect()

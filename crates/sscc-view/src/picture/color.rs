@@ -1,7 +1,5 @@
 //! Light and colours.
 
-use std::sync::LazyLock;
-
 use glam::{DVec3, Vec3};
 
 /// Behind everything (sRGB).
@@ -10,8 +8,6 @@ pub const BACKGROUND: [u8; 3] = [246, 246, 244];
 /// What does not move, and what moves farthest (sRGB).
 const STILL: [u8; 3] = [176, 186, 198];
 const MOVED: [u8; 3] = [216, 130, 72];
-
-static ENDS: LazyLock<[Linear; 2]> = LazyLock::new(|| [STILL, MOVED].map(Linear::of));
 
 /// From the left, above, and in front of the surface.
 const KEY: DVec3 = DVec3::new(-0.45, 0.65, 0.75);
@@ -40,16 +36,29 @@ impl Linear {
     }
 }
 
-/// The colour of a surface with a normal (y up, z towards the viewer) that has moved by a share of the farthest.
-pub fn lit(normal: DVec3, moved: f64) -> Linear {
-    let key = normal.dot(KEY.normalize()).max(0.0);
-    let sky = 0.5 + 0.5 * normal.y;
-    let edge = 1.0 - normal.z.max(0.0);
-    let rim = edge * edge * edge;
-    let light = 0.16 + 0.22 * sky + 0.72 * key - 0.10 * rim;
-    let [still, far] = *ENDS;
-    let base = still.0.lerp(far.0, moved.clamp(0.0, 1.0) as f32);
-    Linear(base * light as f32)
+/// The colours of a surface, from still to moved farthest.
+#[derive(Clone, Copy)]
+pub struct Palette {
+    still: Linear,
+    moved: Linear,
+}
+
+impl Palette {
+    /// The palette of all pictures.
+    pub fn new() -> Self {
+        Self { still: Linear::of(STILL), moved: Linear::of(MOVED) }
+    }
+
+    /// The colour of a surface with a normal (y up, z towards the viewer) that has moved by a share of the farthest.
+    pub fn lit(&self, normal: DVec3, moved: f64) -> Linear {
+        let key = normal.dot(KEY.normalize()).max(0.0);
+        let sky = 0.5 + 0.5 * normal.y;
+        let edge = 1.0 - normal.z.max(0.0);
+        let rim = edge * edge * edge;
+        let light = 0.16 + 0.22 * sky + 0.72 * key - 0.10 * rim;
+        let base = self.still.0.lerp(self.moved.0, moved.clamp(0.0, 1.0) as f32);
+        Linear(base * light as f32)
+    }
 }
 
 /// The mean of some colours.

@@ -1,0 +1,131 @@
+//! Scenes: simulated whole, or taken from the cache; some of their steps are measured.
+
+use sscc_sim::text::one_line;
+use sscc_sim::{
+    CertifiedModel, History, PreparedScene, RunOutcome, STEP_PARTS, Scene, StateLog, make_folder, run,
+};
+use sscc_view::Plot;
+
+use crate::error::Error;
+use crate::measure::{Kinds, Step, compare, time_kinetic};
+use crate::plots::cost_over_time;
+use crate::record::{Record, SceneTotals};
+use crate::sampling::{Counts, Stratum, blocks, evenly_spread, half_diagonal, largest_displacement};
+use crate::setup::Setup;
+
+/// States among which the largest displacement is searched.
+const DISPLACEMENTS: usize = 100;
+
+/// Steps of a scene that are measured by default.
+pub const SCENE_STEPS: usize = 100;
+
+/// What was measured of a scene.
+pub struct SceneMeasurement {
+    /// Its record.
+    pub record: Record,
+    /// The cost of its steps.
+    pub costs: Plot,
+}
+
+/// Measures some steps of a scene of one model, given by its name and the text of its file.
+///
+/// # Errors
+/// When the scene cannot be simulated, has several models or one step only, or the work is cancelled.
+pub fn measure_scene(
+    setup: &Setup<'_>,
+    name: &str,
+    text: &str,
+    steps: usize,
+) -> Result<SceneMeasurement, Error> {
+    let mut scene = Scene::parse(format!("{name}.toml").as_ref(), text)?;
+    if setup.is_quick {
+        scene.quicken();
+    }
+    let prepared = PreparedScene::get(&scene, setup.models, setup.cache, setup.watch)?;
+    let history = simulate(setup, &scene, &prepared)?;
+    let [model] = <[_; 1]>::try_from(prepared.models)
+        .map_err(|models| Error::SeveralModels { models: models.len() })?;
+    let mut model = model.certified.with_paper(setup.cache, setup.watch)?;
+    if setup.is_quick {
+        model.note =
+            Some("--quick: a spring of 4,000 triangles stands in for any model, for half a second".into());
+    }
+    let strata = strata(&model, &history);
+    let numbers = blocks(&strata, steps);
+    let steps = measured_steps(&history, &numbers);
+    setup.begin_measuring();
+    let scene_strata: Counts = Stratum::counts(strata);
+    let mut comparison = compare(&model, &steps, Some(scene_strata), Kinds::Both, setup.watch)?;
+    let kinetic = time_kinetic(&model, &steps, setup.watch)?;
+    comparison.mismatches += kinetic.mismatches;
+    comparison.discrete.kinetic = kinetic.milliseconds;
+    let costs = cost_over_time(name, &comparison.discrete, |step| numbers[step] as f64 * scene.step);
+    let share = 100.0 * farthest(&model, &history) / half_diagonal(&model.model);
+    let (objects, totals) = (scene.bodies.len(), Some(totals(&history)));
+    let record = Record::new(name.into(), share, &model, &comparison, objects, totals);
+    Ok(SceneMeasurement { record, costs })
+}
+
+/// The motion of the whole scene, simulated on one thread.
+fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Result<History, Error> {
+    let digest = prepared.digest(scene);
+    let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+    let folder = setup.cache.folder().join(format!("{}-{hash}.scene", scene.name));
+    make_folder(&folder)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let run_on_pool = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, setup.watch));
+    let RunOutcome { history, failure, .. } = match run_on_pool(false) {
+        Err(error) if StateLog::is_begun(&folder) => {
+            setup.watch.note(&format!("simulated anew: {}", one_line(&error.to_string())));
+            run_on_pool(true)?
+        }
+        outcome => outcome?,
+    };
+    match failure {
+        Some(error) => Err(error.into()),
+        None if history.len() > 1 => Ok(history),
+        None => Err(Error::NoMotion),
+    }
+}
+
+/// The stratum of each step.
+fn strata(model: &CertifiedModel, history: &History) -> Vec<Stratum> {
+    let stratum = |state: usize| {
+        let root_failed = history.bodies(state).any(|body| !model.is_root_certified(body.q));
+        Stratum::of(root_failed, history.colliding_bodies(state) > 0)
+    };
+    (0..history.len() - 1).map(stratum).collect()
+}
+
+/// The steps of these numbers, ascending.
+fn measured_steps(history: &History, numbers: &[usize]) -> Vec<Step> {
+    let at = |state: usize| -> Vec<Vec<f64>> { history.bodies(state).map(|body| body.q.to_vec()).collect() };
+    let step = |(n, state): (usize, &usize)| {
+        let is_first = n == 0 || numbers[n - 1] + 1 != *state;
+        Step { before: is_first.then(|| at(state.saturating_sub(1))), q_t0: at(*state), q_t1: at(state + 1) }
+    };
+    numbers.iter().enumerate().map(step).collect()
+}
+
+/// The largest displacement of a vertex.
+fn farthest(model: &CertifiedModel, history: &History) -> f64 {
+    let bodies = evenly_spread(history.len(), DISPLACEMENTS).flat_map(|state| history.bodies(state));
+    bodies.map(|body| largest_displacement(&model.model, body.q)).fold(0.0, f64::max)
+}
+
+/// What collides in the whole scene, and the cost of its simulation.
+fn totals(history: &History) -> SceneTotals {
+    let steps = history.len();
+    let colliding: Vec<usize> = (0..steps).map(|state| history.colliding_bodies(state)).collect();
+    let mut seconds = [0.0; STEP_PARTS.len()];
+    for state in 0..steps {
+        seconds.iter_mut().zip(history.step(state).seconds).for_each(|(sum, part)| *sum += part);
+    }
+    SceneTotals {
+        steps,
+        colliding_steps: colliding.iter().filter(|bodies| **bodies > 0).count(),
+        body_steps: steps * history.layout().bodies(),
+        colliding_body_steps: colliding.iter().sum(),
+        seconds: Some(seconds),
+    }
+}
