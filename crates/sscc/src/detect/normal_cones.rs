@@ -2,7 +2,7 @@
 //! surface does not collide with itself.
 //!
 //! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
-//! directions: the corners and the face centres of a cube. That alone is approximate. It is a proof with the *contour
+//! directions: the corners and the face centres of a cube. That alone is no proof. It is a proof with the *contour
 //! test*: the patch is one oriented manifold with a single boundary, and the boundary, projected along the direction,
 //! does not intersect itself. Then the projection is one to one: a point off all projected edges is covered as often as the
 //! boundary winds around it, which for a simple curve is once or never. Two points of the patch on the same spot would
@@ -50,8 +50,6 @@ const DIRECTIONS: [Direction; 14] = [
 /// The normals of all nodes down to buckets at the current q.
 #[derive(Clone)]
 pub(crate) struct NormalCones {
-    /// Whether the contour test is made; without it collisions may be missed.
-    is_exact: bool,
     /// For each node the directions on whose positive side all of its normals are, one bit each.
     positive: Vec<u16>,
     /// Scratch: a projected boundary, and an order of its edges.
@@ -61,8 +59,8 @@ pub(crate) struct NormalCones {
 
 impl NormalCones {
     /// Cones of so many nodes.
-    pub(crate) fn new(nodes: usize, is_exact: bool) -> Self {
-        Self { is_exact, positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
+    pub(crate) fn new(nodes: usize) -> Self {
+        Self { positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
     }
 
     /// Makes normals current; all exact positions are.
@@ -86,8 +84,8 @@ impl NormalCones {
     /// Whether the normals prove that a node does not collide with itself.
     pub(super) fn proves_free<const E: usize>(&mut self, n: u32, volumes: &NodeVolumes<E>) -> bool {
         let positive = self.positive[n as usize];
-        if positive == 0 || !self.is_exact {
-            return positive != 0;
+        if positive == 0 {
+            return false;
         }
         let boundary = volumes.layout.boundaries.of_node(n);
         DIRECTIONS.iter().enumerate().filter(|(k, _)| positive >> k & 1 != 0).any(|(_, direction)| {

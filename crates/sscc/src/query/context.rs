@@ -34,11 +34,7 @@ impl<'a> QueryContext<'a> {
     /// The normal cones of the method, if it uses any.
     pub(super) fn cones(&self) -> Option<NormalCones> {
         let nodes = self.detect.layout.buckets.node_count();
-        match self.method {
-            Method::NormalCones => Some(NormalCones::new(nodes, true)),
-            Method::NormalConesApprox => Some(NormalCones::new(nodes, false)),
-            _ => None,
-        }
+        (self.method == Method::NormalCones).then(|| NormalCones::new(nodes))
     }
 
     /// The certificates, if the method uses them.

@@ -2,7 +2,7 @@
 
 use crate::detect::layout::Needs;
 
-/// How a query finds the colliding pairs. All methods but [`Method::NormalConesApprox`] give the same pairs.
+/// How a query finds the colliding pairs. All methods give the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Certificates of nodes and node pairs cull the traversal of a BD-tree (paper, Algorithm 1): BD-tree AABBs for nodes
@@ -16,9 +16,6 @@ pub enum Method {
     /// the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends of a motion prove nothing in between, so
     /// continuous queries are traditional.
     NormalCones,
-    /// Normal cones as the paper's section 7 compares with them, without the contour test: **may miss collisions**. For
-    /// measurements only.
-    NormalConesApprox,
     /// Every pair of triangles. The oracle: quadratic.
     BruteForce,
 }
@@ -30,7 +27,6 @@ impl Method {
             Self::Certified | Self::BdTree => Some(Needs::LAZY),
             Self::Traditional => Some(Needs::REFIT),
             Self::NormalCones => Some(Needs::NORMALS),
-            Self::NormalConesApprox => Some(Needs { boundaries: false, ..Needs::NORMALS }),
             Self::BruteForce => None,
         }
     }
