@@ -7,7 +7,7 @@ use crate::body::{Body, Start};
 use crate::constrain::constrain;
 use crate::contacts::Contacts;
 use crate::detect::Neighbours;
-use crate::ground::NearGround;
+use crate::near_ground::NearGround;
 use crate::solve::{GROUND, Solver, Source, Spring};
 use crate::{Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions};
 

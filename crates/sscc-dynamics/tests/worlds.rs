@@ -10,10 +10,10 @@ use sscc_dynamics::{
     ContactOptions, Damping, Detection, DynamicsError, Ground, Obstacle, Phase, Response, Shape, Start,
     World, WorldOptions,
 };
-use sscc_modes::Material;
+use sscc_solid::{Material, PartialMaterial};
 
 fn rubber() -> Material {
-    Material { youngs_modulus: 1e5, ..Material::default() }
+    Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }
 
 fn shapes() -> [Shape; 2] {

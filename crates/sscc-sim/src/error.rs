@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use sscc_dynamics::DynamicsError;
 use sscc_io::IoError;
 use sscc_modes::ModesError;
+use sscc_solid::{MaterialError, SolidError};
 
 /// The result of what may be refused.
 pub(crate) type Result<T, E = SimError> = std::result::Result<T, E>;
@@ -21,6 +22,9 @@ pub enum SimError {
     /// No modes could be made.
     #[error(transparent)]
     Modes(#[from] ModesError),
+    /// A solid or its material was refused.
+    #[error(transparent)]
+    Solid(#[from] SolidError),
     /// A world of bodies was refused.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
@@ -138,6 +142,12 @@ impl SimError {
             Self::At { error, .. } => error.is_system(),
             _ => false,
         }
+    }
+}
+
+impl From<MaterialError> for SimError {
+    fn from(error: MaterialError) -> Self {
+        Self::Solid(error.into())
     }
 }
 

@@ -1,7 +1,6 @@
 //! Models of elastic solids and of samples, made from files or meshes.
 
 mod elastic;
-mod frequencies;
 mod material;
 mod new_model;
 mod pca;
@@ -9,9 +8,8 @@ mod polynomial;
 mod source;
 
 pub(crate) use elastic::ElasticModes;
-pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model, elasticity};
-pub use frequencies::{frequencies, frequencies_of_modes};
-pub use material::{MaterialOrigin, RequestedMaterial};
+pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model};
+pub use material::MaterialOrigin;
 pub use new_model::{Components, NewModel, SolidFacts};
 pub use pca::pca_model;
 pub use polynomial::polynomial_model;

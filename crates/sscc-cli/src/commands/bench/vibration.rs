@@ -39,8 +39,8 @@ impl Swing {
     fn new(case: &CertifiedModel, random: &mut Random) -> Self {
         let amplitudes = directions(&case.model, 1).remove(0);
         let phases = amplitudes.iter().map(|_| TAU * random.uniform()).collect();
-        let (rank, stiffness) = (case.model.rank(), case.elasticity.stiffness());
-        let frequencies = (0..rank).map(|k| stiffness[k * (rank + 1)].max(0.0).sqrt()).collect();
+        let stiffness = case.elasticity.stiffness();
+        let frequencies = stiffness.diagonal().map(|x| x.max(0.0).sqrt()).collect();
         Self { amplitudes, frequencies, phases }
     }
 

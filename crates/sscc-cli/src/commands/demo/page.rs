@@ -3,8 +3,8 @@
 use anyhow::Result;
 use sscc::Certificates;
 use sscc_io::Rows;
+use sscc_modes::mode_frequencies;
 use sscc_modes::shapes::ElasticShape;
-use sscc_sim::{elasticity, frequencies_of_modes};
 use sscc_view::{
     Arrays, Axis, Body, Colliding, ModelDetails, ModelScene, Playback, Plot, Report as Page, Scene, Series,
 };
@@ -25,8 +25,8 @@ pub fn html(
 ) -> Result<String> {
     let mut arrays = Arrays::default();
     let mut scene = Scene::new("A double-helix spring, shaken ever harder");
-    let forces = elasticity(spring.eigenvalues.clone(), None);
-    let details = ModelDetails { frequencies: frequencies_of_modes(&forces), ..ModelDetails::default() };
+    let frequencies = mode_frequencies(spring.elasticity.stiffness());
+    let details = ModelDetails { frequencies, ..ModelDetails::default() };
     scene.models.push(ModelScene::new(0, "spring", &spring.model, certificates, details, &mut arrays)?);
     scene.summary = report.table();
     let times: Vec<f64> = (0..animation.rows).map(|frame| frame as f64 / RATE).collect();
