@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::{DepthField, Shape};
+use crate::{DepthField, Shape, SignedDistance};
 
 /// A deformed triangle of a shape, in any axes.
 #[derive(Clone, Copy)]
@@ -88,7 +88,8 @@ impl<'a> RestFrame<'a> {
 
     /// How deep a point is inside, and the way out (length 1); none outside.
     fn depth(&self, x: DVec3) -> Option<(f64, DVec3)> {
-        let (distance, gradient) = self.field.at(self.rest + self.inverse * (x - self.deformed))?;
+        let SignedDistance { distance, gradient } =
+            self.field.at(self.rest + self.inverse * (x - self.deformed))?;
         // The derivative of the distance by the deformed position.
         let slope = self.inverse.transpose() * gradient;
         let depth = -distance / slope.length();

@@ -81,7 +81,8 @@ mod step;
 mod world;
 
 pub use body::{Body, Detection, Start};
-pub use depth::DepthField;
+pub use depth::{DepthField, SignedDistance};
+pub use detect::BodyPairs;
 pub use error::{DynamicsError, Obstacle};
 pub use ground::Ground;
 pub use linear::{Damping, LinearOscillator};

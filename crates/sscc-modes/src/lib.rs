@@ -31,6 +31,7 @@
 //! do.
 
 mod body;
+mod cancel;
 mod diagonalize;
 mod eigen;
 mod elasticity;

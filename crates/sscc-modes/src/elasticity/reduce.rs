@@ -8,11 +8,12 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-use sscc::{Error, Modes, Progress};
+use sscc::{Modes, Progress};
 use sscc_solid::{Element, Material, ReducedForces, Solid, Stiffness, monomials};
 
 use super::stvk::{gradient, symmetric};
 use crate::ModesError;
+use crate::cancel::check_cancelled;
 
 /// Components of a symmetric strain, off-diagonal ones times the root of 2 (Mandel): their square sum is `E : E`.
 const COMPONENTS: usize = 6;
@@ -68,9 +69,7 @@ pub(crate) fn reduced_forces(
             gram
         })
         .collect();
-    if progress.is_cancelled() {
-        return Err(Error::Cancelled.into());
-    }
+    check_cancelled(progress)?;
     let mut gram = Mat::<f64>::zeros(columns, columns);
     sums.iter().for_each(|sum| gram += sum);
     differentiate(r, &gram)
