@@ -6,7 +6,7 @@ use pyo3::types::{PyBytes, PyTuple, PyType};
 use sscc::{Modes, ReducedModel};
 use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
-use sscc_io::{Elasticity, LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
+use sscc_io::{LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
 
 use crate::answer::Reduced;
 use crate::arguments::{check_ending, path};
@@ -163,12 +163,8 @@ impl Model {
 
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let stiffness = match &self.loaded.info.elasticity {
-            None => return Ok(None),
-            Some(Elasticity::Linear(stiffness)) => stiffness,
-            Some(Elasticity::Nonlinear(cubic)) => &cubic.linear,
-        };
-        table(py, self.core().rank(), stiffness.clone()).map(Some)
+        let Some(elasticity) = &self.loaded.info.elasticity else { return Ok(None) };
+        table(py, self.core().rank(), elasticity.stiffness().entries().to_vec()).map(Some)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {

@@ -10,9 +10,9 @@ use pyo3::types::PyTuple;
 use sscc::{Progress, TriMesh};
 use sscc_io::{read_frames, read_mesh, splits_vertices};
 use sscc_sim::{
-    ModesKind, NewModel, RequestedMaterial, SimError, SolidSource, elastic_model, is_solid, pca_model,
-    polynomial_model,
+    ModesKind, NewModel, SimError, SolidSource, elastic_model, is_solid, pca_model, polynomial_model,
 };
+use sscc_solid::PartialMaterial;
 
 use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
@@ -125,7 +125,7 @@ pub fn _polynomial(
 #[derive(Default)]
 struct Wanted {
     rank: Option<usize>,
-    material: RequestedMaterial,
+    material: PartialMaterial,
     /// Vertices that do not move, and all in a box between two corners.
     fixed: Vec<u32>,
     fixed_box: Option<[DVec3; 2]>,
@@ -183,10 +183,10 @@ fn loaded(made: NewModel) -> Model {
     Model::of(Loaded::new(made.model, made.info, made.is_split))
 }
 
-fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<RequestedMaterial> {
-    Ok(RequestedMaterial {
-        youngs: number(youngs.as_ref(), "youngs")?,
-        poisson: number(poisson.as_ref(), "poisson")?,
+fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<PartialMaterial> {
+    Ok(PartialMaterial {
+        youngs_modulus: number(youngs.as_ref(), "youngs")?,
+        poisson_ratio: number(poisson.as_ref(), "poisson")?,
         density: number(density.as_ref(), "density")?,
     })
 }

@@ -389,7 +389,8 @@ fn elasticity() {
     let model =
         sscc::ReducedModel::with_metric(strips.mesh().clone(), strips.modes().clone(), energy).unwrap();
     let hz = std::f64::consts::TAU * std::f64::consts::TAU;
-    let forces = sscc_io::Elasticity::Linear(vec![hz, 0.0, 0.0, 9.0 * hz]);
+    let stiffness = sscc_solid::Stiffness::from_diagonal(&[hz, 9.0 * hz]).unwrap();
+    let forces = sscc_solid::Elasticity::Linear(stiffness);
     let path = folder.path().join("solid.model.safetensors");
     sscc_io::write_model(&path, &model, &info.with_elasticity(forces)).unwrap();
 

@@ -117,9 +117,7 @@ fn bases_for_large_deformations_know_their_forces() {
         assert_eq!(report["rank"], rank);
         let (model, info) = sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap();
         assert_eq!(model.rank(), rank);
-        let Some(sscc_io::Elasticity::Nonlinear(forces)) = info.elasticity else { panic!("{kind}") };
-        let sscc_io::Cubic { rank, linear, quadratic, cubic } = forces;
-        let forces = sscc_modes::ReducedForces { rank, linear, quadratic, cubic };
+        let Some(sscc_solid::Elasticity::Nonlinear(forces)) = info.elasticity else { panic!("{kind}") };
         assert!(forces.asymmetry() < 1e-9);
         // Stretching is stiffer than linear, so large deformations cost energy.
         assert!(forces.energy(&vec![1.0; rank]) > 0.0);

@@ -2,10 +2,10 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
+use sscc_solid::Elasticity;
 
 use crate::{
-    Damping, DynamicsError, Elasticity, LinearOscillator, NonlinearOscillator, RigidMotion, Shape,
-    WorldOptions,
+    Damping, DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions,
 };
 
 /// How a body looks for collisions with itself. All exact methods find the same pairs, hence the same motion.
@@ -144,8 +144,9 @@ impl<'a> Body<'a> {
             shape.moments().iter().map(|m| m.dot(turn.inverse() * gravity)).collect()
         };
         let oscillator = match shape.elasticity() {
-            Elasticity::Linear(eigenvalues) => {
-                Oscillator::Linear(LinearOscillator::new(eigenvalues, start.damping, step)?)
+            Elasticity::Linear(stiffness) => {
+                let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
+                Oscillator::Linear(LinearOscillator::new(&eigenvalues, start.damping, step)?)
             }
             Elasticity::Nonlinear(forces) => {
                 Oscillator::Nonlinear(NonlinearOscillator::new(forces, start.damping, step)?)
@@ -156,7 +157,8 @@ impl<'a> Body<'a> {
             Oscillator::Nonlinear(oscillator) => oscillator.acceleration(&q, &v, &load),
         };
         let square = contact.rate() * contact.rate();
-        let shares = shape.elasticity().stiffness().map(|lambda| square / (square + lambda)).collect();
+        let stiffness = shape.elasticity().stiffness().diagonal();
+        let shares = stiffness.map(|lambda| square / (square + lambda)).collect();
         let method = match start.detection {
             Detection::Method(method) => method,
             _ => Method::Certified,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::detect::Neighbours;
+use crate::detect::{BodyPairs, Neighbours};
 use crate::solve::{Source, Touch};
 
 /// Contacts between triangles, kept from step to step.
@@ -38,11 +38,11 @@ impl Contacts {
             }
         }
         self.spare.extend(self.list.drain(kept..));
-        let own = bodies.iter().enumerate().map(|(n, body)| ([n, n], &body.pairs[..]));
-        let found = own.filter(|(_, pairs)| within && !pairs.is_empty()).chain(neighbours.colliding());
-        for (indices, pairs) in found {
-            let [a, b] = indices.map(|n| &bodies[n]);
-            let indices = indices.map(|n| n as u32);
+        let own = bodies.iter().enumerate().map(|(n, body)| BodyPairs { bodies: [n, n], pairs: &body.pairs });
+        let found = own.filter(|own| within && !own.pairs.is_empty()).chain(neighbours.colliding());
+        for BodyPairs { bodies: met, pairs } in found {
+            let [a, b] = met.map(|n| &bodies[n]);
+            let indices = met.map(|n| n as u32);
             for &(i, j) in pairs {
                 let known = self.list[..kept].binary_search_by_key(&(indices, (i, j)), Contact::key);
                 if let Ok(at) = known {

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::{DepthField, Shape};
+use crate::{DepthField, Shape, SignedDistance};
 
 /// A deformed triangle of a shape, in any axes.
 #[derive(Clone, Copy)]
@@ -40,8 +40,8 @@ impl Crossing {
         }
         let (mut way, mut depth) = (DVec3::ZERO, 0.0_f64);
         for (sign, from, to, outwards) in [(1.0, a, b, normals[1]), (-1.0, b, a, normals[0])] {
-            if let Some(material) = Material::of(to) {
-                for (d, out) in from.corners.iter().filter_map(|corner| material.depth(*corner)) {
+            if let Some(frame) = RestFrame::of(to) {
+                for (d, out) in from.corners.iter().filter_map(|corner| frame.depth(*corner)) {
                     if out.dot(outwards) > THROUGH {
                         way += out * (sign * d);
                         depth = depth.max(d);
@@ -70,14 +70,14 @@ const ALIKE: f64 = 0.5;
 const THROUGH: f64 = 0.7;
 
 /// The way from the axes of a deformed triangle into its rest pose.
-struct Material<'a> {
+struct RestFrame<'a> {
     field: &'a DepthField,
     inverse: DMat3,
     rest: DVec3,
     deformed: DVec3,
 }
 
-impl<'a> Material<'a> {
+impl<'a> RestFrame<'a> {
     fn of(facet: &Facet<'a>) -> Option<Self> {
         let frame =
             |x: &[DVec3; 3]| DMat3::from_cols(x[1] - x[0], x[2] - x[0], normal(x).normalize_or_zero());
@@ -88,7 +88,8 @@ impl<'a> Material<'a> {
 
     /// How deep a point is inside, and the way out (length 1); none outside.
     fn depth(&self, x: DVec3) -> Option<(f64, DVec3)> {
-        let (distance, gradient) = self.field.at(self.rest + self.inverse * (x - self.deformed))?;
+        let SignedDistance { distance, gradient } =
+            self.field.at(self.rest + self.inverse * (x - self.deformed))?;
         // The derivative of the distance by the deformed position.
         let slope = self.inverse.transpose() * gradient;
         let depth = -distance / slope.length();

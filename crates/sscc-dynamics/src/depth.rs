@@ -36,6 +36,15 @@ pub struct DepthField {
     distances: Vec<f32>,
 }
 
+/// The distance of a point from a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignedDistance {
+    /// Negative inside (model unit).
+    pub distance: f64,
+    /// Its derivative by position: the direction in which it grows, of a length of about 1.
+    pub gradient: DVec3,
+}
+
 impl DepthField {
     /// Measures the rest pose. Near the rims of a surface that is not closed signs mean nothing.
     pub fn new(mesh: &TriMesh) -> Self {
@@ -57,9 +66,8 @@ impl DepthField {
         field
     }
 
-    /// The distance of a point from the surface (model unit), negative inside, and the direction in which it grows;
-    /// none further outside than about two cells.
-    pub fn at(&self, x: DVec3) -> Option<(f64, DVec3)> {
+    /// The distance of a point from the surface; none further outside than about two cells.
+    pub fn at(&self, x: DVec3) -> Option<SignedDistance> {
         let cell = (x - self.origin) / self.spacing;
         let base = cell.floor();
         let last = DVec3::from_array(self.size.map(|n| n as f64 - 2.0));
@@ -81,7 +89,7 @@ impl DepthField {
             y[1] - y[0],
         );
         let distance = mix(y[0], y[1], t.z);
-        distance.is_finite().then_some((distance, gradient / self.spacing))
+        distance.is_finite().then_some(SignedDistance { distance, gradient: gradient / self.spacing })
     }
 
     fn place(&self, [i, j, k]: [usize; 3]) -> usize {
@@ -219,7 +227,7 @@ mod tests {
                 inside.min(DVec3::ZERO).length()
             };
             match field.at(cell + 5.0) {
-                Some((distance, gradient)) => {
+                Some(SignedDistance { distance, gradient }) => {
                     assert!(
                         (distance - expected).abs() < field.spacing,
                         "{cell}: {distance}, not {expected}"
@@ -259,7 +267,7 @@ mod tests {
             let [a, b, c] = face.map(|v| p[v as usize]);
             let (normal, middle) = ((b - a).cross(c - a).normalize(), (a + b + c) / 3.0);
             for depth in [0.002, 0.01] {
-                let (distance, gradient) = field.at(middle - normal * depth).unwrap();
+                let SignedDistance { distance, gradient } = field.at(middle - normal * depth).unwrap();
                 assert!((distance + depth).abs() < 0.002, "{distance} at {depth}");
                 assert!(gradient.normalize().dot(normal) > 0.9);
             }

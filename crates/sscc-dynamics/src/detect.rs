@@ -5,6 +5,15 @@ use sscc::{Aabb, Pair};
 use crate::DynamicsError;
 use crate::body::Body;
 
+/// Two bodies that collide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyPairs<'a> {
+    /// Their numbers, ascending.
+    pub bodies: [usize; 2],
+    /// The pairs of triangles that have a point in common, one triangle of each body, sorted.
+    pub pairs: &'a [Pair],
+}
+
 /// Two bodies that collide, and where their pairs are.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
@@ -73,8 +82,9 @@ impl Neighbours {
         self.candidates.sort_unstable();
     }
 
-    /// The pairs of each two bodies that collide, sorted.
-    pub fn colliding(&self) -> impl Iterator<Item = ([usize; 2], &[Pair])> {
-        self.meetings.iter().map(|meeting| (meeting.bodies, &self.pairs[meeting.first..meeting.end]))
+    /// The bodies that collide, sorted.
+    pub fn colliding(&self) -> impl Iterator<Item = BodyPairs<'_>> {
+        let pairs = |meeting: &Meeting| &self.pairs[meeting.first..meeting.end];
+        self.meetings.iter().map(move |meeting| BodyPairs { bodies: meeting.bodies, pairs: pairs(meeting) })
     }
 }

@@ -28,6 +28,9 @@ pub enum DynamicsError {
         /// Its eigenvalue (1/s^2).
         value: f64,
     },
+    /// Linear forces of modes that do not swing by themselves.
+    #[error("the stiffness of linear modes is not diagonal: diagonalize it first")]
+    Coupled,
     /// A body without mass or inertia.
     #[error(
         "a mass of {mass:e} with the least moment of inertia {inertia:e}: both must be positive and finite"

@@ -11,8 +11,9 @@
 //! ```
 //! use glam::DVec3;
 //! use sscc::{Certificates, CertifyOptions, Modes, ReducedModel};
-//! use sscc_dynamics::{Elasticity, Shape, Start, World, WorldOptions};
-//! use sscc_modes::{Material, Solid, linear_modes};
+//! use sscc_dynamics::{Shape, Start, World, WorldOptions};
+//! use sscc_modes::linear_modes;
+//! use sscc_solid::{Material, Solid};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A cube of a metre with its lowest vibrations; all its vertices are on the boundary.
@@ -22,8 +23,7 @@
 //! let found = linear_modes(&solid, &[], 6, &())?;
 //! let model = ReducedModel::new(solid.boundary()?.mesh, found.modes)?;
 //! let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
-//! let elasticity = Elasticity::Linear(found.eigenvalues);
-//! let shape = Shape::new(model, certificates, elasticity, solid.mass_properties())?;
+//! let shape = Shape::new(model, certificates, found.elasticity, solid.mass_properties())?;
 //!
 //! let mut world = World::new(WorldOptions::default())?;
 //! world.add(&shape, &Start { position: Some(DVec3::Y), ..Start::default() })?;
@@ -67,6 +67,7 @@ mod error;
 mod ground;
 mod linear;
 mod materials;
+mod near_ground;
 mod nearest_point;
 mod nonlinear;
 mod normals;
@@ -80,7 +81,8 @@ mod step;
 mod world;
 
 pub use body::{Body, Detection, Start};
-pub use depth::DepthField;
+pub use depth::{DepthField, SignedDistance};
+pub use detect::BodyPairs;
 pub use error::{DynamicsError, Obstacle};
 pub use ground::Ground;
 pub use linear::{Damping, LinearOscillator};
@@ -88,7 +90,7 @@ pub use materials::{MATERIALS, SoundMaterial};
 pub use nonlinear::NonlinearOscillator;
 pub use options::{ContactOptions, Response, WorldOptions};
 pub use rigid::RigidMotion;
-pub use shape::{Elasticity, Shape};
+pub use shape::Shape;
 pub use sound::SoundBank;
 pub use state::State;
 pub use step::{Counts, Impulse, Observer, Phase};

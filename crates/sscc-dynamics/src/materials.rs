@@ -1,6 +1,6 @@
 //! What sounds how.
 
-use sscc_modes::Material;
+use sscc_solid::{Material, PartialMaterial};
 
 use crate::Damping;
 
@@ -17,11 +17,10 @@ pub struct SoundMaterial {
 
 /// A row of the table: kg/m^3, N/m^2, Poisson's ratio, 1/s, s.
 const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64) -> SoundMaterial {
-    SoundMaterial {
-        name,
-        elastic: Material { density: d, youngs_modulus: y, poisson_ratio: nu },
-        damping: Damping { mass: alpha, stiffness: beta },
-    }
+    let known = PartialMaterial { density: Some(d), youngs_modulus: Some(y), poisson_ratio: Some(nu) };
+    // Numbers out of range would be refused at compile time.
+    let Ok(elastic) = Material::new(&known) else { panic!("numbers of a material") };
+    SoundMaterial { name, elastic, damping: Damping { mass: alpha, stiffness: beta } }
 }
 
 /// Materials of everyday things. Round values of the order found in handbooks, and Rayleigh damping chosen to sound

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use faer::prelude::Solve;
-use sscc_modes::ReducedForces;
+use sscc_solid::ReducedForces;
 
 use crate::{Damping, DynamicsError};
 
@@ -52,8 +52,8 @@ impl<'a> NonlinearOscillator<'a> {
             return Err(DynamicsError::Step { step });
         }
         let given = damping.check()?;
-        let r = forces.rank;
-        let mut damping: Vec<f64> = forces.linear.iter().map(|k| given.stiffness * k).collect();
+        let r = forces.rank();
+        let mut damping: Vec<f64> = forces.linear().entries().iter().map(|k| given.stiffness * k).collect();
         (0..r).for_each(|k| damping[k * (r + 1)] += given.mass);
         Ok(Self { forces, damping, step })
     }
@@ -75,7 +75,7 @@ impl<'a> NonlinearOscillator<'a> {
         a: &mut [f64],
         g: &[f64],
     ) -> Result<(), DynamicsError> {
-        let (r, h) = (self.forces.rank, self.step);
+        let (r, h) = (self.forces.rank(), self.step);
         let residual = |b: Vec<f64>| {
             let x: Vec<f64> = (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect();
             let y: Vec<f64> = (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect();
@@ -130,7 +130,7 @@ impl<'a> NonlinearOscillator<'a> {
 
     /// Of the residual by the new acceleration, at the position x.
     fn derivative(&self, x: &[f64]) -> Mat<f64> {
-        let (r, h, stiffness) = (self.forces.rank, self.step, self.forces.stiffness(x));
+        let (r, h, stiffness) = (self.forces.rank(), self.step, self.forces.stiffness(x));
         Mat::from_fn(r, r, |i, j| {
             f64::from(u8::from(i == j))
                 + h / 2.0 * self.damping[i * r + j]
@@ -152,6 +152,7 @@ impl<'a> NonlinearOscillator<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sscc_solid::Stiffness;
 
     const NONE: Damping = Damping { mass: 0.0, stiffness: 0.0 };
 
@@ -160,7 +161,7 @@ mod tests {
         // d/dx: l1 x + s (x^2 + x y) (2 x + y) / 2 = .. + s (2 x^3 + 3 x^2 y + x y^2) / 2
         // d/dy: l2 y + s (x^2 + x y) x / 2 = .. + s (x^3 + x^2 y) / 2
         let cubic = [1.0, 1.5, 0.5, 0.0, 0.5, 0.5, 0.0, 0.0].map(|c| s * c).to_vec();
-        ReducedForces { rank: 2, linear: vec![l1, 0.0, 0.0, l2], quadratic: vec![0.0; 6], cubic }
+        ReducedForces::new(Stiffness::from_diagonal(&[l1, l2]).unwrap(), vec![0.0; 6], cubic).unwrap()
     }
 
     #[test]

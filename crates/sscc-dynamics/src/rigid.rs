@@ -1,7 +1,7 @@
 //! The rigid motion of a free body (floating frame).
 
 use glam::{DMat3, DQuat, DVec3};
-use sscc_modes::MassProperties;
+use sscc_solid::MassProperties;
 
 use crate::DynamicsError;
 

@@ -2,37 +2,9 @@
 
 use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
-use sscc_modes::{MassProperties, ReducedForces};
+use sscc_solid::{Elasticity, MassProperties};
 
 use crate::{DepthField, DynamicsError};
-
-/// What holds a shape together.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Elasticity {
-    /// Independent modes of these eigenvalues (1/s^2).
-    Linear(Vec<f64>),
-    /// Reduced forces of large deformations.
-    Nonlinear(ReducedForces),
-}
-
-impl Elasticity {
-    /// The number of modes.
-    pub fn rank(&self) -> usize {
-        match self {
-            Self::Linear(eigenvalues) => eigenvalues.len(),
-            Self::Nonlinear(forces) => forces.rank,
-        }
-    }
-
-    /// The stiffness of each mode alone, at rest (1/s^2).
-    pub(crate) fn stiffness(&self) -> impl Iterator<Item = f64> {
-        let (all, stride) = match self {
-            Self::Linear(eigenvalues) => (eigenvalues, 1),
-            Self::Nonlinear(forces) => (&forces.linear, forces.rank + 1),
-        };
-        all.iter().step_by(stride).copied()
-    }
-}
 
 /// A model with its certificates and all that its motion needs, shared by any number of bodies. The modes must be
 /// mass-orthonormal, those of free bodies also orthogonal to rigid motions, as `sscc-modes` makes them.
@@ -54,7 +26,7 @@ impl Shape {
     /// A shape that nothing but contacts deforms. Takes a while: it measures the depth of the rest pose everywhere.
     ///
     /// # Errors
-    /// When certificates, elasticity and mass are not of this model.
+    /// When certificates, elasticity and mass are not of this model, or linear forces couple modes.
     pub fn new(
         model: ReducedModel,
         certificates: Certificates,
@@ -65,6 +37,9 @@ impl Shape {
         let (r, found) = (model.rank(), elasticity.rank());
         if found != r {
             return Err(DynamicsError::Rank { found, rank: r });
+        }
+        if matches!(&elasticity, Elasticity::Linear(stiffness) if !stiffness.is_diagonal()) {
+            return Err(DynamicsError::Coupled);
         }
         let depth = DepthField::new(model.mesh());
         let rest = model.mesh().rest_positions();
@@ -86,7 +61,7 @@ impl Shape {
     }
 
     /// The same shape, whose modes a uniform acceleration g excites by `moment . g` each: for bodies that are held
-    /// somewhere. See [`mode_moments`](sscc_modes::Solid::mode_moments).
+    /// somewhere. See [`mode_moments`](sscc_solid::Solid::mode_moments).
     ///
     /// # Errors
     /// When there is not one moment for each mode.

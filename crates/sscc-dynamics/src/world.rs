@@ -1,15 +1,16 @@
 //! Many bodies, step by step.
 
 use rayon::prelude::*;
-use sscc::Pair;
 
 use crate::body::{Body, Start};
 use crate::constrain::constrain;
 use crate::contacts::Contacts;
 use crate::detect::Neighbours;
-use crate::ground::NearGround;
+use crate::near_ground::NearGround;
 use crate::solve::{GROUND, Solver, Source, Spring};
-use crate::{Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions};
+use crate::{
+    BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions,
+};
 
 /// Bodies, and what holds for all of them. The same steps give the same bits on every run and for any number of
 /// threads.
@@ -108,8 +109,8 @@ impl<'a> World<'a> {
         &self.impulses
     }
 
-    /// The pairs of triangles that collided when the last step began, by pairs of bodies.
-    pub fn inter_pairs(&self) -> impl Iterator<Item = ([usize; 2], &[Pair])> {
+    /// The pairs of triangles of different bodies that collided when the last step began.
+    pub fn inter_pairs(&self) -> impl Iterator<Item = BodyPairs<'_>> {
         self.neighbours.colliding()
     }
 
@@ -135,7 +136,7 @@ impl<'a> World<'a> {
             }
         }
         self.neighbours.update(&mut self.bodies)?;
-        if let Some(([a, b], pairs)) = self.neighbours.colliding().next() {
+        if let Some(BodyPairs { bodies: [a, b], pairs }) = self.neighbours.colliding().next() {
             return refused(b, Obstacle::Body(a), pairs.len(), "pairs of triangles");
         }
         if let Some(ground) = self.options.ground {
@@ -167,9 +168,9 @@ impl<'a> World<'a> {
         }
         observer.enter(Phase::InterObject);
         self.neighbours.update(&mut self.bodies)?;
-        for (_, pairs) in self.neighbours.colliding() {
+        for met in self.neighbours.colliding() {
             counts.colliding_bodies += 1;
-            counts.inter_pairs += pairs.len();
+            counts.inter_pairs += met.pairs.len();
         }
         observer.enter(Phase::Ground);
         self.solver.touches.clear();

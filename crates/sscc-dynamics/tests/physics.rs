@@ -6,12 +6,12 @@ mod common;
 use common::{block, elastic, fork, octahedron, rigid};
 use glam::{DQuat, DVec3};
 use sscc_dynamics::{
-    ContactOptions, Damping, Detection, Elasticity, Ground, Response, Shape, Start, World, WorldOptions,
+    ContactOptions, Damping, Detection, Ground, Response, Shape, Start, World, WorldOptions,
 };
-use sscc_modes::Material;
+use sscc_solid::{Elasticity, Material, PartialMaterial};
 
 fn rubber() -> Material {
-    Material { youngs_modulus: 1e5, ..Material::default() }
+    Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }
 
 /// No weight, no ground.
@@ -26,9 +26,9 @@ fn momenta(world: &World<'_>) -> (DVec3, DVec3) {
     })
 }
 
-fn eigenvalues(shape: &Shape) -> &[f64] {
+fn eigenvalues(shape: &Shape) -> Vec<f64> {
     match shape.elasticity() {
-        Elasticity::Linear(values) => values,
+        Elasticity::Linear(stiffness) => stiffness.diagonal().collect(),
         Elasticity::Nonlinear(_) => panic!("linear modes"),
     }
 }

@@ -3,17 +3,17 @@
 
 mod common;
 
-use common::{block, elastic, fork};
+use common::{block, certified, elastic, fork, octahedron, rigid};
 use glam::{DQuat, DVec3};
-use sscc::{Pair, TriMesh, intersect_triangle_triangle};
+use sscc::{Modes, Pair, ReducedModel, TriMesh, intersect_triangle_triangle};
 use sscc_dynamics::{
     ContactOptions, Damping, Detection, DynamicsError, Ground, Obstacle, Phase, Response, Shape, Start,
     World, WorldOptions,
 };
-use sscc_modes::Material;
+use sscc_solid::{Elasticity, Material, PartialMaterial, Stiffness};
 
 fn rubber() -> Material {
-    Material { youngs_modulus: 1e5, ..Material::default() }
+    Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }
 
 fn shapes() -> [Shape; 2] {
@@ -73,7 +73,7 @@ fn pairs_between_bodies_are_those_of_all_triangles() {
             }
         }
         expected.sort();
-        let found: Vec<_> = world.inter_pairs().map(|(bodies, pairs)| (bodies, pairs.to_vec())).collect();
+        let found: Vec<_> = world.inter_pairs().map(|met| (met.bodies, met.pairs.to_vec())).collect();
         assert_eq!(found, expected, "step {step}");
         assert_eq!(counts.inter_pairs, expected.iter().map(|(_, pairs)| pairs.len()).sum::<usize>());
         met += usize::from(!expected.is_empty());
@@ -281,4 +281,19 @@ fn phases_come_in_order_and_quiet_steps_allocate_nothing() {
         }
     });
     assert_eq!(allocations.count_total, 0);
+}
+
+/// Linear modes are moved one by one, so their stiffness must be diagonal.
+#[test]
+fn coupled_linear_modes_are_refused() {
+    let mesh = octahedron(1.0);
+    let modes = Modes::from_matrix(6, 2, |row, k| f64::from(u8::from(row % 5 == k))).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let (certificates, mass) = (certified(&model), *rigid(octahedron(1.0), 1.0).mass());
+    let with = |entries: [f64; 4]| {
+        let elasticity = Elasticity::Linear(Stiffness::new(2, entries.to_vec()).unwrap());
+        Shape::new(model.clone(), certificates.clone(), elasticity, mass)
+    };
+    assert!(with([1.0, 1e-13, 1e-13, 2.0]).is_ok());
+    assert_eq!(with([1.0, 0.5, 0.5, 2.0]).unwrap_err(), DynamicsError::Coupled);
 }

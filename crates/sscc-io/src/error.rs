@@ -141,6 +141,13 @@ impl From<sscc::Error> for FormatError {
     }
 }
 
+/// A mesh as a whole is refused: its elements are named by their numbers.
+impl From<sscc_solid::SolidError> for FormatError {
+    fn from(error: sscc_solid::SolidError) -> Self {
+        Self::whole(error.to_string())
+    }
+}
+
 /// A path on one line, whatever characters are in it.
 fn line(path: &Path) -> String {
     let shown = path.to_string_lossy();

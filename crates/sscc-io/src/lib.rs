@@ -56,12 +56,13 @@
 
 mod allowance;
 pub mod container;
-mod cubic;
 mod error;
 mod file;
+mod forces;
 pub mod gltf;
 mod load;
 pub mod mesh;
+mod mesh_modes;
 pub mod modes;
 pub mod npy;
 pub mod npz;
@@ -72,16 +73,17 @@ pub mod solid;
 mod text;
 mod wav;
 
-pub use container::{Elasticity, ModelInfo, read_certificates, read_model, write_certificates, write_model};
-pub use cubic::{Cubic, parse_cubic, read_cubic};
+pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
 pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};
+pub use forces::{parse_reduced_forces, read_reduced_forces};
 pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};
 pub use mesh::read_mesh;
-pub use modes::{Frames, read_frames, read_modes, read_modes_for};
+pub use mesh_modes::read_modes_for;
+pub use modes::{Frames, NamedModes, read_frames, read_modes};
 pub use npy::write_npy;
-pub use npz::{NamedArray, read_npz_model, write_npz};
+pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
-pub use solid::{Material, Solid, read_solid};
+pub use solid::read_volume_mesh;
 pub use wav::{WavFormat, wav_to_bytes, write_wav};

@@ -5,7 +5,9 @@ use std::path::Path;
 use sscc::{Modes, ReducedModel, TriMesh};
 
 use crate::file::{check_exists, ending};
-use crate::{IoError, ModelInfo, gltf, read_mesh, read_model, read_modes_for, read_npz_model};
+use crate::{
+    IoError, ModelInfo, NamedModes, NpzModel, gltf, read_mesh, read_model, read_modes_for, read_npz_model,
+};
 
 /// What beside the model's own file is needed.
 #[derive(Clone, Debug, Default)]
@@ -76,9 +78,9 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             Ok(LoadedModel { default_q: Some(read.default_weights), ..loaded })
         }
         ("npz", None) => {
-            let (mesh, modes, mode_weights) = read_npz_model(path)?;
+            let NpzModel { mesh, modes, weights } = read_npz_model(path)?;
             let loaded = assemble(path, mesh, modes, format!("arrays of {}", name(path)), Vec::new())?;
-            Ok(LoadedModel { mode_weights, ..loaded })
+            Ok(LoadedModel { mode_weights: weights, ..loaded })
         }
         ("safetensors" | "glb" | "gltf" | "npz", Some(_)) => {
             Err(refused("a model file has its own modes: leave out --modes"))
@@ -90,7 +92,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         }
         (_, Some(modes_path)) => {
             let mesh = read_mesh(path)?;
-            let (modes, names) = read_modes_for(modes_path, &mesh, path)?;
+            let NamedModes { modes, names } = read_modes_for(modes_path, &mesh, path)?;
             let provenance = format!("mesh {}, modes {}", name(path), name(modes_path));
             assemble(modes_path, mesh, modes, provenance, names)
         }

@@ -1,24 +1,25 @@
-//! Damaged and random volumetric meshes and reduced forces: an error or a sound solid, and little memory.
+//! Damaged and random volumetric meshes and reduced forces: an error or a sound mesh, and little memory.
 
 #![allow(clippy::unwrap_used)]
 
 use allocation_counter::measure;
 use proptest::prelude::*;
 use sscc_io::solid::{gmsh, medit, tetgen, vega};
-use sscc_io::{FormatError, Solid, parse_cubic};
+use sscc_io::{FormatError, parse_reduced_forces};
+use sscc_solid::VolumeMesh;
 
-/// What every solid promises.
-fn check(result: Result<Solid, FormatError>) {
+/// The promises of every mesh.
+fn check(result: Result<VolumeMesh, FormatError>) {
     match result {
-        Ok(solid) => {
-            let vertices = solid.vertices.len();
+        Ok(mesh) => {
+            let vertices = mesh.vertices().len();
             let corners =
-                [solid.tets.as_flattened(), solid.cubes.as_flattened(), solid.surface.as_flattened()];
+                [mesh.tets().as_flattened(), mesh.cubes().as_flattened(), mesh.surface().as_flattened()];
             assert!(corners.concat().iter().all(|v| (*v as usize) < vertices));
-            assert!(solid.vertices.iter().all(|x| sscc::limits::contains(*x)));
-            let elements = solid.tets.len() + solid.cubes.len();
-            assert!(elements > 0 && solid.element_material.len() == elements);
-            assert!(solid.element_material.iter().all(|m| (*m as usize) < solid.materials.len()));
+            assert!(mesh.vertices().iter().all(|x| sscc::limits::contains(*x)));
+            let elements = mesh.tets().len() + mesh.cubes().len();
+            assert!(elements > 0 && mesh.element_material().len() == elements);
+            assert!(mesh.element_material().iter().all(|m| (*m as usize) < mesh.materials().len()));
         }
         Err(error) => {
             let message = error.to_string();
@@ -36,7 +37,7 @@ fn parse_all(bytes: &[u8]) {
         Err(error) => check(Err(error)),
     }
     check(tetgen::parse(&tetgen::parse_nodes(NODE).unwrap(), bytes));
-    if let Err(error) = parse_cubic(bytes) {
+    if let Err(error) = parse_reduced_forces(bytes) {
         check(Err(error));
     }
 }
@@ -82,7 +83,7 @@ fn seeds() -> Vec<Vec<u8>> {
 #[test]
 fn seeds_are_good() {
     let seeds = seeds();
-    let solids = [
+    let meshes = [
         medit::parse(&seeds[0]),
         vega::parse(&seeds[1]),
         gmsh::parse(&seeds[2]),
@@ -90,12 +91,12 @@ fn seeds_are_good() {
         gmsh::parse(&seeds[4]),
         tetgen::parse(&tetgen::parse_nodes(&seeds[5]).unwrap(), &seeds[6]),
     ];
-    for solid in solids {
-        let solid = solid.unwrap();
-        assert_eq!((solid.tets.as_slice(), solid.vertices.len()), (&[[0, 1, 2, 3]][..], 4));
-        check(Ok(solid));
+    for mesh in meshes {
+        let mesh = mesh.unwrap();
+        assert_eq!((mesh.tets(), mesh.vertices().len()), (&[[0, 1, 2, 3]][..], 4));
+        check(Ok(mesh));
     }
-    assert_eq!(parse_cubic(&seeds[7]).unwrap().rank, 1);
+    assert_eq!(parse_reduced_forces(&seeds[7]).unwrap().rank(), 1);
 }
 
 proptest! {
@@ -190,7 +191,7 @@ fn claimed_counts_take_nothing() {
         assert!(peak(|| parse_all(&bytes)) < 50_000, "{at}");
     }
     let huge = [1 << 20, 1 << 20, 0x7fff_ffff, -1_i32].map(i32::to_le_bytes).concat();
-    assert!(peak(|| assert!(parse_cubic(&huge).is_err())) < 10_000);
+    assert!(peak(|| assert!(parse_reduced_forces(&huge).is_err())) < 10_000);
 }
 
 /// Long files of the shortest lines that mean something, and much work for few bytes.

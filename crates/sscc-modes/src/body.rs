@@ -3,12 +3,13 @@
 use faer::Mat;
 use glam::{DMat3, DVec3};
 use sscc::Progress;
+use sscc_solid::Solid;
 
+use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::tall::{add_product, inner, product};
 use crate::eigen::{Lowest, lowest_modes};
 use crate::sparse::{BlockSparse, FIXED};
-use crate::{ModesError, Solid};
 
 /// Directions in which fixed vertices hold less than this share of the others are free: rounding.
 const HELD: f64 = 1e-10;

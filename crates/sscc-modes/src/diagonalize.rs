@@ -3,11 +3,11 @@
 use faer::Mat;
 use glam::DVec3;
 use sscc::Modes;
+use sscc_solid::Stiffness;
 
 use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
-use crate::stiffness::symmetrised;
 
 /// An eigenvalue of at most this share of the largest is 0. Rounding leaves about 1e-14 of a rigid motion's
 /// 0, of either sign, and such noise must not become the smallest positive weight.
@@ -29,8 +29,8 @@ pub struct Diagonalized {
 /// same shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding; certificates of a model with the new modes
 /// speak of its positions alone, to the last bit.
 ///
-/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (r x r, row-major, energy per q squared),
-/// say from [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
+/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), say from
+/// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
 /// single modes, so that a diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
 ///
 /// The signs are fixed: the largest component of each column of `Q` is positive, the first one if several are
@@ -45,6 +45,7 @@ pub struct Diagonalized {
 /// use glam::DVec3;
 /// use sscc::{Modes, ReducedModel, TriMesh};
 /// use sscc_modes::{DEFAULT_ELL, diagonalize, energy_metric, filter_eigenvalues};
+/// use sscc_solid::Stiffness;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // Two triangles, and two modes that move the second along z and x.
@@ -56,7 +57,7 @@ pub struct Diagonalized {
 /// let modes = Modes::from_matrix(6, 2, |row, mode| {
 ///     if row >= 9 && row % 3 == [2, 0][mode] { 1.0 } else { 0.0 }
 /// })?;
-/// let stiffness = [2.0, -1.0, -1.0, 2.0];
+/// let stiffness = Stiffness::new(2, vec![2.0, -1.0, -1.0, 2.0])?;
 ///
 /// let diagonal = diagonalize(&modes, &stiffness)?;
 /// assert!((diagonal.eigenvalues[0] - 1.0).abs() < 1e-12); // x and z together
@@ -70,12 +71,14 @@ pub struct Diagonalized {
 /// ```
 ///
 /// # Errors
-/// When the stiffness is not r x r, has an entry that is not finite or beyond 2^200, is not symmetric (to 1e-9
-/// of its largest entry; the mean with its mirror image is used), or has an eigenvalue below -1e-12 of the
-/// largest; and when an entry of the new modes is out of range.
-pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, ModesError> {
+/// When the stiffness is of another number of modes or has an eigenvalue below -1e-12 of the largest; and when an
+/// entry of the new modes is out of range.
+pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized, ModesError> {
     let rank = modes.rank();
-    let (mut eigenvalues, rotation) = eigen(rank, &symmetrised(rank, stiffness)?)?;
+    if stiffness.rank() != rank {
+        return Err(ModesError::StiffnessRank { found: stiffness.rank(), rank });
+    }
+    let (mut eigenvalues, rotation) = eigen(rank, &stiffness.symmetrised())?;
     let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for x in &mut eigenvalues {
         if *x < -ZERO_SHARE * largest {
@@ -94,15 +97,13 @@ pub fn diagonalize(modes: &Modes, stiffness: &[f64]) -> Result<Diagonalized, Mod
     Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
 }
 
-/// The eigenvalues, ascending, of a symmetric matrix (r x r, row-major), such as a reduced stiffness: of modes that are
-/// mass-orthonormal, squared natural angular frequencies. Rounding leaves about 1e-14 of the largest, of either sign,
-/// of those that are 0.
+/// The eigenvalues of a stiffness, ascending: of modes that are mass-orthonormal, squared natural angular frequencies.
+/// Rounding leaves about 1e-14 of the largest, of either sign, of those that are 0.
 ///
 /// # Errors
-/// When it is not r x r, has an entry that is not finite or beyond 2^200, or is not symmetric (to 1e-9 of its largest
-/// entry; the mean with its mirror image is used).
-pub fn symmetric_eigenvalues(rank: usize, matrix: &[f64]) -> Result<Vec<f64>, ModesError> {
-    Ok(eigen(rank, &symmetrised(rank, matrix)?)?.0)
+/// When the eigenvalues do not converge.
+pub fn stiffness_eigenvalues(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError> {
+    Ok(eigen(stiffness.rank(), &stiffness.symmetrised())?.0)
 }
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric

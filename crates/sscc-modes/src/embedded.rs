@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
+use sscc_solid::{Material, Solid};
 
+use crate::ModesError;
 use crate::lattice::{Interpolation, Lattice};
-use crate::{Material, ModesError, Solid};
 
 /// A closed surface and the lattice of cubes around it, which has its mass and stiffness.
 ///
@@ -22,8 +23,8 @@ impl Embedded {
     /// open is tried again with vertices of equal position as one.
     ///
     /// # Errors
-    /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, there
-    /// would be too many cubes, or the material is outside physical limits.
+    /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, or there
+    /// would be too many cubes.
     pub fn new(
         surface: &TriMesh,
         cells: Option<usize>,
@@ -32,8 +33,7 @@ impl Embedded {
     ) -> Result<Self, ModesError> {
         let Lattice { vertices, cubes, fill, spacing, interpolation, is_split } =
             Lattice::around(surface, cells, progress)?;
-        let elements = cubes.len();
-        let solid = Solid::filled(vertices, Vec::new(), cubes, fill, vec![material], vec![0; elements])?;
+        let solid = Solid::filled(vertices, cubes, fill, material)?;
         Ok(Self { solid, interpolation, spacing, is_split })
     }
 

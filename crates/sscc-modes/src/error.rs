@@ -17,39 +17,13 @@ pub enum ModesError {
         /// Root mean square distance of the surface from the origin (model unit).
         distance: f64,
     },
-    /// A stiffness for another number of modes.
-    #[error("the stiffness has {found} entries, {rank} modes need {rank} x {rank}: pass U'KU of these modes")]
-    StiffnessLength {
-        /// Entries given.
+    /// A stiffness of another number of modes.
+    #[error("the stiffness is of {found} modes, not of {rank}: pass U'KU of these modes")]
+    StiffnessRank {
+        /// Modes of the stiffness.
         found: usize,
         /// Number of modes.
         rank: usize,
-    },
-    /// A stiffness with a NaN, an infinity or a number out of range.
-    #[error(
-        "the stiffness is {value:e} at row {row}, column {column} (counted from 0): not finite, or beyond 2^200; change its unit or repair it"
-    )]
-    StiffnessEntry {
-        /// The row, from 0.
-        row: usize,
-        /// The column, from 0.
-        column: usize,
-        /// The entry.
-        value: f64,
-    },
-    /// Mirrored entries differ by more than rounding.
-    #[error(
-        "the stiffness is {entry:e} at row {row}, column {column} (counted from 0), but {mirrored:e} mirrored: it must be symmetric; pass all of it, not a triangle"
-    )]
-    StiffnessAsymmetric {
-        /// The row, from 0.
-        row: usize,
-        /// The column, from 0.
-        column: usize,
-        /// The entry there.
-        entry: f64,
-        /// The entry with row and column exchanged.
-        mirrored: f64,
     },
     /// Some deformation has a negative energy.
     #[error(
@@ -119,89 +93,6 @@ pub enum ModesError {
     Ell {
         /// Its value.
         value: f64,
-    },
-    /// A solid without elements.
-    #[error("the solid has no element: a body needs at least one tetrahedron or cube")]
-    NoElements,
-    /// Numbers of materials that do not fit the elements.
-    #[error(
-        "{found} material numbers for {elements} elements: each element needs one, of a material that is there"
-    )]
-    ElementMaterials {
-        /// Number of elements.
-        elements: usize,
-        /// Number of material numbers.
-        found: usize,
-    },
-    /// An element of a vertex that is not there.
-    #[error("an element names vertex {index} (counted from 0), but there are {vertices}")]
-    ElementIndex {
-        /// The vertex, from 0.
-        index: u32,
-        /// Number of vertices.
-        vertices: usize,
-    },
-    /// A vertex that no element holds: it has neither mass nor stiffness.
-    #[error("vertex {vertex} (counted from 0) of the solid belongs to no element: remove it")]
-    OrphanVertex {
-        /// The vertex, from 0.
-        vertex: usize,
-    },
-    /// A vertex out of range.
-    #[error(
-        "vertex {vertex} (counted from 0) of the solid has a coordinate that is not finite or beyond 2^200"
-    )]
-    SolidVertex {
-        /// The vertex, from 0.
-        vertex: usize,
-    },
-    /// A tetrahedron without volume.
-    #[error(
-        "tetrahedron {tet} (counted from 0, vertices {corners:?}) is flat: mesh the solid anew, or remove it"
-    )]
-    FlatTet {
-        /// The tetrahedron, from 0.
-        tet: usize,
-        /// Its vertices.
-        corners: [u32; 4],
-    },
-    /// A tetrahedron that is turned the other way than most.
-    #[error(
-        "tetrahedron {tet} (counted from 0, vertices {corners:?}) is inverted, one of {count}: exchange two of its vertices, or mesh the solid anew"
-    )]
-    InvertedTet {
-        /// The tetrahedron, from 0.
-        tet: usize,
-        /// Its vertices.
-        corners: [u32; 4],
-        /// How many are inverted.
-        count: usize,
-    },
-    /// A cube that is flat or turned inside out somewhere.
-    #[error(
-        "cube {cube} (counted from 0) is flat or inverted at a corner: its corners go around its lower face, then around its upper one"
-    )]
-    InvertedCube {
-        /// The cube, from 0.
-        cube: usize,
-    },
-    /// A face of more than two elements.
-    #[error(
-        "the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew"
-    )]
-    OverlappingElements {
-        /// Its vertices.
-        face: Vec<u32>,
-    },
-    /// A material that does not exist.
-    #[error("{what} is {value:e}: it must be {range}")]
-    Material {
-        /// Which number.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it may be.
-        range: &'static str,
     },
     /// A fixed vertex that is not there.
     #[error("vertex {vertex} (counted from 0) cannot be fixed: the solid has {vertices} vertices")]
@@ -361,6 +252,9 @@ pub enum ModesError {
         /// Components there are.
         available: usize,
     },
+    /// The solid or the stiffness is none.
+    #[error(transparent)]
+    Solid(#[from] sscc_solid::SolidError),
     /// The core refused the modes or the metric: a number is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),

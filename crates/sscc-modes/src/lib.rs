@@ -31,34 +31,30 @@
 //! do.
 
 mod body;
-mod boundary;
+mod cancel;
 mod diagonalize;
 mod eigen;
 mod elasticity;
 mod embedded;
 mod energy;
 mod error;
+mod frequencies;
 mod lattice;
-mod mass;
 mod nonlinear;
 mod orthonormal;
 mod pca;
 mod polynomial;
 pub mod shapes;
-mod solid;
 mod sparse;
 mod stiffness;
 mod vibration;
 
-pub use boundary::{Boundary, tets_within};
-pub use diagonalize::{Diagonalized, diagonalize, symmetric_eigenvalues};
-pub use elasticity::ReducedForces;
+pub use diagonalize::{Diagonalized, diagonalize, stiffness_eigenvalues};
 pub use embedded::Embedded;
 pub use energy::{DEFAULT_ELL, energy_metric, filter_eigenvalues};
 pub use error::ModesError;
-pub use mass::MassProperties;
+pub use frequencies::{mode_frequencies, natural_frequencies};
 pub use pca::{Pca, pca_modes};
 pub use polynomial::polynomial_modes;
-pub use solid::{Material, Solid};
 pub use stiffness::reduced_stiffness;
-pub use vibration::{SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};
+pub use vibration::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};

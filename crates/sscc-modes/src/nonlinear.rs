@@ -7,10 +7,11 @@
 //! that amplitude moves some vertex by a fifth of the body's diagonal.
 
 use faer::Mat;
-use sscc::{Error, Progress};
+use sscc::Progress;
 
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
+use crate::cancel::check_cancelled;
 use crate::eigen::Lowest;
 use crate::eigen::tall::{inner, product};
 use crate::elasticity::second_derivatives;
@@ -74,9 +75,7 @@ fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i..count).map(move |j| (i, j))).collect();
     let mut all = Mat::zeros(lowest.vectors.nrows(), pairs.len());
     for (batch, some) in pairs.chunks(BATCH).enumerate() {
-        if progress.is_cancelled() {
-            return Err(Error::Cancelled.into());
-        }
+        check_cancelled(progress)?;
         let mut right = Mat::zeros(all.nrows(), some.len());
         for (k, force) in second_derivatives(body.solid, &fields, some).iter().enumerate() {
             let force = body.on_free(force);

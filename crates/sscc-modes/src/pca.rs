@@ -6,6 +6,7 @@ use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh, limits};
 
 use crate::ModesError;
+use crate::cancel::check_cancelled;
 use crate::diagonalize::eigen;
 
 /// Without a rank, as many components as explain this share of the variance.
@@ -151,10 +152,6 @@ fn components(
     let reach = used.iter().fold(0.0_f64, |m, v| m.max(mean[*v as usize].abs().max_element()));
     let rounding = f64::EPSILON * reach;
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
-}
-
-fn check_cancelled(progress: &dyn Progress) -> Result<(), ModesError> {
-    if progress.is_cancelled() { Err(sscc::Error::Cancelled.into()) } else { Ok(()) }
 }
 
 /// How many of the largest variances it takes to explain so much.

@@ -1,14 +1,11 @@
 //! Reduced stiffness matrices `K~ = U'KU` (paper, section 6).
 
-use sscc::{Modes, limits};
+use sscc::Modes;
+use sscc_solid::Stiffness;
 
 use crate::ModesError;
 
-/// A matrix is taken for symmetric when mirrored entries differ by at most this share of the largest
-/// entry. Sums over millions of vertices, in any order, leave about 1e-11; mistakes leave far more.
-const SYMMETRY_SHARE: f64 = 1e-9;
-
-/// The reduced stiffness matrix `U'KU` (r x r, row-major, exactly symmetric) of a stiffness matrix `K`
+/// The reduced stiffness matrix `U'KU` (exactly symmetric) of a stiffness matrix `K`
 /// (3V x 3V, force per length) that is given by what it does: `apply(u, force)` is handed a displacement
 /// `u` (3V, vertex by vertex) and overwrites `force` (3V) with `K u`.
 ///
@@ -26,16 +23,16 @@ const SYMMETRY_SHARE: f64 = 1e-9;
 ///     force[0] = 5.0 * (u[0] - u[3]);
 ///     force[3] = -force[0];
 /// })?;
-/// assert_eq!(stiffness, [0.0, 0.0, 0.0, 5.0]);
+/// assert_eq!(stiffness.entries(), [0.0, 0.0, 0.0, 5.0]);
 /// # Ok::<(), sscc_modes::ModesError>(())
 /// ```
 ///
 /// # Errors
-/// As [`diagonalize`](crate::diagonalize) for the entries and the symmetry of `U'KU`.
+/// When `U'KU` is not finite, beyond 2^200 or not symmetric: see [`Stiffness::new`].
 pub fn reduced_stiffness(
     modes: &Modes,
     mut apply: impl FnMut(&[f64], &mut [f64]),
-) -> Result<Vec<f64>, ModesError> {
+) -> Result<Stiffness, ModesError> {
     let rank = modes.rank();
     let mut displacement = vec![0.0; 3 * modes.vertices()];
     let mut force = displacement.clone();
@@ -51,32 +48,6 @@ pub fn reduced_stiffness(
             }
         }
     }
-    symmetrised(rank, &stiffness)
-}
-
-/// The mean of a matrix (row-major) and its mirror image.
-///
-/// # Errors
-/// When it is not rank x rank, an entry is out of range, or the two differ by more than rounding.
-pub(crate) fn symmetrised(rank: usize, matrix: &[f64]) -> Result<Vec<f64>, ModesError> {
-    if rank.checked_mul(rank) != Some(matrix.len()) {
-        return Err(ModesError::StiffnessLength { found: matrix.len(), rank });
-    }
-    if let Some(at) = matrix.iter().position(|x| x.is_nan() || x.abs() > limits::LARGEST) {
-        return Err(ModesError::StiffnessEntry { row: at / rank, column: at % rank, value: matrix[at] });
-    }
-    let largest = matrix.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let mut mean = matrix.to_vec();
-    for row in 0..rank {
-        for column in 0..row {
-            let [entry, mirrored] = [matrix[row * rank + column], matrix[column * rank + row]];
-            if (entry - mirrored).abs() > SYMMETRY_SHARE * largest {
-                return Err(ModesError::StiffnessAsymmetric { row, column, entry, mirrored });
-            }
-            let x = (entry + mirrored) / 2.0;
-            mean[row * rank + column] = x;
-            mean[column * rank + row] = x;
-        }
-    }
-    Ok(mean)
+    let mean = Stiffness::new(rank, stiffness)?.symmetrised();
+    Ok(Stiffness::new(rank, mean)?)
 }

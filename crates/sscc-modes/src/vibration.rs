@@ -2,15 +2,15 @@
 
 use faer::Mat;
 use glam::DVec3;
-use sscc::{Modes, Progress, TriMesh};
+use sscc::{Metric, Modes, Progress, TriMesh};
+use sscc_solid::{Elasticity, ReducedForces, Solid, Stiffness};
 
 use crate::body::{Body, whitening};
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
 use crate::eigen::tall::{inner, product};
-use crate::elasticity::{ReducedForces, reduced_forces};
-use crate::nonlinear;
-use crate::{ModesError, Solid};
+use crate::elasticity::reduced_forces;
+use crate::{DEFAULT_ELL, ModesError, energy_metric, filter_eigenvalues, nonlinear};
 
 /// Modes of a solid's vertices in which mass is the identity and the stiffness at rest is diagonal.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,17 +18,33 @@ pub struct SolidModes {
     /// One displacement for each vertex of the solid and each mode; mass-orthonormal (1 / root of mass). Fixed
     /// vertices do not move.
     pub modes: Modes,
-    /// The stiffness of each mode, ascending: its angular frequency (1/s), squared. For linear modes these are natural
-    /// frequencies, for others an upper bound of them.
-    pub eigenvalues: Vec<f64>,
-    /// The forces of large deformations; none for linear modes, whose force is `eigenvalue q`.
-    pub forces: Option<ReducedForces>,
+    /// The elastic forces. The stiffness at rest is diagonal.
+    pub elasticity: Elasticity,
 }
 
 impl SolidModes {
+    /// The stiffness of each mode, ascending: its angular frequency (1/s), squared. For linear modes these are natural
+    /// frequencies, for others an upper bound of them.
+    pub fn eigenvalues(&self) -> Vec<f64> {
+        self.elasticity.stiffness().diagonal().collect()
+    }
+
     /// Frequencies (Hz, if the material is in SI units).
     pub fn frequencies(&self) -> Vec<f64> {
-        self.eigenvalues.iter().map(|x| x.sqrt() / std::f64::consts::TAU).collect()
+        self.eigenvalues().iter().map(|x| x.sqrt() / std::f64::consts::TAU).collect()
+    }
+
+    /// Strain energy as the metric of a model with these modes (paper, section 6). Natural frequencies are weighted as
+    /// they are; those of other modes may be very high, and are filtered.
+    ///
+    /// # Errors
+    /// When an eigenvalue is negative or so small that its half is 0.
+    pub fn energy_metric(&self) -> Result<Metric, ModesError> {
+        let eigenvalues = self.eigenvalues();
+        match self.elasticity {
+            Elasticity::Linear(_) => energy_metric(&eigenvalues),
+            Elasticity::Nonlinear(_) => energy_metric(&filter_eigenvalues(&eigenvalues, DEFAULT_ELL)?),
+        }
     }
 }
 
@@ -49,7 +65,8 @@ pub fn linear_modes(
     let body = Body::new(solid, fixed)?;
     let lowest = body.lowest(rank, progress)?;
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
-    Ok(SolidModes { modes: from_columns(&columns)?, eigenvalues: lowest.eigenvalues, forces: None })
+    let elasticity = Elasticity::Linear(Stiffness::from_diagonal(&lowest.eigenvalues)?);
+    Ok(SolidModes { modes: from_columns(&columns)?, elasticity })
 }
 
 /// A basis of rank `rank` for large deformations, with its reduced St. Venant-Kirchhoff forces (Barbic and James 2005;
@@ -80,13 +97,21 @@ pub fn nonlinear_modes(
     let vectors = product(basis.as_ref(), turn.as_ref());
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
     let modes = from_columns(&columns)?;
-    let forces = Some(reduced_forces(solid, &modes, progress)?);
-    Ok(SolidModes { modes, eigenvalues, forces })
+    let forces = reduced_forces(solid, &modes, progress)?;
+    Ok(SolidModes { modes, elasticity: nonlinear_elasticity(forces, &eigenvalues)? })
 }
 
-/// The quadratic polynomial modes of a free solid (paper, section 7), rotated such that mass is the identity and the
-/// stiffness diagonal (section 6): those of the solid's vertices, with their forces, and those of the vertices of a
-/// surface that moves with it. Rigid motions are left out: 24 modes remain, fewer for small solids.
+/// Polynomial modes of a solid and of a surface that moves with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolynomialModes {
+    /// Those of the solid's vertices, with their forces.
+    pub solid: SolidModes,
+    /// The same modes for the vertices of the surface.
+    pub surface: Modes,
+}
+
+/// The quadratic polynomial modes of a free solid and of a surface that moves with it (paper, section 7), rotated such
+/// that mass is the identity and the stiffness diagonal (section 6). Rigid motions are left out: 24 modes remain, fewer for small solids.
 ///
 /// # Errors
 /// As [`linear_modes`].
@@ -94,7 +119,7 @@ pub fn polynomial_solid_modes(
     solid: &Solid,
     surface: &TriMesh,
     progress: &dyn Progress,
-) -> Result<(SolidModes, Modes), ModesError> {
+) -> Result<PolynomialModes, ModesError> {
     let body = Body::new(solid, &[])?;
     let vertices = solid.vertices();
     let low = vertices.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
@@ -114,9 +139,15 @@ pub fn polynomial_solid_modes(
         let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
         from_columns(&(0..turn.ncols()).map(column).collect::<Vec<_>>())
     };
-    let (modes, of_surface) = (on(vertices)?, on(surface.rest_positions())?);
-    let forces = Some(reduced_forces(solid, &modes, progress)?);
-    Ok((SolidModes { modes, eigenvalues, forces }, of_surface))
+    let (modes, surface) = (on(vertices)?, on(surface.rest_positions())?);
+    let forces = reduced_forces(solid, &modes, progress)?;
+    let solid = SolidModes { modes, elasticity: nonlinear_elasticity(forces, &eigenvalues)? };
+    Ok(PolynomialModes { solid, surface })
+}
+
+/// Forces of which the linear part is exactly the diagonal that it is but for rounding.
+fn nonlinear_elasticity(forces: ReducedForces, eigenvalues: &[f64]) -> Result<Elasticity, ModesError> {
+    Ok(Elasticity::Nonlinear(forces.with_linear(Stiffness::from_diagonal(eigenvalues)?)?))
 }
 
 /// The most modes for large deformations: memory grows with the fourth power (the cubic terms) and with the number of
@@ -149,4 +180,38 @@ fn from_columns(columns: &[Vec<DVec3>]) -> Result<Modes, ModesError> {
     let vertices = columns.first().map_or(0, Vec::len);
     let displacements = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
     Ok(Modes::new(columns.len(), displacements)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sscc_solid::Material;
+
+    /// A bar of six cubes along x.
+    fn bar() -> Solid {
+        let corner = |at: usize| {
+            DVec3::new((at / 4) as f64, 0.8 * f64::from(u8::from(at % 4 > 1)), [0.0, 0.7][at % 2])
+        };
+        let cube = |k: u32| [0, 4, 6, 2, 1, 5, 7, 3].map(|corner| 4 * k + corner);
+        let (vertices, cubes) = ((0..28).map(corner).collect(), (0..6).map(cube).collect());
+        Solid::uniform(vertices, vec![], cubes, Material::default()).unwrap()
+    }
+
+    #[test]
+    fn the_linear_part_of_reduced_forces_is_the_diagonal_of_the_eigenvalues() {
+        let solid = bar();
+        let surface = solid.boundary().unwrap().mesh;
+        let nonlinear = nonlinear_modes(&solid, &[0, 1, 2, 3], 8, &()).unwrap();
+        let polynomial = polynomial_solid_modes(&solid, &surface, &()).unwrap().solid;
+        for found in [nonlinear, polynomial] {
+            let eigenvalues = found.eigenvalues();
+            let rank = eigenvalues.len();
+            let forces = reduced_forces(&solid, &found.modes, &()).unwrap();
+            for (at, entry) in forces.linear().entries().iter().enumerate() {
+                let expected = if at / rank == at % rank { eigenvalues[at / rank] } else { 0.0 };
+                assert!((entry - expected).abs() < 1e-9 * eigenvalues[rank - 1], "{at}: {entry} {expected}");
+            }
+            assert!(found.elasticity.stiffness().is_diagonal());
+        }
+    }
 }

@@ -6,14 +6,17 @@ mod common;
 mod matrix;
 
 use common::{Random, bumpy};
-use matrix::{diagonal, difference, numbers, product, random_modes, times, transpose, with_spectrum};
+use matrix::{
+    diagonal, difference, numbers, product, random_modes, stiffness, times, transpose, with_spectrum,
+};
 use sscc::{Metric, Modes, ReducedModel};
-use sscc_modes::{Diagonalized, diagonalize, symmetric_eigenvalues};
+use sscc_modes::{Diagonalized, diagonalize, stiffness_eigenvalues};
 
 /// Diagonalizes random modes and checks what holds for every stiffness with these eigenvalues.
-fn check(name: &str, modes: &Modes, stiffness: &[f64], spectrum: &[f64]) -> Diagonalized {
+fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagonalized {
     let n = modes.rank();
-    let found = diagonalize(modes, stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let stiffness = stiffness(n, entries);
+    let found = diagonalize(modes, &stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
     let (q, qt) = (&found.rotation, transpose(n, &found.rotation));
     let largest = spectrum.iter().fold(0.0_f64, |m, x| m.max(*x));
     let tolerance = 1e-12 * largest;
@@ -24,14 +27,14 @@ fn check(name: &str, modes: &Modes, stiffness: &[f64], spectrum: &[f64]) -> Diag
     assert!(found.eigenvalues.is_sorted(), "{name}");
     assert!(found.eigenvalues.iter().all(|x| *x >= 0.0), "{name}");
     assert!(difference(&found.eigenvalues, &spectrum) <= tolerance, "{name}");
-    let alone = symmetric_eigenvalues(n, stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let alone = stiffness_eigenvalues(&stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
     assert!(alone.is_sorted() && difference(&alone, &spectrum) <= tolerance, "{name}");
 
     let identity = diagonal(&vec![1.0; n]);
     assert!(difference(&product(n, &qt, q), &identity) < 1e-12, "{name}: orthogonal");
-    let reduced = product(n, &qt, &product(n, stiffness, q));
+    let reduced = product(n, &qt, &product(n, entries, q));
     assert!(difference(&reduced, &diagonal(&found.eigenvalues)) <= tolerance, "{name}: diagonal");
-    let residual = difference(&product(n, stiffness, q), &product(n, q, &diagonal(&found.eigenvalues)));
+    let residual = difference(&product(n, entries, q), &product(n, q, &diagonal(&found.eigenvalues)));
     assert!(residual <= tolerance, "{name}: residual {residual:e}");
 
     // U' Q' = U: no shape is lost.
@@ -111,14 +114,14 @@ fn rank_60_of_condition_1e10() {
 fn rank_1_and_diagonal_matrices_are_exact() {
     let mut random = Random(4);
     let modes = random_modes(&mut random, 5, 1);
-    let found = diagonalize(&modes, &[7.3]).unwrap();
+    let found = diagonalize(&modes, &stiffness(1, &[7.3])).unwrap();
     assert_eq!(found, Diagonalized { modes, eigenvalues: vec![7.3], rotation: vec![1.0] });
 
     let modes = random_modes(&mut random, 5, 3);
-    let found = diagonalize(&modes, &diagonal(&[3.0, 7.0, 1.0])).unwrap();
+    let found = diagonalize(&modes, &stiffness(3, &diagonal(&[3.0, 7.0, 1.0]))).unwrap();
     assert_eq!(found.eigenvalues, [1.0, 3.0, 7.0]);
     assert_eq!(found.rotation, [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
-    let nothing = diagonalize(&modes, &[0.0; 9]).unwrap();
+    let nothing = diagonalize(&modes, &stiffness(3, &[0.0; 9])).unwrap();
     assert_eq!((nothing.eigenvalues, nothing.rotation), (vec![0.0; 3], diagonal(&[1.0; 3])));
 }
 
@@ -126,11 +129,11 @@ fn rank_1_and_diagonal_matrices_are_exact() {
 fn units_change_nothing_but_the_unit() {
     let mut random = Random(5);
     let modes = random_modes(&mut random, 5, 6);
-    let stiffness = with_spectrum(&mut random, &[0.0, 1.0, 2.0, 2.0, 30.0, 400.0]);
-    let found = diagonalize(&modes, &stiffness).unwrap();
+    let entries = with_spectrum(&mut random, &[0.0, 1.0, 2.0, 2.0, 30.0, 400.0]);
+    let found = diagonalize(&modes, &stiffness(6, &entries)).unwrap();
     for unit in [2.0_f64.powi(-900), 2.0_f64.powi(-300), 2.0_f64.powi(190)] {
-        let scaled: Vec<f64> = stiffness.iter().map(|x| x * unit).collect();
-        let other = diagonalize(&modes, &scaled).unwrap();
+        let scaled: Vec<f64> = entries.iter().map(|x| x * unit).collect();
+        let other = diagonalize(&modes, &stiffness(6, &scaled)).unwrap();
         assert_eq!((&other.modes, &other.rotation), (&found.modes, &found.rotation), "{unit:e}");
         let eigenvalues: Vec<f64> = found.eigenvalues.iter().map(|x| x * unit).collect();
         assert_eq!(other.eigenvalues, eigenvalues, "{unit:e}");
@@ -142,7 +145,8 @@ fn the_same_bits_again() {
     let mut random = Random(6);
     for n in [5, 60, 140] {
         let modes = random_modes(&mut random, 5, n);
-        let stiffness = with_spectrum(&mut random, &(0..n).map(|k| (k / 3) as f64).collect::<Vec<_>>());
+        let entries = with_spectrum(&mut random, &(0..n).map(|k| (k / 3) as f64).collect::<Vec<_>>());
+        let stiffness = stiffness(n, &entries);
         let first = diagonalize(&modes, &stiffness).unwrap();
         std::thread::scope(|scope| {
             let others: Vec<_> =
@@ -154,7 +158,8 @@ fn the_same_bits_again() {
 
 #[test]
 fn equally_large_components_give_the_sign_to_the_first() {
-    let found = diagonalize(&random_modes(&mut Random(7), 2, 2), &[2.0, -1.0, -1.0, 2.0]).unwrap();
+    let found =
+        diagonalize(&random_modes(&mut Random(7), 2, 2), &stiffness(2, &[2.0, -1.0, -1.0, 2.0])).unwrap();
     let half = 0.5_f64.sqrt();
     assert!(difference(&found.rotation, &[half, half, half, -half]) < 1e-15, "{:?}", found.rotation);
 }
@@ -164,8 +169,8 @@ fn positions_stay_where_they_are() {
     let mut random = Random(8);
     let mesh = bumpy(1);
     let modes = random_modes(&mut random, mesh.rest_positions().len(), 12);
-    let stiffness = with_spectrum(&mut random, &[0.0, 0.0, 1.0, 1.0, 1.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1e4, 1e6]);
-    let found = diagonalize(&modes, &stiffness).unwrap();
+    let entries = with_spectrum(&mut random, &[0.0, 0.0, 1.0, 1.0, 1.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1e4, 1e6]);
+    let found = diagonalize(&modes, &stiffness(12, &entries)).unwrap();
     let back = transpose(12, &found.rotation);
     let before = ReducedModel::new(mesh.clone(), modes).unwrap();
     let after = ReducedModel::with_metric(mesh, found.modes, Metric::identity(12)).unwrap();

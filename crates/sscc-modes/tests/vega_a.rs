@@ -3,19 +3,17 @@
 #![allow(clippy::unwrap_used)]
 
 use sscc::Modes;
-use sscc_modes::{ReducedForces, diagonalize};
+use sscc_modes::diagonalize;
 
 #[test]
 fn the_forces_of_vega_a_are_a_gradient() {
     let Some(models) = sscc_testdata::models("the_forces_of_vega_a_are_a_gradient") else { return };
-    let sscc_io::Cubic { rank, linear, quadratic, cubic } =
-        sscc_io::read_cubic(&models.join("vega_A/A.cub")).unwrap();
-    let forces = ReducedForces { rank, linear, quadratic, cubic };
-    assert_eq!(forces.rank, 20);
+    let forces = sscc_io::read_reduced_forces(&models.join("vega_A/A.cub")).unwrap();
+    assert_eq!(forces.rank(), 20);
     assert!(forces.asymmetry() < 1e-12, "{}", forces.asymmetry());
     // Positive definite: all eigenvalues of the linear part are positive.
     let unit = Modes::from_matrix(20, 20, |row, k| f64::from(u8::from(row == k))).unwrap();
-    let eigenvalues = diagonalize(&unit, &forces.linear).unwrap().eigenvalues;
+    let eigenvalues = diagonalize(&unit, forces.linear()).unwrap().eigenvalues;
     assert!(eigenvalues[0] > 0.0, "{eigenvalues:?}");
     // The energy is what the forces say, along a line: its derivative by central differences.
     let q: Vec<f64> = (0..20).map(|k| 0.01 * f64::from(k % 7 - 3)).collect();

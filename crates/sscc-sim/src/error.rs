@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use sscc_dynamics::DynamicsError;
 use sscc_io::IoError;
 use sscc_modes::ModesError;
+use sscc_solid::{MaterialError, SolidError};
 
 /// The result of a function of this crate.
 pub(crate) type Result<T, E = SimError> = std::result::Result<T, E>;
@@ -21,6 +22,9 @@ pub enum SimError {
     /// No modes could be made.
     #[error(transparent)]
     Modes(#[from] ModesError),
+    /// A solid or its material was refused.
+    #[error(transparent)]
+    Solid(#[from] SolidError),
     /// A world of bodies was refused.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
@@ -143,6 +147,12 @@ impl SimError {
 
 fn in_parentheses(error: &Option<Box<SimError>>) -> String {
     error.as_ref().map(|error| format!(" ({error})")).unwrap_or_default()
+}
+
+impl From<MaterialError> for SimError {
+    fn from(error: MaterialError) -> Self {
+        Self::Solid(error.into())
+    }
 }
 
 /// Adds the place to errors; a cancellation stays as it is.

@@ -30,9 +30,8 @@ mod watch;
 pub use error::SimError;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
-    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIALS_ARE_FREE, RequestedMaterial, SolidFacts,
-    SolidSource, elastic_model, elasticity, frequencies, frequencies_of_modes, has_equal_vertices, is_solid,
-    pca_model, polynomial_model,
+    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIALS_ARE_FREE, SolidFacts, SolidSource,
+    elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model,
 };
 pub use nearest::nearest;
 pub use outputs::{Outputs, SoundTrack};

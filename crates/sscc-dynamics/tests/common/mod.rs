@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
 use sscc::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
-use sscc_dynamics::{Elasticity, Shape};
-use sscc_modes::{MassProperties, Material, Solid, energy_metric, linear_modes, nonlinear_modes};
+use sscc_dynamics::Shape;
+use sscc_modes::{energy_metric, linear_modes, nonlinear_modes};
+use sscc_solid::{Elasticity, MassProperties, Material, Solid, Stiffness};
 
 pub fn certified(model: &ReducedModel) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default(), &()).unwrap()
@@ -26,7 +27,8 @@ pub fn rigid(mesh: TriMesh, mass: f64) -> Shape {
     let model = ReducedModel::new(mesh, modes).unwrap();
     let certificates = certified(&model);
     let mass = MassProperties { mass, center, inertia };
-    Shape::new(model, certificates, Elasticity::Linear(vec![1.0]), mass).unwrap()
+    let elasticity = Elasticity::Linear(Stiffness::from_diagonal(&[1.0]).unwrap());
+    Shape::new(model, certificates, elasticity, mass).unwrap()
 }
 
 /// Six vertices, a corner at the bottom.
@@ -81,13 +83,11 @@ pub fn elastic(solid: &Solid, rank: usize, large: bool, fixed: &[u32]) -> Shape 
         if large { nonlinear_modes(solid, fixed, rank, &()) } else { linear_modes(solid, fixed, rank, &()) };
     let found = found.unwrap();
     let boundary = solid.boundary().unwrap();
-    let of_boundary = boundary.vertices.iter().flat_map(|v| found.modes.of_vertex(*v).to_vec()).collect();
-    let modes = Modes::new(rank, of_boundary).unwrap();
-    let metric = energy_metric(&found.eigenvalues).unwrap();
+    let modes = boundary.on_surface(&found.modes).unwrap();
+    let metric = energy_metric(&found.eigenvalues()).unwrap();
     let model = ReducedModel::with_metric(boundary.mesh, modes, metric).unwrap();
     let certificates = certified(&model);
-    let elasticity = found.forces.map_or(Elasticity::Linear(found.eigenvalues), Elasticity::Nonlinear);
     let moments = solid.mode_moments(&found.modes).unwrap();
-    let shape = Shape::new(model, certificates, elasticity, solid.mass_properties()).unwrap();
+    let shape = Shape::new(model, certificates, found.elasticity, solid.mass_properties()).unwrap();
     shape.with_moments(moments).unwrap()
 }

@@ -18,7 +18,6 @@ mod writer;
 pub use certificates::{
     certificates_from_bytes, certificates_to_bytes, read_certificates, write_certificates,
 };
-pub use elasticity::Elasticity;
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
 pub use sealed::Sealed;

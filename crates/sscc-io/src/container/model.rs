@@ -19,8 +19,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::{Modes, ReducedModel, TriMesh};
+use sscc_solid::Elasticity;
 
-use super::{ANY, Elasticity, MODEL, Sealed, SealedWriter, elasticity, metric};
+use super::{ANY, MODEL, Sealed, SealedWriter, elasticity, metric};
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError};
 
@@ -52,8 +53,7 @@ impl ModelInfo {
 /// Writes a model. Reading it back gives the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, the elastic forces are of another rank, out of range or not symmetric, or the file
-/// cannot be written.
+/// When the texts are beyond 1 MiB, the elastic forces are of another rank, or the file cannot be written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -69,7 +69,7 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// The bytes of a model file.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, or the elastic forces are of another rank, out of range or not symmetric.
+/// When the texts are beyond 1 MiB, or the elastic forces are of another rank.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());

@@ -17,6 +17,15 @@ use sscc::ReducedModel;
 
 use crate::{IoError, write_whole};
 
+/// A model with the name of its mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct NamedModel<'a> {
+    /// The name.
+    pub name: &'a str,
+    /// The model.
+    pub model: &'a ReducedModel,
+}
+
 /// How one body moves: one entry for each key frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
@@ -41,7 +50,7 @@ pub struct Track {
 /// when the file would have more than 4 GiB, or cannot be written.
 pub fn write_animation(
     path: &Path,
-    models: &[(&str, &ReducedModel)],
+    models: &[NamedModel<'_>],
     times: &[f64],
     tracks: &[Track],
 ) -> Result<(), IoError> {
@@ -75,14 +84,14 @@ pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
 /// # Errors
 /// As [`write_animation`]: one line without a file's name.
 pub fn animation_to_bytes(
-    models: &[(&str, &ReducedModel)],
+    models: &[NamedModel<'_>],
     times: &[f64],
     tracks: &[Track],
 ) -> Result<Vec<u8>, String> {
     check(models, times, tracks)?;
     let mut file = File::default();
     let meshes: Vec<Value> =
-        models.iter().map(|(name, model)| file.mesh(name, model)).collect::<Result<_, _>>()?;
+        models.iter().map(|named| file.mesh(named.name, named.model)).collect::<Result<_, _>>()?;
     let input = file.accessor(SCALAR, times, None)?;
     let mut nodes = Vec::new();
     let [mut motion, mut least, mut greatest] =
@@ -99,7 +108,7 @@ pub fn animation_to_bytes(
         for (node, path, output) in outputs {
             motion.push(node, path, input, output);
         }
-        let rank = models[track.model].1.rank();
+        let rank = models[track.model].model.rank();
         for (animation, pick) in
             [(&mut least, f64::min as fn(f64, f64) -> f64), (&mut greatest, f64::max as fn(f64, f64) -> f64)]
         {
@@ -157,7 +166,7 @@ impl Animation {
     }
 }
 
-fn check(models: &[(&str, &ReducedModel)], times: &[f64], tracks: &[Track]) -> Result<(), String> {
+fn check(models: &[NamedModel<'_>], times: &[f64], tracks: &[Track]) -> Result<(), String> {
     if times.is_empty() || tracks.is_empty() {
         return Err("an animation needs a key frame and a body".into());
     }
@@ -166,7 +175,7 @@ fn check(models: &[(&str, &ReducedModel)], times: &[f64], tracks: &[Track]) -> R
         return Err(format!("key frame {} is not after the one before it", at + 1));
     }
     for Track { name, model, positions, orientations, weights, .. } in tracks {
-        let Some((_, model)) = models.get(*model) else {
+        let Some(NamedModel { model, .. }) = models.get(*model) else {
             return Err(format!("body {name} is of model {model}, but there are {}", models.len()));
         };
         let [n, rank] = [times.len(), model.rank()];

@@ -26,7 +26,7 @@ use self::buffers::Buffers;
 use self::json::Root;
 use crate::{FormatError, IoError, read_whole};
 
-pub use animation::{Track, animation_to_bytes, key_frames, write_animation};
+pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
 pub use morph::{MorphModel, PrimitiveRange};
 pub use select::MeshInfo;
 

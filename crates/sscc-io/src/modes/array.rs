@@ -2,7 +2,7 @@
 
 use sscc::Modes;
 
-use super::other_mesh;
+use super::other_mesh::other_mesh;
 use crate::FormatError;
 use crate::npy::Array;
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use sscc::{Modes, TriMesh, limits};
 
+use super::named_modes::NamedModes;
 use crate::mesh::{is_mesh_name, read_soup};
 use crate::{FormatError, IoError};
 
@@ -23,7 +24,7 @@ const MOST: usize = 10_000;
 /// When the folder cannot be read or has no mesh in it, or more than 10,000; when a target cannot be read, has
 /// another number of vertices, has faces that differ from the neutral ones (it may have none), or a
 /// coordinate that is not finite or too large.
-pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<(Modes, Vec<String>), IoError> {
+pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
     // The same file by another name (links, `..`) is the neutral one all the same.
     let paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
@@ -39,7 +40,7 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<(Mo
     let by_vertex = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
     let modes = Modes::new(columns.len(), by_vertex).map_err(|error| request(error.to_string()))?;
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok((modes, paths.iter().map(name).collect()))
+    Ok(NamedModes { modes, names: paths.iter().map(name).collect() })
 }
 
 /// The mesh files of a folder but for the neutral one (its canonical path), sorted; at least one. They are called
@@ -117,13 +118,13 @@ mod tests {
         fs::create_dir(folder.join("folder.obj")).unwrap();
         let path = folder.join("neutral.obj");
         let mesh = crate::read_mesh(&path).unwrap();
-        let (modes, names) = read(folder, &mesh, &path).unwrap();
+        let NamedModes { modes, names } = read(folder, &mesh, &path).unwrap();
         assert_eq!(names, ["10", "B", "b"]);
         assert_eq!(modes.of_vertex(0), [DVec3::ZERO; 3]);
         assert_eq!(modes.of_vertex(1), [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0]);
 
         // From elsewhere the neutral mesh is a target like any other.
-        let (modes, names) = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
+        let NamedModes { modes, names } = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
         assert_eq!((modes.rank(), names[3].as_str()), (4, "neutral"));
     }
 

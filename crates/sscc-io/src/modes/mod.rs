@@ -4,38 +4,23 @@
 pub mod array;
 pub mod folder;
 mod frames;
+mod named_modes;
+mod other_mesh;
 pub mod vega;
 
 use std::path::Path;
 
-use sscc::{Modes, TriMesh};
+use sscc::Modes;
 
+use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
-use crate::{FormatError, IoError, npz};
 
 pub use frames::{Frames, read_frames};
+pub use named_modes::NamedModes;
 
-/// What [`read_modes_for`] knows. Of these, [`read_modes`] reads those that need no mesh.
+/// What [`read_modes_for`](crate::read_modes_for) reads. Of these, [`read_modes`] reads those that need no mesh.
 const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32); \
                          with their mesh also .npz and a folder of target meshes";
-
-/// Reads the modes of a mesh, with names where the files have some (r, else none): as [`read_modes`], and also
-/// from a `.npz` archive ([`npz`]) or a folder of target meshes ([`folder`]). `mesh_path` is the mesh's own file.
-///
-/// # Errors
-/// As [`read_modes`], [`npz::parse_modes`] and [`folder::read`].
-pub fn read_modes_for(
-    path: &Path,
-    mesh: &TriMesh,
-    mesh_path: &Path,
-) -> Result<(Modes, Vec<String>), IoError> {
-    let modes = match ending(path).as_str() {
-        _ if path.is_dir() => return folder::read(path, mesh, mesh_path),
-        "npz" => npz::parse_modes(&read_whole(path)?, mesh).map_err(|error| error.of(path)),
-        _ => read_modes(path, mesh.rest_positions().len()),
-    };
-    Ok((modes?, Vec::new()))
-}
 
 /// Reads the modes of a mesh with that many vertices (unused ones included); the format goes by the file
 /// name's ending, in any case: `.npy` ([`mod@array`]), or a VegaFEM modal matrix ([`vega`]).
@@ -53,15 +38,6 @@ pub fn read_modes(path: &Path, vertices: usize) -> Result<Modes, IoError> {
         _ => return Err(unsupported(path, "modes", SUPPORTED)),
     };
     parse(&read_whole(path)?, vertices).map_err(|error| error.of(path))
-}
-
-/// The refusal of modes that have `rows` rows (3 for each vertex).
-fn other_mesh(rows: usize, vertices: usize) -> FormatError {
-    let of = match rows % 3 {
-        0 => format!("{} vertices", rows / 3),
-        _ => format!("{rows} rows (no multiple of 3)"),
-    };
-    FormatError::whole(format!("the modes are for {of}, the mesh has {vertices}: are they of another mesh?"))
 }
 
 #[cfg(test)]

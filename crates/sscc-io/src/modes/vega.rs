@@ -5,7 +5,7 @@
 
 use sscc::Modes;
 
-use super::other_mesh;
+use super::other_mesh::other_mesh;
 use crate::{FormatError, Place};
 
 /// The type of the entries, which goes by the file's name.

@@ -32,13 +32,23 @@ use crate::{FormatError, IoError, read_whole};
 
 pub use write::{NamedArray, write_npz};
 
-/// Reads a complete model: mesh, modes, and the numbers that the file has for each mode (r, such as
-/// variances), if any. Their meaning depends on the name; they are handed on as they are.
+/// A model from an archive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NpzModel {
+    /// The mesh.
+    pub mesh: TriMesh,
+    /// Its modes.
+    pub modes: Modes,
+    /// The numbers that the file has for each mode (r), such as variances. Their meaning depends on the array's name.
+    pub weights: Option<Vec<f64>>,
+}
+
+/// Reads a complete model.
 ///
 /// # Errors
 /// When the file cannot be read, is no archive, is damaged or too large when unpacked; when the mean, the modes or
 /// the faces are missing, or have another type or shape than the table says; when a face names no vertex.
-pub fn read_npz_model(path: &Path) -> Result<(TriMesh, Modes, Option<Vec<f64>>), IoError> {
+pub fn read_npz_model(path: &Path) -> Result<NpzModel, IoError> {
     parse_model(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
@@ -46,13 +56,13 @@ pub fn read_npz_model(path: &Path) -> Result<(TriMesh, Modes, Option<Vec<f64>>),
 ///
 /// # Errors
 /// As [`read_npz_model`], but for the file's name.
-pub fn parse_model(bytes: &[u8]) -> Result<(TriMesh, Modes, Option<Vec<f64>>), FormatError> {
+pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     let all = [Part::Mean, Part::Modes, Part::Components, Part::Faces, Part::Weights];
     let parts = Parts::read(bytes, &all)?;
     let mesh = parts.mesh()?;
     let modes = parts.modes(mesh.rest_positions().len())?;
     let weights = parts.weights(modes.rank())?;
-    Ok((mesh, modes, weights))
+    Ok(NpzModel { mesh, modes, weights })
 }
 
 /// Parses the modes for a mesh; faces and other arrays are skipped. When the archive has a mean, it must be the

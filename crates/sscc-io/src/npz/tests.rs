@@ -65,19 +65,20 @@ fn message(entries: &[(&str, Vec<u8>)]) -> String {
 
 #[test]
 fn stored_and_deflated() {
-    let (mesh, modes, weights) = parse_model(&stored(&good())).unwrap();
+    let model = parse_model(&stored(&good())).unwrap();
+    let NpzModel { mesh, modes, weights } = &model;
     assert_eq!(mesh.faces(), [[0, 1, 2], [3, 2, 1]]);
     assert_eq!(mesh.rest_positions()[1], DVec3::new(3.0, 4.0, 5.0));
     assert_eq!(modes.of_vertex(1)[1], DVec3::new(7.0, 9.0, 11.0));
-    assert_eq!(weights, None);
+    assert_eq!(*weights, None);
     let deflated = archive(&good(), CompressionMethod::Deflated);
-    assert_eq!(parse_model(&deflated).unwrap(), (mesh.clone(), modes.clone(), None));
-    assert_eq!(parse_modes(&deflated, &mesh).unwrap(), modes);
+    assert_eq!(parse_model(&deflated).unwrap(), model);
+    assert_eq!(parse_modes(&deflated, mesh).unwrap(), *modes);
 }
 
 #[test]
 fn all_names_and_shapes() {
-    let (mesh, modes, _) = parse_model(&stored(&good())).unwrap();
+    let model = parse_model(&stored(&good())).unwrap();
     for mean in ["mean", "mean_", "vertices", "v_template", "rest_positions"] {
         for (basis, shape) in [("shapedirs", &[4, 3, 2][..]), ("U", &[12, 2]), ("basis", &[12, 2])] {
             for (f, descr) in
@@ -89,7 +90,7 @@ fn all_names_and_shapes() {
                     (f, faces(descr, &[0, 1, 2, 3, 2, 1])),
                     ("weights", numbers(&[4, 24])),
                 ];
-                assert_eq!(parse_model(&stored(&entries)).unwrap(), (mesh.clone(), modes.clone(), None));
+                assert_eq!(parse_model(&stored(&entries)).unwrap(), model);
             }
         }
     }
@@ -97,12 +98,12 @@ fn all_names_and_shapes() {
         for shape in [&[2, 12][..], &[2, 4, 3]] {
             let entries =
                 [("mean", numbers(&[4, 3])), (name, numbers(shape)), ("f", faces("<i4", &[0, 1, 2]))];
-            let (_, modes, _) = parse_model(&stored(&entries)).unwrap();
+            let modes = parse_model(&stored(&entries)).unwrap().modes;
             assert_eq!((modes.rank(), modes.of_vertex(1)[1]), (2, DVec3::new(15.0, 16.0, 17.0)));
         }
     }
     for name in ["weights", "explained_variance", "explained_variance_", "eigenvalues"] {
-        let (_, _, weights) = parse_model(&stored(&with(name, numbers(&[2])))).unwrap();
+        let weights = parse_model(&stored(&with(name, numbers(&[2])))).unwrap().weights;
         assert_eq!(weights, Some(vec![0.0, 1.0]));
     }
 }
@@ -152,7 +153,7 @@ fn what_does_not_fit_is_named() {
 
 #[test]
 fn modes_of_another_mesh_are_refused() {
-    let (mesh, modes, _) = parse_model(&stored(&good())).unwrap();
+    let NpzModel { mesh, modes, .. } = parse_model(&stored(&good())).unwrap();
     let alone = stored(&good()[1..2]);
     assert_eq!(parse_modes(&alone, &mesh).unwrap(), modes);
     let moved = |by: f64| {

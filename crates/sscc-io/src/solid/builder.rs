@@ -1,16 +1,19 @@
-//! A solid in the making: what all formats check alike.
+//! A volumetric mesh in the making: the checks that name a place in the file, for all formats.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use sscc_solid::{NamedMaterial, VolumeMesh, VolumeMeshParts};
 
-use super::{DEFAULT, Material, Solid};
 use crate::{FormatError, Place};
+
+/// The name of the material of elements about which the file says nothing.
+const DEFAULT: &str = "default";
 
 /// Vertices and elements read so far. Elements may come before the vertices they name, so indices are checked at
 /// the end.
 pub(super) struct Builder {
-    solid: Solid,
+    parts: VolumeMeshParts,
     cube_material: Vec<u32>,
     by_name: BTreeMap<String, u32>,
     /// The largest index, from 0, and where it is.
@@ -21,23 +24,28 @@ pub(super) struct Builder {
 
 impl Builder {
     pub fn new(first: u64) -> Self {
-        let (solid, cube_material, by_name) = (Solid::default(), Vec::new(), BTreeMap::new());
-        Self { solid, cube_material, by_name, largest: None, first }
+        Self {
+            parts: VolumeMeshParts::default(),
+            cube_material: Vec::new(),
+            by_name: BTreeMap::new(),
+            largest: None,
+            first,
+        }
     }
 
     pub fn vertices(&self) -> usize {
-        self.solid.vertices.len()
+        self.parts.vertices.len()
     }
 
     pub fn elements(&self) -> usize {
-        self.solid.tets.len() + self.solid.cubes.len()
+        self.parts.tets.len() + self.parts.cubes.len()
     }
 
     pub fn vertex(&mut self, position: DVec3, place: Place) -> Result<(), FormatError> {
         if !sscc::limits::contains(position) {
             return Err(FormatError::new(place, "a coordinate is larger than 2^200 or not finite"));
         }
-        self.solid.vertices.push(position);
+        self.parts.vertices.push(position);
         Ok(())
     }
 
@@ -46,9 +54,9 @@ impl Builder {
         if let Some(known) = self.by_name.get(name) {
             return *known;
         }
-        let index = self.solid.materials.len() as u32;
+        let index = self.parts.materials.len() as u32;
         self.by_name.insert(name.to_owned(), index);
-        self.solid.materials.push(Material::named(name));
+        self.parts.materials.push(NamedMaterial { name: name.to_owned(), ..NamedMaterial::default() });
         index
     }
 
@@ -60,15 +68,15 @@ impl Builder {
     /// Adds a tetrahedron; corners from 0.
     pub fn tet(&mut self, corners: [u64; 4], material: u32, place: Place) -> Result<(), FormatError> {
         self.check(&corners, place)?;
-        self.solid.tets.push(corners.map(|c| c as u32));
-        self.solid.element_material.push(material);
+        self.parts.tets.push(corners.map(|c| c as u32));
+        self.parts.element_material.push(material);
         Ok(())
     }
 
     /// Adds a cube; corners from 0.
     pub fn cube(&mut self, corners: [u64; 8], material: u32, place: Place) -> Result<(), FormatError> {
         self.check(&corners, place)?;
-        self.solid.cubes.push(corners.map(|c| c as u32));
+        self.parts.cubes.push(corners.map(|c| c as u32));
         self.cube_material.push(material);
         Ok(())
     }
@@ -77,7 +85,7 @@ impl Builder {
     pub fn face<const N: usize>(&mut self, corners: [u64; N], place: Place) -> Result<(), FormatError> {
         self.check(&corners, place)?;
         let corners = corners.map(|c| c as u32);
-        self.solid.surface.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
+        self.parts.surface.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
         Ok(())
     }
 
@@ -97,48 +105,19 @@ impl Builder {
         Ok(())
     }
 
-    /// The solid, when all its indices name vertices.
-    pub fn finish(mut self) -> Result<Solid, FormatError> {
-        let there = self.solid.vertices.len();
-        if there == 0 {
-            return Err(FormatError::whole("the mesh has no vertices"));
-        }
-        if u32::try_from(there).is_err() {
-            return Err(FormatError::whole(format!(
-                "{there} vertices are more than 32-bit indices can name"
-            )));
-        }
+    /// The mesh, when all its indices name vertices.
+    pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
+        let there = self.parts.vertices.len();
         match self.largest {
-            Some((index, place)) if index >= there as u64 => {
+            Some((index, place)) if there > 0 && index >= there as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
                 let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
                 return Err(FormatError::new(place, cause));
             }
             _ => {}
         }
-        if self.solid.tets.is_empty() && self.solid.cubes.is_empty() {
-            return Err(FormatError::whole("the mesh has no tetrahedra and no cubes (hexahedra)"));
-        }
-        check_different("tetrahedra", &self.solid.tets)?;
-        check_different("cubes", &self.solid.cubes)?;
-        self.solid.element_material.append(&mut self.cube_material);
-        Ok(self.solid)
-    }
-}
-
-/// Refuses elements that are there twice: they would be twice as stiff. gmsh writes such files in version 2.2, for
-/// volumes in two physical groups.
-fn check_different<const N: usize>(what: &str, elements: &[[u32; N]]) -> Result<(), FormatError> {
-    let mut sorted: Vec<_> = elements.iter().copied().zip(0_usize..).collect();
-    sorted.iter_mut().for_each(|(corners, _)| corners.sort_unstable());
-    sorted.sort_unstable();
-    match sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        Some(pair) => {
-            let (a, b) = (pair[0].1, pair[1].1);
-            let cause = format!("{what} {a} and {b} (counted from 0) have the same corners");
-            Err(FormatError::whole(cause))
-        }
-        None => Ok(()),
+        self.parts.element_material.append(&mut self.cube_material);
+        Ok(VolumeMesh::new(self.parts)?)
     }
 }
 
@@ -188,9 +167,9 @@ mod tests {
         builder.tet([0, 1, 2, 3], b, Place::Whole).unwrap();
         builder.face([0, 1, 2, 3], Place::Whole).unwrap();
         assert_eq!(builder.material("a"), a);
-        let solid = builder.finish().unwrap();
-        assert_eq!((solid.element_material, solid.materials.len()), (vec![b, a], 2));
-        assert_eq!(solid.surface, [[0, 1, 2], [0, 2, 3]]);
+        let mesh = builder.finish().unwrap();
+        assert_eq!((mesh.element_material(), mesh.materials().len()), (&[b, a][..], 2));
+        assert_eq!(mesh.surface(), [[0, 1, 2], [0, 2, 3]]);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, text.
 
 use glam::DVec3;
+use sscc_solid::VolumeMesh;
 
-use super::Solid;
 use super::builder::Builder;
 use super::words::Words;
 use crate::FormatError;
@@ -23,8 +23,8 @@ const REFUSED: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "Pe
 ///
 /// # Errors
 /// When the version or dimension is another, a section is shorter than its count, there are solid elements of
-/// another kind, a section is there twice, something follows `End`, or as [`read_solid`](super::read_solid).
-pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
+/// another kind, a section is there twice, something follows `End`, or as [`read_volume_mesh`](super::read_volume_mesh).
+pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut words = Words::new(bytes, true)?;
     header(&mut words)?;
     let mut builder = Builder::new(1);
@@ -152,16 +152,16 @@ mod tests {
 
     #[test]
     fn sections_in_any_order() {
-        let solid = parse(TETS.as_bytes()).unwrap();
-        assert_eq!((solid.vertices.len(), solid.vertices[4]), (5, DVec3::ONE));
-        assert_eq!((solid.tets, solid.surface), (vec![[0, 1, 2, 3], [1, 2, 3, 4]], vec![[0, 1, 2]]));
-        let names: Vec<_> = solid.materials.iter().map(|m| m.name.as_str()).collect();
-        assert_eq!((names, solid.element_material), (vec!["7", "-1"], vec![0, 1]));
-        let solid = parse(CUBE.as_bytes()).unwrap();
-        assert_eq!(solid.cubes, [[0, 1, 2, 3, 4, 5, 6, 7]]);
-        assert_eq!(solid.vertices[6], DVec3::ONE);
-        assert_eq!(solid.surface, [[0, 3, 2], [0, 2, 1]]);
-        assert_eq!(parse(TETS.replace('\n', "\r\n").as_bytes()).unwrap().vertices.len(), 5);
+        let mesh = parse(TETS.as_bytes()).unwrap();
+        assert_eq!((mesh.vertices().len(), mesh.vertices()[4]), (5, DVec3::ONE));
+        assert_eq!((mesh.tets(), mesh.surface()), (&[[0, 1, 2, 3], [1, 2, 3, 4]][..], &[[0, 1, 2]][..]));
+        let names: Vec<_> = mesh.materials().iter().map(|m| m.name.as_str()).collect();
+        assert_eq!((names, mesh.element_material()), (vec!["7", "-1"], &[0, 1][..]));
+        let mesh = parse(CUBE.as_bytes()).unwrap();
+        assert_eq!(mesh.cubes(), [[0, 1, 2, 3, 4, 5, 6, 7]]);
+        assert_eq!(mesh.vertices()[6], DVec3::ONE);
+        assert_eq!(mesh.surface(), [[0, 3, 2], [0, 2, 1]]);
+        assert_eq!(parse(TETS.replace('\n', "\r\n").as_bytes()).unwrap().vertices().len(), 5);
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
         let enough = TETS.find(" -1\n").unwrap() + 3;
         for len in 0..TETS.len() {
             match parse(&TETS.as_bytes()[..len]) {
-                Ok(solid) => assert!(len >= enough && solid == whole, "{len}"),
+                Ok(mesh) => assert!(len >= enough && mesh == whole, "{len}"),
                 Err(_) => assert!(len < enough || len > enough + 1, "{len}"),
             }
         }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use sscc_solid::VolumeMesh;
 
-use super::Solid;
 use super::builder::Builder;
 use super::statements::{corners, fields, index, position, statements, value};
 use crate::file::{ending, read_whole};
@@ -22,7 +22,7 @@ pub struct Nodes {
 ///
 /// # Errors
 /// When one of them is missing, cannot be read or is malformed.
-pub fn read(path: &Path) -> Result<Solid, IoError> {
+pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let (nodes, elements) = match ending(path).as_str() {
         "ele" => (beside(path, "node")?, path.to_owned()),
         _ => (path.to_owned(), beside(path, "ele")?),
@@ -81,8 +81,8 @@ pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
 ///
 /// # Errors
 /// When elements have 10 nodes, there are more or fewer lines than the header says, an attribute that it promises
-/// is missing, or as [`read_solid`](super::read_solid).
-pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<Solid, FormatError> {
+/// is missing, or as [`read_volume_mesh`](super::read_volume_mesh).
+pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut builder = Builder::new(nodes.first);
     for position in &nodes.positions {
         builder.vertex(*position, Place::Whole)?;
@@ -163,18 +163,18 @@ mod tests {
         "# nodes\n5 3 1 1\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1\n3 0 1 0 0.5 1\n4 0 0 1 0.5 1\n5 1 1 1 0.5 0\n";
     const ELE: &str = "2  4  1\n  1  1 2 3 4  10\n  2  2 3 4 5  20\n# Generated\n";
 
-    fn both(node: &str, ele: &str) -> Result<Solid, String> {
+    fn both(node: &str, ele: &str) -> Result<VolumeMesh, String> {
         let nodes = parse_nodes(node.as_bytes()).map_err(|error| format!("node {error}"))?;
         parse(&nodes, ele.as_bytes()).map_err(|error| format!("ele {error}"))
     }
 
     #[test]
     fn the_first_number_is_0_or_1() {
-        let solid = both(NODE, ELE).unwrap();
-        assert_eq!((solid.vertices.len(), &solid.tets), (5, &vec![[0, 1, 2, 3], [1, 2, 3, 4]]));
-        assert_eq!((solid.materials[1].name.as_str(), &solid.element_material), ("20", &vec![0, 1]));
+        let mesh = both(NODE, ELE).unwrap();
+        assert_eq!((mesh.vertices().len(), mesh.tets()), (5, &[[0, 1, 2, 3], [1, 2, 3, 4]][..]));
+        assert_eq!((mesh.materials()[1].name.as_str(), mesh.element_material()), ("20", &[0, 1][..]));
         let from_0 = both("4\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4 0\n0 0 1 2 3\n").unwrap();
-        assert_eq!((from_0.tets[0], from_0.materials[0].name.as_str()), ([0, 1, 2, 3], "default"));
+        assert_eq!((from_0.tets()[0], from_0.materials()[0].name.as_str()), ([0, 1, 2, 3], "default"));
     }
 
     #[test]
@@ -228,11 +228,11 @@ mod tests {
         std::fs::write(path("a.1.ele"), ELE.replace("5  20", "6 20")).unwrap();
         assert!(read(&path("a.1.node")).unwrap_err().to_string().contains("a.1.ele: line 3: names vertex 6"));
         std::fs::write(path("a.1.ele"), ELE).unwrap();
-        let solid = read(&path("a.1.node")).unwrap();
-        assert_eq!((read(&path("a.1.ele")).unwrap(), solid.tets.len()), (solid.clone(), 2));
+        let mesh = read(&path("a.1.node")).unwrap();
+        assert_eq!((read(&path("a.1.ele")).unwrap(), mesh.tets().len()), (mesh.clone(), 2));
         std::fs::write(path("B.NODE"), NODE).unwrap();
         std::fs::write(path("B.ELE"), ELE).unwrap();
-        assert_eq!(read(&path("B.ELE")).unwrap(), solid);
+        assert_eq!(read(&path("B.ELE")).unwrap(), mesh);
         assert!(read(&path("c.ele")).unwrap_err().to_string().contains("not found"));
     }
 }

@@ -1,13 +1,14 @@
 //! Block Lanczos with thick restarts.
 
 use faer::{Mat, MatRef};
-use sscc::{Error, Progress};
+use sscc::Progress;
 
 use super::basis::Basis;
 use super::dense::symmetric_eigen;
 use super::space::Space;
 use super::tall::{Random, inner};
 use crate::ModesError;
+use crate::cancel::check_cancelled;
 use crate::sparse::Cholesky;
 
 /// Columns of a block. An eigenvalue that is repeated as often, or less, is found at once; cubes have threefold ones,
@@ -71,9 +72,7 @@ pub(super) fn largest(
     let (mut heavy, _) = space.orthonormalise(&mut block, &basis, random).ok_or(ModesError::OutOfRange)?;
     let (mut converged, mut span) = (0, 1.0);
     for _ in 0..STEPS * (1 + wanted / BLOCK) {
-        if progress.is_cancelled() {
-            return Err(Error::Cancelled.into());
-        }
+        check_cancelled(progress)?;
         // The projection is complete on the columns before the block.
         let done = basis.size();
         let size = done + BLOCK;

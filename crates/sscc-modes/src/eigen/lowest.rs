@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use glam::DVec3;
-use sscc::{Error, Progress};
+use sscc::Progress;
 
 use super::count::{Count, count_below_gap};
 use super::dense::all_modes;
@@ -11,6 +11,7 @@ use super::shift::{Shifted, factor_below, factor_shifted, negligible};
 use super::space::Space;
 use super::tall::Random;
 use crate::ModesError;
+use crate::cancel::check_cancelled;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 
 /// Problems of at most so many rows are solved as a whole.
@@ -69,9 +70,7 @@ pub(crate) fn lowest_modes(
     if count > available {
         return Err(ModesError::TooManyModes { asked: count, available });
     }
-    if progress.is_cancelled() {
-        return Err(Error::Cancelled.into());
-    }
+    check_cancelled(progress)?;
     progress.report(0, count);
     let pencil = Pencil { stiffness: k, mass: m, rigid, analysis: Analysis::new(k, positions)? };
     let small = size <= SMALL || LARGE_SHARE * count > size;
@@ -89,7 +88,7 @@ impl Pencil<'_> {
     fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
         self.refuse_mechanisms(&values)?;
-        let Some(lowest) = values.first() else { return Err(Error::RankZero.into()) };
+        let Some(lowest) = values.first() else { return Err(sscc::Error::RankZero.into()) };
         let shifted = factor_below(self.stiffness, self.mass, &self.analysis, self.rigid.ncols(), *lowest)?;
         Ok((values, vectors, shifted))
     }
@@ -120,9 +119,7 @@ impl Pencil<'_> {
             ritz = largest(&operator, ritz, wanted, &mut random, progress, count)?;
             let values: Vec<f64> = ritz.values.iter().map(|theta| 1.0 / theta - shifted.shift).collect();
             self.refuse_mechanisms(&values)?;
-            if progress.is_cancelled() {
-                return Err(Error::Cancelled.into());
-            }
+            check_cancelled(progress)?;
             let counted = count_below_gap(self.stiffness, self.mass, &self.analysis, &values, count)?;
             let Some(Count { found, counted }) = counted else { return Err(self.uncounted(values[0])) };
             let found = found + self.rigid.ncols();

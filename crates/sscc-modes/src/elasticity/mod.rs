@@ -1,12 +1,8 @@
-//! Elasticity of solids: elements, full-space forces, reduced forces.
+//! Elasticity of solids: forces in the full space and their reduction.
 
-mod element;
-mod forces;
 mod reduce;
 mod stvk;
 
-pub(crate) use element::cube_is_inverted;
-pub use forces::ReducedForces;
 pub(crate) use reduce::reduced_forces;
 pub(crate) use stvk::second_derivatives;
 

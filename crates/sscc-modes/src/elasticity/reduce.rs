@@ -8,12 +8,12 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-use sscc::{Error, Modes, Progress};
+use sscc::{Modes, Progress};
+use sscc_solid::{Element, Material, ReducedForces, Solid, Stiffness, monomials};
 
-use super::element::Element;
-use super::forces::{ReducedForces, monomials, place};
 use super::stvk::{gradient, symmetric};
-use crate::{Material, ModesError, Solid};
+use crate::ModesError;
+use crate::cancel::check_cancelled;
 
 /// Components of a symmetric strain, off-diagonal ones times the root of 2 (Mandel): their square sum is `E : E`.
 const COMPONENTS: usize = 6;
@@ -27,14 +27,14 @@ const SUMS: usize = 8;
 /// The reduced forces `U' f(U q)` of a solid under modes of its vertices (U: one row of modes for each).
 ///
 /// # Errors
-/// When it is cancelled.
+/// When it is cancelled, or a coefficient is beyond [`sscc::limits`].
 pub(crate) fn reduced_forces(
     solid: &Solid,
     modes: &Modes,
     progress: &dyn Progress,
 ) -> Result<ReducedForces, ModesError> {
     let r = modes.rank();
-    let columns = r + monomials(r, 2);
+    let columns = r + monomials::count(r, 2);
     let batches = solid.element_count().div_ceil(BATCH);
     let done = std::sync::atomic::AtomicUsize::new(0);
     let sums: Vec<Mat<f64>> = (0..SUMS)
@@ -69,12 +69,10 @@ pub(crate) fn reduced_forces(
             gram
         })
         .collect();
-    if progress.is_cancelled() {
-        return Err(Error::Cancelled.into());
-    }
+    check_cancelled(progress)?;
     let mut gram = Mat::<f64>::zeros(columns, columns);
     sums.iter().for_each(|sum| gram += sum);
-    Ok(differentiate(r, &gram))
+    differentiate(r, &gram)
 }
 
 /// Writes the strains of an element's points below the given row; returns the next free row.
@@ -117,38 +115,39 @@ fn rooted(material: &Material, strain: DMat3) -> [f64; COMPONENTS] {
 }
 
 /// The gradient of the energy that half of `gram` (its lower triangle) gives.
-fn differentiate(r: usize, gram: &Mat<f64>) -> ReducedForces {
-    let pairs = super::forces::all_monomials(r, 2);
+fn differentiate(r: usize, gram: &Mat<f64>) -> Result<ReducedForces, ModesError> {
+    let pairs = monomials::all(r, 2);
     let at = |i: usize, j: usize| gram[(i.max(j), i.min(j))];
     let linear = (0..r * r).map(|k| at(k / r, k % r)).collect();
 
     // Energies of degree 3 and 4 by monomial.
-    let mut third = vec![0.0; monomials(r, 3)];
-    let mut fourth = vec![0.0; monomials(r, 4)];
+    let mut third = vec![0.0; monomials::count(r, 3)];
+    let mut fourth = vec![0.0; monomials::count(r, 4)];
     for (a, pair) in pairs.iter().enumerate() {
         for i in 0..r {
-            third[place(r, &sorted([i, pair[0], pair[1]]))] += at(r + a, i);
+            third[monomials::place(r, &sorted([i, pair[0], pair[1]]))] += at(r + a, i);
         }
         for (b, other) in pairs[..=a].iter().enumerate() {
             let both = if a == b { 0.5 } else { 1.0 };
-            fourth[place(r, &sorted([pair[0], pair[1], other[0], other[1]]))] += both * at(r + a, r + b);
+            fourth[monomials::place(r, &sorted([pair[0], pair[1], other[0], other[1]]))] +=
+                both * at(r + a, r + b);
         }
     }
     let times = |i: usize, all: &[usize]| all.iter().filter(|k| **k == i).count() as f64;
     let mut quadratic = Vec::with_capacity(r * third.len());
-    let mut cubic = Vec::with_capacity(r * monomials(r, 3));
-    let triples = super::forces::all_monomials(r, 3);
+    let mut cubic = Vec::with_capacity(r * monomials::count(r, 3));
+    let triples = monomials::all(r, 3);
     for i in 0..r {
         quadratic.extend(pairs.iter().map(|m| {
             let all = sorted([i, m[0], m[1]]);
-            times(i, &all) * third[place(r, &all)]
+            times(i, &all) * third[monomials::place(r, &all)]
         }));
         cubic.extend(triples.iter().map(|m| {
             let all = sorted([i, m[0], m[1], m[2]]);
-            times(i, &all) * fourth[place(r, &all)]
+            times(i, &all) * fourth[monomials::place(r, &all)]
         }));
     }
-    ReducedForces { rank: r, linear, quadratic, cubic }
+    Ok(ReducedForces::new(Stiffness::new(r, linear)?, quadratic, cubic)?)
 }
 
 fn sorted<const N: usize>(mut indices: [usize; N]) -> [usize; N] {

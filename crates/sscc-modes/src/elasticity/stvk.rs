@@ -7,9 +7,7 @@
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-
-use super::element::Point;
-use crate::{Material, Solid};
+use sscc_solid::{IntegrationPoint, Material, Solid};
 
 /// Pairs for which one thread walks over the elements.
 const PAIRS: usize = 8;
@@ -21,7 +19,7 @@ pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
 }
 
 /// The gradient at a point of displacements of its element's corners.
-pub(crate) fn gradient(point: &Point, displacements: &[DVec3]) -> DMat3 {
+pub(crate) fn gradient(point: &IntegrationPoint, displacements: &[DVec3]) -> DMat3 {
     let mut sum = DMat3::ZERO;
     for (u, g) in displacements.iter().zip(&point.gradients) {
         sum += DMat3::from_cols(*u * g.x, *u * g.y, *u * g.z);
@@ -97,7 +95,7 @@ pub(crate) fn second_derivatives(
 }
 
 /// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's corners.
-fn add_forces(point: &Point, stress: DMat3, forces: &mut [DVec3; 8]) {
+fn add_forces(point: &IntegrationPoint, stress: DMat3, forces: &mut [DVec3; 8]) {
     let stress = stress * point.volume;
     forces.iter_mut().zip(&point.gradients).for_each(|(f, g)| *f += stress * *g);
 }

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use sscc::Modes;
+use sscc_solid::{Material, PartialMaterial, Solid};
 
 use super::reduced_forces;
 use super::stvk::{energy_and_forces, second_derivatives};
-use crate::{Material, Solid};
 
 /// Pseudo-random numbers between -1 and 1.
 fn random(seed: u64) -> impl FnMut() -> f64 {
@@ -30,8 +30,12 @@ fn solid() -> Solid {
     vertices.push(DVec3::new(0.4, 0.5, 3.0));
     let cube = |k: u32| std::array::from_fn(|i| 4 * k + i as u32);
     let tets = vec![[8, 9, 10, 12], [8, 10, 11, 12]];
-    let soft = Material { density: 2.0, youngs_modulus: 3.0, poisson_ratio: 0.3 };
-    let hard = Material { density: 5.0, youngs_modulus: 20.0, poisson_ratio: -0.4 };
+    let material = |density, youngs_modulus, poisson_ratio| {
+        let (density, youngs_modulus, poisson_ratio) =
+            (Some(density), Some(youngs_modulus), Some(poisson_ratio));
+        Material::new(&PartialMaterial { density, youngs_modulus, poisson_ratio }).unwrap()
+    };
+    let (soft, hard) = (material(2.0, 3.0, 0.3), material(5.0, 20.0, -0.4));
     Solid::new(vertices, tets, vec![cube(0), cube(1)], vec![soft, hard], vec![0, 1, 0, 1]).unwrap()
 }
 

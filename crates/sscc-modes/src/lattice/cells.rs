@@ -3,10 +3,10 @@
 use glam::DVec3;
 use sscc::Progress;
 
-use super::check_cancelled;
 use super::crossings::{Interval, SAMPLES};
 use super::grid::{Grid, cell_along};
 use super::overlap::{Block, SLACK};
+use crate::cancel::check_cancelled;
 
 /// No cell.
 pub(super) const NONE: u32 = u32::MAX;

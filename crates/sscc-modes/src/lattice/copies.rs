@@ -4,7 +4,6 @@ use glam::DVec3;
 use sscc::Progress;
 
 use super::cells::{CELL_SAMPLES, Cells};
-use super::check_cancelled;
 use super::crossings::{Interval, SAMPLES};
 use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
@@ -12,6 +11,7 @@ use super::overlap::{Block, SLACK};
 use super::pieces::{SampleSet, for_each_piece};
 use super::probe::Probe;
 use super::surface::Surface;
+use crate::cancel::check_cancelled;
 
 /// The least share of an octant that is taken to be filled. So that no cube is without mass and stiffness, and
 /// the stiffest cube is a thousand times the softest: three of sixteen digits. What it adds to the volume

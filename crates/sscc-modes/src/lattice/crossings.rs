@@ -8,7 +8,7 @@ use glam::DVec3;
 use robust::{Coord, orient2d};
 use sscc::Progress;
 
-use super::check_cancelled;
+use crate::cancel::check_cancelled;
 
 /// Lines through a cell along each direction across them. Even: half of them in each octant.
 pub(super) const SAMPLES: u32 = 4;

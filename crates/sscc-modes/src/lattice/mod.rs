@@ -13,6 +13,7 @@ use glam::DVec3;
 use sscc::{Progress, TriMesh};
 
 use crate::ModesError;
+use crate::cancel::check_cancelled;
 use cells::Cells;
 use copies::Copies;
 use crossings::intervals;
@@ -97,10 +98,4 @@ impl Lattice {
             is_split: surface.is_split,
         })
     }
-}
-
-/// # Errors
-/// When the work is to stop.
-fn check_cancelled(progress: &dyn Progress) -> Result<(), sscc::Error> {
-    if progress.is_cancelled() { Err(sscc::Error::Cancelled) } else { Ok(()) }
 }

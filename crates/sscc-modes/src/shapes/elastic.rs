@@ -2,12 +2,10 @@
 //! [`Material`]; the metric is strain energy (section 6).
 
 use sscc::{Progress, ReducedModel, TriMesh};
+use sscc_solid::{Elasticity, Material};
 
 use super::{hare, spring};
-use crate::{
-    DEFAULT_ELL, Embedded, Material, ModesError, ReducedForces, SolidModes, energy_metric,
-    filter_eigenvalues, linear_modes, nonlinear_modes,
-};
+use crate::{Embedded, ModesError, SolidModes, linear_modes, nonlinear_modes};
 
 /// Cubes along the spring. A wire is about two thick, which makes it a little stiff: in a lattice more than twice as
 /// fine its lowest frequency is 8% lower.
@@ -17,10 +15,8 @@ const SPRING_CELLS: usize = 30;
 pub struct ElasticShape {
     /// The surface with its modes.
     pub model: ReducedModel,
-    /// The stiffness of each mode, ascending: its angular frequency (1/s), squared.
-    pub eigenvalues: Vec<f64>,
-    /// The forces of large deformations; none where modes are linear.
-    pub forces: Option<ReducedForces>,
+    /// The elastic forces. The stiffness at rest is diagonal: each mode's angular frequency (1/s), squared, ascending.
+    pub elasticity: Elasticity,
 }
 
 /// The [`spring`] with 20 linear modes: its lowest vibrations.
@@ -31,8 +27,7 @@ pub fn elastic_spring(progress: &dyn Progress) -> Result<ElasticShape, ModesErro
     let spring = spring();
     let body = Embedded::new(&spring, Some(SPRING_CELLS), Material::default(), progress)?;
     let found = linear_modes(body.solid(), &[], 20, progress)?;
-    let weights = found.eigenvalues.clone();
-    shape(spring, &body, found, &weights)
+    shape(spring, &body, found)
 }
 
 /// The [`hare`] with 30 nonlinear modes, a basis for large deformations.
@@ -43,17 +38,11 @@ pub fn elastic_hare(progress: &dyn Progress) -> Result<ElasticShape, ModesError>
     let hare = hare();
     let body = Embedded::new(&hare, None, Material::default(), progress)?;
     let found = nonlinear_modes(body.solid(), &[], 30, progress)?;
-    let weights = filter_eigenvalues(&found.eigenvalues, DEFAULT_ELL)?;
-    shape(hare, &body, found, &weights)
+    shape(hare, &body, found)
 }
 
-fn shape(
-    surface: TriMesh,
-    body: &Embedded,
-    found: SolidModes,
-    weights: &[f64],
-) -> Result<ElasticShape, ModesError> {
+fn shape(surface: TriMesh, body: &Embedded, found: SolidModes) -> Result<ElasticShape, ModesError> {
     let modes = body.on_surface(&found.modes)?;
-    let model = ReducedModel::with_metric(surface, modes, energy_metric(weights)?)?;
-    Ok(ElasticShape { model, eigenvalues: found.eigenvalues, forces: found.forces })
+    let model = ReducedModel::with_metric(surface, modes, found.energy_metric()?)?;
+    Ok(ElasticShape { model, elasticity: found.elasticity })
 }

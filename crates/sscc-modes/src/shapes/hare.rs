@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sscc::TriMesh;
 
-use super::implicit::{Implicit, Part, Solid};
+use super::implicit::{Implicit, Part, Primitive};
 use super::marching::Lattice;
 use super::remesh::{decimate, relax};
 
@@ -53,10 +53,14 @@ fn solid() -> Implicit {
 /// All but the ears (metre).
 fn body() -> Vec<Part> {
     let v = DVec3::new;
-    let egg =
-        |blend, centre, radii, forward| Part { solid: Solid::Ellipsoid { centre, radii, forward }, blend };
-    let limb =
-        |blend, ends, radii| Part { solid: Solid::Limb { ends, radii, thin: DVec3::Y, flat: 1.0 }, blend };
+    let egg = |blend, centre, radii, forward| Part {
+        primitive: Primitive::Ellipsoid { centre, radii, forward },
+        blend,
+    };
+    let limb = |blend, ends, radii| Part {
+        primitive: Primitive::Limb { ends, radii, thin: DVec3::Y, flat: 1.0 },
+        blend,
+    };
     let mut parts = vec![
         // Rump, chest, neck, head, muzzle, tail.
         egg(0.05, v(-0.13, 0.0, 0.150), v(0.145, 0.090, 0.110), v(1.0, 0.0, -0.15)),
@@ -98,7 +102,7 @@ fn ear(side: f64) -> Vec<Part> {
     let piece = |piece| {
         let [t0, t1] = [piece, piece + 1].map(|k| k as f64 / PIECES as f64);
         let (ends, radii) = ([at(t0), at(t1)], [half_height(t0), half_height(t1)]);
-        Part { solid: Solid::Limb { ends, radii, thin, flat: FLAT }, blend: 0.002 }
+        Part { primitive: Primitive::Limb { ends, radii, thin, flat: FLAT }, blend: 0.002 }
     };
     (0..PIECES).map(piece).collect()
 }

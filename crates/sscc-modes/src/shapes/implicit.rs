@@ -12,7 +12,7 @@ const NOTHING: (f64, DVec3) = (f64::INFINITY, DVec3::ZERO);
 
 /// A simple solid. Its function is about the distance to it (negative inside), exact enough to blend with
 /// others, and zero exactly on its surface.
-pub(super) enum Solid {
+pub(super) enum Primitive {
     /// An ellipsoid. `forward` is the direction of its first axis, the second is level, the third upward.
     Ellipsoid { centre: DVec3, radii: DVec3, forward: DVec3 },
     /// A segment whose thickness goes evenly from the first radius to the second, flattened across: at right
@@ -23,7 +23,7 @@ pub(super) enum Solid {
 /// A solid, and how it joins those before it in its group: surfaces closer than `blend` flow together.
 pub(super) struct Part {
     /// What is added.
-    pub solid: Solid,
+    pub primitive: Primitive,
     /// Width of the soft seam (model unit, not 0). Gaps wider than this stay as they are.
     pub blend: f64,
 }
@@ -40,7 +40,7 @@ struct Group {
     blend: f64,
 }
 
-impl Solid {
+impl Primitive {
     /// A ball that contains the solid.
     fn ball(&self) -> (DVec3, f64) {
         match self {
@@ -94,7 +94,7 @@ impl Implicit {
     /// The union of groups of parts; a group joins those before it with the given blend (model unit, not 0).
     pub fn new(groups: impl IntoIterator<Item = (Vec<Part>, f64)>) -> Self {
         let group = |(parts, blend): (Vec<Part>, f64)| {
-            let balls = parts.iter().map(|part| part.solid.ball()).collect();
+            let balls = parts.iter().map(|part| part.primitive.ball()).collect();
             Group { parts, balls, blend }
         };
         Self { groups: groups.into_iter().map(group).collect() }
@@ -109,7 +109,7 @@ impl Implicit {
                 // Most parts are too far away to change anything.
                 let reach = radius + part.blend + own.0.min(all.0 + group.blend);
                 if reach > 0.0 && p.distance_squared(*centre) < reach * reach {
-                    own = smooth_minimum(own, part.solid.sample(p), part.blend);
+                    own = smooth_minimum(own, part.primitive.sample(p), part.blend);
                 }
             }
             all = smooth_minimum(all, own, group.blend);

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use sscc::Modes;
+use sscc_solid::Stiffness;
 
 use super::common::Random;
 
@@ -58,6 +59,11 @@ pub fn with_spectrum(random: &mut Random, eigenvalues: &[f64]) -> Vec<f64> {
         a = product(n, &reflection, &product(n, &a, &reflection));
     }
     a.iter().zip(&transpose(n, &a)).map(|(x, y)| (x + y) / 2.0).collect()
+}
+
+/// A stiffness with these entries.
+pub fn stiffness(rank: usize, entries: &[f64]) -> Stiffness {
+    Stiffness::new(rank, entries.to_vec()).expect("the entries of a stiffness")
 }
 
 /// Random numbers between -1 and 1.

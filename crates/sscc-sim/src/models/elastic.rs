@@ -1,11 +1,8 @@
 //! Modes of elastic solids, as modes of their surface.
 
 use sscc::{Modes, Progress, ReducedModel};
-use sscc_io::{Cubic, Elasticity, ModelInfo};
-use sscc_modes::{
-    DEFAULT_ELL, ReducedForces, SolidModes, energy_metric, filter_eigenvalues, linear_modes, nonlinear_modes,
-    polynomial_solid_modes,
-};
+use sscc_io::ModelInfo;
+use sscc_modes::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};
 
 use super::new_model::{NewModel, SolidFacts};
 use super::source::SolidSource;
@@ -40,12 +37,10 @@ impl ModesKind {
     }
 }
 
-/// Modes of a solid, on its surface, with the weights of the metric.
+/// Modes of a solid, and as modes of its surface.
 pub(crate) struct ElasticModes {
     pub solid: SolidModes,
     pub on_surface: Modes,
-    /// Of the energy metric.
-    pub weights: Vec<f64>,
 }
 
 impl ElasticModes {
@@ -69,15 +64,13 @@ impl ElasticModes {
                 let modes = source.on_surface(&found.modes)?;
                 (found, modes)
             }
-            ModesKind::Polynomial => polynomial_solid_modes(solid, source.mesh(), progress)?,
+            ModesKind::Polynomial => {
+                let PolynomialModes { solid, surface } =
+                    polynomial_solid_modes(solid, source.mesh(), progress)?;
+                (solid, surface)
+            }
         };
-        // Natural frequencies are as they are; those of other modes may be very high, and are filtered (paper,
-        // section 6).
-        let weights = match kind {
-            ModesKind::Linear => solid.eigenvalues.clone(),
-            _ => filter_eigenvalues(&solid.eigenvalues, DEFAULT_ELL)?,
-        };
-        Ok(Self { solid, on_surface, weights })
+        Ok(Self { solid, on_surface })
     }
 }
 
@@ -98,11 +91,9 @@ pub fn elastic_model(
     if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
         return Err(SimError::refused("--rank and --fix", POLYNOMIALS_ARE_FREE));
     }
-    let ElasticModes { solid: found, on_surface, weights } =
-        ElasticModes::new(&source, kind, rank, fixed, progress)?;
+    let ElasticModes { solid: found, on_surface } = ElasticModes::new(&source, kind, rank, fixed, progress)?;
     let solid = source.solid();
-    let (elements, freedom) =
-        (solid.tets().len() + solid.cubes().len(), 3 * (solid.vertices().len() - fixed.len()));
+    let (elements, freedom) = (solid.element_count(), 3 * (solid.vertices().len() - fixed.len()));
     let of_source = if source.is_embedded() { "mesh" } else { "solid" };
     let made_of = &source.material().provenance;
     let provenance = format!(
@@ -111,26 +102,12 @@ pub fn elastic_model(
     );
     let frequencies = found.frequencies();
     let is_split = source.is_split();
-    let metric = energy_metric(&weights)?;
+    let metric = found.energy_metric()?;
     Ok(NewModel {
         model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
-        info: ModelInfo::new("", provenance).with_elasticity(elasticity(found.eigenvalues, found.forces)),
+        info: ModelInfo::new("", provenance).with_elasticity(found.elasticity),
         is_split,
         solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
         components: None,
     })
-}
-
-/// Forces as a model file holds them: linear where there are none of large deformations.
-pub fn elasticity(eigenvalues: Vec<f64>, forces: Option<ReducedForces>) -> Elasticity {
-    let rank = eigenvalues.len();
-    let mut stiffness = vec![0.0; rank * rank];
-    eigenvalues.iter().enumerate().for_each(|(k, x)| stiffness[k * (rank + 1)] = *x);
-    match forces {
-        None => Elasticity::Linear(stiffness),
-        // The linear part is that diagonal, but for rounding.
-        Some(ReducedForces { quadratic, cubic, .. }) => {
-            Elasticity::Nonlinear(Cubic { rank, linear: stiffness, quadratic, cubic })
-        }
-    }
 }

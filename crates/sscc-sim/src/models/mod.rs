@@ -2,7 +2,6 @@
 
 mod elastic;
 mod equal_vertices;
-mod frequencies;
 mod material;
 mod new_model;
 mod pca;
@@ -10,10 +9,9 @@ mod polynomial;
 mod source;
 
 pub(crate) use elastic::ElasticModes;
-pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model, elasticity};
+pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model};
 pub use equal_vertices::has_equal_vertices;
-pub use frequencies::{frequencies, frequencies_of_modes};
-pub use material::{MaterialOrigin, RequestedMaterial};
+pub use material::MaterialOrigin;
 pub use new_model::{Components, NewModel, SolidFacts};
 pub use pca::pca_model;
 pub use polynomial::polynomial_model;

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
-use sscc_io::{read_mesh, read_solid};
-use sscc_modes::{Boundary, Embedded, Solid, tets_within};
+use sscc_io::{read_mesh, read_volume_mesh};
+use sscc_modes::Embedded;
+use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid};
 
-use super::material::{MaterialOrigin, RequestedMaterial};
+use super::material::MaterialOrigin;
 use crate::SimError;
 
 /// A solid with its surface, from a file or around a surface.
@@ -23,14 +24,10 @@ pub enum SolidSource {
     },
     /// From a file, with its boundary.
     Whole {
-        /// Its elements.
-        solid: Solid,
+        /// Its elements, with their vertices in the file.
+        meshed: MeshedSolid,
         /// The surface of its elements.
         boundary: Boundary,
-        /// For each vertex of the file its vertex of the solid, unless it was left out.
-        vertices: Vec<Option<u32>>,
-        /// Tetrahedra of the file outside the surface that it lists.
-        left_out: usize,
         /// Where its material comes from.
         material: MaterialOrigin,
     },
@@ -50,10 +47,10 @@ impl SolidSource {
     pub fn around(
         mesh: TriMesh,
         cells: Option<usize>,
-        material: &RequestedMaterial,
+        material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
-        let embedded = Embedded::new(&mesh, cells, material.alone(), progress)?;
+        let embedded = Embedded::new(&mesh, cells, Material::new(material)?, progress)?;
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 
@@ -66,58 +63,30 @@ impl SolidSource {
     pub fn read(
         path: &Path,
         resolution: Option<usize>,
-        material: &RequestedMaterial,
+        material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
         if !is_solid(path) {
             return Self::around(read_mesh(path)?, resolution, material, progress);
         }
-        let file = read_solid(path)?;
+        let file = read_volume_mesh(path)?;
         if resolution.is_some() {
             return Err(SimError::refused(
                 "--resolution is for surfaces",
                 "this file brings its own elements",
             ));
         }
-        let within = tets_within(&file.tets, &file.surface);
-        let left_out = within.iter().filter(|within| !**within).count();
-        let kept: Vec<usize> = (0..file.tets.len()).filter(|t| within[*t]).collect();
-        let tets: Vec<[u32; 4]> = kept.iter().map(|t| file.tets[*t]).collect();
-        // Vertices of left-out elements alone are left out, too.
-        let mut used = vec![left_out == 0; file.vertices.len()];
-        tets.as_flattened().iter().chain(file.cubes.as_flattened()).for_each(|v| used[*v as usize] = true);
-        let mut vertices = Vec::with_capacity(used.len());
-        let mut count = 0;
-        for used in &used {
-            vertices.push(used.then_some(count));
-            count += u32::from(*used);
-        }
-        let number = |v: u32| vertices[v as usize].unwrap_or_default();
-        let positions = file.vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect();
-        let of_tets = kept.iter().map(|t| file.element_material[*t]);
-        let of_cubes = file.element_material[file.tets.len()..].iter().copied();
-        let of_elements: Vec<u32> = of_tets.chain(of_cubes).collect();
-        // A file may name materials that none of its elements has.
-        let mut is_used = vec![false; file.materials.len()];
-        of_elements.iter().for_each(|at| is_used[*at as usize] = true);
-        let named = file.materials.iter().zip(&is_used).filter(|(_, used)| **used).map(|(named, _)| named);
-        let origin = MaterialOrigin::new(material, &named.collect::<Vec<_>>());
-        let solid = Solid::new(
-            positions,
-            tets.iter().map(|t| t.map(number)).collect(),
-            file.cubes.iter().map(|c| c.map(number)).collect(),
-            file.materials.iter().map(|of_file| material.over(of_file)).collect(),
-            of_elements,
-        )?;
-        let boundary = solid.boundary()?;
-        Ok(Self::Whole { solid, boundary, vertices, left_out, material: origin })
+        let meshed = file.solid(material)?;
+        let material = MaterialOrigin::new(material, &meshed.stated);
+        let boundary = meshed.solid.boundary()?;
+        Ok(Self::Whole { meshed, boundary, material })
     }
 
     /// The elements.
     pub fn solid(&self) -> &Solid {
         match self {
             Self::Around { embedded, .. } => embedded.solid(),
-            Self::Whole { solid, .. } => solid,
+            Self::Whole { meshed, .. } => &meshed.solid,
         }
     }
 
@@ -131,8 +100,8 @@ impl SolidSource {
     /// A note for people on elements that were left out.
     pub fn note(&self) -> Option<String> {
         match self {
-            Self::Whole { left_out, .. } if *left_out > 0 => {
-                Some(format!("{left_out} tetrahedra outside the surface that the file lists are left out"))
+            Self::Whole { meshed: MeshedSolid { outside, .. }, .. } if *outside > 0 => {
+                Some(format!("{outside} tetrahedra outside the surface that the file lists are left out"))
             }
             _ => None,
         }
@@ -171,11 +140,7 @@ impl SolidSource {
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SimError> {
         match self {
             Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
-            Self::Whole { boundary, .. } => {
-                let rank = modes.rank();
-                let of = |v: &u32| &modes.displacements()[*v as usize * rank..][..rank];
-                Ok(Modes::new(rank, boundary.vertices.iter().flat_map(of).copied().collect())?)
-            }
+            Self::Whole { boundary, .. } => Ok(boundary.on_surface(modes)?),
         }
     }
 
@@ -186,7 +151,7 @@ impl SolidSource {
     pub fn holding(&self, number: u32) -> Result<Vec<u32>, SimError> {
         let count = match self {
             Self::Around { mesh, .. } => mesh.rest_positions().len(),
-            Self::Whole { vertices, .. } => vertices.len(),
+            Self::Whole { meshed, .. } => meshed.vertices.len(),
         };
         if number as usize >= count {
             let cause = format!("the file has {count}");
@@ -197,7 +162,7 @@ impl SolidSource {
         }
         Ok(match self {
             Self::Around { embedded, .. } => embedded.holding(number as usize).collect(),
-            Self::Whole { vertices, .. } => vertices[number as usize].into_iter().collect(),
+            Self::Whole { meshed, .. } => meshed.vertices[number as usize].into_iter().collect(),
         })
     }
 

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use sscc::ReducedModel;
-use sscc_io::gltf::{Track, key_frames, write_animation};
+use sscc_io::gltf::{NamedModel, Track, key_frames, write_animation};
 
 use crate::error::Result;
 use crate::run::FinishedRun;
@@ -14,12 +13,13 @@ pub fn animation(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { scene, prepared, history, .. } = run;
     let frames = key_frames(history.len(), scene.step, scene.frames_per_second);
     let times: Vec<f64> = frames.iter().map(|state| run.time(*state)).collect();
-    let models: Vec<(&str, &ReducedModel)> =
-        prepared.models.iter().map(|model| (model.certified.name.as_str(), &model.certified.model)).collect();
+    let certified = prepared.models.iter().map(|model| &model.certified);
+    let models: Vec<NamedModel<'_>> =
+        certified.map(|model| NamedModel { name: &model.name, model: &model.model }).collect();
     let track = |(body, spec): (usize, &BodySpec)| {
         let at = || frames.iter().map(|state| history.body(*state, body));
         Track {
-            name: format!("{} {body}", models[spec.model].0),
+            name: format!("{} {body}", models[spec.model].name),
             model: spec.model,
             center: prepared.models[spec.model].center(),
             positions: at().map(|facts| facts.position).collect(),

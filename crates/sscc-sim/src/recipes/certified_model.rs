@@ -1,7 +1,8 @@
 //! A model with its certificates: made once, then from the cache.
 
 use sscc::{CertifyOptions, ReducedModel};
-use sscc_io::{Elasticity, ModelInfo, read_model, write_model};
+use sscc_io::{ModelInfo, read_model, write_model};
+use sscc_solid::Elasticity;
 
 use super::cache::Cache;
 use super::loaded_recipe::LoadedRecipe;

@@ -6,18 +6,20 @@ use std::path::Path;
 use glam::DQuat;
 use sscc::{ReducedModel, TriMesh};
 use sscc_io::ModelInfo;
-use sscc_modes::energy_metric;
+use sscc_solid::Material;
 
 use super::key::Key;
 use super::recipe::{ModesSpec, Recipe};
 use super::shape::{LoadedShape, Matter, Shape};
 use crate::error::At;
-use crate::models::{ElasticModes, ModesKind, SolidSource, elasticity};
+use crate::models::{ElasticModes, ModesKind, SolidSource};
 use crate::{SimError, Stage, Watch};
 
 /// A recipe with its shape, before any long work.
 pub struct LoadedRecipe<'a> {
     recipe: &'a Recipe,
+    /// Of elements whose file names none.
+    material: Material,
     matter: Matter,
     /// Where the shape comes from.
     pub source: String,
@@ -34,7 +36,8 @@ impl<'a> LoadedRecipe<'a> {
     /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes stand in for them.
     ///
     /// # Errors
-    /// When a file cannot be read, a size or resolution is given for a solid, or `watch` cancels.
+    /// When a file cannot be read, a size or resolution is given for a solid, the material is out of range, or `watch`
+    /// cancels.
     pub fn load(recipe: &'a Recipe, models: Option<&Path>, watch: &dyn Watch) -> Result<Self, SimError> {
         watch.begin(Stage::Solid);
         let LoadedShape { mut matter, source, note } = recipe.shape.load(models, &recipe.material, watch)?;
@@ -56,7 +59,8 @@ impl<'a> LoadedRecipe<'a> {
         let is_turned = models.is_some() && matches!(recipe.shape, Shape::Bunny | Shape::Dragon);
         let upright =
             if is_turned { DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
-        Ok(Self { recipe, matter, source, note, upright, around: OnceCell::new() })
+        let material = Material::new(&recipe.material).at(|| source.clone())?;
+        Ok(Self { recipe, material, matter, source, note, upright, around: OnceCell::new() })
     }
 
     /// The recipe.
@@ -66,8 +70,7 @@ impl<'a> LoadedRecipe<'a> {
 
     /// The key of a cached file that is made from this solid.
     pub(crate) fn key(&self, what: &str) -> Key {
-        let material = self.recipe.material.alone();
-        let key = Key::new(what).text(&format!("{material:?} {:?}", self.recipe.cells()));
+        let key = Key::new(what).text(&format!("{:?} {:?}", self.material, self.recipe.cells()));
         match &self.matter {
             Matter::Surface(mesh) => key.mesh(mesh),
             Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
@@ -103,10 +106,10 @@ impl<'a> LoadedRecipe<'a> {
             ModesSpec::Nonlinear(rank) => (ModesKind::Nonlinear, Some(rank)),
             ModesSpec::Polynomial => (ModesKind::Polynomial, None),
         };
-        let ElasticModes { solid, on_surface, weights } = ElasticModes::new(source, kind, rank, &[], watch)?;
-        let model = ReducedModel::with_metric(source.mesh().clone(), on_surface, energy_metric(&weights)?)?;
-        let info = ModelInfo::new("", format!("{}, {modes:?}", self.source))
-            .with_elasticity(elasticity(solid.eigenvalues, solid.forces));
+        let ElasticModes { solid, on_surface } = ElasticModes::new(source, kind, rank, &[], watch)?;
+        let model = ReducedModel::with_metric(source.mesh().clone(), on_surface, solid.energy_metric()?)?;
+        let info =
+            ModelInfo::new("", format!("{}, {modes:?}", self.source)).with_elasticity(solid.elasticity);
         Ok((model, info))
     }
 }
@@ -125,9 +128,9 @@ fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh, SimError> {
 #[cfg(test)]
 mod tests {
     use sscc::MetricKind;
+    use sscc_solid::PartialMaterial;
 
     use super::*;
-    use crate::models::RequestedMaterial;
 
     #[test]
     fn a_key_tells_the_cells_that_a_shape_has_by_itself() {
@@ -148,16 +151,18 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("soft.veg");
         std::fs::write(&file, SOFT).unwrap();
-        let first = |material: RequestedMaterial| {
+        let first = |material: PartialMaterial| {
             let recipe = Recipe::new("soft", Shape::File(file.clone()), ModesSpec::Linear(6));
             let recipe = Recipe { material, ..recipe };
             let loaded = LoadedRecipe::load(&recipe, None, &()).unwrap();
             let (_, info) = loaded.modes(ModesSpec::Linear(6), &()).unwrap();
-            (info.elasticity.unwrap().stiffness()[0], loaded.note.clone(), loaded.key("model").to_string())
+            let first = info.elasticity.unwrap().stiffness().entries()[0];
+            (first, loaded.note.clone(), loaded.key("model").to_string())
         };
-        let (own, nothing, key) = first(RequestedMaterial::default());
+        let (own, nothing, key) = first(PartialMaterial::default());
         assert_eq!(nothing, None);
-        let (stiff, note, of_stiff) = first(RequestedMaterial { youngs: Some(4e6), ..Default::default() });
+        let (stiff, note, of_stiff) =
+            first(PartialMaterial { youngs_modulus: Some(4e6), ..Default::default() });
         assert!((stiff / own - 4.0).abs() < 1e-9, "{own} {stiff}");
         let said = "the scene's material overrides what soft.veg states: youngs=4e6";
         assert_eq!(note.as_deref(), Some(said));

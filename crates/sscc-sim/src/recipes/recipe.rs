@@ -1,11 +1,11 @@
 //! Recipes of models: a shape, a material and a kind of modes.
 
 use sscc::{Metric, MetricKind, ReducedModel};
+use sscc_solid::PartialMaterial;
 
 use super::shape::Shape;
 use crate::SimError;
 use crate::error::At;
-use crate::models::RequestedMaterial;
 
 /// A free elastic body with modes.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Recipe {
     /// Its modes.
     pub modes: ModesSpec,
     /// Overrides the materials in the file of a solid.
-    pub material: RequestedMaterial,
+    pub material: PartialMaterial,
     /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
     pub cells: Option<usize>,
     /// The longest side of the box around a surface; none: as it is.
@@ -57,7 +57,7 @@ impl Recipe {
             name: name.into(),
             shape,
             modes,
-            material: RequestedMaterial::default(),
+            material: PartialMaterial::default(),
             cells: None,
             size: None,
             spread: None,

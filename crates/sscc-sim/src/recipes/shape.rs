@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use sscc::{Progress, TriMesh};
 use sscc_io::read_mesh;
 use sscc_modes::shapes::{hare, serpent, spring_of};
+use sscc_solid::PartialMaterial;
 
 use crate::SimError;
 use crate::error::At;
-use crate::models::{RequestedMaterial, SolidSource, is_solid};
+use crate::models::{SolidSource, is_solid};
 
 /// Rings of the embedded spring, and vertices of each.
 pub const SPRING_RINGS: [usize; 2] = [500, 16];
@@ -58,7 +59,7 @@ impl Shape {
     pub(super) fn load(
         &self,
         models: Option<&Path>,
-        material: &RequestedMaterial,
+        material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<LoadedShape, SimError> {
         let surface =

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use glam::{DMat3, DQuat, DVec3};
-use sscc_dynamics::{Elasticity, Shape, SoundBank};
-use sscc_io::{self as io, read_whole, write_whole};
-use sscc_modes::{MassProperties, ReducedForces};
+use sscc_dynamics::{Shape, SoundBank};
+use sscc_io::{read_whole, write_whole};
+use sscc_solid::{Elasticity, MassProperties};
 
 use crate::error::{Result, SimError};
 use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, recipe_modes};
@@ -104,7 +104,8 @@ impl PreparedModel {
         let mass = mass(&loaded, cache, watch)?;
         let certified = CertifiedModel::get(&loaded, cache, watch)?;
         let elasticity = elasticity(&certified, spec.is_linear)?;
-        let first = diagonal(&certified.elasticity).into_iter().fold(f64::INFINITY, f64::min).sqrt();
+        let eigenvalues = certified.elasticity.stiffness().diagonal();
+        let first = eigenvalues.fold(f64::INFINITY, f64::min).sqrt();
         let period = TAU / first;
         // NaN must fail this test, too.
         let is_resolved = 2.0 * scene.step < period;
@@ -121,7 +122,7 @@ impl PreparedModel {
             let (model, elasticity) = recipe_modes(&loaded, ModesSpec::Linear(sound.modes), cache, watch)?;
             let damping = sound.damping.unwrap_or(spec.damping);
             let square = sound.pitch * sound.pitch;
-            let eigenvalues: Vec<f64> = diagonal(&elasticity).iter().map(|x| x * square).collect();
+            let eigenvalues: Vec<f64> = elasticity.stiffness().diagonal().map(|x| x * square).collect();
             Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
         });
         let shape =
@@ -135,28 +136,16 @@ impl PreparedModel {
     }
 }
 
-/// The squared angular frequency of each mode.
-fn diagonal(elasticity: &io::Elasticity) -> Vec<f64> {
-    // Of modes without stiffness rounding may leave a little less than nothing.
-    elasticity.stiffness().iter().step_by(elasticity.rank() + 1).map(|x| x.max(0.0)).collect()
-}
-
+/// The forces that move a model's bodies.
 fn elasticity(certified: &CertifiedModel, is_linear: bool) -> Result<Elasticity> {
-    Ok(match &certified.elasticity {
-        linear if is_linear => Elasticity::Linear(diagonal(linear)),
-        io::Elasticity::Linear(_) => {
+    match &certified.elasticity {
+        known if is_linear => Ok(known.linearized()),
+        Elasticity::Linear(_) => {
             let cause = format!("{} modes have no forces of large deformations", certified.model.rank());
-            return Err(SimError::refused(&certified.name, cause));
+            Err(SimError::refused(&certified.name, cause))
         }
-        io::Elasticity::Nonlinear(io::Cubic { rank, linear, quadratic, cubic }) => {
-            Elasticity::Nonlinear(ReducedForces {
-                rank: *rank,
-                linear: linear.clone(),
-                quadratic: quadratic.clone(),
-                cubic: cubic.clone(),
-            })
-        }
-    })
+        known => Ok(known.clone()),
+    }
 }
 
 /// Mass, centre and inertia of a solid: 1, 3 and 9 numbers in a file.

@@ -67,7 +67,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         self.clock.enter(Some(SOUND));
         let sound = self.hear();
         let StepTimes { parts: seconds, wall } = self.clock.end(begin);
-        let inter_pairs = self.world.inter_pairs().map(|(_, pairs)| pairs.len()).sum();
+        let inter_pairs = self.world.inter_pairs().map(|met| met.pairs.len()).sum();
         let facts = StepRecord { seconds, wall, energy, sound, inter_pairs };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use sscc_dynamics::{Damping, MATERIALS};
+use sscc_solid::PartialMaterial;
 
 use super::section::Section;
 use crate::error::Result;
-use crate::models::RequestedMaterial;
 use crate::recipes::{ModesSpec, Recipe, Shape};
 
 /// The most modes of a body.
@@ -128,19 +128,19 @@ pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
 }
 
 /// A material by its name, with its usual damping, or by its numbers; those left out are the file's.
-fn material(model: &Section<'_>) -> Result<(RequestedMaterial, Damping)> {
+fn material(model: &Section<'_>) -> Result<(PartialMaterial, Damping)> {
     if model.is_text("material") {
         let known = MATERIALS.map(|material| (material.name, material));
         let found = model.wanted("material", model.word("material", &known)?)?;
         return Ok((found.elastic.into(), found.damping));
     }
     let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {
-        return Ok((RequestedMaterial::default(), Damping::default()));
+        return Ok((PartialMaterial::default(), Damping::default()));
     };
     let poisson = material.number("poisson")?;
     if poisson.is_some_and(|nu| nu <= -1.0 || nu >= 0.5) {
         return Err(material.refused("poisson", "a number between -1 and 0.5 was expected"));
     }
     let (youngs, density) = (material.positive("youngs")?, material.positive("density")?);
-    Ok((RequestedMaterial { youngs, poisson, density }, Damping::default()))
+    Ok((PartialMaterial { youngs_modulus: youngs, poisson_ratio: poisson, density }, Damping::default()))
 }

@@ -45,7 +45,10 @@ fn a_scene_is_what_its_file_says() {
     let model = &scene.models[0];
     assert_eq!((model.recipe.name.as_str(), model.recipe.size, model.damping.mass), ("soft", Some(0.3), 0.5));
     let material = model.recipe.material;
-    assert_eq!((material.youngs, material.poisson, material.density), (Some(1e5), None, Some(900.0)));
+    assert_eq!(
+        (material.youngs_modulus, material.poisson_ratio, material.density),
+        (Some(1e5), None, Some(900.0))
+    );
     assert!(model.is_linear && scene.sound.is_none());
     let [one, .., last] = &scene.bodies[..] else { panic!() };
     assert!((one.orientation * DVec3::X - DVec3::Y).length() < 1e-15 && one.shake == [0.1, -2.0]);

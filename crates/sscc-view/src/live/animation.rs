@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use sscc::{Modes, ReducedModel};
-use sscc_io::gltf::{Track, animation_to_bytes};
+use sscc_io::gltf::{NamedModel, Track, animation_to_bytes};
 
 use crate::ViewError;
 
@@ -54,7 +54,7 @@ pub(super) fn glb(
         orientations: vec![DQuat::IDENTITY; q.len()],
         weights,
     };
-    animation_to_bytes(&[(name, &moved)], times, &[track]).map_err(ViewError::Request)
+    animation_to_bytes(&[NamedModel { name, model: &moved }], times, &[track]).map_err(ViewError::Request)
 }
 
 /// The same motion with weights in [0, 1], row by row, and what they belong to.

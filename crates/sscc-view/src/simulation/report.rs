@@ -1,8 +1,9 @@
 //! The report of a simulation: the page with its motion, one HTML file that needs no other.
 
 use sscc::Progress;
+use sscc_modes::mode_frequencies;
+use sscc_sim::FinishedRun;
 use sscc_sim::text::one_line;
-use sscc_sim::{FinishedRun, frequencies_of_modes};
 
 use super::playback::playback;
 use super::plots::{energy, sound};
@@ -18,7 +19,7 @@ pub fn simulation_report(run: &FinishedRun, progress: &dyn Progress) -> Result<S
     for (index, model) in run.prepared.models.iter().enumerate() {
         let certified = &model.certified;
         let details = ModelDetails {
-            frequencies: frequencies_of_modes(&certified.elasticity),
+            frequencies: mode_frequencies(certified.elasticity.stiffness()),
             ..ModelDetails::default()
         };
         let (name, certificates) = (&certified.name, &certified.full.certificates);

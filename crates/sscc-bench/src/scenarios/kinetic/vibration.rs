@@ -79,7 +79,7 @@ impl Oscillators {
         let random = &mut Random(SEED);
         let (rank, stiffness) = (model.model.rank(), model.elasticity.stiffness());
         Self {
-            frequencies: (0..rank).map(|k| stiffness[k * (rank + 1)].max(0.0).sqrt()).collect(),
+            frequencies: stiffness.diagonal().map(|k| k.max(0.0).sqrt()).collect(),
             phases: (0..rank).map(|_| TAU * random.uniform()).collect(),
         }
     }

@@ -7,7 +7,6 @@ use anyhow::Result;
 use sscc::{Certificates, TriMesh};
 use sscc_io::{ModelInfo, Rows, write_certificates, write_model, write_npy, write_whole};
 use sscc_modes::shapes::ElasticShape;
-use sscc_sim::elasticity;
 
 const MESH: &str = "spring.obj";
 const MODEL: &str = "spring.model.safetensors";
@@ -23,10 +22,9 @@ pub fn save(
     animation: &Rows,
     page: &str,
 ) -> Result<()> {
-    let ElasticShape { model, eigenvalues, forces } = spring;
+    let ElasticShape { model, elasticity } = spring;
     write_whole(&folder.join(MESH), to_obj(model.mesh()).as_bytes())?;
-    let info = ModelInfo::new("m", "embedded double-helix spring, linear modes")
-        .with_elasticity(elasticity(eigenvalues, forces));
+    let info = ModelInfo::new("m", "embedded double-helix spring, linear modes").with_elasticity(elasticity);
     write_model(&folder.join(MODEL), &model, &info)?;
     write_certificates(&folder.join(CERTIFICATES), certificates)?;
     write_npy(&folder.join(ANIMATION), &[animation.rows, animation.columns], &animation.data)?;

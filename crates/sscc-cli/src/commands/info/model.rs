@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 use sscc::{Digest, ReducedModel, Scope};
-use sscc_io::{Elasticity, ModelInfo};
-use sscc_sim::frequencies;
+use sscc_io::ModelInfo;
+use sscc_modes::natural_frequencies;
+use sscc_solid::Elasticity;
 
 use super::surface::Surface;
 use super::{form, hexadecimal, range};
@@ -37,7 +38,7 @@ pub struct Model {
 
 impl Model {
     pub fn of(model: &ReducedModel, info: ModelInfo) -> Self {
-        let frequencies = info.elasticity.as_ref().map(frequencies);
+        let frequencies = info.elasticity.as_ref().map(|known| natural_frequencies(known.stiffness()));
         Self {
             surface: Surface::of(model.mesh()),
             rank: model.rank(),
@@ -45,7 +46,10 @@ impl Model {
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
             nonlinear: info.elasticity.as_ref().map(|known| matches!(known, Elasticity::Nonlinear(_))),
-            no_frequencies: frequencies.as_ref().and_then(|f| f.as_ref().err()).cloned().unwrap_or_default(),
+            no_frequencies: match &frequencies {
+                Some(Err(error)) => error.to_string(),
+                _ => String::new(),
+            },
             frequencies_hz: frequencies.and_then(Result::ok),
             units: info.units,
             provenance: info.provenance,

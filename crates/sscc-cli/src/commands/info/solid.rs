@@ -5,8 +5,9 @@ use std::path::Path;
 use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
-use sscc_io::{IoError, read_solid};
-use sscc_sim::{RequestedMaterial, SolidSource};
+use sscc_io::{IoError, read_volume_mesh};
+use sscc_sim::SolidSource;
+use sscc_solid::{NamedMaterial, PartialMaterial};
 
 use super::surface::{Surface, size};
 use crate::output::{counted, grouped, note, one_line};
@@ -44,17 +45,17 @@ struct Material {
 
 impl Solid {
     pub fn of(path: &Path) -> Result<Self, IoError> {
-        let file = read_solid(path)?;
-        let mut elements = vec![0; file.materials.len()];
-        file.element_material.iter().for_each(|material| elements[*material as usize] += 1);
-        let material = |(material, elements): (&sscc_io::Material, usize)| Material {
-            name: material.name.clone(),
+        let file = read_volume_mesh(path)?;
+        let mut elements = vec![0; file.materials().len()];
+        file.element_material().iter().for_each(|material| elements[*material as usize] += 1);
+        let material = |(NamedMaterial { name, stated }, elements): (&NamedMaterial, usize)| Material {
+            name: name.clone(),
             elements,
-            youngs_modulus: material.youngs_modulus,
-            poisson_ratio: material.poisson_ratio,
-            density: material.density,
+            youngs_modulus: stated.youngs_modulus,
+            poisson_ratio: stated.poisson_ratio,
+            density: stated.density,
         };
-        let surface = SolidSource::read(path, None, &RequestedMaterial::default(), &Bar::new("surface"));
+        let surface = SolidSource::read(path, None, &PartialMaterial::default(), &Bar::new("surface"));
         let (boundary, refusal) = match surface {
             Ok(source) => {
                 source.note().into_iter().for_each(note);
@@ -62,13 +63,13 @@ impl Solid {
             }
             Err(error) => (None, Some(error.to_string())),
         };
-        let points = || file.vertices.iter().copied();
+        let points = || file.vertices().iter().copied();
         Ok(Self {
-            vertices: file.vertices.len(),
-            tetrahedra: file.tets.len(),
-            cubes: file.cubes.len(),
-            materials: file.materials.iter().zip(elements).map(material).collect(),
-            listed_triangles: file.surface.len(),
+            vertices: file.vertices().len(),
+            tetrahedra: file.tets().len(),
+            cubes: file.cubes().len(),
+            materials: file.materials().iter().zip(elements).map(material).collect(),
+            listed_triangles: file.surface().len(),
             lower: points().reduce(DVec3::min).unwrap_or_default().to_array(),
             upper: points().reduce(DVec3::max).unwrap_or_default().to_array(),
             boundary,

@@ -2,19 +2,19 @@
 
 use anyhow::{Result, bail};
 use sscc_dynamics::MATERIALS;
-use sscc_sim::RequestedMaterial;
+use sscc_solid::PartialMaterial;
 
 /// The name of a material, or `youngs=1e6,poisson=0.4,density=1000`, any of them.
-pub fn parse(typed: &str) -> Result<RequestedMaterial> {
+pub fn parse(typed: &str) -> Result<PartialMaterial> {
     if let Some(known) = MATERIALS.iter().find(|material| material.name == typed.trim()) {
         return Ok(known.elastic.into());
     }
-    let mut material = RequestedMaterial::default();
+    let mut material = PartialMaterial::default();
     for part in typed.split(',') {
         let (name, number) = part.split_once('=').unwrap_or((part, ""));
         let slot = match name.trim() {
-            "youngs" => &mut material.youngs,
-            "poisson" => &mut material.poisson,
+            "youngs" => &mut material.youngs_modulus,
+            "poisson" => &mut material.poisson_ratio,
             "density" => &mut material.density,
             _ => return unknown(part),
         };
@@ -38,9 +38,10 @@ mod tests {
     #[test]
     fn materials_have_names() {
         for known in MATERIALS {
-            assert_eq!(parse(known.name).unwrap().alone(), known.elastic);
+            assert_eq!(parse(known.name).unwrap(), known.elastic.into());
         }
-        assert_eq!(parse("youngs=3").unwrap(), RequestedMaterial { youngs: Some(3.0), ..Default::default() });
+        let soft = PartialMaterial { youngs_modulus: Some(3.0), ..PartialMaterial::default() };
+        assert_eq!(parse("youngs=3").unwrap(), soft);
         for typed in ["stel", "steel,density=3", "youngs", "youngs=x", "E=3", ""] {
             let refused = parse(typed).unwrap_err().to_string();
             assert!(MATERIALS.iter().all(|known| refused.contains(known.name)), "{refused}");

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use sscc::MetricKind;
 use sscc_io::LoadedModel;
-use sscc_sim::frequencies_of_modes;
+use sscc_modes::mode_frequencies;
 use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Plot, Report, Scene, Server, metric_comparison};
 
 use crate::args::{Model, Options, View};
@@ -35,7 +35,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
     let server = bind(args)?;
     let details = ModelDetails {
-        frequencies: loaded.info.elasticity.as_ref().and_then(frequencies_of_modes),
+        frequencies: loaded.info.elasticity.as_ref().and_then(|known| mode_frequencies(known.stiffness())),
         mode_names: loaded.mode_names.clone(),
         default_q: loaded.default_q.clone(),
     };

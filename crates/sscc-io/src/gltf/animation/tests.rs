@@ -31,7 +31,13 @@ fn our_reader_reads_the_model_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
     let model = model();
-    write_animation(&path, &[("tetrahedron", &model)], &TIMES, &[track("a", 0.0), track("b", 3.0)]).unwrap();
+    write_animation(
+        &path,
+        &[NamedModel { name: "tetrahedron", model: &model }],
+        &TIMES,
+        &[track("a", 0.0), track("b", 3.0)],
+    )
+    .unwrap();
     let read = super::super::read(&path, None).unwrap();
     assert_eq!(read.mesh.faces(), model.mesh().faces());
     assert_eq!((read.mesh_name.as_str(), read.modes.rank()), ("tetrahedron", 2));
@@ -48,7 +54,8 @@ fn our_reader_reads_the_model_back() {
 fn another_reader_plays_the_motion() {
     let model = model();
     let tracks = [track("a", 0.0), track("b", 3.0)];
-    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
+    let bytes =
+        animation_to_bytes(&[NamedModel { name: "tetrahedron", model: &model }], &TIMES, &tracks).unwrap();
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     let animation = file.animations().next().unwrap();
@@ -105,7 +112,8 @@ fn another_reader_plays_the_motion() {
 fn the_least_and_the_greatest_weights_are_animations_too() {
     let model = model();
     let tracks = [track("a", 0.0), track("b", 3.0)];
-    let bytes = animation_to_bytes(&[("tetrahedron", &model)], &TIMES, &tracks).unwrap();
+    let bytes =
+        animation_to_bytes(&[NamedModel { name: "tetrahedron", model: &model }], &TIMES, &tracks).unwrap();
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     assert_eq!(file.animations().count(), 3);
@@ -127,7 +135,7 @@ fn the_least_and_the_greatest_weights_are_animations_too() {
 #[test]
 fn what_is_no_animation_is_refused() {
     let model = model();
-    let models = [("t", &model)];
+    let models = [NamedModel { name: "t", model: &model }];
     let message = |times: &[f64], track: Track| animation_to_bytes(&models, times, &[track]).unwrap_err();
     let good = || track("a", 0.0);
     assert_eq!(message(&[0.0, 1.0], good()), "body a has not one entry for each of the 2 key frames");

@@ -3,9 +3,9 @@
 use super::groups::Groups;
 use super::nodes::Nodes;
 use super::numbers::Numbers;
-use super::{Builder, Version};
+use super::version::Version;
 use crate::FormatError;
-use crate::solid::builder::repeated;
+use crate::solid::builder::{Builder, repeated};
 
 const WHAT: &str = "the last element";
 

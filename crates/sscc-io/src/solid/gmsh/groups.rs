@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::numbers::Numbers;
-use super::{Builder, Words};
 use crate::FormatError;
+use crate::solid::builder::Builder;
+use crate::solid::words::Words;
 use crate::text::decoded;
 
 /// Dimension of volumes.

@@ -13,8 +13,10 @@ mod nodes;
 mod numbers;
 #[cfg(test)]
 mod tests;
+mod version;
 
-use super::Solid;
+use sscc_solid::VolumeMesh;
+
 use super::builder::Builder;
 use super::words::Words;
 use crate::FormatError;
@@ -22,13 +24,7 @@ use crate::error::quoted;
 use groups::Groups;
 use nodes::Nodes;
 use numbers::Numbers;
-
-/// The versions that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Version {
-    V2,
-    V4,
-}
+use version::Version;
 
 /// Parses a gmsh file: 4-node tetrahedra, 8-node hexahedra, and as surface 3-node triangles and 4-node
 /// quadrilaterals. Points, lines and other faces are skipped. Vertices are in the file's order, whatever their tags.
@@ -39,8 +35,8 @@ enum Version {
 /// # Errors
 /// When the version is another, numbers of the binary form are of another width, a section is shorter than its
 /// counts or without its end, solid elements are of another kind, tags of nodes occur twice or are unknown, or as
-/// [`read_solid`](super::read_solid).
-pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
+/// [`read_volume_mesh`](super::read_volume_mesh).
+pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut words = Words::new(bytes, false)?;
     let (version, mut numbers) = header(&mut words)?;
     let mut builder = Builder::new(0);

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::numbers::Numbers;
-use super::{Builder, Version};
+use super::version::Version;
 use crate::FormatError;
+use crate::solid::builder::Builder;
 
 const WHAT: &str = "the last node";
 

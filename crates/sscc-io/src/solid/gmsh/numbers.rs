@@ -1,7 +1,7 @@
 //! Numbers as words or as bytes.
 
-use super::Words;
 use crate::error::quoted;
+use crate::solid::words::Words;
 use crate::{FormatError, Place};
 
 /// Numbers of a text or a binary file, which `words` knows. Nothing is ever allocated by a count: each item is read

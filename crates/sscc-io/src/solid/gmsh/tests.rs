@@ -1,7 +1,6 @@
 use glam::DVec3;
 
 use super::*;
-use crate::solid::Solid;
 
 const V2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"skin\"\n3 5 \"soft body\"\n\
     $EndPhysicalNames\n$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n7 1 1 1\n$EndNodes\n$Elements\n4\n\
@@ -16,12 +15,12 @@ fn message(text: &str) -> String {
     parse(text.as_bytes()).unwrap_err().to_string()
 }
 
-fn check(solid: &Solid) {
-    assert_eq!(solid.vertices, [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE]);
-    assert_eq!(solid.tets, [[0, 1, 2, 3], [1, 2, 3, 4]]);
-    assert_eq!(solid.surface, [[0, 1, 2]]);
-    let names: Vec<_> = solid.materials.iter().map(|m| m.name.as_str()).collect();
-    assert_eq!((names, solid.element_material.as_slice()), (vec!["soft body", "6"], &[0, 1][..]));
+fn check(mesh: &VolumeMesh) {
+    assert_eq!(mesh.vertices(), [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE]);
+    assert_eq!(mesh.tets(), [[0, 1, 2, 3], [1, 2, 3, 4]]);
+    assert_eq!(mesh.surface(), [[0, 1, 2]]);
+    let names: Vec<_> = mesh.materials().iter().map(|m| m.name.as_str()).collect();
+    assert_eq!((names, mesh.element_material()), (vec!["soft body", "6"], &[0, 1][..]));
 }
 
 /// The same in binary. Words that are no numbers are lines of text, `i` and so on types of what follows.
@@ -84,10 +83,10 @@ fn all_dialects_say_the_same() {
 fn cubes_and_elements_without_a_group() {
     let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n\
         7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n2\n1 5 0 1 2 3 4 5 6 7 8\n2 3 0 1 4 3 2\n$EndElements\n";
-    let solid = parse(text.as_bytes()).unwrap();
-    assert_eq!((solid.cubes, solid.materials.len()), (vec![[0, 1, 2, 3, 4, 5, 6, 7]], 1));
-    assert_eq!((solid.materials[0].name.as_str(), solid.element_material), ("default", vec![0]));
-    assert_eq!(solid.surface, [[0, 3, 2], [0, 2, 1]]);
+    let mesh = parse(text.as_bytes()).unwrap();
+    assert_eq!((mesh.cubes(), mesh.materials().len()), (&[[0, 1, 2, 3, 4, 5, 6, 7]][..], 1));
+    assert_eq!((mesh.materials()[0].name.as_str(), mesh.element_material()), ("default", &[0][..]));
+    assert_eq!(mesh.surface(), [[0, 3, 2], [0, 2, 1]]);
 }
 
 #[test]

@@ -2,10 +2,11 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use sscc_solid::VolumeMesh;
+
 use super::parser::Parser;
 use crate::error::{cut, quoted};
 use crate::file::read_whole;
-use crate::solid::Solid;
 use crate::solid::statements::statements;
 use crate::{FormatError, IoError, Place};
 
@@ -19,8 +20,8 @@ const MOST: usize = 64;
 ///
 /// # Errors
 /// When there is an `*INCLUDE`, a section is unknown, out of place, twice or shorter or longer than it says, numbers
-/// are not consecutive, a material is malformed or unknown, or as [`read_solid`](crate::read_solid).
-pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
+/// are not consecutive, a material is malformed or unknown, or as [`read_volume_mesh`](crate::read_volume_mesh).
+pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut parser = Parser::default();
     for statement in statements(bytes)? {
         let (line, text) = statement?;
@@ -37,7 +38,7 @@ pub fn parse(bytes: &[u8]) -> Result<Solid, FormatError> {
 /// # Errors
 /// As [`parse`]; also when an included file cannot be read, lies elsewhere than in the file's folder or below, is
 /// included twice, or there are too many. What is wrong in it is named with both files.
-pub fn read(path: &Path) -> Result<Solid, IoError> {
+pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let mut reader = Reader { main: path, seen: Vec::new(), parser: Parser::default() };
     reader.feed(&read_whole(path)?, None, 0)?;
     reader.parser.finish().map_err(|error| error.of(path))

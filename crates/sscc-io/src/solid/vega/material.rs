@@ -1,11 +1,12 @@
 //! The line of a material.
 
+use sscc_solid::{NamedMaterial, PartialMaterial};
+
 use crate::error::quoted;
-use crate::solid::Material;
 use crate::solid::statements::value;
 
 /// Parses `type, density, values`.
-pub(super) fn parse_material(name: String, text: &str) -> Result<Material, String> {
+pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, String> {
     let mut fields = text.split(',').map(str::trim_ascii);
     let kind = fields.next().unwrap_or_default();
     let mut next = |what: &str| match fields.next().filter(|field| !field.is_empty()) {
@@ -31,7 +32,8 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<Material, Strin
         return Err(format!("E = {e}, nu = {nu}: E must be above 0, nu above -1 and below 0.5"));
     }
     let (youngs_modulus, poisson_ratio) = stiffness.unzip();
-    Ok(Material { name, density: Some(density), youngs_modulus, poisson_ratio })
+    let stated = PartialMaterial { density: Some(density), youngs_modulus, poisson_ratio };
+    Ok(NamedMaterial { name, stated })
 }
 
 /// Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is `mu01 (I2' - 3) + mu10 (I1' -
@@ -57,17 +59,13 @@ mod tests {
     #[test]
     fn all_types() {
         let material = parse_material("a".into(), "ENU, 1000, 1e9 ,0.45").unwrap();
-        let known = Material {
-            name: "a".into(),
-            density: Some(1000.0),
-            youngs_modulus: Some(1e9),
-            poisson_ratio: Some(0.45),
-        };
-        assert_eq!(material, known);
-        let orthotropic = parse_material("a".into(), "ORTHOTROPIC_N1,900,1,2,3,0.4").unwrap();
+        let stated =
+            PartialMaterial { density: Some(1000.0), youngs_modulus: Some(1e9), poisson_ratio: Some(0.45) };
+        assert_eq!(material, NamedMaterial { name: "a".into(), stated });
+        let orthotropic = parse_material("a".into(), "ORTHOTROPIC_N1,900,1,2,3,0.4").unwrap().stated;
         assert_eq!((orthotropic.density, orthotropic.youngs_modulus), (Some(900.0), None));
         // E = 2 G (1 + nu) = 3 K (1 - 2 nu), for G = 2 (1 + 3) and K = 2 * 12.
-        let rubber = parse_material("a".into(), "MOONEYRIVLIN,900,1,3,12").unwrap();
+        let rubber = parse_material("a".into(), "MOONEYRIVLIN,900,1,3,12").unwrap().stated;
         let (e, nu) = (rubber.youngs_modulus.unwrap(), rubber.poisson_ratio.unwrap());
         assert!((e - 16.0 * (1.0 + nu)).abs() < 1e-12 && (e - 72.0 * (1.0 - 2.0 * nu)).abs() < 1e-12);
     }

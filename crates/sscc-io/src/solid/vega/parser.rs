@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use sscc_solid::{NamedMaterial, VolumeMesh};
+
 use super::count::{Promise, numbered, promise};
 use super::material::parse_material;
 use super::regions::{Regions, compact};
 use crate::error::quoted;
 use crate::solid::builder::Builder;
 use crate::solid::statements::{corners, fields, index, position};
-use crate::solid::{Material, Solid};
 use crate::{FormatError, Place};
 
 /// What the next line is.
@@ -36,7 +37,7 @@ pub(super) struct Parser {
     corners: u64,
     /// The number of the first element.
     first_element: u64,
-    materials: Vec<Material>,
+    materials: Vec<NamedMaterial>,
     /// Of the materials.
     names: BTreeSet<String>,
     regions: Regions,
@@ -68,8 +69,8 @@ impl Parser {
         result.map_err(|cause| FormatError::new(place.clone(), cause))
     }
 
-    /// The solid, at the end of the file.
-    pub fn finish(mut self) -> Result<Solid, FormatError> {
+    /// The mesh, at the end of the file.
+    pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
         self.leave().map_err(FormatError::whole)?;
         let promises = [
             (&self.vertices, self.builder.vertices(), "vertices"),
@@ -85,14 +86,13 @@ impl Parser {
                 Some(_) => {}
             }
         }
-        let mut solid = self.builder.finish()?;
-        if !self.materials.is_empty() {
-            solid.element_material = self.regions.materials(solid.element_material.len(), &self.materials)?;
-            solid.materials = self.materials;
-        } else {
+        let mesh = self.builder.finish()?;
+        if self.materials.is_empty() {
             self.regions.materials(0, &[])?; // refuses any
+            return Ok(mesh);
         }
-        Ok(solid)
+        let of_element = self.regions.materials(mesh.element_count(), &self.materials)?;
+        Ok(mesh.with_materials(self.materials, of_element)?)
     }
 
     /// Ends the section so far.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use sscc_solid::NamedMaterial;
+
 use crate::error::quoted;
-use crate::solid::Material;
 use crate::{FormatError, Place};
 
 /// The set that needs no definition. One of this name in a file is not looked at, as in VegaFEM.
@@ -57,7 +58,7 @@ impl Regions {
     }
 
     /// The material of each of that many elements: that of the last region with it, else the last material.
-    pub fn materials(&self, elements: usize, materials: &[Material]) -> Result<Vec<u32>, FormatError> {
+    pub fn materials(&self, elements: usize, materials: &[NamedMaterial]) -> Result<Vec<u32>, FormatError> {
         let by_name: BTreeMap<&str, u32> = materials.iter().map(|m| m.name.as_str()).zip(0..).collect();
         let mut of_element = vec![UNDECIDED; elements];
         // Backwards, each set once: what an earlier region says of it is overruled anyway, and a file of many

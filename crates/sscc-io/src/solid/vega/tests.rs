@@ -1,9 +1,9 @@
 use std::path::Path;
 
 use glam::DVec3;
+use sscc_solid::VolumeMesh;
 
 use super::*;
-use crate::solid::Solid;
 
 const TETS: &str = "# a body\n*VERTICES\n5 3 0 0\n1 0 0 0\n2, 1, 0, 0\n3\t0 1 0\n4 0 0 1\n5 1 1 1\n\n*ELEMENTS\nTET\n\
     2 4 0\n1 1 2 3 4\n2 2,3,4,5\n*MATERIAL soft rubber\nENU, 1000, 1e6, 0.45\n*MATERIAL hard\nENU,2000,1e9,0.3\n\
@@ -23,20 +23,21 @@ fn with(from: &str, to: &str) -> String {
 
 #[test]
 fn sections_are_read() {
-    let solid = parse(TETS.as_bytes()).unwrap();
-    assert_eq!((solid.vertices[1], solid.vertices.len()), (DVec3::X, 5));
-    assert_eq!(solid.tets, [[0, 1, 2, 3], [1, 2, 3, 4]]);
-    assert_eq!((solid.materials[0].name.as_str(), solid.materials[1].density), ("softrubber", Some(2000.0)));
-    assert_eq!(solid.element_material, [0, 1]);
-    assert_eq!(parse(TETS.replace('\n', " \r\n").as_bytes()).unwrap(), solid);
+    let mesh = parse(TETS.as_bytes()).unwrap();
+    assert_eq!((mesh.vertices()[1], mesh.vertices().len()), (DVec3::X, 5));
+    assert_eq!(mesh.tets(), [[0, 1, 2, 3], [1, 2, 3, 4]]);
+    let [soft, hard] = mesh.materials() else { panic!("two materials") };
+    assert_eq!((soft.name.as_str(), hard.stated.density), ("softrubber", Some(2000.0)));
+    assert_eq!(mesh.element_material(), [0, 1]);
+    assert_eq!(parse(TETS.replace('\n', " \r\n").as_bytes()).unwrap(), mesh);
     let cube = parse(CUBE.as_bytes()).unwrap();
-    assert_eq!((cube.cubes, cube.vertices[6]), (vec![[0, 1, 2, 3, 4, 5, 6, 7]], DVec3::ONE));
-    assert_eq!((cube.materials[0].name.as_str(), cube.materials[0].density), ("default", None));
+    assert_eq!((cube.cubes(), cube.vertices()[6]), (&[[0, 1, 2, 3, 4, 5, 6, 7]][..], DVec3::ONE));
+    assert_eq!((cube.materials()[0].name.as_str(), cube.materials()[0].stated.density), ("default", None));
 }
 
 #[test]
 fn the_last_region_decides() {
-    let materials = |text: &str| parse(text.as_bytes()).unwrap().element_material;
+    let materials = |text: &str| parse(text.as_bytes()).unwrap().element_material().to_vec();
     // In the other order, all elements overrule the set.
     let swapped = TETS.replace("top, hard\n", "").replace("*REGION\nall", "*REGION\ntop, hard\n*REGION\nall");
     assert_eq!(materials(&swapped.replace("*REGION,\n", "")), [0, 0]);
@@ -95,8 +96,9 @@ fn truncations_are_refused_or_shorter_files() {
     let elements = TETS.find("4,5\n").unwrap() + 3;
     for len in 0..TETS.len() {
         // Whole lines may be missing behind the elements; they speak of materials only.
-        if let Ok(solid) = parse(&TETS.as_bytes()[..len]) {
-            assert!(len >= elements && solid.vertices == whole.vertices && solid.tets == whole.tets, "{len}");
+        if let Ok(mesh) = parse(&TETS.as_bytes()[..len]) {
+            let is_whole = (mesh.vertices(), mesh.tets()) == (whole.vertices(), whole.tets());
+            assert!(len >= elements && is_whole, "{len}");
         }
     }
     for len in 0..CUBE.len() - 2 {
@@ -104,7 +106,7 @@ fn truncations_are_refused_or_shorter_files() {
     }
 }
 
-fn read_files(main: &str, others: &[(&str, &str)]) -> Result<Solid, String> {
+fn read_files(main: &str, others: &[(&str, &str)]) -> Result<VolumeMesh, String> {
     let directory = tempfile::tempdir().unwrap();
     for (name, text) in [("main.veg", main)].iter().chain(others) {
         let path = directory.path().join(name);
@@ -122,8 +124,8 @@ fn files_are_included() {
     let main =
         "*VERTICES\n*INCLUDE parts/a.node\n*ELEMENTS\nTET\n*INCLUDE ./a.ele\n*MATERIAL a\nENU,1,2,0.3\n";
     let files = [("parts/a.node", NODE), ("a.ele", "1 4 0\n1 1 2 3 4\n")];
-    let solid = read_files(main, &files).unwrap();
-    assert_eq!((solid.vertices.len(), solid.tets.as_slice()), (4, &[[0, 1, 2, 3]][..]));
+    let mesh = read_files(main, &files).unwrap();
+    assert_eq!((mesh.vertices().len(), mesh.tets()), (4, &[[0, 1, 2, 3]][..]));
     assert!(parse(main.as_bytes()).unwrap_err().to_string().starts_with("line 2: *INCLUDE names a file"));
     let error = |main: &str, others: &[(&str, &str)]| read_files(main, others).unwrap_err();
     assert_eq!(error(main, &files[..1]), "a.ele: not found");

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use sscc::Modes;
 
-use crate::{ModesError, Solid};
+use crate::{Solid, SolidError};
 
 /// Mass, its centre and inertia of a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,15 +44,13 @@ impl Solid {
         let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - second;
         MassProperties { mass, center: origin + center, inertia }
     }
-}
 
-impl Solid {
     /// The integral of each mode of the solid's vertices over the mass: times an acceleration, the force of gravity
     /// on it. 0 for modes of a free body, which move its centre of mass nowhere.
     ///
     /// # Errors
     /// When the modes are of another number of vertices.
-    pub fn mode_moments(&self, modes: &Modes) -> Result<Vec<DVec3>, ModesError> {
+    pub fn mode_moments(&self, modes: &Modes) -> Result<Vec<DVec3>, SolidError> {
         let vertices = self.vertices().len();
         if modes.vertices() != vertices {
             return Err(sscc::Error::VertexCount { modes: modes.vertices(), mesh: vertices }.into());
@@ -74,7 +72,7 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Material;
+    use crate::{Material, PartialMaterial};
 
     #[test]
     fn a_box_has_its_closed_forms() {
@@ -84,7 +82,8 @@ mod tests {
         let vertices: Vec<DVec3> = (0..8).map(corner).collect();
         let cubes = vec![[0, 1, 3, 2, 4, 5, 7, 6]];
         let tets = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
-        let material = Material { density: 5.0, ..Material::default() };
+        let heavy = PartialMaterial { density: Some(5.0), ..PartialMaterial::default() };
+        let material = Material::new(&heavy).unwrap();
         for (tets, cubes) in [(vec![], cubes), (tets.to_vec(), vec![])] {
             let solid = Solid::uniform(vertices.clone(), tets, cubes, material).unwrap();
             let found = solid.mass_properties();

@@ -1,16 +1,10 @@
-//! Surfaces of solids, and solids within surfaces.
+//! The surface of a solid.
 
 use glam::DVec3;
-use sscc::TriMesh;
+use sscc::{Modes, TriMesh};
 
-use crate::{ModesError, Solid};
-
-/// The faces of a tetrahedron of positive volume, outward.
-const TET_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-
-/// The faces of a cube, outward.
-const CUBE_FACES: [[usize; 4]; 6] =
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+use crate::element::{CUBE_FACES, TET_FACES};
+use crate::{Solid, SolidError};
 
 /// The boundary of a solid.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +21,7 @@ impl Solid {
     ///
     /// # Errors
     /// When three elements share a face, so that some overlap.
-    pub fn boundary(&self) -> Result<Boundary, ModesError> {
+    pub fn boundary(&self) -> Result<Boundary, SolidError> {
         let tets = self.tets().iter().flat_map(|tet| TET_FACES.map(|f| f.map(|k| tet[k]).to_vec()));
         let cubes = self.cubes().iter().flat_map(|cube| CUBE_FACES.map(|f| f.map(|k| cube[k]).to_vec()));
         let faces: Vec<Vec<u32>> = tets.chain(cubes).collect();
@@ -39,7 +33,7 @@ impl Solid {
             match same {
                 [one] => outer.push(one.1),
                 [_, _] => {}
-                _ => return Err(ModesError::OverlappingElements { face: same[0].0.clone() }),
+                _ => return Err(SolidError::OverlappingElements { face: same[0].0.clone() }),
             }
         }
         outer.sort_unstable();
@@ -58,49 +52,20 @@ impl Solid {
     }
 }
 
-/// Which tetrahedra lie within a surface made of their faces: all but those that can be reached from outside without
-/// crossing it. Some meshers fill the convex hull of a surface. All of them where a triangle of the surface is not a
-/// face, or where the surface encloses nothing.
-pub fn tets_within(tets: &[[u32; 4]], surface: &[[u32; 3]]) -> Vec<bool> {
-    let all = vec![true; tets.len()];
-    let sorted = |mut face: [u32; 3]| {
-        face.sort_unstable();
-        face
-    };
-    let mut walls: Vec<[u32; 3]> = surface.iter().map(|f| sorted(*f)).collect();
-    walls.sort_unstable();
-    let mut faces: Vec<([u32; 3], u32)> = Vec::with_capacity(4 * tets.len());
-    for (index, tet) in tets.iter().enumerate() {
-        faces.extend(TET_FACES.map(|f| (sorted(f.map(|k| tet[k])), index as u32)));
-    }
-    faces.sort_unstable();
-    let is_face = |wall: &[u32; 3]| {
-        let at = faces.partition_point(|f| f.0 < *wall);
-        faces.get(at).is_some_and(|f| f.0 == *wall)
-    };
-    if walls.is_empty() || !walls.iter().all(is_face) {
-        return all;
-    }
-    let mut within = all.clone();
-    let mut neighbours = vec![Vec::new(); tets.len()];
-    let mut reached = Vec::new();
-    for same in faces.chunk_by(|a, b| a.0 == b.0) {
-        let wall = walls.binary_search(&same[0].0).is_ok();
-        match same {
-            [a, b] if !wall => {
-                neighbours[a.1 as usize].push(b.1);
-                neighbours[b.1 as usize].push(a.1);
-            }
-            [one] if !wall => reached.push(one.1),
-            _ => {}
+impl Boundary {
+    /// Modes of the solid's vertices as modes of the boundary's vertices.
+    ///
+    /// # Errors
+    /// When the modes are of fewer vertices than the solid has.
+    pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SolidError> {
+        let (rank, found) = (modes.rank(), modes.vertices());
+        let needed = self.vertices.iter().max().map_or(0, |v| *v as usize + 1);
+        if found < needed {
+            return Err(sscc::Error::VertexCount { modes: found, mesh: needed }.into());
         }
+        let displacements = self.vertices.iter().flat_map(|v| modes.of_vertex(*v)).copied().collect();
+        Ok(Modes::new(rank, displacements)?)
     }
-    while let Some(tet) = reached.pop() {
-        if std::mem::replace(&mut within[tet as usize], false) {
-            reached.extend(neighbours[tet as usize].iter().copied());
-        }
-    }
-    if within.iter().any(|x| *x) { within } else { all }
 }
 
 #[cfg(test)]
@@ -138,17 +103,23 @@ mod tests {
             vec![],
             Material::default(),
         );
-        assert!(matches!(overlapping.unwrap().boundary(), Err(ModesError::OverlappingElements { .. })));
+        assert!(matches!(overlapping.unwrap().boundary(), Err(SolidError::OverlappingElements { .. })));
     }
 
     #[test]
-    fn what_lies_outside_a_surface_is_told() {
-        // Two tetrahedra on either side of a face; the surface is that of the first.
-        let tets = [[0, 1, 2, 3], [0, 2, 1, 4]];
-        let first = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-        assert_eq!(tets_within(&tets, &first), [true, false]);
-        assert_eq!(tets_within(&tets, &first[..3]), [true, true], "open: it encloses nothing");
-        assert_eq!(tets_within(&tets, &[[0, 1, 9]]), [true, true], "no face of a tetrahedron");
-        assert_eq!(tets_within(&tets, &[]), [true, true]);
+    fn modes_of_the_solid_become_those_of_its_boundary() {
+        // A corner of four tetrahedra within a larger one: vertex 4 is inside.
+        let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [1, 1, 1]];
+        let vertices = corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec();
+        let tets = vec![[0, 2, 1, 4], [0, 1, 3, 4], [1, 2, 3, 4], [0, 3, 2, 4]];
+        let solid = Solid::uniform(vertices, tets, vec![], Material::default()).unwrap();
+        let boundary = solid.boundary().unwrap();
+        assert_eq!(boundary.vertices, [0, 1, 2, 3]);
+        let modes = Modes::from_matrix(5, 2, |row, k| (2 * row + k) as f64).unwrap();
+        let found = boundary.on_surface(&modes).unwrap();
+        assert_eq!(found, Modes::from_matrix(4, 2, |row, k| (2 * row + k) as f64).unwrap());
+        let few = Modes::from_matrix(3, 1, |row, _| row as f64).unwrap();
+        let refused = SolidError::Core(sscc::Error::VertexCount { modes: 3, mesh: 4 });
+        assert_eq!(boundary.on_surface(&few), Err(refused));
     }
 }

@@ -6,9 +6,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::{Material, Solid};
+use crate::Material;
 
-/// The corners of the cube from -1 to 1, in the order of [`Solid::cubes`].
+/// The corners of the cube from -1 to 1, in the order of a solid's cubes.
 const CORNERS: [DVec3; 8] = [
     DVec3::new(-1.0, -1.0, -1.0),
     DVec3::new(1.0, -1.0, -1.0),
@@ -23,20 +23,28 @@ const CORNERS: [DVec3; 8] = [
 /// Distance of the Gauss points from the middle, 1 / sqrt(3).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
+/// The faces of a tetrahedron of positive volume, outward.
+pub(crate) const TET_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+
+/// The faces of a cube, outward.
+pub(crate) const CUBE_FACES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+
 /// An element of a solid.
-pub(crate) struct Element<'a> {
+#[derive(Clone, Debug)]
+pub struct Element<'a> {
     /// Its vertices: four or eight.
     pub vertices: &'a [u32],
     /// Its material.
     pub material: &'a Material,
     /// Integration points: one or eight.
-    points: [Point; 8],
+    points: [IntegrationPoint; 8],
     count: usize,
 }
 
 /// A point of integration.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Point {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IntegrationPoint {
     /// The gradient of each vertex's shape function at the point (1 / length).
     pub gradients: [DVec3; 8],
     /// Each vertex's shape function.
@@ -45,9 +53,32 @@ pub(crate) struct Point {
     pub volume: f64,
 }
 
-impl Element<'_> {
+impl<'a> Element<'a> {
+    /// A tetrahedron with its corners' positions.
+    pub(crate) fn tet(vertices: &'a [u32; 4], corners: [DVec3; 4], material: &'a Material) -> Self {
+        let mut points = [IntegrationPoint::default(); 8];
+        points[0] = tet_point(corners);
+        Self { vertices, material, points, count: 1 }
+    }
+
+    /// A cube with its corners' positions, and the share of each octant (at corner k) that is filled.
+    pub(crate) fn cube(
+        vertices: &'a [u32; 8],
+        corners: &[DVec3; 8],
+        fill: &[f64; 8],
+        material: &'a Material,
+    ) -> Self {
+        let mut points = [IntegrationPoint::default(); 8];
+        for (k, fill) in fill.iter().enumerate() {
+            points[k] = cube_point(corners, CORNERS[k] * GAUSS);
+            points[k].volume *= fill;
+        }
+        Self { vertices, material, points, count: 8 }
+    }
+
     /// The integration points.
-    pub fn points(&self) -> &[Point] {
+    #[inline]
+    pub fn points(&self) -> &[IntegrationPoint] {
         &self.points[..self.count]
     }
 
@@ -55,7 +86,7 @@ impl Element<'_> {
     pub fn masses(&self) -> [[f64; 8]; 8] {
         let mut masses = [[0.0; 8]; 8];
         if let [tet] = self.points() {
-            let each = self.material.density * tet.volume / 20.0;
+            let each = self.material.density() * tet.volume / 20.0;
             for i in 0..4 {
                 for j in 0..4 {
                     masses[i][j] = if i == j { 2.0 * each } else { each };
@@ -63,7 +94,7 @@ impl Element<'_> {
             }
         } else {
             for point in self.points() {
-                let mass = self.material.density * point.volume;
+                let mass = self.material.density() * point.volume;
                 for i in 0..8 {
                     for j in 0..8 {
                         masses[i][j] += mass * point.shape[i] * point.shape[j];
@@ -75,37 +106,12 @@ impl Element<'_> {
     }
 }
 
-impl Solid {
-    /// The number of elements.
-    pub(crate) fn element_count(&self) -> usize {
-        self.tets().len() + self.cubes().len()
-    }
-
-    /// An element, tetrahedra first.
-    pub(crate) fn element(&self, index: usize) -> Element<'_> {
-        let material = self.material(index);
-        let mut points = [Point::default(); 8];
-        if let Some(tet) = self.tets().get(index) {
-            points[0] = tet_point(tet.map(|v| self.vertices()[v as usize]));
-            return Element { vertices: tet, material, points, count: 1 };
-        }
-        let index = index - self.tets().len();
-        let cube = &self.cubes()[index];
-        let corners = cube.map(|v| self.vertices()[v as usize]);
-        for (k, fill) in self.fill()[index].iter().enumerate() {
-            points[k] = cube_point(&corners, CORNERS[k] * GAUSS);
-            points[k].volume *= fill;
-        }
-        Element { vertices: cube, material, points, count: 8 }
-    }
-}
-
 /// The only point of a tetrahedron.
-fn tet_point([a, b, c, d]: [DVec3; 4]) -> Point {
+fn tet_point([a, b, c, d]: [DVec3; 4]) -> IntegrationPoint {
     let edges = DMat3::from_cols(b - a, c - a, d - a);
     let inverse = edges.inverse(); // its rows are the gradients of b, c, d
     let rows = inverse.transpose();
-    let mut point = Point { volume: edges.determinant() / 6.0, ..Point::default() };
+    let mut point = IntegrationPoint { volume: edges.determinant() / 6.0, ..IntegrationPoint::default() };
     point.gradients[1..4].copy_from_slice(&[rows.x_axis, rows.y_axis, rows.z_axis]);
     point.gradients[0] = -(rows.x_axis + rows.y_axis + rows.z_axis);
     point.shape[..4].fill(0.25);
@@ -130,11 +136,11 @@ fn jacobian(corners: &[DVec3; 8], gradients: &[DVec3; 8]) -> DMat3 {
 }
 
 /// The point of a whole cube at a place of the cube from -1 to 1, for an eighth of its volume.
-fn cube_point(corners: &[DVec3; 8], at: DVec3) -> Point {
+fn cube_point(corners: &[DVec3; 8], at: DVec3) -> IntegrationPoint {
     let (shape, local) = trilinear(at);
     let jacobian = jacobian(corners, &local);
     let to_rest = jacobian.inverse().transpose();
-    Point { shape, gradients: local.map(|g| to_rest * g), volume: jacobian.determinant() }
+    IntegrationPoint { shape, gradients: local.map(|g| to_rest * g), volume: jacobian.determinant() }
 }
 
 /// Whether a cube is flat or inverted at a corner or a Gauss point.

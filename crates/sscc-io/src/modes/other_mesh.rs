@@ -1,0 +1,12 @@
+//! Modes of another mesh.
+
+use crate::FormatError;
+
+/// The refusal of modes that have `rows` rows (3 for each vertex).
+pub(super) fn other_mesh(rows: usize, vertices: usize) -> FormatError {
+    let of = match rows % 3 {
+        0 => format!("{} vertices", rows / 3),
+        _ => format!("{rows} rows (no multiple of 3)"),
+    };
+    FormatError::whole(format!("the modes are for {of}, the mesh has {vertices}: are they of another mesh?"))
+}

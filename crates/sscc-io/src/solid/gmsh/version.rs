@@ -1,0 +1,8 @@
+//! The versions of the format that are read.
+
+/// A version: 2.2 or 4.1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Version {
+    V2,
+    V4,
+}

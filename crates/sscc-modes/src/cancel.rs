@@ -1,0 +1,9 @@
+//! Cancellation of the work on modes.
+
+use sscc::{Error, Progress};
+
+/// # Errors
+/// When the work is cancelled.
+pub(crate) fn check_cancelled(progress: &dyn Progress) -> Result<(), Error> {
+    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+}

@@ -1,0 +1,66 @@
+//! Natural frequencies of a model with a stiffness.
+
+use std::f64::consts::TAU;
+
+use sscc_solid::Stiffness;
+
+use crate::{ModesError, stiffness_eigenvalues};
+
+/// An eigenvalue counts as 0 where it is at most this share of the largest entry: rounding leaves that much.
+const ROUNDING: f64 = 1e-12;
+
+/// Natural frequencies (Hz) of mass-orthonormal modes: of each mode where the stiffness is diagonal, else ascending.
+///
+/// # Errors
+/// When an eigenvalue is negative, as where the model is not at rest, or the eigenvalues do not converge.
+pub fn natural_frequencies(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError> {
+    let eigenvalues = match stiffness.is_diagonal() {
+        true => stiffness.diagonal().collect(),
+        false => stiffness_eigenvalues(stiffness)?,
+    };
+    roots(&eigenvalues, stiffness).ok_or_else(|| {
+        let eigenvalue = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        ModesError::StiffnessIndefinite { eigenvalue, largest }
+    })
+}
+
+/// The frequency (Hz) of each mode by itself; none where the stiffness is not diagonal, so that modes swing together,
+/// or one is negative.
+pub fn mode_frequencies(stiffness: &Stiffness) -> Option<Vec<f64>> {
+    if !stiffness.is_diagonal() {
+        return None;
+    }
+    roots(&stiffness.diagonal().collect::<Vec<_>>(), stiffness)
+}
+
+fn roots(eigenvalues: &[f64], stiffness: &Stiffness) -> Option<Vec<f64>> {
+    let noise = ROUNDING * stiffness.largest();
+    eigenvalues.iter().map(|x| (*x >= -noise).then(|| x.max(0.0).sqrt() / TAU)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequencies_are_roots_of_eigenvalues() {
+        let stiffness = |entries: &[f64]| Stiffness::new(2, entries.to_vec()).unwrap();
+        let of = |entries: &[f64]| natural_frequencies(&stiffness(entries));
+        let four = (2.0 * TAU) * (2.0 * TAU);
+        assert_eq!(of(&[four, 0.0, 1e-14, 0.0]).unwrap(), [2.0, 0.0]);
+        assert_eq!(mode_frequencies(&stiffness(&[four, 0.0, 0.0, 0.0])).unwrap(), [2.0, 0.0]);
+        assert_eq!(mode_frequencies(&stiffness(&[2.0, -1.0, -1.0, 2.0])), None);
+        let dense = of(&[2.0, -1.0, -1.0, 2.0]).unwrap();
+        assert!((dense[0] * TAU - 1.0).abs() < 1e-12 && (dense[1] * TAU - 3.0_f64.sqrt()).abs() < 1e-12);
+        // A rigid motion's 0 is rounded to either side; a buckled body is something else.
+        assert_eq!(of(&[-1e-14, 0.0, 0.0, 1.0]).unwrap()[0], 0.0);
+        let buckled = of(&[1.0, 2.0, 2.0, 1.0]).unwrap_err();
+        assert!(matches!(buckled, ModesError::StiffnessIndefinite { .. }), "{buckled}");
+        assert!(buckled.to_string().starts_with("the stiffness has the eigenvalue -1"), "{buckled}");
+        assert!(matches!(
+            of(&[-1.0, 0.0, 0.0, 4.0]),
+            Err(ModesError::StiffnessIndefinite { largest: 4.0, .. })
+        ));
+    }
+}

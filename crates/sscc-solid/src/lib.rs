@@ -1,0 +1,54 @@
+//! Elastic solids as data: elements, materials and reduced forces.
+//!
+//! `sscc-io` reads and writes these types, `sscc-modes` makes modes from them, and `sscc-dynamics` moves them.
+//!
+//! - [`VolumeMesh`]: tetrahedra and cubes as a file states them, checked without geometry;
+//! - [`Solid`]: elements of positive volume, each with a [`Material`]; [`VolumeMesh::solid`] makes one;
+//! - [`PartialMaterial`]: the numbers of a material that are known; [`Material::new`] fills in the others;
+//! - [`Element`]: one tetrahedron or cube with its points of integration;
+//! - [`Boundary`] and [`MassProperties`] of a solid;
+//! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q.
+//!
+//! Each type is checked where it is made, so functions that take one check nothing again.
+//!
+//! ```
+//! use glam::DVec3;
+//! use sscc_solid::{Material, PartialMaterial, Solid};
+//!
+//! # fn main() -> Result<(), sscc_solid::SolidError> {
+//! // A tetrahedron of soft rubber: the numbers left out are those of the default material.
+//! let soft = PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() };
+//! let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let solid = Solid::uniform(corners, vec![[0, 1, 2, 3]], vec![], Material::new(&soft)?)?;
+//! assert_eq!(solid.boundary()?.mesh.faces().len(), 4);
+//! assert!((solid.mass_properties().mass - 1000.0 / 6.0).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+
+mod boundary;
+mod elasticity;
+mod element;
+mod error;
+mod forces;
+mod mass;
+mod material;
+mod meshed;
+pub mod monomials;
+mod solid;
+mod stiffness;
+mod volume_mesh;
+mod within;
+
+pub use boundary::Boundary;
+pub use elasticity::Elasticity;
+pub use element::{Element, IntegrationPoint};
+pub use error::SolidError;
+pub use forces::ReducedForces;
+pub use mass::MassProperties;
+pub use material::{Material, MaterialError, NamedMaterial, PartialMaterial};
+pub use meshed::MeshedSolid;
+pub use solid::Solid;
+pub use stiffness::Stiffness;
+pub use volume_mesh::{VolumeMesh, VolumeMeshParts};
+pub use within::tets_within;

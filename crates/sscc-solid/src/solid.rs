@@ -1,0 +1,231 @@
+//! Solids: elements of positive volume with materials.
+
+use glam::DVec3;
+use sscc::limits;
+
+use crate::element::{Element, cube_is_inverted};
+use crate::{Material, SolidError};
+
+/// A tetrahedron whose volume is below this share of its longest edge cubed is flat: its stiffness would be rounding.
+const FLAT: f64 = 1e-10;
+
+/// An elastic solid: tetrahedra and hexahedra ("cubes") of positive volume, each of one material. Every vertex belongs
+/// to an element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    vertices: Vec<DVec3>,
+    tets: Vec<[u32; 4]>,
+    cubes: Vec<[u32; 8]>,
+    fill: Vec<[f64; 8]>,
+    materials: Vec<Material>,
+    element_material: Vec<u32>,
+}
+
+impl Solid {
+    /// Elements index `vertices` (rest positions, model unit). The corners of a cube are ordered as for the unit cube
+    /// 000, 100, 110, 010 (xyz), then 001, 101, 111, 011. Each element has a material, tetrahedra first. Where all
+    /// tetrahedra have a negative volume, the order of their corners is another convention, and they are turned.
+    ///
+    /// # Errors
+    /// When there is no element, an index is out of range, a coordinate is beyond [`sscc::limits`], a vertex belongs
+    /// to no element, or an element is flat or inverted.
+    pub fn new(
+        vertices: Vec<DVec3>,
+        tets: Vec<[u32; 4]>,
+        cubes: Vec<[u32; 8]>,
+        materials: Vec<Material>,
+        element_material: Vec<u32>,
+    ) -> Result<Self, SolidError> {
+        let fill = vec![[1.0; 8]; cubes.len()];
+        Self { vertices, tets, cubes, fill, materials, element_material }.checked()
+    }
+
+    /// The same of one material.
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn uniform(
+        vertices: Vec<DVec3>,
+        tets: Vec<[u32; 4]>,
+        cubes: Vec<[u32; 8]>,
+        material: Material,
+    ) -> Result<Self, SolidError> {
+        let elements = tets.len() + cubes.len();
+        Self::new(vertices, tets, cubes, vec![material], vec![0; elements])
+    }
+
+    /// Cubes of one material, of which a share of each octant (at corner k) is filled: mass and stiffness count by that
+    /// share.
+    ///
+    /// # Errors
+    /// As [`Solid::new`], and when there are not eight shares from 0 to 1 for each cube.
+    pub fn filled(
+        vertices: Vec<DVec3>,
+        cubes: Vec<[u32; 8]>,
+        fill: Vec<[f64; 8]>,
+        material: Material,
+    ) -> Result<Self, SolidError> {
+        let is_share = |share: &f64| (0.0..=1.0).contains(share);
+        if fill.len() != cubes.len() || !fill.as_flattened().iter().all(is_share) {
+            return Err(SolidError::Fill { cubes: cubes.len() });
+        }
+        let element_material = vec![0; cubes.len()];
+        Self { vertices, tets: Vec::new(), cubes, fill, materials: vec![material], element_material }
+            .checked()
+    }
+
+    /// # Errors
+    /// As [`Solid::new`].
+    fn checked(mut self) -> Result<Self, SolidError> {
+        let Self { vertices, tets, cubes, materials, element_material, .. } = &mut self;
+        let elements = tets.len() + cubes.len();
+        if elements == 0 {
+            return Err(SolidError::NoElements);
+        }
+        let known = |m: &u32| (*m as usize) < materials.len();
+        if element_material.len() != elements || !element_material.iter().all(known) {
+            return Err(SolidError::ElementMaterials { elements, found: element_material.len() });
+        }
+        let mut used = vec![false; vertices.len()];
+        for index in tets.as_flattened().iter().chain(cubes.as_flattened()) {
+            match used.get_mut(*index as usize) {
+                Some(used) => *used = true,
+                None => return Err(SolidError::ElementIndex { index: *index, vertices: vertices.len() }),
+            }
+        }
+        if let Some(vertex) = used.iter().position(|used| !used) {
+            return Err(SolidError::OrphanVertex { vertex });
+        }
+        for (vertex, p) in vertices.iter().enumerate() {
+            if !limits::contains(*p) {
+                return Err(SolidError::Vertex { vertex });
+            }
+        }
+        orient(vertices, tets)?;
+        for (cube, corners) in cubes.iter().enumerate() {
+            let corners = corners.map(|v| vertices[v as usize]);
+            if cube_is_inverted(&corners) {
+                return Err(SolidError::InvertedCube { cube });
+            }
+        }
+        Ok(self)
+    }
+
+    /// Rest positions (model unit).
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// Corners of each tetrahedron; all have positive volume.
+    pub fn tets(&self) -> &[[u32; 4]] {
+        &self.tets
+    }
+
+    /// Corners of each cube.
+    pub fn cubes(&self) -> &[[u32; 8]] {
+        &self.cubes
+    }
+
+    /// Number of elements.
+    pub fn element_count(&self) -> usize {
+        self.tets.len() + self.cubes.len()
+    }
+
+    /// An element by its number, tetrahedra first.
+    ///
+    /// # Panics
+    /// When there are not so many.
+    pub fn element(&self, index: usize) -> Element<'_> {
+        let material = &self.materials[self.element_material[index] as usize];
+        if let Some(tet) = self.tets.get(index) {
+            return Element::tet(tet, tet.map(|v| self.vertices[v as usize]), material);
+        }
+        let index = index - self.tets.len();
+        let cube = &self.cubes[index];
+        let corners = cube.map(|v| self.vertices[v as usize]);
+        Element::cube(cube, &corners, &self.fill[index], material)
+    }
+}
+
+/// Six times the volume of a tetrahedron.
+fn sixfold_volume([a, b, c, d]: [DVec3; 4]) -> f64 {
+    (b - a).cross(c - a).dot(d - a)
+}
+
+/// Turns all tetrahedra if all are negative; an error if one is flat or only some are negative.
+fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
+    let mut negative = Vec::new();
+    for (tet, corners) in tets.iter().enumerate() {
+        let p = corners.map(|v| vertices[v as usize]);
+        let longest = (0..4).flat_map(|i| (0..i).map(move |j| p[i].distance(p[j]))).fold(0.0, f64::max);
+        let volume = sixfold_volume(p);
+        // NaN (an overflow) is flat, too.
+        if volume.is_nan() || volume.abs() <= FLAT * longest * longest * longest {
+            return Err(SolidError::FlatTet { tet, corners: *corners });
+        }
+        if volume < 0.0 {
+            negative.push(tet);
+        }
+    }
+    if negative.len() == tets.len() {
+        tets.iter_mut().for_each(|corners| corners.swap(2, 3));
+    } else if let Some(tet) = negative.first() {
+        // The fewer are wrong.
+        let minority = if 2 * negative.len() <= tets.len() {
+            *tet
+        } else {
+            (0..tets.len()).find(|t| negative.binary_search(t).is_err()).unwrap_or(*tet)
+        };
+        let count = negative.len().min(tets.len() - negative.len());
+        return Err(SolidError::InvertedTet { tet: minority, corners: tets[minority], count });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_solid_is_refused() {
+        let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        let corners = vec![p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.), p(1., 1., 1.)];
+        let good = Material::default();
+        let made = |vertices: &[DVec3], tets: Vec<[u32; 4]>| {
+            Solid::uniform(vertices.to_vec(), tets, vec![], good).unwrap_err().to_string()
+        };
+        assert!(made(&corners, vec![]).contains("no element"));
+        assert!(made(&corners, vec![[0, 1, 2, 9]]).contains("names vertex 9"));
+        assert!(
+            made(&corners, vec![[0, 1, 2, 3]])
+                .contains("vertex 4 (counted from 0) of the solid belongs to no element")
+        );
+        assert!(
+            made(&corners, vec![[0, 1, 2, 3], [1, 2, 3, 4], [1, 2, 4, 3]]).contains("is inverted, one of 1")
+        );
+        let flat = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(1., 1., 1e-14)];
+        assert!(
+            made(&flat, vec![[0, 1, 2, 3]])
+                .contains("tetrahedron 0 (counted from 0, vertices [0, 1, 2, 3]) is flat")
+        );
+        let nan = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(f64::NAN, 1., 1.)];
+        assert!(
+            made(&nan, vec![[0, 1, 2, 3]])
+                .contains("vertex 3 (counted from 0) of the solid has a coordinate")
+        );
+        // All negative: another convention.
+        assert!(Solid::uniform(corners[..4].to_vec(), vec![[0, 2, 1, 3]], vec![], good).is_ok());
+        let corners =
+            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+        let mut corners = corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec();
+        let cube = vec![[0, 1, 2, 3, 4, 5, 6, 7]];
+        assert!(Solid::uniform(corners.clone(), vec![], cube.clone(), good).is_ok());
+        for wrong in [vec![], vec![[1.0; 8]; 2], vec![[-0.1; 8]], vec![[f64::NAN; 8]], vec![[1.5; 8]]] {
+            let refused = Solid::filled(corners.clone(), cube.clone(), wrong, good);
+            assert_eq!(refused.unwrap_err(), SolidError::Fill { cubes: 1 });
+        }
+        corners.swap(0, 7);
+        let twisted = Solid::uniform(corners, vec![], cube, good);
+        assert_eq!(twisted.unwrap_err(), SolidError::InvertedCube { cube: 0 });
+    }
+}
