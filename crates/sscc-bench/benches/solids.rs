@@ -12,7 +12,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use sscc_io::write_model;
-use sscc_sim::{ModesKind, PeakMemory, RequestedMaterial, SolidSource, elastic_model};
+use sscc_sim::{ModesKind, PeakMemory, SolidSource, elastic_model};
+use sscc_solid::PartialMaterial;
 
 /// Any error ends the bench.
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -94,7 +95,7 @@ fn make(mesh: &Path, kind: &str, rank: usize, resolution: &str) -> Result<()> {
     let peak = PeakMemory::start();
     let kind = if kind == "linear" { ModesKind::Linear } else { ModesKind::Nonlinear };
     let cells = if resolution == DEFAULT { None } else { Some(resolution.parse()?) };
-    let source = SolidSource::read(mesh, cells, &RequestedMaterial::default(), &())?;
+    let source = SolidSource::read(mesh, cells, &PartialMaterial::default(), &())?;
     let made = elastic_model(kind, Some(rank), source, &[], "bench", &())?;
     let folder = tempfile::tempdir()?;
     write_model(&folder.path().join("bench.model.safetensors"), &made.model, &made.info)?;

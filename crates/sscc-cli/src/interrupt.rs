@@ -9,7 +9,7 @@ use anyhow::bail;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use crate::EXIT_INTERRUPTED;
+use crate::outcome::EXIT_INTERRUPTED;
 
 /// The one word for every interrupt, which is also that of [`sscc::Error::Cancelled`].
 const INTERRUPTED: &str = "interrupted";

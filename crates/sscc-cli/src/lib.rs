@@ -1,12 +1,13 @@
-//! The `sscc` command: certify a deformable model once, then ask whether it collides with itself.
+//! The `sscc` command: certificates of a deformable model, and queries whether it collides with itself.
 //!
-//! `args` holds what was typed, `commands` what it means; exit codes are decided here.
+//! `args` has the typed arguments, `commands` their meaning. The exit code is decided here.
 
 mod args;
 mod commands;
 mod interrupt;
 mod load;
 mod meter;
+mod outcome;
 mod output;
 mod progress;
 mod stages;
@@ -16,19 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-/// What a command that ran to its end has to say by its exit code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
-    /// Done; `check`: every q is free.
-    Done,
-    /// `check` found a collision, `audit` a violation.
-    Found,
-}
-
-const EXIT_FOUND: u8 = 1;
-const EXIT_ERROR: u8 = 2;
-/// What shells report for a program that was interrupted.
-const EXIT_INTERRUPTED: u8 = 130;
+use outcome::{EXIT_ERROR, EXIT_FOUND, EXIT_INTERRUPTED, Outcome};
 
 /// The program: does what its arguments say.
 pub fn main() -> ExitCode {

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 
-use crate::EXIT_ERROR;
+use crate::outcome::EXIT_ERROR;
 use crate::output::{one_line, say};
 
 /// Prints help and version as they are, and anything wrong with the command line as one line.

@@ -5,9 +5,10 @@ use serde::Serialize;
 use sscc::AuditOptions;
 
 use crate::args::Audit;
+use crate::outcome::Outcome;
 use crate::output::{Output, grouped};
 use crate::progress::Bar;
-use crate::{Outcome, interrupt, load};
+use crate::{interrupt, load};
 
 #[derive(Serialize)]
 struct Report {

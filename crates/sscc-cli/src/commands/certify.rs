@@ -12,8 +12,9 @@ use sscc_view::Picture;
 
 use crate::args::Certify;
 use crate::interrupt::{self, Interrupt};
+use crate::load;
+use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
-use crate::{Outcome, load};
 
 /// Triangles that a note names.
 const LISTED: usize = 8;

@@ -10,8 +10,8 @@ mod modes;
 mod simulate;
 mod view;
 
-use crate::Outcome;
 use crate::args::{Cli, Command};
+use crate::outcome::Outcome;
 
 /// Runs one command to its end.
 pub fn run(cli: Cli) -> anyhow::Result<Outcome> {

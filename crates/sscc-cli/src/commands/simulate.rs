@@ -4,8 +4,8 @@ use anyhow::Result;
 use sscc_sim::{Outputs, Request, simulate};
 use sscc_view::simulation_report;
 
-use crate::Outcome;
 use crate::args::Simulate;
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::stages::Stages;
 

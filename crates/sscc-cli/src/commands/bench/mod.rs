@@ -12,9 +12,10 @@ use sscc_io::write_whole;
 use sscc_sim::{Cache, machine_description, models_folder};
 
 use crate::args::Bench;
+use crate::load;
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::stages::Stages;
-use crate::{Outcome, load};
 use printer::Printer;
 
 pub fn run(args: &Bench) -> anyhow::Result<Outcome> {

@@ -1,39 +1,22 @@
 //! `sscc check`: does the shape collide with itself at q, and where?
 
+mod answer;
 mod pose;
 mod text;
 
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use serde::Serialize;
 use sscc::{Certificates, Impact, Method, Pair, Query, ReducedModel};
 use sscc_io::{Rows, read_rows};
 
 use crate::args::{self, At, Check};
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::progress::Bar;
-use crate::{Outcome, interrupt, load};
+use crate::{interrupt, load};
+use answer::Answer;
 use text::Summary;
-
-/// The answer for one q, or for the way from one to the next.
-#[derive(Serialize)]
-struct Answer<'a> {
-    index: usize,
-    norm: f64,
-    colliding: bool,
-    count: usize,
-    complete: bool,
-    pairs: &'a [Pair],
-    /// Of the way to the next q: when each pair meets.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    times: Option<Vec<f64>>,
-    microseconds: f64,
-    root_certified: bool,
-    opened: u64,
-    box_tests: u64,
-    triangle_tests: u64,
-}
 
 pub fn run(args: &Check) -> Result<Outcome> {
     let model = load::model(&args.model)?.model;

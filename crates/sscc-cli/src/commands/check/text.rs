@@ -1,6 +1,6 @@
 //! Answers for people.
 
-use super::Answer;
+use super::answer::Answer;
 use crate::output::{counted, duration, grouped, length};
 
 /// Pairs listed in text; `--json` lists all.

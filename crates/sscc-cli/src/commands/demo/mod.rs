@@ -10,14 +10,16 @@ use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use sscc::CertifyOptions;
+use sscc_modes::mode_frequencies;
 use sscc_modes::shapes::elastic_spring;
-use sscc_sim::{elasticity, frequencies_of_modes, make_folder};
+use sscc_sim::make_folder;
 use sscc_view::Animation;
 
 use crate::args::{Demo, Threads};
+use crate::load;
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::progress::Bar;
-use crate::{Outcome, load};
 use frames::Frames;
 use report::Report;
 
@@ -54,7 +56,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
             name: "spring",
             model,
             certificates: &certificates,
-            frequencies: frequencies_of_modes(&elasticity(spring.eigenvalues.clone(), None)),
+            frequencies: mode_frequencies(spring.elasticity.stiffness()),
             rate: RATE,
             q: &animation.data,
             pairs: &frames.certified.pairs,

@@ -4,7 +4,7 @@ use serde::Serialize;
 use sscc::Certificates;
 use sscc_view::levels;
 
-use super::{form, hexadecimal, range};
+use super::text::{form, hexadecimal, range};
 use crate::output::{counted, grouped, length};
 
 #[derive(Serialize)]

@@ -1,21 +1,21 @@
-//! `sscc info`: what is in a file.
+//! `sscc info`: the contents of a file.
 
 mod certified;
 mod meshes;
 mod model;
 mod solid;
 mod surface;
+mod text;
 
 use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use sscc::Metric;
 use sscc_io::{IoError, LoadOptions, LoadedModel, load_model_with, read_certificates, read_mesh, read_model};
 use sscc_sim::is_solid;
 
-use crate::Outcome;
 use crate::args::Info;
+use crate::outcome::Outcome;
 use crate::output::Output;
 use certified::Certified;
 use meshes::Meshes;
@@ -80,21 +80,4 @@ impl Report {
             Self::Gltf(meshes) => meshes.lines(),
         }
     }
-}
-
-/// 32 bytes as hexadecimal digits.
-fn hexadecimal(digest: sscc::Digest) -> String {
-    digest.0.iter().map(|b| format!("{b:02x}")).collect()
-}
-
-/// Whether a metric's factor is diagonal.
-fn form(metric: &Metric) -> &'static str {
-    if metric.dense_factor().is_some() { "dense" } else { "diagonal" }
-}
-
-/// The least and the largest of a metric's scales, for people.
-fn range(scales: &[f64]) -> String {
-    let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = scales.iter().copied().fold(0.0, f64::max);
-    format!("scales from {} to {}", crate::output::length(least), crate::output::length(largest))
 }

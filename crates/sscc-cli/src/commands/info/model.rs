@@ -7,7 +7,7 @@ use sscc_modes::natural_frequencies;
 use sscc_solid::Elasticity;
 
 use super::surface::Surface;
-use super::{form, hexadecimal, range};
+use super::text::{form, hexadecimal, range};
 use crate::output::length;
 
 /// Frequencies that are told to people; the JSON has all.

@@ -10,8 +10,9 @@ use sscc_io::write_model;
 use sscc_sim::{Components, has_equal_vertices};
 
 use crate::args;
+use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
-use crate::{Outcome, interrupt, load};
+use crate::{interrupt, load};
 use make::make;
 
 #[derive(Serialize)]

@@ -11,9 +11,10 @@ use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Plot, Report, Scene, Ser
 
 use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
+use crate::load;
+use crate::outcome::Outcome;
 use crate::output::{Output, file_name, note};
 use crate::progress::Bar;
-use crate::{Outcome, load};
 
 /// The report in a folder of `simulate` or `demo`.
 const REPORT: &str = "report.html";

@@ -1,0 +1,20 @@
+//! Texts that several kinds of files share.
+
+use sscc::{Digest, Metric};
+
+/// 32 bytes as hexadecimal digits.
+pub fn hexadecimal(digest: Digest) -> String {
+    digest.0.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Whether a metric's factor is diagonal.
+pub fn form(metric: &Metric) -> &'static str {
+    if metric.dense_factor().is_some() { "dense" } else { "diagonal" }
+}
+
+/// The least and the largest of a metric's scales, for people.
+pub fn range(scales: &[f64]) -> String {
+    let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = scales.iter().copied().fold(0.0, f64::max);
+    format!("scales from {} to {}", crate::output::length(least), crate::output::length(largest))
+}

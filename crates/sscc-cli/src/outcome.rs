@@ -1,0 +1,19 @@
+//! Outcomes of commands and the exit codes of the program.
+
+/// The outcome of a command that ran to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Done; `check`: every q is free.
+    Done,
+    /// `check` found a collision, `audit` a violation.
+    Found,
+}
+
+/// The exit code of [`Outcome::Found`].
+pub const EXIT_FOUND: u8 = 1;
+
+/// The exit code of an error.
+pub const EXIT_ERROR: u8 = 2;
+
+/// The exit code that shells report for an interrupted program.
+pub const EXIT_INTERRUPTED: u8 = 130;
