@@ -1,17 +1,16 @@
 //! Properties of certificates and queries, through the public interface.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use common::{Random, at, critical_z, random_model, random_options};
 use glam::DVec3;
 use sscc::hierarchy::{Hierarchy, Node};
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Neighbours,
     PairTree, Query, ReducedModel, Scope, TriMesh,
 };
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, at, critical_z, random_model, random_options};
 
 /// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
 #[test]
@@ -117,7 +116,8 @@ fn pairs(query: &mut Query<'_>, q: &[f64]) -> Option<Vec<(u32, u32)>> {
 #[test]
 fn certified_implies_free() {
     let (mut skipped, mut scopes) = (0, [0; 6]);
-    for seed in 0..PROVEN {
+    let proven = cases(PROVEN);
+    for seed in 0..proven {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 1_000_000);
         let options = CertifyOptions { budget: budget(seed), ..random_options(seed, &model) };
@@ -174,8 +174,8 @@ fn certified_implies_free() {
             }
         }
     }
-    assert!(PROVEN - skipped >= 1000, "{skipped} models skipped");
-    assert!(scopes.iter().all(|n| *n > 15), "too few of a kind: {scopes:?}");
+    assert!(proven - skipped >= threshold(1000), "{skipped} models skipped");
+    assert!(scopes.iter().all(|n| *n > threshold(15)), "too few of a kind: {scopes:?}");
 }
 
 /// Counts the kinds of scopes that were tried.
@@ -195,7 +195,8 @@ fn count_scope(scope: &Scope, model: &ReducedModel, counts: &mut [u32; 6]) {
 #[test]
 fn all_methods_find_the_same_pairs() {
     let (mut skipped, mut included, mut neighbours, mut partial) = (0, 0, 0, 0);
-    for seed in PROVEN..PROVEN + COMPARED {
+    let compared = cases(COMPARED);
+    for seed in PROVEN..PROVEN + compared {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 2_000_000);
         let mut options = random_options(seed, &model);
@@ -268,8 +269,11 @@ fn all_methods_find_the_same_pairs() {
             "model {seed}"
         );
     }
-    assert!(skipped < COMPARED / 10, "{skipped} models skipped");
-    assert!(included >= 1000 && neighbours > 1000 && partial > 1000, "{included} {neighbours} {partial}");
+    assert!(skipped < compared / 10, "{skipped} models skipped");
+    assert!(
+        included >= threshold(1000) && neighbours > threshold(1000) && partial > threshold(1000),
+        "{included} {neighbours} {partial}"
+    );
 }
 
 /// Certificates whose hierarchy is over fewer triangles than the model has must be refused somewhere.
@@ -296,7 +300,7 @@ fn root_radius_above_a_pair_is_refused() {
 
 #[test]
 fn the_number_of_threads_changes_no_bit() {
-    for seed in 0..15 {
+    for seed in 0..cases(15) {
         let model = random_model(seed);
         let all = [1, 2, 3].map(|threads| {
             let options = CertifyOptions { threads: Some(threads), ..random_options(seed, &model) };

@@ -1,15 +1,13 @@
 //! Single queries stop soon when they are cancelled, wherever they are, and are whole afterwards.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use common::Random;
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, Error, KineticQuery, Method, Modes, Progress, Query, ReducedModel, TriMesh,
 };
+
+use crate::common::Random;
 
 /// Cancelled when it has been asked so many times.
 struct After {

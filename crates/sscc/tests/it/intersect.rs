@@ -5,6 +5,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Num;
 use sscc::{intersect_triangle_triangle, limits};
+use sscc_testdata::{cases, threshold};
 
 type Triangle = [DVec3; 3];
 
@@ -217,7 +218,7 @@ fn oracle_knows_plain_cases() {
 fn tiny_whole_coordinates() {
     let mut random = Random(1);
     let mut count = [0; 2];
-    for i in 0..40_000 {
+    for i in 0..cases(40_000) {
         // From 0..=1 (nearly everything touches or is degenerate) to 0..=3; some in one plane.
         let largest = 2 + i % 3;
         let flat = i % 7 == 0;
@@ -233,25 +234,25 @@ fn tiny_whole_coordinates() {
         assert_eq!(found, intersect_whole(&a, &b), "{a:?} {b:?}");
         count[usize::from(found)] += 1;
     }
-    assert!(count.iter().all(|c| *c > 5_000), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(5_000)), "one-sided: {count:?}");
 }
 
 #[test]
 fn random_pairs() {
     let mut random = Random(2);
     let mut count = [0; 2];
-    for _ in 0..5_000 {
+    for _ in 0..cases(5_000) {
         let a = random.triangle(Random::unit);
         let b = random.triangle(Random::unit);
         count[usize::from(check(&a, &b))] += 1;
     }
-    assert!(count.iter().all(|c| *c > 1_000), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(1_000)), "one-sided: {count:?}");
 }
 
 #[test]
 fn mixed_magnitudes() {
     let mut random = Random(3);
-    for i in 0..2_000 {
+    for i in 0..cases(2_000) {
         let exponents = [-1074..200, -400..-200, -30..30][i % 3].clone();
         let mut coordinate = |random: &mut Random| {
             let count = (exponents.end - exponents.start) as u64;
@@ -267,7 +268,7 @@ fn mixed_magnitudes() {
 fn corner_on_face() {
     let mut random = Random(4);
     let mut count = [0; 2];
-    for i in 0..1_200 {
+    for i in 0..cases(1_200) {
         let a = random.whole_triangle(1 << 20);
         let p = point(&a, random.weights());
         let normal = (a[1] - a[0]).cross(a[2] - a[0]);
@@ -281,7 +282,7 @@ fn corner_on_face() {
             count[usize::from(check(&a, &[p, q, r]))] += 1;
         }
     }
-    assert!(count.iter().all(|c| *c > 400), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
 /// Two edges that touch at one point, and one ulp off.
@@ -289,7 +290,7 @@ fn corner_on_face() {
 fn edges_that_touch() {
     let mut random = Random(5);
     let mut count = [0; 2];
-    for i in 0..1_200 {
+    for i in 0..cases(1_200) {
         let a = random.whole_triangle(1 << 20);
         let weight = random.below(9) as f64 / 8.0;
         let p = a[0] * weight + a[1] * (1.0 - weight);
@@ -300,7 +301,7 @@ fn edges_that_touch() {
             count[usize::from(check(&a, &[q, b[1], b[2]]))] += 1;
         }
     }
-    assert!(count.iter().all(|c| *c > 400), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
 /// Everything in one plane, or nearly: corners and edges on edges, overlaps, and one ulp off.
@@ -308,7 +309,7 @@ fn edges_that_touch() {
 fn coplanar() {
     let mut random = Random(6);
     let mut count = [0; 2];
-    for i in 0..1_200 {
+    for i in 0..cases(1_200) {
         let base = random.whole_triangle(1 << 15);
         // Combinations of two directions: all exactly in one plane, on a coarse lattice.
         let mut lattice = |size: u64| {
@@ -322,7 +323,7 @@ fn coplanar() {
             count[usize::from(check(&a, &[p, b[1], b[2]]))] += 1;
         }
     }
-    assert!(count.iter().all(|c| *c > 400), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
 /// Segments and points: collinear overlaps and gaps, crossings, points on edges and on faces.
@@ -330,7 +331,7 @@ fn coplanar() {
 fn degenerate() {
     let mut random = Random(7);
     let mut count = [0; 2];
-    for i in 0..1_200 {
+    for i in 0..cases(1_200) {
         let (origin, along) = (random.whole_point(1 << 20), random.whole_point(1 << 20));
         let collinear = |random: &mut Random, size| origin + along * random.whole(size);
         let a: Triangle = std::array::from_fn(|_| collinear(&mut random, 3));
@@ -348,13 +349,13 @@ fn degenerate() {
             count[usize::from(check(&a, &[p, b[1], b[2]]))] += 1;
         }
     }
-    assert!(count.iter().all(|c| *c > 400), "one-sided: {count:?}");
+    assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
 #[test]
 fn identical_and_shared_corners() {
     let mut random = Random(8);
-    for _ in 0..300 {
+    for _ in 0..cases(300) {
         let (a, b) = (random.triangle(Random::unit), random.triangle(Random::unit));
         assert!(check(&a, &a));
         assert!(check(&a, &[b[0], a[1], b[2]]));
@@ -368,7 +369,7 @@ fn identical_and_shared_corners() {
 #[test]
 fn powers_of_two() {
     let mut random = Random(9);
-    for i in 0..2_400 {
+    for i in 0..cases(2_400) {
         let size = [1, 2, 32][i % 3];
         let (a, b) = (random.whole_triangle(size), random.whole_triangle(size));
         let expected = intersect_whole(&a, &b);
@@ -382,7 +383,7 @@ fn powers_of_two() {
 #[test]
 fn other_scales() {
     let mut random = Random(10);
-    for i in 0..600 {
+    for i in 0..cases(600) {
         let factor = FACTORS[i % FACTORS.len()];
         let a = scaled(&random.whole_triangle(24), factor);
         let p = point(&a, random.weights());
@@ -396,7 +397,7 @@ fn other_scales() {
 #[test]
 fn largest_coordinates() {
     let mut random = Random(11);
-    for _ in 0..600 {
+    for _ in 0..cases(600) {
         let mut coordinate = |random: &mut Random| match random.below(4) {
             0 => limits::LARGEST,
             1 => -limits::LARGEST,

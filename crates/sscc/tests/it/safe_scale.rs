@@ -1,14 +1,13 @@
 //! How far one can go: safe scales and the root's ellipsoid.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Random, at, random_model, random_options, winding_strip};
 use glam::DVec3;
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Progress, Query,
     ReducedModel, Scope, TriMesh,
 };
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, at, random_model, random_options, winding_strip};
 
 /// Stops what takes too long.
 struct Budget(std::sync::atomic::AtomicUsize);
@@ -23,7 +22,7 @@ impl Progress for Budget {
 #[test]
 fn the_way_to_a_safe_scale_is_free() {
     let (mut tried, mut larger, mut tight, mut stopped) = (0, 0, 0, 0);
-    for seed in 0..400 {
+    for seed in 0..cases(400) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 7_000_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
@@ -60,7 +59,13 @@ fn the_way_to_a_safe_scale_is_free() {
             tight += usize::from(beyond.is_ok_and(|found| !found.is_empty()));
         }
     }
-    assert!(tried > 600 && larger > 200 && tight > 200 && stopped > 30, "{tried} {larger} {tight} {stopped}");
+    assert!(
+        tried > threshold(600)
+            && larger > threshold(200)
+            && tight > threshold(200)
+            && stopped > threshold(30),
+        "{tried} {larger} {tight} {stopped}"
+    );
 }
 
 /// Radii of pairs of nodes are further proofs; the way itself is followed from another start, which moves its end by
@@ -68,7 +73,7 @@ fn the_way_to_a_safe_scale_is_free() {
 #[test]
 fn the_pair_tree_shortens_no_scale() {
     let (mut compared, mut opened) = (0, [0, 0]);
-    for seed in 0..40 {
+    for seed in 0..cases(40) {
         let random = &mut Random::new(seed + 9_000_000);
         let model = winding_strip(random, seed);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
@@ -90,7 +95,7 @@ fn the_pair_tree_shortens_no_scale() {
             opened.iter_mut().zip(&queries).for_each(|(n, query)| *n += query.statistics().opened);
         }
     }
-    assert!(compared > 50 && opened[1] < opened[0], "{compared} {opened:?}");
+    assert!(compared > threshold(50) && opened[1] < opened[0], "{compared} {opened:?}");
 }
 
 #[test]
@@ -120,7 +125,7 @@ fn scales_of_simple_shapes() {
 #[test]
 fn clamping_ends_inside_the_root_ellipsoid() {
     let (mut clamped, mut none) = (0, 0);
-    for seed in 0..150 {
+    for seed in 0..cases(150) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 8_000_000);
         let options = CertifyOptions { epsilon: 0.9, ..random_options(seed, &model) };
@@ -152,7 +157,7 @@ fn clamping_ends_inside_the_root_ellipsoid() {
         assert!(certificates.clamp(&vec![f64::NAN; model.rank()]).is_err());
         assert!(certificates.clamp(&vec![0.0; model.rank() + 1]).is_err());
     }
-    assert!(clamped > 100 && none > 20, "{clamped} {none}");
+    assert!(clamped > threshold(100) && none > threshold(20), "{clamped} {none}");
 }
 
 /// Where quotients underflow nothing is known, rather than too much.

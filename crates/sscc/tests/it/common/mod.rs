@@ -1,5 +1,4 @@
 //! Small random models, with every kind of odd mesh and odd modes.
-#![allow(dead_code)] // no test uses all of it
 
 pub mod pair_trees;
 

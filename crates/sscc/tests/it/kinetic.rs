@@ -1,14 +1,13 @@
 //! Kinetic queries against brute force, which shares no box and no test in single precision with them, at every step of every kind of motion.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Random, at, random_model, random_options};
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours, PairRule,
     Query, ReducedModel, TriMesh,
 };
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, at, random_model, random_options};
 
 /// What was compared: steps, steps with collisions, steps where fewer triangles were tested than a query by
 /// certificates tests, and pairs found at them.
@@ -87,7 +86,7 @@ fn compare(model: &ReducedModel, certificates: &Certificates, path: &[Vec<f64>],
 #[test]
 fn small_models_of_every_kind() {
     let mut counts = Counts::default();
-    for seed in 0..120 {
+    for seed in 0..cases(120) {
         let model = random_model(seed);
         let mut options = random_options(seed, &model);
         options.budget = 1 << 14;
@@ -99,7 +98,12 @@ fn small_models_of_every_kind() {
         let path = motion(random, model.rank(), seed as usize % 5, 120, size);
         compare(&model, &certificates, &path, &mut counts);
     }
-    assert!(counts.steps > 10_000 && counts.colliding > 1000 && counts.lasting > 500, "{counts:?}");
+    assert!(
+        counts.steps > threshold(10_000)
+            && counts.colliding > threshold(1000)
+            && counts.lasting > threshold(500),
+        "{counts:?}"
+    );
 }
 
 /// A coil of a band, of several clusters; some of its corners on vertices of their own.
@@ -154,7 +158,7 @@ fn coil(random: &mut Random, seed: u64) -> ReducedModel {
 #[test]
 fn coils_of_several_clusters() {
     let mut counts = Counts::default();
-    for seed in 0..16 {
+    for seed in 0..cases(16) {
         let random = &mut Random::new(seed + 600_000);
         let model = coil(random, seed);
         let rank = model.rank();
@@ -176,7 +180,12 @@ fn coils_of_several_clusters() {
             compare(&model, &certificates, &path, &mut counts);
         }
     }
-    assert!(counts.steps > 9000 && counts.colliding > 900 && counts.lasting > 1000, "{counts:?}");
+    assert!(
+        counts.steps > threshold(9000)
+            && counts.colliding > threshold(900)
+            && counts.lasting > threshold(1000),
+        "{counts:?}"
+    );
 }
 
 /// A sheet of triangles over a square, at a height, of which every second row lies by `fold` higher.
@@ -200,7 +209,7 @@ fn sheet(side: u32, height: f64, fold: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 #[test]
 fn radii_are_crossed_inside_a_ball() {
     let (mut crossed, mut lasting) = (0, 0);
-    for case in 0..12 {
+    for case in 0..cases(12) {
         let random = &mut Random::new(case + 700_000);
         let side = [10, 8, 5][case as usize % 3];
         let heights = [-1.0 - random.uniform(), 0.0, 2.5 + random.uniform()];
@@ -234,7 +243,7 @@ fn radii_are_crossed_inside_a_ball() {
         crossed += usize::from((20..55).contains(&counts.colliding));
         lasting += counts.lasting;
     }
-    assert!(crossed == 12 && lasting > 100, "{crossed} {lasting}");
+    assert!(crossed == cases(12) && lasting > threshold(100), "{crossed} {lasting}");
 }
 
 #[test]

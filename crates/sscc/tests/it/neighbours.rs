@@ -1,16 +1,15 @@
 //! Triangles that share a vertex, and vertices that are split.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::collections::BTreeMap;
 
-use common::{Random, at, random_model};
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, Error, Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope,
     TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
 };
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, at, random_model};
 
 /// The second triangle without a small neighbourhood of v, as two triangles, against the first. For corners with
 /// coordinates up to 8 everything here is exact: what is common beyond v reaches an opposite edge, at least 1/16
@@ -32,7 +31,7 @@ fn oracle(v: DVec3, x: [DVec3; 2], y: [DVec3; 2]) -> bool {
 fn beyond_a_vertex_is_decided_exactly() {
     let random = &mut Random::new(11);
     let (mut met, mut flat) = (0, 0);
-    let cases = 300_000;
+    let cases = cases(300_000);
     for case in 0..cases {
         let size = [1.2, 2.2, 4.2][case % 3];
         let mut corner = || (random.vector() * size).round();
@@ -108,7 +107,7 @@ fn one_vertex_neighbours_are_found_when_asked_for() {
 #[test]
 fn welding_undoes_splitting() {
     let (mut compared, mut differed, mut hits) = (0, 0, 0);
-    for seed in 0..400 {
+    for seed in 0..cases(400) {
         let whole = random_model(seed);
         let random = &mut Random::new(seed + 5_000_000);
         let (mesh, modes) = (whole.mesh(), whole.modes());
@@ -144,14 +143,17 @@ fn welding_undoes_splitting() {
             }
         }
     }
-    assert!(compared > 2000 && hits > 400 && differed > 1000, "{compared} {hits} {differed}");
+    assert!(
+        compared > threshold(2000) && hits > threshold(400) && differed > threshold(1000),
+        "{compared} {hits} {differed}"
+    );
 }
 
 /// What is ignored is never listed and limits no radius.
 #[test]
 fn rest_collisions_can_be_ignored() {
     let mut seen = 0;
-    for seed in 0..200 {
+    for seed in 0..cases(200) {
         let model = random_model(seed);
         let options = CertifyOptions { epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
         let mut plain = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
@@ -177,7 +179,7 @@ fn rest_collisions_can_be_ignored() {
             assert_eq!(query.discrete(&q).unwrap(), expected, "model {seed}");
         }
     }
-    assert!(seen > 20, "{seen}");
+    assert!(seen > threshold(20), "{seen}");
 }
 
 #[test]

@@ -1,11 +1,10 @@
 //! Audits find what is wrong, and nothing else, whatever certificates speak of.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::pair_trees::{START, edited};
-use common::{random_model, random_options};
 use sscc::{AuditOptions, CertificateParts, Certificates, CertifyOptions, Error, PairRule, PairTree, audit};
+use sscc_testdata::{cases, threshold};
+
+use crate::common::pair_trees::{START, edited};
+use crate::common::{random_model, random_options};
 
 struct Budget(std::sync::atomic::AtomicUsize);
 
@@ -21,7 +20,7 @@ impl sscc::Progress for Budget {
 #[test]
 fn lies_of_every_scope_are_found() {
     let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
-    for seed in 0..220 {
+    for seed in 0..cases(220) {
         let model = random_model(50_000 + seed);
         let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
         let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
@@ -40,7 +39,7 @@ fn lies_of_every_scope_are_found() {
             missed.push(seed);
         }
     }
-    assert!(honest > 150 && lies > 30, "{honest} {lies}");
+    assert!(honest > threshold(150) && lies > threshold(30), "{honest} {lies}");
     // Some collide at single points of a hyperplane only, where exact tests see nothing.
     assert!(missed.len() * 20 <= lies, "{missed:?} of {lies}");
 }
@@ -50,7 +49,7 @@ fn lies_of_every_scope_are_found() {
 fn forged_exceptions_are_refused_or_found() {
     let options = CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
     let mut found = 0;
-    for seed in 0..80 {
+    for seed in 0..cases(80) {
         let model = random_model(seed);
         let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
         if certificates.exceptions().is_empty() || certificates.root_radius() <= 0.0 {
@@ -75,7 +74,7 @@ fn forged_exceptions_are_refused_or_found() {
         nowhere.scope.center[0] = f64::NAN;
         assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
     }
-    assert!(found > 1, "{found}");
+    assert!(found > threshold(1), "{found}");
 }
 
 /// Radii of pairs of nodes three times as large, and trees that lack the pair of leaves that collides first; nodes and
@@ -83,7 +82,7 @@ fn forged_exceptions_are_refused_or_found() {
 #[test]
 fn lies_of_the_pair_tree_are_found() {
     let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);
-    for seed in 0..150 {
+    for seed in 0..cases(150) {
         let model = random_model(60_000 + seed);
         let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
         let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
@@ -109,7 +108,7 @@ fn lies_of_the_pair_tree_are_found() {
             }
         }
     }
-    assert!(lies.iter().all(|n| *n > 5), "{lies:?}");
+    assert!(lies.iter().all(|n| *n > threshold(5)), "{lies:?}");
     for (lies, missed) in lies.iter().zip(&missed) {
         assert!(missed.len() * 20 <= *lies, "{missed:?} of {lies}");
     }
@@ -119,7 +118,7 @@ fn lies_of_the_pair_tree_are_found() {
 #[test]
 fn an_empty_tree_that_claims_too_much_is_found() {
     let (mut lies, mut found) = (0, 0);
-    for seed in 0..40 {
+    for seed in 0..cases(40) {
         let model = random_model(61_000 + seed);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
         let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
@@ -140,5 +139,5 @@ fn an_empty_tree_that_claims_too_much_is_found() {
         lies += 1;
         found += usize::from(!audit(&model, &forged, &asked, &()).unwrap().violations.is_empty());
     }
-    assert!(lies > 5 && found * 20 >= 19 * lies, "{found} of {lies}");
+    assert!(lies > threshold(5) && found * 20 >= 19 * lies, "{found} of {lies}");
 }

@@ -1,5 +1,5 @@
 //! Continuous tests against published queries with exact answers, and how many of the answers are "yes" too often.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::print_stdout)]
 
 use std::path::Path;
 

@@ -1,11 +1,10 @@
 //! Models of several clusters: what is skipped must never count, whatever the rule, the size and the odd cases.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Random, Soup, random_mesh};
 use glam::DVec3;
 use sscc::{Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope, TriMesh};
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, Soup, random_mesh};
 
 /// Several small meshes of every odd kind in one, about as large as each other, through each other.
 fn heap(random: &mut Random) -> Soup {
@@ -53,7 +52,7 @@ fn bent(random: &mut Random, (p, faces): Soup, scale: f64, offset: DVec3) -> Red
 #[test]
 fn large_models_agree_with_brute_force() {
     let (mut compared, mut hits, mut neighbours) = (0, 0, 0);
-    for seed in 0..120 {
+    for seed in 0..cases(120) {
         let random = &mut Random::new(seed);
         let mut soup = if seed % 6 == 0 { fan(random) } else { heap(random) };
         if seed % 2 == 0 {
@@ -91,14 +90,17 @@ fn large_models_agree_with_brute_force() {
             neighbours += expected.iter().filter(|(i, j)| model.mesh().are_adjacent(*i, *j)).count();
         }
     }
-    assert!(compared > 400 && hits > 20_000 && neighbours > 1000, "{compared} {hits} {neighbours}");
+    assert!(
+        compared > threshold(400) && hits > threshold(20_000) && neighbours > threshold(1000),
+        "{compared} {hits} {neighbours}"
+    );
 }
 
 /// A query that stopped early leaves nothing behind.
 #[test]
 fn limits_stop_anywhere() {
     let mut seen = 0;
-    for seed in 0..60 {
+    for seed in 0..cases(60) {
         let random = &mut Random::new(seed);
         let soup = heap(random);
         let model = bent(random, soup, 1.0, DVec3::ZERO);
@@ -115,5 +117,5 @@ fn limits_stop_anywhere() {
             assert_eq!(query.discrete(&q).unwrap(), all);
         }
     }
-    assert!(seen >= 10, "{seen}");
+    assert!(seen >= threshold(10), "{seen}");
 }

@@ -1,15 +1,13 @@
 //! Answers where rounding decides: computed positions that touch, though those of real numbers are still apart, and
 //! norms that equal a radius.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::Random;
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, KineticQuery, Method, Metric, MetricKind, Modes, Query, ReducedModel,
     Scope, TriMesh,
 };
+
+use crate::common::Random;
 
 /// Triangles one above the other at two heights, a few times side by side (16 apart); modes move each up or down as a
 /// whole.

@@ -1,14 +1,12 @@
 //! The certified pair tree: what it may be read as, and what it must not.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::pair_trees::{LAST, START, edited};
 use glam::DVec3;
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Query, ReducedModel,
     TriMesh,
 };
+
+use crate::common::pair_trees::{LAST, START, edited};
 
 /// Two parallel strips, one above the other at height 1, which a mode lowers: they touch at q = 1. A second one moves
 /// the upper one along.
@@ -106,7 +104,7 @@ fn a_radius_reached_is_no_certificate() {
 #[test]
 fn a_parent_bounded_better_than_its_children_pushes_its_radius_down() {
     for seed in 0..40 {
-        let model = common::random_model(seed);
+        let model = crate::common::random_model(seed);
         let options =
             CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
         let Ok(certificates) = Certificates::compute(&model, &options, &Patience(0.into())) else { continue };

@@ -1,14 +1,13 @@
 //! Continuous queries against brute force, against discrete queries on the way, and against what is known.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Random, at, random_model, random_options};
 use glam::DVec3;
 use sscc::{
     Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Pair, Progress, Query,
     ReducedModel, Scope, TriMesh, impact_triangle_triangle,
 };
+use sscc_testdata::{cases, threshold};
+
+use crate::common::{Random, at, random_model, random_options};
 
 /// Stops what takes too long.
 struct Budget(std::sync::atomic::AtomicUsize);
@@ -32,7 +31,7 @@ fn pairs(impacts: &[Impact]) -> Vec<Pair> {
 #[test]
 fn all_methods_agree_and_miss_nothing() {
     let (mut compared, mut hits, mut certified, mut sampled, mut between) = (0, 0, 0, 0, 0);
-    for seed in 0..200 {
+    for seed in 0..cases(200) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 9_000_000);
         let Some(certificates) = certify(&model, random_options(seed, &model)) else { continue };
@@ -75,7 +74,14 @@ fn all_methods_agree_and_miss_nothing() {
         }
     }
     let counts = (compared, hits, certified, sampled, between);
-    assert!(compared > 600 && hits > 100 && certified > 300 && sampled > 5000 && between > 15, "{counts:?}");
+    assert!(
+        compared > threshold(600)
+            && hits > threshold(100)
+            && certified > threshold(300)
+            && sampled > threshold(5000)
+            && between > threshold(15),
+        "{counts:?}"
+    );
 }
 
 /// Triangles with corners on a coarse grid, and times that are multiples of 1/8: all positions are exact.
@@ -83,7 +89,7 @@ fn all_methods_agree_and_miss_nothing() {
 fn no_contact_of_grid_triangles_is_missed() {
     let random = &mut Random::new(12);
     let (mut met, mut free) = (0, 0);
-    let cases = 100_000;
+    let cases = cases(100_000);
     for case in 0..cases {
         let size = [1.4, 2.4, 4.4][case % 3];
         let corners = |random: &mut Random| [(); 3].map(|()| (random.vector() * size).round());
