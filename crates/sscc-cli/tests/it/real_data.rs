@@ -1,9 +1,5 @@
 //! Real models with known answers: exactly the listed pairs.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -95,7 +91,7 @@ fn glb_and_obj_agree() {
         sscc_io::write_npy(&directory.path().join("q.npy"), &[200, rank], &q).unwrap();
         let run = |model: &[&str]| {
             let model = [&["check"], model, &["--trajectory", "q.npy", "--json"]].concat();
-            let run = common::sscc(directory.path(), &model);
+            let run = crate::common::sscc(directory.path(), &model);
             assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
             run.json().into_iter().map(|mut line| line["pairs"].take()).collect::<Vec<Value>>()
         };
@@ -162,7 +158,7 @@ fn vega_letter_by_the_command() {
         ["A.obj", "A.URendering.float"].map(|name| file.with_file_name(name).to_str().unwrap().to_owned());
     let run = |args: &[&str]| {
         let [command, rest @ ..] = args else { unreachable!() };
-        common::sscc(directory.path(), &[&[*command, &mesh, "--modes", &modes], rest].concat())
+        crate::common::sscc(directory.path(), &[&[*command, &mesh, "--modes", &modes], rest].concat())
     };
     assert_eq!(run(&["certify", "-o", "a.sscc.safetensors"]).code, Some(0));
     let checked = run(&["check", "--certificates", "a.sscc.safetensors", "--trajectory", "q.npy", "--json"]);
@@ -206,7 +202,7 @@ fn double_loop() {
             "--method",
             method,
         ];
-        let run = common::sscc(directory.path(), &args);
+        let run = crate::common::sscc(directory.path(), &args);
         assert_eq!(run.code, Some(1), "{}", run.stderr);
         let found: Pairs = serde_json::from_value(run.json()[0]["pairs"].take()).unwrap();
         assert_eq!(found, listed, "{method}");

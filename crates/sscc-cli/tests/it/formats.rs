@@ -1,17 +1,14 @@
 //! The same model in every form in which it can come: the same answers.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{Run, sscc, strips};
 use serde_json::{Value, json};
 use sscc::ReducedModel;
 use sscc_io::write_npy;
+
+use crate::common::{Run, sscc, strips};
 
 /// Configurations of the strips: free, shifted, touching, through each other.
 const Q: [f64; 10] = [0.0, 0.0, 0.5, 2.0, 1.0, 0.25, 1.5, 0.0, 1.0, -2.0];

@@ -1,15 +1,12 @@
 //! Bad input of every kind: one line that names file and cause, exit code 2, no output, no panic.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{files, sscc, strips};
 use sscc_io::container::{CERTIFICATES, Kind, MODEL, SealedWriter};
 use sscc_io::write_npy;
+
+use crate::common::{files, sscc, strips};
 
 const MESH: &str = "mesh.obj";
 const STRIPS: &str = "strips.model.safetensors";

@@ -1,16 +1,13 @@
 //! What scripts rely on: exit codes, the keys of the JSON, standard output that is the result alone.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{command, keys, sorted, sscc, strips};
 use serde_json::{Value, json};
+
+use crate::common::{command, keys, sorted, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 const CERTIFICATES: &str = "strips.sscc.safetensors";

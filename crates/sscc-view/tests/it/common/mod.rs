@@ -1,7 +1,5 @@
 //! A small model, a page of it, and a client that says what it likes.
 
-#![allow(dead_code)]
-
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,17 +1,14 @@
 //! `sscc view`: the line that scripts wait for, what it answers, what it refuses.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-use common::{command, sscc, strips};
 use serde_json::{Value, json};
+
+use crate::common::{command, sscc, strips};
 
 /// A page that is being shown.
 struct Shown {

@@ -1,14 +1,11 @@
 //! Reports: one file with all in it.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use common::{scene, strips};
 use serde_json::Value;
 use sscc_view::Report;
+
+use crate::common::{scene, strips};
 
 #[test]
 fn a_report_has_all_its_data_in_it() {

@@ -1,16 +1,13 @@
 //! The pages of help: as wide as the terminal, and their examples can be pasted.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use common::{Run, STRIP, command, strips};
 use serde_json::json;
 use sscc_io::write_npy;
+
+use crate::common::{Run, STRIP, command, strips};
 
 const COMMANDS: [&str; 9] =
     ["demo", "modes", "certify", "check", "audit", "info", "simulate", "bench", "view"];
@@ -174,7 +171,7 @@ fn examples_run_as_they_are_shown() {
         if takes_long(&args) {
             continue;
         }
-        let done = common::sscc(folder, &args);
+        let done = crate::common::sscc(folder, &args);
         let expected: &[_] = if args[0] == "check" { &[Some(0), Some(1)] } else { &[Some(0)] };
         assert!(expected.contains(&done.code) && !done.stdout.is_empty(), "{example}: {done:?}");
         run += 1;

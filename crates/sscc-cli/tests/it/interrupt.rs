@@ -1,9 +1,6 @@
 //! Ctrl-C and SIGTERM: one word and one exit code for all commands, and nothing half-written.
 
-#![allow(clippy::unwrap_used)]
 #![cfg(unix)]
-
-mod common;
 
 use std::fs;
 use std::io::Read;
@@ -12,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use common::{command, files, strips};
+use crate::common::{command, files, strips};
 
 /// Waits until a program listens to interrupts, as far as the system tells.
 fn wait_for_handlers(child: &Child) {

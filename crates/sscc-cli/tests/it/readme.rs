@@ -1,9 +1,5 @@
 //! The commands that the README shows work as shown.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -68,14 +64,15 @@ fn commands_of_the_readme() {
     assert!(commands.len() >= 6, "{commands:?}");
     let directory = tempfile::tempdir().unwrap();
     for args in &commands {
-        let run = common::sscc(directory.path(), args);
+        let run = crate::common::sscc(directory.path(), args);
         // The animation of the demo collides.
         let wanted = if args[0] == "check" { 1 } else { 0 };
         assert_eq!((run.code, run.stderr.as_str()), (Some(wanted), ""), "sscc {}", args.join(" "));
         assert!(!run.stdout.is_empty());
     }
     // A mesh written and read again, and its modes made anew, is the same model to the last bit.
-    let digest = |file| common::sscc(directory.path(), &["info", file, "--json"]).json()[0]["digest"].clone();
+    let digest =
+        |file| crate::common::sscc(directory.path(), &["info", file, "--json"]).json()[0]["digest"].clone();
     assert_eq!(digest("spring.model.safetensors"), digest("demo/spring.sscc.safetensors"));
     let [made, again] = ["demo/spring.sscc.safetensors", "spring.sscc.safetensors"]
         .map(|f| fs::read(directory.path().join(f)).unwrap());
@@ -86,12 +83,12 @@ fn commands_of_the_readme() {
 #[test]
 fn the_demo_shows_all_kinds_of_frames() {
     let directory = tempfile::tempdir().unwrap();
-    let run = common::sscc(directory.path(), &["demo", "--json"]);
+    let run = crate::common::sscc(directory.path(), &["demo", "--json"]);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
     let report = &run.json()[0];
     assert_eq!((&report["triangles"], &report["mismatches"]), (&16_000.into(), &0.into()));
     for group in report["frames"].as_array().unwrap() {
         assert!(group["frames"].as_u64().unwrap() >= 5, "{group}");
     }
-    assert!(common::files(directory.path()).is_empty());
+    assert!(crate::common::files(directory.path()).is_empty());
 }

@@ -1,14 +1,11 @@
 //! `sscc bench`: the keys of its JSON, that all methods agree, its cache, what it refuses.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Run, command, files, keys, sorted};
 use serde_json::{Value, json};
+
+use crate::common::{Run, command, files, keys, sorted};
 
 const KEYS: &str = "scenario, model, source, triangles, rank, objects, steps, colliding_steps, root_failed_steps, \
     compared_steps, compared_root_failed_steps, continuous_steps, scene_steps, scene_colliding_steps, scene_body_steps, \

@@ -1,9 +1,5 @@
 //! `sscc simulate`: what it writes, that it goes on after being killed, what it refuses.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
@@ -16,10 +12,11 @@ use std::time::Duration;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use common::{Run, command, files, keys, sorted};
 use serde_json::Value;
 use sscc_io::npy;
 use tempfile::TempDir;
+
+use crate::common::{Run, command, files, keys, sorted};
 
 /// A soft little spring that is shaken until it meets itself, above the ground; with sound.
 const SCENE: &str = r#"

@@ -1,14 +1,10 @@
 //! `sscc certify --picture`: what is drawn, and when.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use common::{files, sscc, strips};
+use crate::common::{files, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 

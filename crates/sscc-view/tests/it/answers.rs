@@ -1,12 +1,9 @@
 //! What a live page is told is what the core says.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{Client, scene, strips, with_server};
 use serde_json::{Value, json};
 use sscc::{Method, Query};
+
+use crate::common::{Client, scene, strips, with_server};
 
 fn check(client: &Client, request: &Value) -> Value {
     let reply = client.post("/api/check", &request.to_string());

@@ -1,15 +1,11 @@
 //! The server: who is answered, and what no bytes can do to it.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use common::{Client, next_reply, read_reply, with_server};
+use crate::common::{Client, next_reply, read_reply, with_server};
 
 const CHECK: &str = r#"{"q":[0,0,0],"serial":7}"#;
 

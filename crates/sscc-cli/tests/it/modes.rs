@@ -1,13 +1,9 @@
 //! `sscc modes` of solids: surfaces in a lattice, files of elements, and what has no modes.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{files, sscc};
+use crate::common::{files, sscc};
 
 /// A box of 2 x 1 x 1, closed.
 const BOX: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n\

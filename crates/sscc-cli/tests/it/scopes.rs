@@ -1,16 +1,13 @@
 //! What certificates speak of: centres, neighbours, welds, exceptions, ignored pairs, dense metrics; and how much of an
 //! answer is asked for.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{keys, sscc, strips};
 use serde_json::{Value, json};
 use sscc_io::write_npy;
+
+use crate::common::{keys, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 const CERTIFICATES: &str = "strips.sscc.safetensors";

@@ -1,7 +1,5 @@
 //! The command as a child process, and small files to run it on.
 
-#![allow(dead_code)]
-
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
