@@ -1,6 +1,7 @@
 //! Certificates against brute force: whatever collides below a limit must be open there.
 
 use glam::DVec3;
+use sscc_testdata::{cases, threshold};
 
 use super::StoredPair;
 use super::pair_tree::round_down;
@@ -61,7 +62,7 @@ fn below_the_limit_whatever_collides_is_open() {
         let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
         lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
-        for i in 0..if quads < 300 { 120 } else { 10 } {
+        for i in 0..cases(if quads < 300 { 120 } else { 10 }) {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             // Just below the limit, and well below.
@@ -80,7 +81,7 @@ fn below_the_limit_whatever_collides_is_open() {
             }
         }
     }
-    assert!(collided > 150, "{collided}");
+    assert!(collided > threshold(150), "{collided}");
     assert!(lowered >= 2, "{lowered}");
 }
 
@@ -96,7 +97,7 @@ fn no_node_is_free_where_two_of_its_triangles_collide() {
         let mut place = vec![0; hierarchy.order().len()];
         hierarchy.order().iter().enumerate().for_each(|(at, t)| place[*t as usize] = at as u32);
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
-        for i in 0..60 {
+        for i in 0..cases(60) {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             let share = (1 + i % 12) as f64 / 12.0 * certificates.global_radius() / length;
@@ -116,7 +117,7 @@ fn no_node_is_free_where_two_of_its_triangles_collide() {
             }
         }
     }
-    assert!(below > 50 && above > 50, "{below} {above}");
+    assert!(below > threshold(50) && above > threshold(50), "{below} {above}");
 }
 
 /// The radius is 1 wherever it comes from: a search of all pairs, the pairs that building the tree has left open, those

@@ -2,20 +2,20 @@
 // the wrong code, and by `cargo xtask mutants`, which runs the tests.
 //
 // `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for tests within
-// the crate, or the name of a file in `tests/`.
+// the crate, `it` for those in `tests/it/`.
 // `Covered("REASON")`: no test can fail, because another term is large enough; the code has the proof.
 
 mutants! {
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
-    KineticBallAtCentre: CaughtBy("kinetic radii_are_crossed_inside_a_ball");
+    KineticBallAtCentre: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
     /// The rounding bound of positions about a centre omits the displacement of the centre.
-    RestErrorWithoutCentre: CaughtBy("rounding positions_about_a_centre_are_rounded_on_the_way_there");
+    RestErrorWithoutCentre: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
     /// Kinetic margins grant the rounding at rest alone, not that at z.
-    MarginErrorAtRest: CaughtBy("rounding kinetic_margins_know_that_positions_far_from_rest_are_rounded");
+    MarginErrorAtRest: CaughtBy("it rounding::kinetic_margins_know_that_positions_far_from_rest_are_rounded");
     /// Radii of the pair tree are rounded to the nearest single-precision number.
-    RadiusToNearest: CaughtBy("rounding radii_in_single_precision_are_no_larger");
+    RadiusToNearest: CaughtBy("it rounding::radii_in_single_precision_are_no_larger");
     /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
-    DenseRateOfModesAlone: CaughtBy("rounding dense_metrics_see_what_their_modes_cancel");
+    DenseRateOfModesAlone: CaughtBy("it rounding::dense_metrics_see_what_their_modes_cancel");
     /// Of a dense metric, products that cancel are not rounded up.
     DenseProductsExact: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// The rounding bound of a dense metric omits the error of the inverse of its factor.
@@ -45,25 +45,25 @@ mutants! {
     /// Closing rates on a cone of directions omit the rounding error of their Gram matrix.
     ConeExact: CaughtBy("lib bounds::cone::tests::rates_that_cancel_are_not_too_small");
     /// Safe scales omit the rounding error of positions along the line.
-    LineExact: CaughtBy("rounding safe_scales_end_before_rounding_closes_a_gap");
+    LineExact: CaughtBy("it rounding::safe_scales_end_before_rounding_closes_a_gap");
     /// A |z| that equals the root's radius is certified.
-    RootRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
+    RootRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals a node's radius is certified in a traversal.
-    NodeRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
+    NodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of two children of the root is certified.
-    RootPairRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
+    RootPairRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals a node's radius is certified in a walk of the pair tree.
-    TreeNodeRadiusReached: CaughtBy("rounding a_radius_of_nothing_proves_nothing_at_the_centre");
+    TreeNodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of a stored pair is certified.
-    TreeRadiusReached: CaughtBy("pair_walk what_equals_a_radius_is_not_certified");
+    TreeRadiusReached: CaughtBy("it pair_walk::what_equals_a_radius_is_not_certified");
     /// At a |z| that equals the limit of the pair tree, what is not stored is certified.
-    TreeLimitReached: CaughtBy("pair_tree absence_means_nothing_at_the_limit");
+    TreeLimitReached: CaughtBy("it pair_tree::absence_means_nothing_at_the_limit");
     /// Pairs that collide at the centre are not tested.
-    ExceptionsForgotten: CaughtBy("pair_walk walks_find_what_brute_force_finds");
+    ExceptionsForgotten: CaughtBy("it pair_walk::walks_find_what_brute_force_finds");
     /// Of two triangles with a common vertex only one of the edges opposite to it is bounded.
-    OneHullOfTwo: CaughtBy("neighbours one_vertex_neighbours_are_found_when_asked_for");
+    OneHullOfTwo: CaughtBy("it neighbours::one_vertex_neighbours_are_found_when_asked_for");
     /// Triangles in crossing planes that touch do not collide.
-    TouchingIsFree: CaughtBy("intersect edges_that_touch");
+    TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
     /// Triangles are told apart in single precision with half of the slack.
     ApartSlackHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
     /// The contour test omits its rounding bound.
@@ -77,17 +77,17 @@ mutants! {
     /// The error bound of positions in single precision omits quantization.
     CoarseSharesExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
-    CoarseTrianglesNotWidened: CaughtBy("rounding what_touches_exactly_is_met_in_single_precision");
+    CoarseTrianglesNotWidened: CaughtBy("it rounding::what_touches_exactly_is_met_in_single_precision");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// The boxes of triangles on the way from one q to another are those at its start.
-    SweptTrianglesAtOneEnd: CaughtBy("pair_walk walks_find_what_brute_force_finds");
+    SweptTrianglesAtOneEnd: CaughtBy("it pair_walk::walks_find_what_brute_force_finds");
     /// The boxes of nodes on the way from one q to another are those at its start.
     SweptNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The boxes in single precision of nodes on the way from one q to another are those at its start.
     SweptCoarseNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The norm of the way from one q to another is that of its end.
-    SweptNormAtOneEnd: CaughtBy("continuous times_of_simple_motions");
+    SweptNormAtOneEnd: CaughtBy("it continuous::times_of_simple_motions");
     /// Vertices go half as far in a kinetic ball.
     BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// Nodes go half as far in a kinetic ball.
@@ -99,13 +99,13 @@ mutants! {
     /// A margin that is used up exactly still holds.
     MarginReached: Covered("the end of a margin has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.
-    SeparationExact: CaughtBy("impact_tolerance what_touches_at_the_end_is_listed");
+    SeparationExact: CaughtBy("it impact_tolerance::what_touches_at_the_end_is_listed");
     /// The error bound of a rounded number omits its own rounding.
     BoundedExact: CaughtBy("lib geometry::ccd::tests::both_kinds_agree_with_rational_arithmetic");
     /// Pairs that rounded directions do not settle are listed at the time reached.
-    FeaturesNotFollowed: CaughtBy("impact_tolerance thin_sheets_that_turn_together_are_free");
+    FeaturesNotFollowed: CaughtBy("it impact_tolerance::thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.
-    SmallPairsNotEnlarged: CaughtBy("impact_tolerance the_tolerance_holds_at_every_size");
+    SmallPairsNotEnlarged: CaughtBy("it impact_tolerance::the_tolerance_holds_at_every_size");
     /// Tolerances of continuous tests may be below what rounding leaves of gaps.
-    ToleranceBelowRounding: CaughtBy("impact_tolerance tolerances_below_rounding_do_not_end_the_search_early");
+    ToleranceBelowRounding: CaughtBy("it impact_tolerance::tolerances_below_rounding_do_not_end_the_search_early");
 }

@@ -1,5 +1,7 @@
 //! Residuals of the affine map of a node, against exact arithmetic.
 
+use sscc_testdata::cases;
+
 use super::*;
 use crate::bounds::tests::random::Random;
 use crate::bounds::tests::rounding::exact;
@@ -10,7 +12,7 @@ use crate::{Metric, Modes, ReducedModel, TriMesh};
 #[test]
 fn residuals_hold_what_the_fit_has_rounded() {
     let mut worst = 0.0_f64;
-    for case in 0..24 {
+    for case in 0..cases(24) {
         let random = &mut Random::new(case);
         let count = 1000;
         let normal = random.vector().normalize();

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout)] // statistics for those who tune the bounds
 
 use glam::DVec3;
+use sscc_testdata::cases;
 
 use super::models::{KINDS, ROOM, all_bounds, node_pair_bound, pair_corners, random_pair, reference};
 use super::random::Random;
@@ -17,7 +18,7 @@ use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
 fn no_bound_exceeds_the_true_minimum() {
     let mut checked = [0; KINDS];
     let mut ratios = Vec::new();
-    for case in 0..2600_u64 {
+    for case in 0..cases(2600_u64) {
         let random = &mut Random::new(case);
         let kind = case as usize % KINDS;
         let model = random_pair(kind, random);
@@ -58,7 +59,7 @@ fn no_bound_exceeds_the_true_minimum() {
 /// near the ends of the range of numbers, where squares overflow or vanish.
 #[test]
 fn bounds_hold_for_extreme_sizes() {
-    for case in 0..900_u64 {
+    for case in 0..cases(900_u64) {
         let random = &mut Random::new(case + 50_000);
         let model = random_pair(case as usize % (KINDS - 1), random);
         let Some(truth) = reference(&model, [0, 1]).true_minimum(3, random) else { continue };

@@ -1,5 +1,7 @@
 //! Sharded certificates against those of one process.
 
+use sscc_testdata::cases;
+
 use super::job::{Job, JobWriter};
 use super::job_result::{Expected, JobResult};
 use super::seal::HASH;
@@ -48,7 +50,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
         let model = ring(300, 4, 0.9 + case as f64);
         let local = Certificates::compute(&model, &options, &()).unwrap();
         assert!(local.parts().node_radii.len() > 20);
-        for shards in [1, 2, 7, 1000] {
+        for shards in [7, 1, 2, 1000].into_iter().take(cases(4)) {
             assert!(sharded(&model, &options, shards).unwrap() == local, "case {case}, {shards} shards");
         }
     }

@@ -1,0 +1,234 @@
+//! `sscc bench`: the keys of its JSON, that all methods agree, its cache, what it refuses.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::common::{Run, command, files, keys, sorted};
+
+const KEYS: &str = "scenario, model, source, triangles, rank, objects, steps, colliding_steps, root_failed_steps, \
+    compared_steps, compared_root_failed_steps, continuous_steps, scene_steps, scene_colliding_steps, scene_body_steps, \
+    scene_colliding_body_steps, mismatches, share, certify_seconds, certify_threads, certify_peak_bytes, parry_query_seconds, \
+    simulation_seconds, self_collision_share, discrete_ms, continuous_ms, machine";
+const COLUMNS: &str = "traditional, bdtree, normal_cones, normal_cones_approx, paper, full, parry";
+const CERTIFIED: &str = "paper, full, kinetic";
+const PARTS: &str = "self, inter_object, ground, penalty, dynamics, sound";
+
+/// Without real models, whatever the environment says; the cache is in the folder.
+fn bench(folder: &Path, args: &[&str]) -> Run {
+    let args = [&["bench", "--cache", "cache"], args].concat();
+    Run::of(command(folder, &args).env_remove("SSCC_MODELS"))
+}
+
+/// Asserts that a report has all keys, with values that can be.
+fn check(report: &Value, more: &str) {
+    let optional = ["discrete_ms_root_failed"];
+    let found: Vec<&str> = keys(report).into_iter().filter(|key| !optional.contains(key)).collect();
+    assert_eq!(found, sorted(&format!("{KEYS}, {more}")));
+    let whole = |key: &str| report[key].as_u64().unwrap_or_else(|| panic!("{key}: {report}"));
+    assert_eq!(whole("mismatches"), 0);
+    assert!(
+        whole("triangles") > 0 && whole("rank") > 0 && whole("objects") > 0 && whole("certify_threads") > 0
+    );
+    for (some, all) in [
+        ("colliding_steps", "steps"),
+        ("root_failed_steps", "steps"),
+        ("compared_steps", "steps"),
+        ("continuous_steps", "compared_steps"),
+        ("compared_root_failed_steps", "compared_steps"),
+        ("steps", "scene_steps"),
+        ("colliding_steps", "root_failed_steps"),
+        ("scene_colliding_steps", "scene_steps"),
+        ("scene_colliding_body_steps", "scene_body_steps"),
+    ] {
+        assert!(whole(some) <= whole(all), "{some}: {report}");
+    }
+    assert_eq!(whole("scene_body_steps"), whole("scene_steps") * whole("objects"));
+    let positive = |value: &Value| value.as_f64().is_some_and(|x| x > 0.0);
+    assert!(positive(&report["certify_seconds"]) && positive(&report["parry_query_seconds"]), "{report}");
+    // What is simulated moves in steps, which kinetic queries follow.
+    let moves = report["simulation_seconds"].is_number();
+    for key in ["discrete_ms", "continuous_ms", "discrete_ms_root_failed"] {
+        let Some(times) = report.get(key) else { continue };
+        let follows = if moves && key != "continuous_ms" { ", kinetic" } else { "" };
+        assert_eq!(keys(times), sorted(&format!("{COLUMNS}{follows}")), "{key}");
+        assert!(times.as_object().unwrap().values().all(positive), "{report}");
+    }
+    assert_eq!(report.get("discrete_ms_root_failed").is_some(), whole("compared_root_failed_steps") > 0);
+    assert!(report["machine"].as_str().is_some_and(|machine| machine.contains(" cores")));
+}
+
+/// One model for all of them, and so one cache.
+#[test]
+fn measurements() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = folder.path().join("cache");
+
+    let amplitudes = ["amplitudes", "--only", "spring", "--quick", "--samples", "1"];
+    let run = bench(folder.path(), &[&amplitudes[..], &["--json"]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let reports = run.json();
+    reports.iter().for_each(|report| check(report, "note"));
+    let of = |key: &str| -> Vec<Value> { reports.iter().map(|report| report[key].clone()).collect() };
+    assert_eq!(of("share"), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0].map(|share| json!(share)));
+    assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
+    assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
+
+    // Growth has the same model; it is not made again.
+    let made = files(&cache);
+    assert_eq!(made.len(), 5, "a model, two sets of certificates with their times: {made:?}");
+    let model = made.iter().find(|path| path.to_string_lossy().ends_with(".model.safetensors")).unwrap();
+    let written = || fs::metadata(model).unwrap().modified().unwrap();
+    let before = written();
+    let growth = ["growth", "--only", "spring-4k", "--samples", "2", "--json", "--plot", "growth.svg"];
+    let run = bench(folder.path(), &growth);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    // A point of each line.
+    let plot = fs::read_to_string(folder.path().join("growth.svg")).unwrap();
+    assert_eq!((plot.matches("<circle").count(), plot.matches("certified (ms)").count()), (4, 1));
+    assert_eq!((files(&cache), written()), (made.clone(), before));
+    let [report] = &run.json()[..] else { panic!("{run:?}") };
+    assert_eq!(keys(report), sorted("scenario, mismatches, sizes, exponents, machine"));
+    let size = &report["sizes"][0];
+    assert_eq!(size["certify_seconds"], reports[0]["certify_seconds"]);
+    assert_eq!((&size["triangles"], &size["scenario"]), (&json!(4000), &json!("growth/spring-4k")));
+    assert!(size.get("continuous_ms").is_none() && size["discrete_ms"]["full"].as_f64() > Some(0.0));
+    assert_eq!(keys(&report["exponents"]), sorted("certify_seconds, certify_peak_bytes, discrete_ms"));
+    assert_eq!(keys(&report["exponents"]["discrete_ms"]), sorted(COLUMNS));
+
+    // One changed byte in each file.
+    let contents: Vec<Vec<u8>> = made.iter().map(|path| fs::read(path).unwrap()).collect();
+    for (path, bytes) in made.iter().zip(&contents) {
+        let mut damaged = bytes.clone();
+        damaged[bytes.len() / 2] ^= 1 << 7;
+        fs::write(path, damaged).unwrap();
+    }
+    let run = bench(folder.path(), &amplitudes);
+    let notes: Vec<&str> = run.stderr.lines().collect();
+    assert!(run.code == Some(0) && notes.len() == 3, "{run:?}");
+    assert!(notes.iter().all(|note| note.starts_with("note: made anew: ")), "{notes:?}");
+    assert_eq!(files(&cache), made);
+    for (path, bytes) in made.iter().zip(&contents) {
+        let is_time = path.extension().is_some_and(|ending| ending == "json");
+        assert!(is_time || fs::read(path).unwrap() == *bytes, "{}", path.display());
+    }
+    for part in
+        ["measured on: ", "amplitudes/spring: one body of 4,000 triangles", "parry/full", "traditional/full"]
+    {
+        assert!(run.stdout.contains(part), "{}", run.stdout);
+    }
+    assert!(run.stdout.contains("\nall exact methods list the same pairs\n"), "{}", run.stdout);
+
+    // Beyond 64 queries, the others answer 20 of the steps.
+    let page = folder.path().join("spring.html");
+    let told = ["--report", page.to_str().unwrap()];
+    let run = bench(folder.path(), &[&["spring", "--quick", "--steps", "65", "--json"][..], &told].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let page = fs::read_to_string(page).unwrap();
+    for part in ["Cost over time: spring", r#"{"name":"traditional","x":["#, r#"{"name":"kinetic","x":["#] {
+        assert!(page.contains(part), "{part}");
+    }
+    let scene = &run.json()[0];
+    check(scene, "note, discrete_ms_all_steps, simulation_speedup, simulation_ms");
+    assert_eq!((&scene["scenario"], &scene["steps"]), (&json!("spring"), &json!(65)));
+    assert_eq!((&scene["compared_steps"], &scene["continuous_steps"]), (&json!(20), &json!(20)));
+    assert!(scene["scene_steps"].as_u64().unwrap() > 100);
+    // A third of the compared steps are such as the root certifies, of which the scene has few.
+    let steps = |key: &str| scene[key].as_u64().unwrap();
+    let certified = steps("steps") - steps("root_failed_steps");
+    let compared = steps("compared_steps") - steps("compared_root_failed_steps");
+    assert!(certified > 0 && (certified.min(6)..=7).contains(&compared), "{scene}");
+    assert!(steps("colliding_steps") > 0, "{scene}");
+    assert!(scene["scene_colliding_steps"].as_u64().unwrap() > 0, "scenes really collide: {scene}");
+    assert_eq!(keys(&scene["discrete_ms_all_steps"]), sorted(CERTIFIED));
+    assert_eq!(keys(&scene["simulation_ms"]), sorted(PARTS));
+    let part = |key: &str| scene["simulation_ms"][key].as_f64().unwrap();
+    let all = scene["simulation_seconds"].as_f64().unwrap();
+    let sum: f64 = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"].map(part).iter().sum();
+    assert!((sum * scene["scene_steps"].as_f64().unwrap() / 1e3 / all - 1.0).abs() < 1e-9);
+    assert!((scene["self_collision_share"].as_f64().unwrap() - part("self") / sum).abs() < 1e-9);
+    assert!(scene["simulation_speedup"].as_f64().unwrap() > 1.0);
+
+    // The simulation is taken from the cache, and the paper's rows stand beside ours.
+    let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let seconds = format!("simulated in {all:.2} s of the processor, ");
+    let strata = "means are of the whole scene: the root certifies ";
+    for part in [&seconds[..], strata, "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+}
+
+#[test]
+fn kinetic() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "90", "--json"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let reports = run.json();
+    assert_eq!(reports.len(), 4);
+    for report in &reports {
+        let known = "scenario, source, note, frequency, share, triangles, rank, step, steps, colliding_steps, \
+            compared_steps, mismatches, kinetic_us_colliding, microseconds, machine";
+        assert_eq!(keys(report), sorted(known));
+        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(90), &json!(0)));
+        assert!(report["colliding_steps"].as_u64().unwrap() < 90 && report["step"].as_f64().unwrap() > 0.0);
+        let times = &report["microseconds"];
+        assert_eq!(keys(times), sorted("kinetic, full, traditional, bdtree, normal_cones, parry"));
+        assert!(times.as_object().unwrap().values().all(|time| time.as_f64().unwrap() > 0.0), "{report}");
+    }
+    let frequency = |i: usize| reports[i]["frequency"].as_f64().unwrap();
+    assert!(frequency(0) < 2.0);
+    assert_eq!([1, 2, 3].map(frequency), [2.0, 20.0, 200.0]);
+    assert!(reports.iter().any(|report| report["colliding_steps"] != json!(0)));
+    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "5"]);
+    for part in [
+        "kinetic: 4,000 triangles, 20 modes",
+        "first mode 20.000 Hz: 5 steps of ",
+        "parry  ",
+        "note: --quick",
+    ] {
+        assert!(run.stdout.contains(part), "{}", run.stdout);
+    }
+}
+
+#[test]
+fn refusals() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = bench(folder.path(), &["--list"]);
+    assert_eq!(list.code, Some(0));
+    for name in [
+        "spring",
+        "bunny128",
+        "dragon-nonlinear",
+        "dragon-polynomial",
+        "table2",
+        "amplitudes",
+        "growth",
+        "kinetic",
+    ] {
+        assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{name}");
+    }
+    assert_eq!(files(folder.path()), [] as [&Path; 0], "a list leaves nothing behind");
+    for (args, named) in [
+        (&["amplitude"][..], "there is no scenario 'amplitude'; did you mean 'amplitudes'?"),
+        (&["bunny12"], "did you mean 'bunny1"),
+        (
+            &["amplitudes", "--only", "horse"],
+            "--only horse: there is no such model; there are bunny, dragon, spring",
+        ),
+        (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
+        (&["amplitudes", "--only", "bunny", "--models", "."], "bunny_14964_closed.obj: not found"),
+        (&["spring", "--steps", "0"], "--steps"),
+        (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
+        (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
+        (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
+        (&["growth", "--steps", "2"], "--steps is for what moves"),
+        (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
+        (&["growth", "--quick"], "--quick: growth needs its sizes"),
+        (&[], "SCENARIO"),
+    ] {
+        let run = bench(folder.path(), args);
+        assert!(run.refusal().contains(named), "{args:?}: {run:?}");
+    }
+}

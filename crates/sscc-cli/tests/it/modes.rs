@@ -1,0 +1,286 @@
+//! `sscc modes` of solids: surfaces in a lattice, files of elements, and what has no modes.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{files, sscc};
+
+/// A box of 2 x 1 x 1, closed.
+const BOX: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n\
+    f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+/// Two tetrahedra, with two materials.
+const VEG: &str = "*VERTICES\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n\
+    *ELEMENTS\nTET\n2 4 0\n1 1 2 3 4\n2 2 3 4 5\n\
+    *MATERIAL soft\nENU, 1000, 1e6, 0.4\n*MATERIAL hard\nENU, 2000, 1e7, 0.3\n\
+    *SET first\n1\n*SET second\n2\n*REGION\nfirst, soft\n*REGION\nsecond, hard\n";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("box.obj", BOX);
+    write("two.veg", VEG);
+    write("open.obj", &BOX.replace("f 4 1 5 8\n", ""));
+    write("turned.obj", &BOX.replace("f 4 1 5 8\n", "f 8 5 1 4\n"));
+    // The same box once more, far away, and a little moved.
+    let second = |by: f64| {
+        let moved: String = BOX
+            .lines()
+            .filter(|l| l.starts_with('v'))
+            .map(|line| {
+                let p: Vec<f64> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+                format!("v {} {} {}\n", p[0] + by, p[1] + by, p[2] + by)
+            })
+            .collect();
+        let faces: String = BOX
+            .lines()
+            .filter(|l| l.starts_with('f'))
+            .map(|line| {
+                let f: Vec<usize> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+                format!("f {} {} {} {}\n", f[0] + 8, f[1] + 8, f[2] + 8, f[3] + 8)
+            })
+            .collect();
+        format!("{BOX}{moved}{faces}")
+    };
+    write("pieces.obj", &second(5.0));
+    write("crossing.obj", &second(0.5));
+    write("inverted.veg", &VEG.replace("2 2 3 4 5\n*MAT", "2 2 4 3 5\n*MAT"));
+    write("orphan.veg", &VEG.replace("5 3 0 0\n", "6 3 0 0\n").replace("5 1 1 1\n", "5 1 1 1\n6 9 9 9\n"));
+    write("heavy.veg", &VEG.replace("1e7, 0.3", "1e7, 0.4999999"));
+    write("first.txt", "0\n3\n");
+    folder
+}
+
+fn modes(folder: &Path, args: &[&str]) -> serde_json::Value {
+    let run = sscc(folder, &[&["modes", "-o", "x.model.safetensors", "--json"], args].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    run.json().remove(0)
+}
+
+#[test]
+fn a_surface_vibrates() {
+    let directory = folder();
+    let folder = directory.path();
+    let report = modes(folder, &["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8"]);
+    assert_eq!(
+        (&report["triangles"], &report["vertices"], &report["rank"]),
+        (&12.into(), &8.into(), &6.into())
+    );
+    let found: Vec<f64> =
+        report["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect();
+    assert!(found.windows(2).all(|pair| pair[0] <= pair[1]) && found[0] > 1.0, "{found:?}");
+    assert!(report["degrees_of_freedom"].as_u64().unwrap() > 3 * 5 * 5 * 9);
+
+    let info = sscc(folder, &["info", "x.model.safetensors", "--json"]).json().remove(0);
+    let told: Vec<f64> =
+        info["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect();
+    assert_eq!((told, &info["metric"], &info["nonlinear"]), (found.clone(), &"energy".into(), &false.into()));
+    assert!(sscc(folder, &["info", "x.model.safetensors"]).stdout.contains(" Hz"));
+
+    let certify = |metric| {
+        sscc(folder, &["certify", "x.model.safetensors", "-o", "x.sscc.safetensors", "--metric", metric]).code
+    };
+    assert_eq!((certify("energy"), certify("displacement")), (Some(0), Some(0)));
+
+    // A heavier material is slower, by the root of its density; a stiffer one faster.
+    let args = ["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8", "--material"];
+    for (material, factor) in [("density=4000", 0.5), ("youngs=4e6,density=1000", 2.0)] {
+        let report = modes(folder, &[&args[..], &[material]].concat());
+        let first = report["frequencies_hz"][0].as_f64().unwrap();
+        assert!((first / found[0] / factor - 1.0).abs() < 1e-6);
+    }
+
+    // Held at one end it is slower, and vertices there do not move.
+    for fix in ["box:-1,-1,-1,0,2,2", "0,3,4,7"] {
+        let report =
+            modes(folder, &["box.obj", "--kind", "linear", "--rank", "2", "--resolution", "8", "--fix", fix]);
+        assert!(report["frequencies_hz"][0].as_f64().unwrap() < found[0]);
+        let (model, _) = sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap();
+        let still = |v: u32| model.modes().of_vertex(v).iter().all(|u| u.length() == 0.0);
+        assert_eq!((0..8).map(still).collect::<Vec<_>>(), [0, 1, 1, 0, 0, 1, 1, 0].map(|n| n == 0));
+    }
+}
+
+#[test]
+fn bases_for_large_deformations_know_their_forces() {
+    let directory = folder();
+    let folder = directory.path();
+    for (kind, rank) in [("nonlinear", 8), ("polynomial", 24)] {
+        let report = match kind {
+            "nonlinear" => modes(folder, &["box.obj", "--kind", kind, "--rank", "8", "--resolution", "6"]),
+            _ => modes(folder, &["box.obj", "--kind", kind, "--resolution", "6"]),
+        };
+        assert_eq!(report["rank"], rank);
+        let (model, info) = sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap();
+        assert_eq!(model.rank(), rank);
+        let Some(sscc_solid::Elasticity::Nonlinear(forces)) = info.elasticity else { panic!("{kind}") };
+        assert!(forces.asymmetry() < 1e-9);
+        // Stretching is stiffer than linear, so large deformations cost energy.
+        assert!(forces.energy(&vec![1.0; rank]) > 0.0);
+    }
+}
+
+#[test]
+fn solids_from_files_vibrate() {
+    let directory = folder();
+    let folder = directory.path();
+    let report = modes(folder, &["two.veg", "--kind", "linear", "--rank", "9"]);
+    assert_eq!(
+        (&report["triangles"], &report["elements"], &report["degrees_of_freedom"]),
+        (&6.into(), &2.into(), &15.into())
+    );
+    let held = modes(folder, &["two.veg", "--kind", "linear", "--rank", "8", "--fix", "first.txt"]);
+    assert_eq!(held["degrees_of_freedom"], 9);
+}
+
+/// The provenance that a model's file tells.
+fn provenance(folder: &Path) -> String {
+    sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap().1.provenance
+}
+
+fn frequencies(report: &serde_json::Value) -> Vec<f64> {
+    report["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect()
+}
+
+/// The materials of `two.veg`, each with one number replaced, are told from those that are the file's own.
+#[test]
+fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
+    let directory = folder();
+    let folder = directory.path();
+    let run = |file: &str, material: Option<&str>| {
+        let args = ["modes", "-o", "x.model.safetensors", file, "--kind", "linear", "--rank", "9", "--json"];
+        let material = material.map_or(vec![], |material| vec!["--material", material]);
+        let run = sscc(folder, &[&args[..], &material].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        (frequencies(&run.json()[0]), run.stderr, provenance(folder))
+    };
+    let note = |numbers: &str| format!("note: --material overrides what the file states: {numbers}\n");
+    let (own, silent, told) = run("two.veg", None);
+    assert_eq!(silent, "");
+    assert!(told.ends_with(", materials of the file"), "{told}");
+
+    // Written into the file, a material gives what it gives when asked for.
+    let both = |enu: &str| VEG.replace("1000, 1e6, 0.4", enu).replace("2000, 1e7, 0.3", enu);
+    fs::write(folder.join("steel.veg"), both("7850, 2e11, 0.29")).unwrap();
+    let (steel, ..) = run("steel.veg", None);
+    for asked in ["steel", "youngs=2e11,poisson=0.29,density=7850"] {
+        let (found, said, told) = run("two.veg", Some(asked));
+        assert_eq!((found, said), (steel.clone(), note("youngs=2e11 poisson=0.29 density=7850")));
+        assert!(told.ends_with(", youngs=2e11 poisson=0.29 density=7850"), "{told}");
+    }
+    // One number alone replaces that of each material.
+    let dense = VEG.replace("ENU, 1000", "ENU, 4000").replace("ENU, 2000", "ENU, 4000");
+    fs::write(folder.join("dense.veg"), dense).unwrap();
+    let (found, said, told) = run("two.veg", Some("density=4000"));
+    assert_eq!((&found, said), (&run("dense.veg", None).0, note("density=4000")));
+    assert!(found != own && told.ends_with(", materials of the file with density=4000"), "{told}");
+
+    // A file that names none: the default's numbers, or those asked for, and nothing is replaced.
+    let medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1 1\n\
+        Tetrahedra\n2\n1 2 3 4 1\n2 3 4 5 1\nEnd\n";
+    fs::write(folder.join("two.mesh"), medit).unwrap();
+    for (asked, numbers) in [
+        (None, "youngs=1e6 poisson=0.4 density=1000"),
+        (Some("glass"), "youngs=6.2e10 poisson=0.2 density=2600"),
+    ] {
+        let (_, said, told) = run("two.mesh", asked);
+        assert_eq!(said, "");
+        assert!(told.ends_with(&format!(", {numbers}")), "{told}");
+    }
+}
+
+#[test]
+fn the_help_lists_the_materials() {
+    let directory = folder();
+    let help = sscc(directory.path(), &["modes", "--help"]).stdout;
+    for material in sscc_dynamics::MATERIALS {
+        assert!(help.contains(material.name), "{}", material.name);
+    }
+}
+
+#[test]
+fn what_has_no_modes_is_told() {
+    let directory = folder();
+    let folder = directory.path();
+    let linear: &[&str] = &["--kind", "linear", "--rank", "3"];
+    for (args, named) in [
+        (&["open.obj"][..], "open.obj: the edge from vertex"),
+        (&["turned.obj"], "orient its triangles alike"),
+        (&["pieces.obj"], "the solid is in 2 separate pieces"),
+        (&["crossing.obj"], "collide at rest"),
+        (&["box.obj", "--resolution", "2000"], "2000 cells along the longest side"),
+        (
+            &["box.obj", "--resolution", "4", "--fix", "8"],
+            "--fix 8: there is no vertex 8 (counted from 0): the file has 8",
+        ),
+        (&["box.obj", "--resolution", "4", "--fix", "box:1,2"], "--fix box: six numbers were expected"),
+        (&["box.obj", "--resolution", "4", "--fix", "box:7,7,7,8,8,8"], "no vertex is there"),
+        (
+            &["box.obj", "--resolution", "4", "--fix", "box:-9,-9,-9,9,9,9"],
+            "vertices are fixed: leave some free",
+        ),
+        (&["box.obj", "--resolution", "4", "--fix", "none.txt"], "none.txt: not found"),
+        (
+            &["box.obj", "--resolution", "4", "--material", "youngs=-1"],
+            "Young's modulus is -1e0: it must be above 0",
+        ),
+        (
+            &["box.obj", "--resolution", "4", "--material", "poisson=0.5"],
+            "Poisson's ratio is 5e-1: it must be",
+        ),
+        (
+            &["box.obj", "--resolution", "4", "--material", "stel"],
+            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber)",
+        ),
+        (
+            &["inverted.veg"],
+            "inverted.veg: tetrahedron 1 (counted from 0, vertices [1, 3, 2, 4]) is inverted",
+        ),
+        (&["orphan.veg"], "vertex 5 (counted from 0) of the solid belongs to no element"),
+        (&["heavy.veg"], "Poisson's ratio is 4.999999e-1"),
+        (&["two.veg", "--resolution", "4"], "--resolution is for surfaces"),
+    ] {
+        let before = files(folder);
+        let run = sscc(folder, &[&["modes", "-o", "x.model.safetensors"], linear, args].concat());
+        let message = run.refusal();
+        assert!(message.contains(named), "{args:?}: {message}");
+        assert_eq!(files(folder), before, "{args:?}");
+    }
+    let run =
+        sscc(folder, &["modes", "-o", "x.model.safetensors", "two.veg", "--kind", "linear", "--rank", "10"]);
+    assert!(run.refusal().contains("two.veg: 10 modes were asked for, but the body has 9"), "{run:?}");
+    let run = sscc(
+        folder,
+        &["modes", "-o", "x.model.safetensors", "box.obj", "--kind", "polynomial", "--rank", "9"],
+    );
+    assert!(run.refusal().contains("always all 24"), "{run:?}");
+}
+
+#[test]
+fn a_surface_split_along_seams_is_closed() {
+    let folder = folder();
+    let folder = folder.path();
+    // The box with three vertices of its own for each triangle.
+    let vertices: Vec<&str> = BOX.lines().filter(|line| line.starts_with('v')).collect();
+    let mut text = "solid box\n".to_owned();
+    for line in BOX.lines().filter(|line| line.starts_with('f')) {
+        let f: Vec<usize> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+        for [a, b, c] in [[f[0], f[1], f[2]], [f[0], f[2], f[3]]] {
+            let corner = |i: usize| vertices[i - 1].replacen('v', "vertex", 1);
+            let corners = [a, b, c].map(corner).join("\n");
+            text += &format!("facet normal 0 0 0\nouter loop\n{corners}\nendloop\nendfacet\n");
+        }
+    }
+    fs::write(folder.join("box.stl"), text + "endsolid\n").unwrap();
+    let [whole, split] = ["box.obj", "box.stl"]
+        .map(|name| modes(folder, &[name, "--kind", "linear", "--rank", "6", "--resolution", "4"]));
+    assert_eq!((&whole["vertices"], &split["vertices"]), (&8.into(), &36.into()));
+    assert_eq!(whole["frequencies_hz"], split["frequencies_hz"]);
+    let certify = |weld| {
+        let run =
+            sscc(folder, &["certify", "x.model.safetensors", "-o", "x.sscc.safetensors", "--json", weld]);
+        run.json().remove(0)["rest_collisions"].as_u64().unwrap()
+    };
+    assert_eq!(certify("--weld"), 0);
+    assert!(certify("--weld=off") > 0);
+}

@@ -1,0 +1,91 @@
+//! `sscc certify --picture`: what is drawn, and when.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use crate::common::{files, sscc, strips};
+
+const MODEL: &str = "strips.model.safetensors";
+
+/// Width, height, and RGB pixels.
+fn decode(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(fs::read(path).unwrap())).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
+    (info.width as usize, info.height as usize, bytes.as_chunks().0.to_vec())
+}
+
+#[test]
+fn views_of_both_ways_along_each_mode() {
+    let directory = strips();
+    let folder = directory.path();
+    let args = ["certify", MODEL, "-o", "x.sscc.safetensors", "--picture", "x.png"];
+    let run = sscc(folder, &args);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    assert!(run.stdout.ends_with("picture        x.png\n"), "{}", run.stdout);
+    let (width, height, pixels) = decode(&folder.join("x.png"));
+    // The shape at rest and two modes; the longer side of a view has 400 pixels.
+    let [w, h] = [width / 3, height / 2];
+    assert_eq!((3 * w, 2 * h, w.max(h)), (width, height, 400));
+    let view = |left: usize, top: usize| -> Vec<[u8; 3]> {
+        (top..top + h).flat_map(|y| pixels[y * width + left..][..w].to_vec()).collect()
+    };
+    let rest = view(0, h / 2);
+    let along = [(w, 0), (w, h), (2 * w, 0), (2 * w, h)].map(|(left, top)| view(left, top));
+    for shown in along.iter().chain([&rest]) {
+        let colors: BTreeSet<[u8; 3]> = shown.iter().copied().collect();
+        assert!(colors.len() > 5, "{} colours", colors.len());
+        let background = shown.iter().filter(|pixel| **pixel == shown[0]).count();
+        assert!((shown.len() / 4..shown.len()).contains(&background), "{background} of {}", shown.len());
+    }
+    let views: BTreeSet<&Vec<[u8; 3]>> = along.iter().chain([&rest]).collect();
+    assert_eq!(views.len(), 5, "all differ");
+
+    // The same picture again, and the same certificates as without one.
+    let first = fs::read(folder.join("x.png")).unwrap();
+    assert_eq!(sscc(folder, &[&args[..], &["--threads", "1", "--json"]].concat()).code, Some(0));
+    assert_eq!(fs::read(folder.join("x.png")).unwrap(), first);
+    let [with, without] =
+        ["x.sscc.safetensors", "strips.sscc.safetensors"].map(|name| fs::read(folder.join(name)).unwrap());
+    assert_eq!(with, without);
+}
+
+#[test]
+fn without_a_radius_the_shape_stands_alone() {
+    let directory = strips();
+    let folder = directory.path();
+    sscc_io::write_npy(&folder.join("still.npy"), &[72, 1], &[0.0; 72]).unwrap();
+    let still = ["mesh.obj", "--modes", "still.npy"];
+    let touching = ["mesh.obj", "--modes", "modes.npy", "--center=1,0", "--max-exceptions=0"];
+    for (model, radius) in [(&still[..], "unlimited"), (&touching, "0")] {
+        let output = ["-o", "x.sscc.safetensors", "--picture", "x.png"];
+        let run = sscc(folder, &[&["certify"], model, &output].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let note =
+            format!("note: the root radius is {radius}: the picture shows the shape at the centre alone\n");
+        assert!(run.stderr.ends_with(&note), "{}", run.stderr);
+        let (width, height, pixels) = decode(&folder.join("x.png"));
+        assert_eq!(width.max(height), 400);
+        assert!(pixels.iter().any(|pixel| *pixel != pixels[0]));
+    }
+}
+
+#[test]
+fn pictures_that_cannot_be_written_are_refused_first() {
+    let directory = strips();
+    let folder = directory.path();
+    fs::create_dir(folder.join("folder.png")).unwrap();
+    let before = files(folder);
+    for (picture, named) in [
+        ("x.jpg", "x.jpg: the name of the output must end in .png"),
+        (".png", ".png: the name of the output must end in .png"),
+        ("missing/x.png", "missing/x.png: cannot be written"),
+        ("folder.png", "folder.png: cannot be written: it is no file"),
+    ] {
+        let run = sscc(folder, &["certify", MODEL, "-o", "x.sscc.safetensors", "--picture", picture]);
+        assert!(run.refusal().contains(named), "{run:?}");
+        assert_eq!(files(folder), before);
+    }
+}

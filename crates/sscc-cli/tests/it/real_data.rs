@@ -1,0 +1,210 @@
+//! Real models with known answers: exactly the listed pairs.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use sscc::{AuditOptions, Certificates, CertifyOptions, Method, Query, ReducedModel, audit};
+use sscc_testdata::models;
+
+type Pairs = Vec<(u32, u32)>;
+
+struct Case {
+    q: Vec<f64>,
+    pairs: Pairs,
+}
+
+/// The model and the cases of a `*_selfcollision_cases.json`.
+fn cases(file: &Path) -> (ReducedModel, Vec<Case>) {
+    let json: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+    let beside = |key: &str| file.with_file_name(json[key].as_str().unwrap());
+    let (model, _) = sscc_io::load_model(&beside("mesh"), Some(&beside("modes"))).unwrap();
+    let cases = json["cases"].as_array().unwrap().iter();
+    let cases = cases.map(|case| Case {
+        q: serde_json::from_value(case["q"].clone()).unwrap(),
+        pairs: serde_json::from_value(case["pairs"].clone()).unwrap(),
+    });
+    (model, cases.collect())
+}
+
+fn every_method_gives_the_listed_pairs(file: &Path, count: usize) {
+    let (model, cases) = cases(file);
+    assert_eq!(cases.len(), count);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    for method in [Method::Certified, Method::BdTree, Method::Traditional] {
+        let mut query = Query::with_method(&model, &certificates, method).unwrap();
+        for (i, case) in cases.iter().enumerate() {
+            assert_eq!(query.discrete(&case.q).unwrap(), case.pairs, "case {i} by {method:?}");
+        }
+    }
+}
+
+#[test]
+fn vega_letter() {
+    let Some(folder) = models("vega_letter") else { return };
+    every_method_gives_the_listed_pairs(&folder.join("vega_A/A_selfcollision_cases.json"), 17);
+}
+
+/// Every claim about the letter attacked, and its radius close to the truth.
+#[test]
+fn vega_letter_audit() {
+    let Some(folder) = models("vega_letter_audit") else { return };
+    let (model, _) = cases(&folder.join("vega_A/A_selfcollision_cases.json"));
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let options = AuditOptions { samples: 2000, ..AuditOptions::default() };
+    let report = audit(&model, &certificates, &options, &()).unwrap();
+    assert_eq!((report.samples, report.violations), (2000, vec![]));
+    assert!(report.root_tightness.unwrap() >= 0.9, "{:?}", report.root_tightness);
+}
+
+#[test]
+fn face() {
+    let Some(folder) = models("face") else { return };
+    every_method_gives_the_listed_pairs(&folder.join("ict_face/ict_face_selfcollision_cases.json"), 12);
+}
+
+/// A GLB of another tool, and the same model as OBJ and npy: the same pairs at 200 random q.
+#[test]
+fn glb_and_obj_agree() {
+    let Some(folder) = models("glb_and_obj_agree") else { return };
+    let directory = tempfile::tempdir().unwrap();
+    let mut colliding = 0;
+    for file in ["RobotExpressive.glb", "AnimatedMorphSphere.gltf", "MorphStressTest.gltf"] {
+        let glb = folder.join("morph").join(file);
+        let model = sscc_io::load_model(&glb, None).unwrap().0;
+        let (vertices, rank) = (model.mesh().rest_positions().len(), model.rank());
+        let mut obj = String::new();
+        for p in model.mesh().rest_positions() {
+            writeln!(obj, "v {} {} {}", p.x, p.y, p.z).unwrap();
+        }
+        for [a, b, c] in model.mesh().faces() {
+            writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+        }
+        fs::write(directory.path().join("a.obj"), obj).unwrap();
+        let modes: Vec<f64> = (0..rank)
+            .flat_map(|k| (0..vertices as u32).map(move |v| (v, k)))
+            .flat_map(|(v, k)| model.modes().of_vertex(v)[k].to_array())
+            .collect();
+        sscc_io::write_npy(&directory.path().join("a.npy"), &[rank, vertices, 3], &modes).unwrap();
+        let q: Vec<f64> = (0..200 * rank).map(random).collect();
+        sscc_io::write_npy(&directory.path().join("q.npy"), &[200, rank], &q).unwrap();
+        let run = |model: &[&str]| {
+            let model = [&["check"], model, &["--trajectory", "q.npy", "--json"]].concat();
+            let run = crate::common::sscc(directory.path(), &model);
+            assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
+            run.json().into_iter().map(|mut line| line["pairs"].take()).collect::<Vec<Value>>()
+        };
+        let of_glb = run(&[glb.to_str().unwrap()]);
+        assert_eq!(of_glb.len(), 200);
+        assert_eq!(of_glb, run(&["a.obj", "--modes", "a.npy", "--weld"]), "{file}");
+        assert_eq!(of_glb, run(&["a.obj", "--modes", "a.npy", "--weld", "--method=traditional"]), "{file}");
+        colliding += of_glb.iter().filter(|pairs| !pairs.as_array().unwrap().is_empty()).count();
+    }
+    assert!(colliding > 200, "{colliding}");
+}
+
+/// Fixed pseudo-random numbers in [-1, 1).
+fn random(i: usize) -> f64 {
+    let x = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Every published configuration with the rest contacts as exceptions, without, and ignored.
+#[test]
+fn face_with_exceptions() {
+    let Some(folder) = models("face_with_exceptions") else { return };
+    let (model, cases) = cases(&folder.join("ict_face/ict_face_selfcollision_cases.json"));
+    let rest = &cases[0].pairs;
+    let certify = |ignore_rest| {
+        // Loose radii: what counts here is which pairs they speak of.
+        let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
+        Certificates::compute(&model, &options, &()).unwrap()
+    };
+    let (with, ignoring) = (certify(false), certify(true));
+    assert_eq!((with.exceptions(), ignoring.rule().ignored()), (&rest[..], &rest[..]));
+    assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
+    let mut query = Query::new(&model, &with).unwrap();
+    assert_eq!(query.discrete(&cases[0].q).unwrap(), rest);
+    assert!(query.statistics().root_certified && query.statistics().opened == 0);
+    // The jaw alone opens a small part of the tree.
+    let mut jaw = vec![0.0; model.rank()];
+    jaw[0] = 0.1;
+    assert!(query.discrete(&jaw).unwrap().is_empty());
+    let nodes = with.hierarchy().nodes();
+    let open: Vec<bool> = with.parts().node_radii.iter().map(|r| *r <= query.norm()).collect();
+    // By triangles: what lies in a small node has its radius, and lips and eyelids are in many of them.
+    let leaves = || (0..nodes.len()).filter(|n| nodes[*n].children().is_empty());
+    let open: u32 = leaves().filter(|n| open[*n]).map(|n| nodes[n].triangle_count).sum();
+    assert!(0 < open && 8 * open < model.mesh().faces().len() as u32, "{open}");
+    let mut ignoring = Query::new(&model, &ignoring).unwrap();
+    for case in &cases {
+        let expected: Pairs = case.pairs.iter().copied().filter(|pair| !rest.contains(pair)).collect();
+        assert_eq!(ignoring.discrete(&case.q).unwrap(), expected);
+    }
+}
+
+/// The whole way by the command: certify, then check a trajectory of all cases.
+#[test]
+fn vega_letter_by_the_command() {
+    let Some(folder) = models("vega_letter_by_the_command") else { return };
+    let file = folder.join("vega_A/A_selfcollision_cases.json");
+    let (model, cases) = cases(&file);
+    let directory = tempfile::tempdir().unwrap();
+    let q: Vec<f64> = cases.iter().flat_map(|case| case.q.clone()).collect();
+    sscc_io::write_npy(&directory.path().join("q.npy"), &[cases.len(), model.rank()], &q).unwrap();
+    let [mesh, modes] =
+        ["A.obj", "A.URendering.float"].map(|name| file.with_file_name(name).to_str().unwrap().to_owned());
+    let run = |args: &[&str]| {
+        let [command, rest @ ..] = args else { unreachable!() };
+        crate::common::sscc(directory.path(), &[&[*command, &mesh, "--modes", &modes], rest].concat())
+    };
+    assert_eq!(run(&["certify", "-o", "a.sscc.safetensors"]).code, Some(0));
+    let checked = run(&["check", "--certificates", "a.sscc.safetensors", "--trajectory", "q.npy", "--json"]);
+    assert_eq!(checked.code, Some(1), "{}", checked.stderr);
+    let found: Vec<Pairs> = checked
+        .json()
+        .into_iter()
+        .map(|mut line| serde_json::from_value(line["pairs"].take()).unwrap())
+        .collect();
+    assert_eq!(found, cases.into_iter().map(|case| case.pairs).collect::<Vec<_>>());
+}
+
+/// A mesh that intersects itself as it is, with modes that move nothing.
+#[test]
+fn double_loop() {
+    let Some(folder) = models("double_loop") else { return };
+    let folder = folder.join("selfintersecting");
+    let text = fs::read_to_string(folder.join("doubleLoopWithCube.pairs.txt")).unwrap();
+    let listed: Pairs = text
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            let mut numbers = line.split_whitespace().map(|word| word.parse().unwrap());
+            (numbers.next().unwrap(), numbers.next().unwrap())
+        })
+        .collect();
+    assert_eq!(listed.len(), 792);
+    let directory = tempfile::tempdir().unwrap();
+    let path = folder.join("doubleLoopWithCube.obj");
+    let vertices = sscc_io::read_mesh(&path).unwrap().rest_positions().len();
+    let still = directory.path().join("still.npy");
+    sscc_io::write_npy(&still, &[3 * vertices, 1], &vec![0.0; 3 * vertices]).unwrap();
+    for method in ["certified", "bdtree", "traditional", "brute-force"] {
+        let args = [
+            "check",
+            path.to_str().unwrap(),
+            "--modes",
+            still.to_str().unwrap(),
+            "--q=1",
+            "--json",
+            "--method",
+            method,
+        ];
+        let run = crate::common::sscc(directory.path(), &args);
+        assert_eq!(run.code, Some(1), "{}", run.stderr);
+        let found: Pairs = serde_json::from_value(run.json()[0]["pairs"].take()).unwrap();
+        assert_eq!(found, listed, "{method}");
+    }
+}

@@ -1,0 +1,143 @@
+//! Audits find what is wrong, and nothing else, whatever certificates speak of.
+
+use sscc::{AuditOptions, CertificateParts, Certificates, CertifyOptions, Error, PairRule, PairTree, audit};
+use sscc_testdata::{cases, threshold};
+
+use crate::common::pair_trees::{START, edited};
+use crate::common::{random_model, random_options};
+
+struct Budget(std::sync::atomic::AtomicUsize);
+
+impl sscc::Progress for Budget {
+    fn report(&self, _done: usize, _total: usize) {}
+    fn is_cancelled(&self) -> bool {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
+    }
+}
+
+/// Honest certificates of every scope pass; the same with radii 1.5 times as large are found out wherever the honest
+/// ones are close to the truth.
+#[test]
+fn lies_of_every_scope_are_found() {
+    let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
+    for seed in 0..cases(220) {
+        let model = random_model(50_000 + seed);
+        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
+        honest += 1;
+        if report.root_tightness.is_none_or(|tightness| tightness < 0.75) {
+            continue;
+        }
+        let mut parts = certificates.parts().clone();
+        parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 1.5);
+        let forged = Certificates::from_parts(parts).unwrap();
+        lies += 1;
+        if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
+            missed.push(seed);
+        }
+    }
+    assert!(honest > threshold(150) && lies > threshold(30), "{honest} {lies}");
+    // Some collide at single points of a hyperplane only, where exact tests see nothing.
+    assert!(missed.len() * 20 <= lies, "{missed:?} of {lies}");
+}
+
+/// Exceptions that are dropped, added to what is ignored, or out of range.
+#[test]
+fn forged_exceptions_are_refused_or_found() {
+    let options = CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+    let mut found = 0;
+    for seed in 0..cases(80) {
+        let model = random_model(seed);
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        if certificates.exceptions().is_empty() || certificates.root_radius() <= 0.0 {
+            continue;
+        }
+        let good = certificates.parts();
+        let digest = |parts: &sscc::CertificateParts| sscc::Digest::of(&model, &parts.scope);
+        let mut both = good.clone();
+        both.scope.rule = PairRule::default().ignoring(good.scope.exceptions.clone());
+        assert!(matches!(Certificates::from_parts(both), Err(Error::Certificates(_))));
+        let mut outside = good.clone();
+        outside.scope.exceptions = vec![(0, u32::MAX)];
+        outside.digest = digest(&outside);
+        assert!(Certificates::from_parts(outside).unwrap().check_model(&model).is_err());
+        let mut dropped = good.clone();
+        dropped.scope.exceptions.clear();
+        dropped.digest = digest(&dropped);
+        let dropped = Certificates::from_parts(dropped).unwrap();
+        let asked = AuditOptions { samples: 400, ..AuditOptions::default() };
+        found += usize::from(!audit(&model, &dropped, &asked, &()).unwrap().violations.is_empty());
+        let mut nowhere = good.clone();
+        nowhere.scope.center[0] = f64::NAN;
+        assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
+    }
+    assert!(found > threshold(1), "{found}");
+}
+
+/// Radii of pairs of nodes three times as large, and trees that lack the pair of leaves that collides first; nodes and
+/// the pairs of the root's children stay honest.
+#[test]
+fn lies_of_the_pair_tree_are_found() {
+    let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);
+    for seed in 0..cases(150) {
+        let model = random_model(60_000 + seed);
+        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        let tree = &certificates.parts().pair_tree;
+        let of_leaves = tree.entries().enumerate().filter(|(_, (_, link))| link & START == 0);
+        let Some((first, (least, _))) = of_leaves.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { continue };
+        // Where the radius may be far from the truth a lie may be none.
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
+        if least <= 0.0 || report.root_tightness.is_none_or(|tightness| tightness < 0.75) {
+            continue;
+        }
+        let longer = edited(tree, 3.0 * tree.limit(), &[], |_, radius| 3.0 * radius);
+        let shorter = edited(tree, tree.limit(), &[first], |_, radius| radius);
+        let is_lie = [true, f64::from(least) < 0.4 * tree.limit()];
+        for (kind, pair_tree) in [longer, shorter].into_iter().enumerate().filter(|(kind, _)| is_lie[*kind]) {
+            let forged = CertificateParts { pair_tree, ..certificates.parts().clone() };
+            let forged = Certificates::from_parts(forged).unwrap();
+            lies[kind] += 1;
+            if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
+                missed[kind].push(seed);
+            }
+        }
+    }
+    assert!(lies.iter().all(|n| *n > threshold(5)), "{lies:?}");
+    for (lies, missed) in lies.iter().zip(&missed) {
+        assert!(missed.len() * 20 <= *lies, "{missed:?} of {lies}");
+    }
+}
+
+/// A tree that claims everything, in a model whose nodes claim nothing beyond the truth.
+#[test]
+fn an_empty_tree_that_claims_too_much_is_found() {
+    let (mut lies, mut found) = (0, 0);
+    for seed in 0..cases(40) {
+        let model = random_model(61_000 + seed);
+        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let parts = certificates.parts();
+        if parts.pair_tree.is_empty() {
+            continue;
+        }
+        let starts = vec![u32::MAX; parts.hierarchy.nodes().len()];
+        let pair_tree = PairTree::from_parts(2.0 * parts.global_radius, starts, []);
+        let forged = Certificates::from_parts(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
+        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        // Where radii may be far from the truth a lie may be none.
+        let honest = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(honest.violations, Vec::<String>::new(), "model {seed}");
+        if honest.root_tightness.is_none_or(|tightness| tightness < 0.5) {
+            continue;
+        }
+        lies += 1;
+        found += usize::from(!audit(&model, &forged, &asked, &()).unwrap().violations.is_empty());
+    }
+    assert!(lies > threshold(5) && found * 20 >= 19 * lies, "{found} of {lies}");
+}

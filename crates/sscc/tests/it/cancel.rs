@@ -1,0 +1,124 @@
+//! Single queries stop soon when they are cancelled, wherever they are, and are whole afterwards.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use sscc::{
+    Certificates, CertifyOptions, Error, KineticQuery, Method, Modes, Progress, Query, ReducedModel, TriMesh,
+};
+
+use crate::common::Random;
+
+/// Cancelled when it has been asked so many times.
+struct After {
+    looks: AtomicUsize,
+    most: AtomicUsize,
+}
+
+impl After {
+    const fn new() -> Self {
+        Self { looks: AtomicUsize::new(0), most: AtomicUsize::new(usize::MAX) }
+    }
+
+    /// From now on so many looks are answered by "go on".
+    fn allow(&self, most: usize) {
+        self.looks.store(0, Ordering::Relaxed);
+        self.most.store(most, Ordering::Relaxed);
+    }
+
+    fn looks(&self) -> usize {
+        self.looks.load(Ordering::Relaxed)
+    }
+}
+
+impl Progress for After {
+    fn report(&self, _done: usize, _total: usize) {}
+    fn is_cancelled(&self) -> bool {
+        self.looks.fetch_add(1, Ordering::Relaxed) >= self.most.load(Ordering::Relaxed)
+    }
+}
+
+/// A strip with two modes: at (1, 0) all of it is in one point, at (0, 1) it is crumpled.
+fn strip(triangles: u32) -> ReducedModel {
+    let random = &mut Random::new(3);
+    let p: Vec<DVec3> =
+        (0..triangles + 2).map(|i| DVec3::new(0.01 * f64::from(i), f64::from(i % 2), 0.0)).collect();
+    let faces = (0..triangles).map(|i| [i, i + 1, i + 2]).collect();
+    let modes = Modes::new(2, p.iter().flat_map(|x| [-*x, random.vector()]).collect()).unwrap();
+    ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
+}
+
+/// Between two looks, no query tests more than 64 pairs of triangles, or one row of all.
+#[test]
+fn queries_look_between_few_triangles() {
+    let model = strip(120);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
+        let after = After::new();
+        let query = Query::with_method(&model, &certificates, method).unwrap();
+        let (mut oracle, mut query) = (query.clone(), query.cancelled_by(&after));
+        for q in [[1.0, 0.0], [0.0, 1.0]] {
+            let expected = oracle.discrete(&q).unwrap().to_vec();
+            after.allow(usize::MAX);
+            assert_eq!(query.discrete(&q).unwrap(), expected);
+            let (all, tests) = (after.looks(), query.statistics().triangle_tests);
+            assert!(expected.len() > 1000 && all >= 16, "{method:?}: {all} looks, {tests} tests");
+            for most in [0, 1, all / 2, all - 1] {
+                let allowed = if method == Method::BruteForce { 120 } else { 64 } * (most as u64 + 1);
+                after.allow(most);
+                assert_eq!(query.discrete(&q), Err(Error::Cancelled));
+                assert!(query.statistics().triangle_tests <= allowed && !query.statistics().complete);
+                after.allow(most);
+                assert_eq!(query.continuous(&q, &q), Err(Error::Cancelled));
+                assert!(query.statistics().triangle_tests <= allowed && !query.statistics().complete);
+            }
+            after.allow(usize::MAX);
+            assert_eq!(query.discrete(&q).unwrap(), expected);
+            assert!(query.statistics().complete);
+        }
+    }
+}
+
+/// A batch also cancels the query at hand.
+#[test]
+fn batches_are_cancelled_within_a_query() {
+    let model = strip(120);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let (query, after) = (Query::new(&model, &certificates).unwrap(), After::new());
+    after.allow(3);
+    assert_eq!(query.batch(&[[1.0, 0.0]], Some(1), &after), Err(Error::Cancelled));
+}
+
+/// Wherever a kinetic query is cancelled, in a search or in a step, its next answers are right.
+#[test]
+fn cancelled_kinetic_queries_are_whole() {
+    let model = strip(400);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let after = After::new();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let (mut searches, mut steps, mut right) = (0, 0, 0);
+    for base in [0.05, 0.1] {
+        let path: Vec<[f64; 2]> = (0..60).map(|i| [0.0, base + 1e-4 * f64::from(i)]).collect();
+        let expected: Vec<Vec<_>> = path.iter().map(|q| oracle.discrete(q).unwrap().to_vec()).collect();
+        for stride in 2..12 {
+            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(&after);
+            for (i, (q, expected)) in path.iter().zip(&expected).enumerate() {
+                after.allow(if i % stride == 1 { i / stride % 8 } else { usize::MAX });
+                let found = kinetic.discrete(q).map(<[_]>::to_vec);
+                // A step opens no nodes.
+                let is_step = kinetic.statistics().opened == 0;
+                match found {
+                    Ok(pairs) => {
+                        assert_eq!(pairs, *expected);
+                        right += usize::from(is_step);
+                    }
+                    Err(error) => {
+                        assert_eq!(error, Error::Cancelled);
+                        *(if is_step { &mut steps } else { &mut searches }) += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(searches > 30 && steps > 60 && right > 300, "{searches} {steps} {right}");
+}

@@ -1,0 +1,21 @@
+//! The core through its public interface, against brute force and exact arithmetic. One program, so that the core is
+//! linked once; what counts allocations is a program of its own.
+#![allow(clippy::unwrap_used)]
+
+mod audit;
+mod cancel;
+mod ccd;
+mod certificates;
+mod clusters;
+mod common;
+mod continuous;
+mod impact;
+mod impact_tolerance;
+mod intersect;
+mod kinetic;
+mod neighbours;
+mod normal_cones;
+mod pair_tree;
+mod pair_walk;
+mod rounding;
+mod safe_scale;
