@@ -6,7 +6,7 @@ use super::claims::{Claim, Claims};
 use super::minimum::{Collision, Confirmed, MinimumSearch};
 use super::random::Random;
 use crate::bounds::NodePairBounds;
-use crate::certificates::{KnownPair, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
+use crate::certificates::{KnownPair, Precision, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -81,18 +81,17 @@ pub(super) fn measure(
         .par_iter()
         .map_init(search, |search, claim| {
             // Beyond the radius: a search up to it alone could refute no claim.
-            let goal = SearchGoal::full(2.0 * claim.radius.max(parts.global_radius));
+            let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
             let (n, m) = claim.nodes;
             if n != m {
-                search.between(&[KnownPair::unbounded((n, m))], goal);
+                search.between(vec![KnownPair::unbounded((n, m))], goal);
             } else {
                 let n = find_responsible_node(certificates, n);
                 let node = &nodes[n as usize];
                 if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
                     search.within(n, goal);
                 } else {
-                    let pairs: Vec<KnownPair> = node.child_pairs().map(KnownPair::unbounded).collect();
-                    search.between(&pairs, goal);
+                    search.between(node.child_pairs().map(KnownPair::unbounded).collect(), goal);
                 }
             }
             search.closest()

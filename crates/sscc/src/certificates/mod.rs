@@ -19,7 +19,7 @@ mod test_models;
 mod tests;
 mod validation;
 
-pub(crate) use build::{KnownPair, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
+pub(crate) use build::{KnownPair, Precision, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
 pub use certificates::{CertificateParts, Certificates};
 pub use digest::Digest;
 pub use options::CertifyOptions;

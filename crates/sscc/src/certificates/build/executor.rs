@@ -66,7 +66,7 @@ impl Executor for ThreadExecutor<'_> {
             if room.is_exceeded() {
                 return None;
             }
-            let result = run_task(&(stage.task)(index), prepared, search, progress)?;
+            let result = run_task((stage.task)(index), prepared, search, progress)?;
             room.add(&result);
             (stage.on_finished)(1);
             Some(result)

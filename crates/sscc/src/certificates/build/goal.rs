@@ -44,8 +44,8 @@ pub(crate) struct SearchGoal {
 }
 
 impl SearchGoal {
-    /// A radius of at most `cap`, as close to the exact one as asked for.
-    pub(crate) fn full(cap: f64) -> Self {
-        Self { cap, refine_up_to: cap, precision: Precision::Full }
+    /// A radius of at most `cap`.
+    pub(crate) fn new(cap: f64, precision: Precision) -> Self {
+        Self { cap, refine_up_to: cap, precision }
     }
 }

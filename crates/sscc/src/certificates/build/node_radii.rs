@@ -151,7 +151,7 @@ impl Passes<'_> {
             // The radii of its parts are not known: they were not searched.
             return NodeRadiusTask::within(node, precision, self.prepared.global_radius);
         }
-        let goal = SearchGoal { cap, refine_up_to: cap, precision };
+        let goal = SearchGoal::new(cap, precision);
         let Some(frontier) = self.builder.frontier(hierarchy, n, siblings.clone(), cap) else {
             let pairs = hierarchy.nodes()[n].child_pairs().skip(siblings.start).take(siblings.len());
             return NodeRadiusTask { node, pairs: pairs.map(KnownPair::unbounded).collect(), goal };

@@ -14,9 +14,9 @@ use super::limit_schedule::LimitSchedule;
 use super::pair_tree_layout::lay_out;
 use super::split::SplitTask;
 use super::task::{Task, TaskResult};
-use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
 use crate::hierarchy::Hierarchy;
+use crate::{Error, Pair};
 
 /// Most node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed. Tests should run
 /// out of room.
@@ -101,7 +101,7 @@ impl PairTreeBuilder {
             }
             open = open_pairs(bvtt, before_stage..bvtt.pairs.len(), limit);
         }
-        let is_large = |(n, m): (u32, u32)| hierarchy.split_above_buckets(n, m).is_some();
+        let is_large = |(n, m): Pair| hierarchy.split_above_buckets(n, m).is_some();
         if bvtt.pairs.iter().any(|pair| pair.is_open_below(limit) && is_large(pair.nodes)) {
             return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }

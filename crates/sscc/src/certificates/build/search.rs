@@ -76,7 +76,7 @@ impl<'a> RadiusSearch<'a> {
     }
 
     /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
-    pub(crate) fn between(&mut self, pairs: &[KnownPair], goal: SearchGoal) -> Option<RadiusBound> {
+    pub(crate) fn between(&mut self, pairs: Vec<KnownPair>, goal: SearchGoal) -> Option<RadiusBound> {
         self.start(goal);
         // All at once: building a heap of many takes linear time.
         let mut queued = std::mem::take(&mut self.queue).into_vec();
@@ -86,7 +86,7 @@ impl<'a> RadiusSearch<'a> {
             MinFirst::new(pair.lower, Candidate::Nodes(n, m))
         }));
         self.queue = queued.into();
-        for pair in pairs.iter().filter(|pair| pair.lower <= 0.0) {
+        for pair in pairs.into_iter().filter(|pair| pair.lower <= 0.0) {
             self.add_nodes(pair.nodes, 0.0);
         }
         self.run()
@@ -95,7 +95,7 @@ impl<'a> RadiusSearch<'a> {
     /// The radius, at most `cap`, of all triangle pairs between two nodes, with the error of the pair tree and without
     /// subdivision. None if cancelled.
     pub(crate) fn between_coarse(&mut self, nodes: Pair, cap: f64) -> Option<RadiusBound> {
-        self.start(SearchGoal::full(cap));
+        self.start(SearchGoal::new(cap, Precision::Full));
         self.target =
             RefinementTarget { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
         self.add_nodes(nodes, 0.0);

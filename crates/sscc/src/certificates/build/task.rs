@@ -40,13 +40,13 @@ pub(crate) enum TaskResult {
 
 /// Runs a task; `search` lends its memory. None if cancelled.
 pub(crate) fn run_task(
-    task: &Task,
+    task: Task,
     prepared: &Prepared,
     search: &mut RadiusSearch<'_>,
     progress: &dyn Progress,
 ) -> Option<TaskResult> {
     match task {
-        Task::Split(task) => split(*task, prepared, search, progress).map(TaskResult::Split),
+        Task::Split(task) => split(task, prepared, search, progress).map(TaskResult::Split),
         Task::NodeRadius(task) => {
             if progress.is_cancelled() {
                 return None;
@@ -59,16 +59,15 @@ pub(crate) fn run_task(
 impl NodeRadiusTask {
     /// Searches all of a leaf or a bucket.
     pub(crate) fn within(node: u32, precision: Precision, cap: f64) -> Self {
-        let goal = SearchGoal { cap, refine_up_to: cap, precision };
-        Self { node, pairs: Vec::new(), goal }
+        Self { node, pairs: Vec::new(), goal: SearchGoal::new(cap, precision) }
     }
 
-    fn run(&self, prepared: &Prepared, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {
+    fn run(self, prepared: &Prepared, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {
         let hierarchy = &prepared.hierarchy;
         if hierarchy.nodes()[self.node as usize].is_leaf() || hierarchy.is_bucket_below_root(self.node) {
             search.within(self.node, self.goal)
         } else {
-            search.between(&self.pairs, self.goal)
+            search.between(self.pairs, self.goal)
         }
     }
 }

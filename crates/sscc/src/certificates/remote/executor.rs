@@ -1,7 +1,7 @@
 //! The executor that has tasks run by workers in other processes.
 
 use super::job::JobWriter;
-use super::job_result::{Expected, JobResult};
+use super::job_result::{JobResult, ResultLayout};
 use super::seal::{HASH, Key};
 use crate::certificates::build::{CertifiedRadii, Executor, Prepared, Room, Stage, TaskResult};
 use crate::certificates::{Certificates, CertifyOptions};
@@ -49,27 +49,27 @@ struct RemoteExecutor<'a> {
 /// A job that was sealed, and what is needed to read its result.
 struct SealedJob {
     bytes: Vec<u8>,
-    expected: Vec<Expected>,
+    layouts: Vec<ResultLayout>,
 }
 
 impl RemoteExecutor<'_> {
     /// Job j of k has the tasks j, j + k, j + 2k, ..., because neighbours are often equally hard.
     fn seal(&self, stage: &Stage<'_>, job: usize, jobs: usize) -> SealedJob {
-        let (mut writer, mut expected) = (JobWriter::new(stage.room), Vec::new());
+        let (mut writer, mut layouts) = (JobWriter::new(stage.room), Vec::new());
         for index in (job..stage.count).step_by(jobs) {
             let task = (stage.task)(index);
             writer.add(&task);
-            expected.push(Expected::of(&task));
+            layouts.push(ResultLayout::of(&task));
         }
-        SealedJob { bytes: self.key.seal(&writer.into_bytes()), expected }
+        SealedJob { bytes: self.key.seal(&writer.into_bytes()), layouts }
     }
 
     /// Reads the result of the job with that name.
-    fn open(&self, name: [u8; HASH], expected: &[Expected], result: &[u8]) -> Result<JobResult, Error> {
+    fn open(&self, name: [u8; HASH], layouts: &[ResultLayout], result: &[u8]) -> Result<JobResult, Error> {
         let body = self.key.open("a result", result)?;
         let body =
             body.strip_prefix(&name).ok_or_else(|| Error::Shard("a result is of another job".to_owned()))?;
-        JobResult::read(&self.prepared.hierarchy, expected, body)
+        JobResult::read(&self.prepared.hierarchy, layouts, body)
             .ok_or_else(|| Error::Shard("a result does not fit its job".to_owned()))
     }
 }
@@ -86,7 +86,7 @@ impl Executor for RemoteExecutor<'_> {
         let (mut bytes, mut known) = (Vec::with_capacity(jobs), Vec::with_capacity(jobs));
         for job in 0..jobs {
             let sealed = self.seal(stage, job, jobs);
-            known.push((Key::name(&sealed.bytes), sealed.expected));
+            known.push((Key::name(&sealed.bytes), sealed.layouts));
             bytes.push(sealed.bytes);
         }
         let results = (self.run)(bytes)?;
@@ -94,8 +94,8 @@ impl Executor for RemoteExecutor<'_> {
             return Err(Error::Shard(format!("{} results came back for {jobs} jobs", results.len())));
         }
         let mut of_jobs = Vec::with_capacity(jobs);
-        for (result, (name, expected)) in results.into_iter().zip(known) {
-            of_jobs.push(self.open(name, &expected, &result)?);
+        for (result, (name, layouts)) in results.into_iter().zip(known) {
+            of_jobs.push(self.open(name, &layouts, &result)?);
         }
         (stage.on_finished)(stage.count);
         Ok(in_order(stage, of_jobs))

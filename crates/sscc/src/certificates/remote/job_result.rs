@@ -18,13 +18,13 @@ const SPLIT: u8 = 2;
 
 /// What must be known of a task to read its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Expected {
+pub(super) enum ResultLayout {
     /// The pair that is split.
     Split(Pair),
     NodeRadius,
 }
 
-impl Expected {
+impl ResultLayout {
     pub(super) fn of(task: &Task) -> Self {
         match task {
             Task::Split(task) => Self::Split(task.nodes),
@@ -58,13 +58,13 @@ impl JobResult {
     }
 
     /// The results of some tasks; none if the bytes are no such results.
-    pub(super) fn read(hierarchy: &Hierarchy, expected: &[Expected], bytes: &[u8]) -> Option<Self> {
+    pub(super) fn read(hierarchy: &Hierarchy, layouts: &[ResultLayout], bytes: &[u8]) -> Option<Self> {
         let mut from = Reader::new(bytes);
         let result = match from.u8()? {
             OUT_OF_ROOM => Self::OutOfRoom,
             COMPLETE => {
-                let read = |expected: &Expected| read_result(hierarchy, *expected, &mut from);
-                Self::Complete(expected.iter().map(read).collect::<Option<_>>()?)
+                let read = |layout: &ResultLayout| read_result(hierarchy, *layout, &mut from);
+                Self::Complete(layouts.iter().map(read).collect::<Option<_>>()?)
             }
             _ => return None,
         };
@@ -81,10 +81,10 @@ fn write_pair(pair: &BvttPair, bytes: &mut Vec<u8>) {
     bytes.extend(pair.lower.to_le_bytes());
 }
 
-fn read_result(hierarchy: &Hierarchy, expected: Expected, from: &mut Reader<'_>) -> Option<TaskResult> {
-    Some(match expected {
-        Expected::Split(nodes) => TaskResult::Split(read_subtree(hierarchy, nodes, from)?),
-        Expected::NodeRadius => {
+fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut Reader<'_>) -> Option<TaskResult> {
+    Some(match layout {
+        ResultLayout::Split(nodes) => TaskResult::Split(read_subtree(hierarchy, nodes, from)?),
+        ResultLayout::NodeRadius => {
             TaskResult::NodeRadius(RadiusBound { radius: from.radius()?, upper: from.radius()? })
         }
     })

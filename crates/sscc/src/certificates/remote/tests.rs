@@ -3,7 +3,7 @@
 use sscc_testdata::cases;
 
 use super::job::{Job, JobWriter};
-use super::job_result::{Expected, JobResult};
+use super::job_result::{JobResult, ResultLayout};
 use super::seal::HASH;
 use super::*;
 use crate::certificates::build::Task;
@@ -132,9 +132,9 @@ fn damaged_bytes_are_answered_with_an_error() {
         let mut writer = JobWriter::new(job.room);
         job.tasks.iter().for_each(|task| writer.add(task));
         assert_eq!(writer.into_bytes(), body);
-        let expected: Vec<Expected> = job.tasks.iter().map(Expected::of).collect();
+        let layouts: Vec<ResultLayout> = job.tasks.iter().map(ResultLayout::of).collect();
         let result = &worker.key.open("a result", result).unwrap()[HASH..];
-        let read = |bytes: &[u8]| JobResult::read(hierarchy, &expected, bytes);
+        let read = |bytes: &[u8]| JobResult::read(hierarchy, &layouts, bytes);
         assert_eq!(read(result).unwrap().to_bytes(), result);
         for at in 0..result.len() {
             let mut changed = result.to_vec();

@@ -36,20 +36,21 @@ impl ShardWorker {
     /// # Errors
     /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; when `progress` cancels.
     pub fn run(&self, job: &[u8], progress: &dyn Progress) -> Result<Vec<u8>, Error> {
-        let tasks = Job::read(&self.prepared.hierarchy, self.key.open("a job", job)?)
+        let name = Key::name(job);
+        let job = Job::read(&self.prepared.hierarchy, self.key.open("a job", job)?)
             .ok_or_else(|| Error::Shard("a job is not of this hierarchy".to_owned()))?;
-        let result = self.run_tasks(&tasks, progress).filter(|_| !progress.is_cancelled());
-        let mut body = Key::name(job).to_vec();
+        let result = self.run_tasks(job, progress).filter(|_| !progress.is_cancelled());
+        let mut body = name.to_vec();
         body.extend(result.ok_or(Error::Cancelled)?.to_bytes());
         Ok(self.key.seal(&body))
     }
 
     /// None if cancelled.
-    fn run_tasks(&self, job: &Job, progress: &dyn Progress) -> Option<JobResult> {
+    fn run_tasks(&self, job: Job, progress: &dyn Progress) -> Option<JobResult> {
         let mut search = self.prepared.search(progress);
         let room = Room::new(job.room);
         let mut results = Vec::with_capacity(job.tasks.len());
-        for task in &job.tasks {
+        for task in job.tasks {
             let result = run_task(task, &self.prepared, &mut search, progress)?;
             room.add(&result);
             if room.is_exceeded() {
