@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use sscc::{Certificates, CertifyOptions, Neighbours, PairRule, Query};
+use sscc::{Certificates, CertifyOptions, ContactFilter, Neighbours, Query};
 use sscc_examples::{exit_code, mouth_glb};
 use sscc_io::{LoadOptions, load_model_with, write_ply_pose};
 
@@ -35,8 +35,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     // A glTF file splits vertices along seams: without welding, triangles on the two sides of a seam would
     // share no vertex, and so would always collide. What collides at rest (closed lips, eyes in their
     // sockets) is not what is asked here: these pairs are left out.
-    let rule = PairRule::new(Neighbours::Exclude, true);
-    let options = CertifyOptions { rule, ignore_rest: true, ..CertifyOptions::default() };
+    let filter = ContactFilter::new(Neighbours::Exclude, true);
+    let options = CertifyOptions { filter, ignore_rest: true, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model, &options, &())?;
     println!("left out because they collide at rest: {} pairs", certificates.rest_collisions());
 

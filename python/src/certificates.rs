@@ -182,17 +182,17 @@ impl Certificates {
 
     #[getter]
     fn neighbours(&self) -> &'static str {
-        self.core().rule().neighbours.name()
+        self.core().filter().neighbours.name()
     }
 
     #[getter]
     fn weld(&self) -> bool {
-        self.core().rule().weld
+        self.core().filter().weld
     }
 
     #[getter]
     fn ignored<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        pairs(py, self.core().rule().ignored())
+        pairs(py, self.core().filter().ignored())
     }
 
     #[getter]

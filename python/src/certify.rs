@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use sscc::{CertifyOptions, Error, Neighbours, PairRule};
+use sscc::{CertifyOptions, ContactFilter, Error, Neighbours};
 
 use crate::arguments::{choice, count, number, switch};
 use crate::arrays::vector;
@@ -62,7 +62,7 @@ impl Typed<'_, '_> {
             epsilon,
             metric: read_metric(model, self.metric)?,
             center,
-            rule: PairRule::new(neighbours, weld),
+            filter: ContactFilter::new(neighbours, weld),
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,

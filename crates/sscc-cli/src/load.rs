@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Error, Result, bail, ensure};
-use sscc::{Certificates, CertifyOptions, Metric, MetricKind, Neighbours, PairRule, ReducedModel, Scope};
+use sscc::{
+    Certificates, CertifyOptions, ContactFilter, Metric, MetricKind, Neighbours, ReducedModel, Scope,
+};
 use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
 use sscc_sim::{SimError, available_threads};
 
@@ -100,7 +102,7 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
         epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
         metric: metric(model, typed.metric.as_deref())?,
         center: center(model, typed.center.as_deref())?,
-        rule: PairRule::new(
+        filter: ContactFilter::new(
             typed.neighbours.map_or(Neighbours::default(), neighbours),
             typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
         ),
@@ -121,15 +123,15 @@ fn neighbours(typed: args::Neighbours) -> Neighbours {
 /// What was typed, for a query without certificates.
 pub fn scope(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<Scope> {
     let options = options(model, files, typed)?;
-    let mut rule = options.rule;
+    let mut filter = options.filter;
     if options.ignore_rest {
-        rule = rule.ignoring_rest(model).with_context(|| files.path.display().to_string())?;
+        filter = filter.ignoring_rest(model).with_context(|| files.path.display().to_string())?;
     }
     let default = Scope::of(model);
     Ok(Scope {
         metric: options.metric.unwrap_or(default.metric),
         center: options.center.unwrap_or(default.center),
-        rule,
+        filter,
         exceptions: Vec::new(),
     })
 }
@@ -191,12 +193,12 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
             name()
         );
     }
-    let known = certificates.rule();
-    let typed = PairRule::new(
+    let known = certificates.filter();
+    let typed = ContactFilter::new(
         options.neighbours.map_or(known.neighbours, neighbours),
         options.weld.map_or(known.weld, |weld| weld == args::Switch::On),
     );
-    certificates.check_rule(&typed.ignoring(known.ignored().iter().copied())).with_context(name)?;
+    certificates.check_filter(&typed.ignoring(known.ignored().iter().copied())).with_context(name)?;
     let tree = &certificates.parts().pair_tree;
     let (triangles, has_tree) = (certificates.hierarchy().order().len(), tree.limit() > 0.0);
     budget(options)?;

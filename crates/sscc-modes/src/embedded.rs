@@ -48,7 +48,7 @@ impl Embedded {
     }
 
     /// Whether the surface is closed only when vertices of equal position count as one (a file split them along seams).
-    /// Then certificates need the same: [`PairRule::weld`](sscc::PairRule::weld).
+    /// Then certificates need the same: [`ContactFilter::weld`](sscc::ContactFilter::weld).
     pub fn is_split(&self) -> bool {
         self.is_split
     }

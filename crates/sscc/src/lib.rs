@@ -69,7 +69,7 @@
 //!
 //! # Which pairs count
 //!
-//! Touching counts. Triangles that share a vertex always touch, so the contact filter ([`PairRule`]) decides which pairs
+//! Touching counts. Triangles that share a vertex always touch, so the contact filter ([`ContactFilter`]) decides which pairs
 //! count:
 //!
 //! - [`Neighbours`]: triangles that share a vertex never count; or those that share exactly one count if they have another
@@ -78,11 +78,11 @@
 //!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide.
 //! - *Ignored* pairs never count.
 //!
-//! [`CertifyOptions`] sets the contact filter, certificates store it ([`Certificates::rule`]), and their queries use it.
+//! [`CertifyOptions`] sets the contact filter, certificates store it ([`Certificates::filter`]), and their queries use it.
 //!
 //! ```
 //! use glam::DVec3;
-//! use sscc::{Certificates, CertifyOptions, Error, Modes, Neighbours, PairRule, Query, ReducedModel, TriMesh};
+//! use sscc::{Certificates, CertifyOptions, Error, Modes, Neighbours, ContactFilter, Query, ReducedModel, TriMesh};
 //!
 //! # fn main() -> Result<(), Error> {
 //! // Two triangles that meet in a corner, each with a vertex of its own there. The mode folds the second onto
@@ -102,9 +102,9 @@
 //!
 //! let plain = CertifyOptions::default();
 //! assert!(collide(&plain, 0.0)?); // they touch in the corner
-//! let welded = CertifyOptions { rule: PairRule::new(Neighbours::Exclude, true), ..plain };
+//! let welded = CertifyOptions { filter: ContactFilter::new(Neighbours::Exclude, true), ..plain };
 //! assert!(!collide(&welded, 0.0)? && !collide(&welded, 1.0)?); // neighbours never count
-//! let strict = CertifyOptions { rule: PairRule::new(Neighbours::IncludeOneVertex, true), ..welded };
+//! let strict = CertifyOptions { filter: ContactFilter::new(Neighbours::IncludeOneVertex, true), ..welded };
 //! assert!(!collide(&strict, 0.0)? && collide(&strict, 1.0)?); // folded, they meet beside the corner
 //! # Ok(())
 //! # }
@@ -272,7 +272,7 @@ pub use certificates::{
 };
 pub use detect::Impact;
 pub use error::Error;
-pub use filter::{Neighbours, Pair, PairRule};
+pub use filter::{ContactFilter, Neighbours, Pair};
 pub use geometry::{
     Aabb, MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face,
     intersect_shared_vertex_pair, intersect_triangle_triangle,

@@ -187,7 +187,7 @@ fn listed(triangles: &[u32]) -> String {
 /// What the root's radius says.
 fn promise(certificates: &Certificates, unresolved: Option<&Unresolved>) -> String {
     let exceptions = !certificates.exceptions().is_empty();
-    let ignored = !certificates.rule().ignored().is_empty();
+    let ignored = !certificates.filter().ignored().is_empty();
     match (unresolved, exceptions, ignored) {
         (Some(Unresolved::Colliding { .. }), ..) => {
             "the shape collides with itself at the centre; the parts that do not are certified".into()

@@ -123,7 +123,7 @@ fn face_with_exceptions() {
         Certificates::compute(&model, &options, &()).unwrap()
     };
     let (with, ignoring) = (certify(false), certify(true));
-    assert_eq!((with.exceptions(), ignoring.rule().ignored()), (&rest[..], &rest[..]));
+    assert_eq!((with.exceptions(), ignoring.filter().ignored()), (&rest[..], &rest[..]));
     assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
     let mut query = Query::new(&model, &with).unwrap();
     assert_eq!(query.discrete(&cases[0].q).unwrap(), rest);

@@ -35,7 +35,7 @@
 use std::path::Path;
 
 use sscc::hierarchy::{Hierarchy, Node};
-use sscc::{CertificateParts, Certificates, Digest, Neighbours, Pair, PairRule, PairTree, Scope};
+use sscc::{CertificateParts, Certificates, ContactFilter, Digest, Neighbours, Pair, PairTree, Scope};
 
 use super::{ANY, CERTIFICATES, Sealed, SealedWriter, metric};
 use crate::error::quoted;
@@ -102,7 +102,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
         .collect();
     let (order, scope) = (parts.hierarchy.order(), &parts.scope);
     let flat = |pairs: &[Pair]| -> Vec<u32> { pairs.iter().flat_map(|&(i, j)| [i, j]).collect() };
-    let (exceptions, ignored) = (flat(&scope.exceptions), flat(scope.rule.ignored()));
+    let (exceptions, ignored) = (flat(&scope.exceptions), flat(scope.filter.ignored()));
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let tree = &parts.pair_tree;
     let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
@@ -110,8 +110,8 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     metric::write(&mut writer, &scope.metric);
     writer
         .text("scheme", scheme(tree))
-        .text("neighbours", scope.rule.neighbours.name())
-        .text("weld", if scope.rule.weld { WELD } else { NO_WELD })
+        .text("neighbours", scope.filter.neighbours.name())
+        .text("weld", if scope.filter.weld { WELD } else { NO_WELD })
         .u8("model_digest", &[32], &parts.digest.0)
         .u32("nodes", &[nodes.len(), 4], &columns)
         .u32("order", &[order.len()], order)
@@ -171,7 +171,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let scope = Scope {
         metric,
         center: center.values,
-        rule: PairRule::new(neighbours, weld).ignoring(ignored),
+        filter: ContactFilter::new(neighbours, weld).ignoring(ignored),
         exceptions: read_pairs(&file, "exceptions")?,
     };
     let one = |name| file.f64(name)?.shaped(&[1]);

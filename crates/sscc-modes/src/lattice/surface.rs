@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use sscc::{Method, Modes, Neighbours, PairRule, Progress, Query, ReducedModel, Scope, TriMesh};
+use sscc::{ContactFilter, Method, Modes, Neighbours, Progress, Query, ReducedModel, Scope, TriMesh};
 
 use crate::ModesError;
 
@@ -105,8 +105,8 @@ pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress
     // The core speaks of models, and a model has a mode: any will do, at q = 0.
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
     let model = ReducedModel::new(mesh.clone(), modes)?;
-    let rule = PairRule::new(Neighbours::Exclude, is_split);
-    let scope = Scope { rule, ..Scope::of(&model) };
+    let filter = ContactFilter::new(Neighbours::Exclude, is_split);
+    let scope = Scope { filter, ..Scope::of(&model) };
     let mut query = Query::without_certificates(&model, scope, Method::Traditional)?;
     query = query.cancelled_by(progress);
     match query.first(&[0.0])? {

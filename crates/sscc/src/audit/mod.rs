@@ -57,7 +57,7 @@ pub fn audit(
     let run = || {
         let parts = certificates.parts();
         let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
-        let filter = PairFilter::new(model, &parts.scope.rule).excluding(&parts.scope.exceptions);
+        let filter = PairFilter::new(model, &parts.scope.filter).excluding(&parts.scope.exceptions);
         let minimum =
             &minimum::MinimumSearch { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
         let claims = &claims::Claims::new(parts);

@@ -5,13 +5,13 @@
 
 use super::{Digest, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
-use crate::{Metric, Pair, PairRule};
+use crate::{ContactFilter, Metric, Pair};
 
 /// The proof of which parts of a model are free of collisions near the centre: a hierarchy with a radius for each node
 /// and for pairs of nodes.
 ///
 /// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A radius R of a set of triangle pairs
-/// promises: at any q with `|z| < R`, no pair of the set that counts under the rule has a point in common, except for
+/// promises: at any q with `|z| < R`, no pair of the set that counts under the contact filter has a point in common, except for
 /// the exceptions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificates {
@@ -25,7 +25,7 @@ pub struct CertificateParts {
     pub digest: Digest,
     /// The hierarchy over the triangles.
     pub hierarchy: Hierarchy,
-    /// Metric, centre, rule and exceptions for which the certificates hold.
+    /// Metric, centre, contact filter and exceptions for which the certificates hold.
     pub scope: Scope,
     /// Relative error allowed of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
     pub epsilon: f64,
@@ -69,8 +69,8 @@ impl Certificates {
     }
 
     /// Which pairs of triangles count.
-    pub fn rule(&self) -> &PairRule {
-        &self.parts.scope.rule
+    pub fn filter(&self) -> &ContactFilter {
+        &self.parts.scope.filter
     }
 
     /// Pairs that no radius covers and every query tests, sorted.

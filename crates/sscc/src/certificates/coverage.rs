@@ -1,7 +1,7 @@
 //! Whether certificates cover a model and a contact filter: for any other ones they would be a wrong proof.
 
 use super::{Certificates, Digest};
-use crate::{Error, PairRule, ReducedModel};
+use crate::{ContactFilter, Error, ReducedModel};
 
 impl Certificates {
     /// Refuses a model for which these certificates were not computed.
@@ -23,25 +23,25 @@ impl Certificates {
         if scope.metric.rank() != model.rank() {
             return damaged("the metric is of another rank");
         }
-        if scope.exceptions.iter().chain(scope.rule.ignored()).any(|(_, b)| *b as usize >= triangles) {
+        if scope.exceptions.iter().chain(scope.filter.ignored()).any(|(_, b)| *b as usize >= triangles) {
             return damaged("a pair names a triangle that does not exist");
         }
         model.check_coordinates(self.center()).map(|_| ())
     }
 
-    /// Refuses a rule under which other pairs count than those that were certified.
+    /// Refuses a contact filter under which other pairs count than those that were certified.
     ///
     /// # Errors
     /// When neighbours, weld or ignored pairs differ.
-    pub fn check_rule(&self, rule: &PairRule) -> Result<(), Error> {
-        let certified = self.rule();
-        let what = if certified.neighbours != rule.neighbours {
-            let [certified, asked] = [certified, rule].map(|rule| rule.neighbours.name());
+    pub fn check_filter(&self, filter: &ContactFilter) -> Result<(), Error> {
+        let certified = self.filter();
+        let what = if certified.neighbours != filter.neighbours {
+            let [certified, asked] = [certified, filter].map(|filter| filter.neighbours.name());
             format!("they were made with the neighbour rule {certified}, not {asked}")
-        } else if certified.weld != rule.weld {
+        } else if certified.weld != filter.weld {
             format!("they were made with{} welding", if certified.weld { "" } else { "out" })
-        } else if certified.ignored() != rule.ignored() {
-            let [certified, asked] = [certified, rule].map(|rule| rule.ignored().len());
+        } else if certified.ignored() != filter.ignored() {
+            let [certified, asked] = [certified, filter].map(|filter| filter.ignored().len());
             format!("the {certified} pairs that they ignore are not the {asked} asked for")
         } else {
             return Ok(());

@@ -27,7 +27,7 @@ impl Digest {
         // Only what differs from the default scope is hashed from here on: files of format version 1, which had no other
         // scope, keep their digests.
         sections.begin(
-            match scope.rule.neighbours {
+            match scope.filter.neighbours {
                 Neighbours::Exclude => "exclude-adjacent",
                 Neighbours::IncludeOneVertex => "include-one-vertex",
             },
@@ -36,11 +36,11 @@ impl Digest {
         if scope.center.iter().any(|x| *x != 0.0) {
             sections.reals("center", scope.center.len(), scope.center.iter().copied());
         }
-        if scope.rule.weld {
+        if scope.filter.weld {
             let classes = weld_classes(model);
             sections.numbers("weld", classes.len(), classes.into_iter());
         }
-        for (name, pairs) in [("ignored", scope.rule.ignored()), ("exceptions", &scope.exceptions)] {
+        for (name, pairs) in [("ignored", scope.filter.ignored()), ("exceptions", &scope.exceptions)] {
             if !pairs.is_empty() {
                 sections.numbers(name, pairs.len(), pairs.iter().flat_map(|&(i, j)| [i, j]));
             }

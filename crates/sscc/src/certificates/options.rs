@@ -1,6 +1,6 @@
 //! Options of the computation of certificates.
 
-use crate::{Metric, PairRule};
+use crate::{ContactFilter, Metric};
 
 /// How certificates are computed.
 #[derive(Clone, Debug)]
@@ -16,8 +16,8 @@ pub struct CertifyOptions {
     /// The configuration from which radii are measured (r entries); none: q = 0, the rest pose.
     pub center: Option<Vec<f64>>,
     /// Which pairs of triangles count.
-    pub rule: PairRule,
-    /// Whether the rule also ignores the pairs that collide at rest (q = 0): queries never list them.
+    pub filter: ContactFilter,
+    /// Whether the contact filter also ignores the pairs that collide at rest (q = 0): queries never list them.
     pub ignore_rest: bool,
     /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
     /// in every query. If more pairs collide there, none of them is an exception, and the radius of each node that
@@ -39,7 +39,7 @@ impl Default for CertifyOptions {
             epsilon: 0.1,
             metric: None,
             center: None,
-            rule: PairRule::default(),
+            filter: ContactFilter::default(),
             ignore_rest: false,
             max_exceptions: None,
             budget: Self::DEFAULT_BUDGET,

@@ -1,6 +1,6 @@
 //! The scope of certificates: metric, centre and contact filter, for which alone they prove anything.
 
-use crate::{Metric, Pair, PairRule, ReducedModel};
+use crate::{ContactFilter, Metric, Pair, ReducedModel};
 
 /// What certificates depend on beside faces, positions and modes: how `|z|` is measured, and which pairs of triangles
 /// count.
@@ -14,7 +14,7 @@ pub struct Scope {
     /// The configuration from which radii are measured: `|z| = |S (q - center)|` (r entries).
     pub center: Vec<f64>,
     /// Which pairs of triangles count.
-    pub rule: PairRule,
+    pub filter: ContactFilter,
     /// Pairs that collide at the centre: no radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
 }
@@ -25,7 +25,7 @@ impl Scope {
         Self {
             metric: model.metric().clone(),
             center: vec![0.0; model.rank()],
-            rule: PairRule::default(),
+            filter: ContactFilter::default(),
             exceptions: Vec::new(),
         }
     }

@@ -32,7 +32,7 @@ fn check_scope(parts: &CertificateParts) -> Result<(), &'static str> {
     if scope.center.iter().any(|x| !x.is_finite()) {
         return Err("the centre is not finite");
     }
-    let (exceptions, ignored) = (&scope.exceptions, scope.rule.ignored());
+    let (exceptions, ignored) = (&scope.exceptions, scope.filter.ignored());
     if !exceptions.is_sorted_by(|a, b| a < b) || exceptions.iter().any(|(a, b)| a >= b) {
         return Err("exceptions are not sorted pairs");
     }

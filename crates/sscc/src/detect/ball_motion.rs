@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::detect::layout::Needs;
     use crate::test_models::{Random, strips};
-    use crate::{PairRule, Scope};
+    use crate::{ContactFilter, Scope};
 
     /// Vertices stay where the ball says, also for the direction that moves them farthest; and some nearly leave.
     #[test]
@@ -127,7 +127,7 @@ mod tests {
             let (model, _) = strips(random, case);
             let (rank, scope) = (model.rank(), Scope::of(&model));
             let hierarchy = Hierarchy::build(&model, &scope.metric);
-            let filter = crate::filter::PairFilter::new(&model, &PairRule::default());
+            let filter = crate::filter::PairFilter::new(&model, &ContactFilter::default());
             let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
             let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
             let rates = BallRates::new(&scaled, &hierarchy, &layout);

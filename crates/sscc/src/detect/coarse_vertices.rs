@@ -118,7 +118,7 @@ mod tests {
     use crate::filter::PairFilter;
     use crate::hierarchy::Hierarchy;
     use crate::test_models::Random;
-    use crate::{Modes, PairRule, ReducedModel, TriMesh};
+    use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
     /// Also where modes have very different sizes, cancel each other, or move nothing, and far from the origin. That
     /// the bound is not wasted is asserted, too.
@@ -152,7 +152,7 @@ mod tests {
                 ReducedModel::new(TriMesh::new(rest, faces).unwrap(), Modes::new(rank, modes).unwrap());
             let model = model.unwrap();
             let hierarchy = Hierarchy::build(&model, model.metric());
-            let filter = PairFilter::new(&model, &PairRule::default());
+            let filter = PairFilter::new(&model, &ContactFilter::default());
             let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
             let later: Vec<f64> = q.iter().map(|q| q * 1.5).collect();
             let ends = [&q[..], &later[..]];

@@ -8,7 +8,7 @@ use super::layout::Needs;
 use super::narrow_phase::DiscreteHits;
 use super::vertex_motion::Deformed;
 use crate::hierarchy::Hierarchy;
-use crate::{Error, Pair, PairRule, Progress, ReducedModel};
+use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
 /// A mesh with more colliding pairs than this at rest (128 MiB of them) is no surface that anybody would deform.
 const MAX_PAIRS: usize = 1 << 24;
@@ -20,12 +20,12 @@ const MAX_PAIRS: usize = 1 << 24;
 pub(crate) fn colliding_pairs(
     model: &ReducedModel,
     hierarchy: &Hierarchy,
-    rule: &PairRule,
+    filter: &ContactFilter,
     q: &[f64],
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let reach = model.check_coordinates(q)?;
-    let context = Context::new(model, Cow::Borrowed(hierarchy), rule, &[], Some(Needs::REFIT));
+    let context = Context::new(model, Cow::Borrowed(hierarchy), filter, &[], Some(Needs::REFIT));
     let context = Context { progress, ..context };
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
     let mut narrow = DiscreteHits::default();
@@ -42,8 +42,8 @@ pub(crate) fn colliding_pairs(
     Ok(pairs)
 }
 
-impl PairRule {
-    /// The same rule, which also ignores the pairs that collide at rest (q = 0).
+impl ContactFilter {
+    /// The same filter, which also ignores the pairs that collide at rest (q = 0).
     ///
     /// # Errors
     /// When they are more than 2^24.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::layout::{Layout, Needs};
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
-use crate::{Pair, PairRule, Progress, ReducedModel};
+use crate::{ContactFilter, Pair, Progress, ReducedModel};
 
 /// The model, its hierarchy and layout, the pairs that count, and who may cancel.
 #[derive(Clone)]
@@ -25,11 +25,11 @@ impl<'a> Context<'a> {
     pub(crate) fn new(
         model: &'a ReducedModel,
         hierarchy: Cow<'a, Hierarchy>,
-        rule: &PairRule,
+        filter: &ContactFilter,
         exceptions: &'a [Pair],
         needs: Option<Needs>,
     ) -> Self {
-        let filter = PairFilter::new(model, rule);
+        let filter = PairFilter::new(model, filter);
         let layout =
             needs.map_or_else(Layout::default, |needs| Layout::new(model, &hierarchy, &filter, needs));
         Self {

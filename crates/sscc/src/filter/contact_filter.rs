@@ -32,7 +32,7 @@ impl Neighbours {
 /// Which pairs of triangles count as collisions when they have a point in common. By default: all that share
 /// no vertex.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct PairRule {
+pub struct ContactFilter {
     /// Whether triangles that share a vertex count.
     pub neighbours: Neighbours,
     /// Whether vertices of exactly equal rest position and modes are welded, for adjacency only: vertex numbers and
@@ -41,7 +41,7 @@ pub struct PairRule {
     ignored: Vec<Pair>,
 }
 
-impl PairRule {
+impl ContactFilter {
     /// A filter that ignores no pair.
     pub fn new(neighbours: Neighbours, weld: bool) -> Self {
         Self { neighbours, weld, ignored: Vec::new() }

@@ -4,6 +4,6 @@ mod contact_filter;
 mod pair_filter;
 mod weld;
 
-pub use contact_filter::{Neighbours, Pair, PairRule};
+pub use contact_filter::{ContactFilter, Neighbours, Pair};
 pub(crate) use pair_filter::{Hulls, PairFilter, Relation};
 pub(crate) use weld::weld_classes;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::contact_filter::{Neighbours, Pair, PairRule};
+use super::contact_filter::{ContactFilter, Neighbours, Pair};
 use super::weld::weld_classes;
 use crate::{ReducedModel, intersect_shared_vertex_pair, intersect_triangle_triangle};
 
@@ -36,7 +36,7 @@ pub(crate) struct Hulls<T> {
 }
 
 impl PairFilter {
-    pub(crate) fn new(model: &ReducedModel, filter: &PairRule) -> Self {
+    pub(crate) fn new(model: &ReducedModel, filter: &ContactFilter) -> Self {
         let faces = model.mesh().faces().to_vec();
         let classes = if filter.weld {
             let classes = weld_classes(model);

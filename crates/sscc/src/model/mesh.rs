@@ -54,7 +54,7 @@ impl TriMesh {
     }
 
     /// Whether two faces share a vertex index. Whether such pairs count as collisions, and which vertices are welded, is
-    /// up to a [`PairRule`](crate::PairRule).
+    /// up to a [`ContactFilter`](crate::ContactFilter).
     pub fn are_adjacent(&self, a: u32, b: u32) -> bool {
         let (corners_a, corners_b) = (self.faces[a as usize], self.faces[b as usize]);
         corners_a.iter().any(|i| corners_b.contains(i))

@@ -34,7 +34,7 @@ impl<'a> PosedShape<'a> {
     pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
         certificates.check_model(model)?;
         let hierarchy = Cow::Borrowed(certificates.hierarchy());
-        let context = Context::new(model, hierarchy, certificates.rule(), &[], Some(Needs::LAZY));
+        let context = Context::new(model, hierarchy, certificates.filter(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
         let q = vec![0.0; model.rank()];
         let reach = model.check_coordinates(&q)?;

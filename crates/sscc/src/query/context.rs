@@ -27,7 +27,7 @@ impl<'a> QueryContext<'a> {
     ) -> Self {
         let used = certificates.filter(|_| method == Method::Certified);
         let exceptions = used.map_or(&[][..], Certificates::exceptions);
-        let detect = Context::new(model, hierarchy, &scope.rule, exceptions, method.needs());
+        let detect = Context::new(model, hierarchy, &scope.filter, exceptions, method.needs());
         Self { detect, certificates, scope, method }
     }
 

@@ -16,7 +16,7 @@ use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
 /// and the rare exact signs of extreme numbers aside). One query serves one thread; clone it for another, or use
 /// [`Query::batch`].
 ///
-/// Two triangles are listed exactly when they count under the contact filter ([`PairRule`](crate::PairRule); by default
+/// Two triangles are listed exactly when they count under the contact filter ([`ContactFilter`](crate::ContactFilter); by default
 /// when they share no vertex) and have a point in common at the positions given by
 /// [`deformed_position`](crate::deformed_position); see `docs/guarantees.md`.
 #[derive(Clone)]

@@ -1,6 +1,8 @@
 //! Audits find what is wrong, and nothing else, whatever certificates speak of.
 
-use sscc::{AuditOptions, CertificateParts, Certificates, CertifyOptions, Error, PairRule, PairTree, audit};
+use sscc::{
+    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, PairTree, audit,
+};
 use sscc_testdata::{cases, threshold};
 
 use crate::common::pair_trees::{START, edited};
@@ -58,7 +60,7 @@ fn forged_exceptions_are_refused_or_found() {
         let good = certificates.parts();
         let digest = |parts: &sscc::CertificateParts| sscc::Digest::of(&model, &parts.scope);
         let mut both = good.clone();
-        both.scope.rule = PairRule::default().ignoring(good.scope.exceptions.clone());
+        both.scope.filter = ContactFilter::default().ignoring(good.scope.exceptions.clone());
         assert!(matches!(Certificates::from_parts(both), Err(Error::Certificates(_))));
         let mut outside = good.clone();
         outside.scope.exceptions = vec![(0, u32::MAX)];

@@ -183,10 +183,10 @@ fn count_scope(scope: &Scope, model: &ReducedModel, counts: &mut [u32; 6]) {
     let kinds = [
         scope.metric.dense_factor().is_some(),
         scope.center.iter().any(|x| *x != 0.0),
-        scope.rule.weld && model.mesh().rest_positions().len() > 2 * model.mesh().faces().len(),
-        scope.rule.neighbours != Neighbours::Exclude,
+        scope.filter.weld && model.mesh().rest_positions().len() > 2 * model.mesh().faces().len(),
+        scope.filter.neighbours != Neighbours::Exclude,
         !scope.exceptions.is_empty(),
-        !scope.rule.ignored().is_empty(),
+        !scope.filter.ignored().is_empty(),
     ];
     counts.iter_mut().zip(kinds).for_each(|(count, is)| *count += u32::from(is));
 }
@@ -202,7 +202,8 @@ fn all_methods_find_the_same_pairs() {
         let mut options = random_options(seed, &model);
         let one_vertex = !seed.is_multiple_of(10);
         options.budget = budget(seed);
-        options.rule.neighbours = if one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
+        options.filter.neighbours =
+            if one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
         let Some(certificates) = certify(&model, &options) else {
             skipped += 1;
             continue;

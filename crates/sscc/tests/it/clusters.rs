@@ -1,7 +1,7 @@
 //! Models of several clusters: what is skipped must never count, whatever the rule, the size and the odd cases.
 
 use glam::DVec3;
-use sscc::{Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope, TriMesh};
+use sscc::{ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope, TriMesh};
 use sscc_testdata::{cases, threshold};
 
 use crate::common::{Random, Soup, random_mesh};
@@ -65,19 +65,19 @@ fn large_models_agree_with_brute_force() {
             _ => (1.0, DVec3::ZERO),
         };
         let model = bent(random, soup, scale, offset);
-        let of = |rule: &PairRule, method| {
-            let scope = Scope { rule: rule.clone(), ..Scope::of(&model) };
+        let of = |filter: &ContactFilter, method| {
+            let scope = Scope { filter: filter.clone(), ..Scope::of(&model) };
             Query::without_certificates(&model, scope, method).unwrap()
         };
         let one_vertex = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
-        let mut rule = PairRule::new(one_vertex, seed % 4 == 0);
+        let mut filter = ContactFilter::new(one_vertex, seed % 4 == 0);
         if seed % 3 == 0 {
             let q = vec![0.0; model.rank()];
-            let rest = of(&rule, Method::BruteForce).discrete(&q).unwrap().to_vec();
-            rule = rule.ignoring(rest.into_iter().step_by(2));
+            let rest = of(&filter, Method::BruteForce).discrete(&q).unwrap().to_vec();
+            filter = filter.ignoring(rest.into_iter().step_by(2));
         }
-        let mut oracle = of(&rule, Method::BruteForce);
-        let mut fast = [Method::Traditional, Method::BdTree].map(|method| of(&rule, method));
+        let mut oracle = of(&filter, Method::BruteForce);
+        let mut fast = [Method::Traditional, Method::BdTree].map(|method| of(&filter, method));
         for size in [0.0, 0.1, 1.0, 10.0] {
             let q: Vec<f64> = (0..model.rank()).map(|_| random.signed() * size).collect();
             let expected = oracle.discrete(&q).unwrap();

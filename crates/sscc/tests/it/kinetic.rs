@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours, PairRule,
+    Certificates, CertifyOptions, ContactFilter, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours,
     Query, ReducedModel, TriMesh,
 };
 use sscc_testdata::{cases, threshold};
@@ -165,7 +165,7 @@ fn coils_of_several_clusters() {
         let options = CertifyOptions {
             epsilon: 0.5,
             center: (seed % 5 == 1).then(|| (0..rank).map(|_| random.signed() * 0.05).collect()),
-            rule: PairRule::new(
+            filter: ContactFilter::new(
                 [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2],
                 seed % 3 == 0 && seed % 2 == 0,
             ),

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope,
-    TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
+    Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours, Query, ReducedModel,
+    Scope, TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
 };
 use sscc_testdata::{cases, threshold};
 
@@ -73,7 +73,8 @@ fn one_vertex_neighbours_are_found_when_asked_for() {
     let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     let model = ReducedModel::new(mesh, Modes::from_matrix(5, 1, lowered).unwrap()).unwrap();
     let certify = |neighbours| {
-        let options = CertifyOptions { rule: PairRule::new(neighbours, false), ..CertifyOptions::default() };
+        let options =
+            CertifyOptions { filter: ContactFilter::new(neighbours, false), ..CertifyOptions::default() };
         Certificates::compute(&model, &options, &()).unwrap()
     };
     let (excluding, including) = (certify(Neighbours::Exclude), certify(Neighbours::IncludeOneVertex));
@@ -91,14 +92,14 @@ fn one_vertex_neighbours_are_found_when_asked_for() {
             assert_eq!(!with.discrete(&[q]).unwrap().is_empty(), collides, "{method:?} {q}");
         }
     }
-    let asked = PairRule::new(Neighbours::IncludeOneVertex, false);
-    let error = excluding.check_rule(&asked).unwrap_err();
+    let asked = ContactFilter::new(Neighbours::IncludeOneVertex, false);
+    let error = excluding.check_filter(&asked).unwrap_err();
     assert!(matches!(error, Error::OtherPairs { .. }), "{error}");
     assert!(error.to_string().contains("neighbour rule exclude, not include-one-vertex"), "{error}");
-    including.check_rule(&asked).unwrap();
+    including.check_filter(&asked).unwrap();
     // A forged rule changes the digest.
     let mut parts = excluding.parts().clone();
-    parts.scope.rule = asked;
+    parts.scope.filter = asked;
     let forged = Certificates::from_parts(parts).unwrap();
     assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
 }
@@ -127,7 +128,7 @@ fn welding_undoes_splitting() {
         let modes = Modes::new(modes.rank(), u).unwrap();
         let split = ReducedModel::with_metric(split, modes, whole.metric().clone()).unwrap();
         for neighbours in [Neighbours::Exclude, Neighbours::IncludeOneVertex] {
-            let scope = |weld| Scope { rule: PairRule::new(neighbours, weld), ..Scope::of(&whole) };
+            let scope = |weld| Scope { filter: ContactFilter::new(neighbours, weld), ..Scope::of(&whole) };
             let query = |model, weld| Query::without_certificates(model, scope(weld), Method::Traditional);
             // The whole one may have equal vertices of its own.
             let (mut a, mut b) = (query(&whole, true).unwrap(), query(&split, true).unwrap());
@@ -164,10 +165,10 @@ fn rest_collisions_can_be_ignored() {
         seen += 1;
         let options = CertifyOptions { ignore_rest: true, ..options };
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
-        assert_eq!((certificates.rule().ignored(), certificates.exceptions()), (&rest[..], &[][..]));
-        let rule = PairRule::default().ignoring_rest(&model).unwrap();
-        assert_eq!(certificates.rule(), &rule);
-        assert!(certificates.check_rule(&PairRule::default()).is_err());
+        assert_eq!((certificates.filter().ignored(), certificates.exceptions()), (&rest[..], &[][..]));
+        let filter = ContactFilter::default().ignoring_rest(&model).unwrap();
+        assert_eq!(certificates.filter(), &filter);
+        assert!(certificates.check_filter(&ContactFilter::default()).is_err());
         let mut query = Query::new(&model, &certificates).unwrap();
         let random = &mut Random::new(seed);
         for _ in 0..5 {
@@ -184,9 +185,9 @@ fn rest_collisions_can_be_ignored() {
 
 #[test]
 fn ignored_pairs_are_a_sorted_set() {
-    let rule = PairRule::default().ignoring([(5, 2), (1, 7), (2, 5), (0, 3)]);
-    assert_eq!(rule.ignored(), [(0, 3), (1, 7), (2, 5)]);
-    assert_eq!(rule.clone().ignoring([]), rule);
+    let filter = ContactFilter::default().ignoring([(5, 2), (1, 7), (2, 5), (0, 3)]);
+    assert_eq!(filter.ignored(), [(0, 3), (1, 7), (2, 5)]);
+    assert_eq!(filter.clone().ignoring([]), filter);
     let by_name: BTreeMap<_, _> =
         [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|n| (n.name(), n)).into();
     assert!(by_name.iter().all(|(name, n)| Neighbours::from_name(name) == Some(*n)));

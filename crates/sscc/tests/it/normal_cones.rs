@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Method, Modes, Neighbours, PairRule, Query, ReducedModel, Scope, TriMesh,
+    Certificates, CertifyOptions, ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope,
+    TriMesh,
 };
 use sscc_testdata::{cases, threshold};
 
@@ -103,8 +104,8 @@ fn bent(random: &mut Random, (p, faces): Soup) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-fn of(model: &ReducedModel, rule: PairRule, method: Method) -> Query<'_> {
-    let scope = Scope { rule, ..Scope::of(model) };
+fn of(model: &ReducedModel, filter: ContactFilter, method: Method) -> Query<'_> {
+    let scope = Scope { filter, ..Scope::of(model) };
     Query::without_certificates(model, scope, method).unwrap()
 }
 
@@ -117,10 +118,10 @@ fn cones_with_contours_find_what_brute_force_finds() {
         let soup = surface(random, kind);
         let model = bent(random, soup);
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 6 % 2];
-        let rule = PairRule::new(neighbours, seed / 12 % 2 == 0);
+        let filter = ContactFilter::new(neighbours, seed / 12 % 2 == 0);
         let [mut oracle, mut plain, mut exact] =
             [Method::BruteForce, Method::Traditional, Method::NormalCones]
-                .map(|method| of(&model, rule.clone(), method));
+                .map(|method| of(&model, filter.clone(), method));
         for _ in 0..5 {
             let size = random.power(-3.0, 0.0);
             let q: Vec<f64> = (0..model.rank()).map(|_| random.signed() * size).collect();
@@ -140,10 +141,10 @@ fn small_models_of_every_kind_agree() {
     let mut fewer = 0;
     for seed in 0..cases(400) {
         let model = random_model(seed);
-        let rule = random_options(seed, &model).rule;
+        let filter = random_options(seed, &model).filter;
         let [mut oracle, mut plain, mut exact] =
             [Method::BruteForce, Method::Traditional, Method::NormalCones]
-                .map(|method| of(&model, rule.clone(), method));
+                .map(|method| of(&model, filter.clone(), method));
         let random = &mut Random::new(seed + 90_000);
         for size in [0.0, 0.01, 0.3, 2.0] {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * size).collect();
@@ -171,7 +172,7 @@ fn a_ramp_over_itself_needs_the_contour_test() {
     };
     let modes = Modes::new(1, (0..p.len()).map(bump).collect()).unwrap();
     let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap();
-    let query = |method| of(&model, PairRule::default(), method);
+    let query = |method| of(&model, ContactFilter::default(), method);
     let mut exact = query(Method::NormalCones);
     let mut oracle = query(Method::BruteForce);
     assert_eq!(exact.discrete(&[0.0]).unwrap(), []);
@@ -190,7 +191,7 @@ fn a_flat_sheet_is_culled_at_the_root() {
     let (p, faces) = sheet((30, 30), |u, v| DVec3::new(u, v, 0.1 * u * v));
     let modes = Modes::new(1, p.clone()).unwrap();
     let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap();
-    let mut query = of(&model, PairRule::default(), Method::NormalCones);
+    let mut query = of(&model, ContactFilter::default(), Method::NormalCones);
     assert_eq!(query.discrete(&[0.3]).unwrap(), []);
     assert_eq!((query.statistics().opened, query.statistics().box_tests), (0, 0));
 }

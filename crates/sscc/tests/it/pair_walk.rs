@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use sscc::{
-    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, Neighbours, PairRule, PairTree,
-    Progress, Query, ReducedModel, TriMesh,
+    CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours,
+    PairTree, Progress, Query, ReducedModel, TriMesh,
 };
 use sscc_testdata::{cases, threshold};
 
@@ -22,7 +22,7 @@ fn walks_find_what_brute_force_finds() {
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize % 2];
         let options = CertifyOptions {
             epsilon: 0.5,
-            rule: PairRule::new(neighbours, seed.is_multiple_of(3)),
+            filter: ContactFilter::new(neighbours, seed.is_multiple_of(3)),
             budget: [512, 40, 4][seed as usize / 2 % 3],
             ..CertifyOptions::default()
         };

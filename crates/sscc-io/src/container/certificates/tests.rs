@@ -42,13 +42,13 @@ fn every_scope_is_kept() {
                 .unwrap(),
         ),
         center: Some(vec![0.5, -0.25, 1.0]),
-        rule: PairRule::new(Neighbours::IncludeOneVertex, true),
+        filter: ContactFilter::new(Neighbours::IncludeOneVertex, true),
         budget: 16,
         ..CertifyOptions::default()
     };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let mut parts = certificates.parts().clone();
-    parts.scope.rule = parts.scope.rule.clone().ignoring([(3, 1), (7, 9)]);
+    parts.scope.filter = parts.scope.filter.clone().ignoring([(3, 1), (7, 9)]);
     parts.scope.exceptions = vec![(0, 5), (2, 3)];
     let changed = Certificates::from_parts(parts).unwrap();
     for certificates in [certificates, changed] {

@@ -12,7 +12,7 @@ use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::{ScaledModel, check_scaled_modes};
-use crate::{Error, Pair, PairRule, Progress, ReducedModel};
+use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
 /// Everything that tasks read, and the parts of the certificates that need no task.
 pub(crate) struct Prepared {
@@ -45,10 +45,10 @@ impl Prepared {
         let rest = vec![0.0; model.rank()];
         let center = options.center.clone().unwrap_or_else(|| rest.clone());
         model.check_coordinates(&center)?;
-        let mut rule = options.rule.clone();
+        let mut filter = options.filter.clone();
         let collide_at_rest = || {
             let hierarchy = Hierarchy::build(model, &metric);
-            let at_rest = colliding_pairs(model, &hierarchy, &rule, &rest, progress);
+            let at_rest = colliding_pairs(model, &hierarchy, &filter, &rest, progress);
             (hierarchy, at_rest)
         };
         let ((hierarchy, at_rest), scaled) =
@@ -58,21 +58,21 @@ impl Prepared {
         let at_center = if center == rest {
             at_rest.clone()
         } else {
-            colliding_pairs(model, &hierarchy, &rule, &center, progress)?
+            colliding_pairs(model, &hierarchy, &filter, &center, progress)?
         };
         if options.ignore_rest {
-            rule = rule.ignoring(at_rest);
+            filter = filter.ignoring(at_rest);
         }
         let triangles = model.mesh().faces().len();
         let max_exceptions =
             options.max_exceptions.unwrap_or_else(|| CertifyOptions::default_exceptions(triangles));
-        let exceptions = exceptions(at_center, &rule, max_exceptions);
-        let scope = Scope { metric, center, rule, exceptions };
+        let exceptions = exceptions(at_center, &filter, max_exceptions);
+        let scope = Scope { metric, center, filter, exceptions };
         let (digest, nodes) =
             rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
         Ok(Self {
             digest,
-            filter: PairFilter::new(model, &scope.rule).excluding(&scope.exceptions),
+            filter: PairFilter::new(model, &scope.filter).excluding(&scope.exceptions),
             nodes,
             global_radius: global_radius(model, &scope.metric, &scope.center),
             rest_collisions,
@@ -96,8 +96,8 @@ impl Prepared {
 }
 
 /// The pairs that collide at the centre and are not ignored; none if there are more than allowed.
-fn exceptions(at_center: Vec<Pair>, rule: &PairRule, max_exceptions: usize) -> Vec<Pair> {
-    let is_counted = |pair: &Pair| rule.ignored().binary_search(pair).is_err();
+fn exceptions(at_center: Vec<Pair>, filter: &ContactFilter, max_exceptions: usize) -> Vec<Pair> {
+    let is_counted = |pair: &Pair| filter.ignored().binary_search(pair).is_err();
     let mut exceptions: Vec<Pair> = at_center.into_iter().filter(is_counted).collect();
     if exceptions.len() > max_exceptions {
         exceptions.clear();

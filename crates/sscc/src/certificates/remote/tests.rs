@@ -8,7 +8,7 @@ use super::seal::HASH;
 use super::*;
 use crate::certificates::build::Task;
 use crate::certificates::test_models::ring;
-use crate::{Certificates, CertifyOptions, Error, Metric, MetricKind, PairRule, Progress, ReducedModel};
+use crate::{Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, Progress, ReducedModel};
 
 fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Result<Certificates, Error> {
     let worker = ShardWorker::new(model, options, &()).unwrap();
@@ -40,7 +40,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
         CertifyOptions {
             budget: 4,
             center,
-            rule: PairRule::new(Default::default(), true),
+            filter: ContactFilter::new(Default::default(), true),
             ..Default::default()
         },
     ]

@@ -67,7 +67,7 @@ mod tests {
 
     use super::*;
     use crate::test_models::{Random, strips};
-    use crate::{Neighbours, PairRule, Scope};
+    use crate::{ContactFilter, Neighbours, Scope};
 
     /// No pair collides within its safe distance, in random directions and in those that close gaps fastest. And distances
     /// are not much too small: many are reached up to a tenth.
@@ -78,10 +78,11 @@ mod tests {
             let random = &mut Random(case as u64 + 1);
             let (model, half) = strips(random, case);
             let rank = model.rank();
-            let rule = PairRule::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2], false);
+            let filter =
+                ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2], false);
             let center = (0..rank).map(|_| if case % 5 == 0 { random.signed() } else { 0.0 }).collect();
-            let scope = Scope { center, rule: rule.clone(), ..Scope::of(&model) };
-            let filter = PairFilter::new(&model, &rule);
+            let scope = Scope { center, filter: filter.clone(), ..Scope::of(&model) };
+            let filter = PairFilter::new(&model, &filter);
             let mut distances = SafeDistances::new(ScaledModel::new(&model, &scope.metric, &scope.center));
             distances.begin(30.0);
             let q: Vec<f64> = scope.center.iter().map(|c| c + random.signed() * 0.7).collect();

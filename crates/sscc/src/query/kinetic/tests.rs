@@ -6,7 +6,7 @@ use sscc_testdata::{cases, threshold};
 use super::kinetic_query::KineticQuery;
 use crate::test_models::Random;
 use crate::{
-    Certificates, CertifyOptions, Method, Metric, MetricKind, Modes, Neighbours, PairRule, Query,
+    Certificates, CertifyOptions, ContactFilter, Method, Metric, MetricKind, Modes, Neighbours, Query,
     ReducedModel, TriMesh,
 };
 
@@ -127,7 +127,7 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
         let options = CertifyOptions {
             epsilon: 0.5,
             center: Some(center),
-            rule: PairRule::new(neighbours, case % 7 == 1),
+            filter: ContactFilter::new(neighbours, case % 7 == 1),
             budget: [0, 8, 256][case % 3],
             ..CertifyOptions::default()
         };

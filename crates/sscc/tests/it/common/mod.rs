@@ -3,7 +3,9 @@
 pub mod pair_trees;
 
 use glam::{DMat3, DVec3};
-use sscc::{CertifyOptions, Metric, MetricKind, Modes, Neighbours, PairRule, ReducedModel, Scope, TriMesh};
+use sscc::{
+    CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope, TriMesh,
+};
 
 /// Small pseudo-random numbers (SplitMix64).
 pub struct Random(u64);
@@ -366,7 +368,7 @@ pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     });
     CertifyOptions {
         center,
-        rule: PairRule::new(
+        filter: ContactFilter::new(
             [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
             random.below(2) == 0,
         ),
