@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use sscc_io::read_mesh;
-use sscc_testdata::models;
+use sscc_testing::models;
 use tempfile::TempDir;
 
 /// A program that cargo builds before all tests (but not for `--test run` alone).

@@ -40,7 +40,7 @@ fn main() -> Result<()> {
     {
         return make(mesh.as_ref(), kind, rank.parse()?, resolution);
     }
-    let Some(folder) = sscc_testdata::models("the benches of solids") else { return Ok(()) };
+    let Some(folder) = sscc_testing::models("the benches of solids") else { return Ok(()) };
     let (bunny, dragon) = (folder.join("bunny_14964_closed.obj"), folder.join("dragon_77202_closed.ply"));
     println!("| surface | lattice | modes | degrees of freedom | s | MB |");
     println!("| --- | --- | --- | --- | --- | --- |");

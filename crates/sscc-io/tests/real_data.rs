@@ -4,7 +4,7 @@
 use glam::DVec3;
 use sscc_io::gltf::{self, PrimitiveRange};
 use sscc_io::{LoadOptions, load_model, load_model_with, read_mesh, read_modes};
-use sscc_testdata::models;
+use sscc_testing::models;
 
 #[test]
 fn meshes_have_their_known_sizes() {

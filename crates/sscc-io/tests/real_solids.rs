@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use sscc_io::{read_mesh, read_reduced_forces, read_volume_mesh};
 use sscc_solid::VolumeMesh;
-use sscc_testdata::models;
+use sscc_testing::models;
 
 /// Volume of a tetrahedron, negative when it is inverted.
 fn volume(mesh: &VolumeMesh, tet: [u32; 4]) -> f64 {

@@ -7,7 +7,7 @@ use sscc_modes::diagonalize;
 
 #[test]
 fn the_forces_of_vega_a_are_a_gradient() {
-    let Some(models) = sscc_testdata::models("the_forces_of_vega_a_are_a_gradient") else { return };
+    let Some(models) = sscc_testing::models("the_forces_of_vega_a_are_a_gradient") else { return };
     let forces = sscc_io::read_reduced_forces(&models.join("vega_A/A.cub")).unwrap();
     assert_eq!(forces.rank(), 20);
     assert!(forces.asymmetry() < 1e-12, "{}", forces.asymmetry());

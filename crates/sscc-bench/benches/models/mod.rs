@@ -24,7 +24,7 @@ pub fn all() -> Result<Vec<Case>> {
         Ok(Case::new(name, ReducedModel::new(mesh, modes)?))
     };
     let mut cases = vec![polynomial("spring", shapes::spring())?, polynomial("hare", shapes::hare())?];
-    let Some(folder) = sscc_testdata::models("the benches on real models") else { return Ok(cases) };
+    let Some(folder) = sscc_testing::models("the benches on real models") else { return Ok(cases) };
     let (letter, modes) = (folder.join("vega_A/A.obj"), folder.join("vega_A/A.URendering.float"));
     cases.insert(0, Case::new("vega_A", load_model(&letter, Some(&modes))?.0));
     cases.push(polynomial("bunny", read_mesh(&folder.join("bunny_14964_closed.obj"))?)?);
@@ -45,7 +45,7 @@ impl Case {
 
 /// The face, and its published configurations.
 pub fn face() -> Result<Option<(ReducedModel, Vec<Vec<f64>>)>> {
-    let Some(folder) = sscc_testdata::models("the benches on a face") else { return Ok(None) };
+    let Some(folder) = sscc_testing::models("the benches on a face") else { return Ok(None) };
     let folder = folder.join("ict_face");
     let modes = folder.join("ict_face_expressions30.U.float");
     let (model, _) = load_model(&folder.join("ict_face_neutral.obj"), Some(&modes))?;

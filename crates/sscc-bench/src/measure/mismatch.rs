@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::{Impact, MovingTriangle, ReducedModel};
-use sscc_exact::first_contact;
+use sscc_testing::first_contact;
 
 use super::distance::distance_triangle_triangle;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use sscc::{AuditOptions, Certificates, CertifyOptions, Method, Query, ReducedModel, audit};
-use sscc_testdata::models;
+use sscc_testing::models;
 
 type Pairs = Vec<(u32, u32)>;
 

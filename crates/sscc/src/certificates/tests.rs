@@ -1,7 +1,7 @@
 //! Certificates against brute force: whatever collides below a limit must be open there.
 
 use glam::DVec3;
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use super::StoredPair;
 use super::pair_tree::round_down;

@@ -3,7 +3,7 @@
 use sscc::{
     AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, PairTree, audit,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::pair_trees::{START, edited};
 use crate::common::{random_model, random_options};

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
-use sscc_testdata::models;
+use sscc_testing::models;
 
 /// Shares of the size of the two.
 const TOLERANCES: [f64; 5] = [1e-3, 1e-6, 1e-9, 1e-12, 0.0];

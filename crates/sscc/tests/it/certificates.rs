@@ -8,7 +8,7 @@ use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Neighbours,
     PairTree, Query, ReducedModel, Scope, TriMesh,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, critical_z, random_model, random_options};
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::{ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope, TriMesh};
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, Soup, random_mesh};
 

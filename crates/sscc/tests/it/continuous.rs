@@ -5,7 +5,7 @@ use sscc::{
     Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Pair, Progress, Query,
     ReducedModel, Scope, TriMesh, impact_triangle_triangle,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model, random_options};
 

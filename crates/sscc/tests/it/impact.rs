@@ -5,8 +5,8 @@ use num_traits::ToPrimitive;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
-use sscc_exact::first_contact;
-use sscc_testdata::cases;
+use sscc_testing::cases;
+use sscc_testing::first_contact;
 
 /// Corners on a grid of integers: contacts that are exact, of every kind, at times that are not.
 fn corners(size: i32) -> impl Strategy<Value = [DVec3; 3]> {

@@ -4,8 +4,8 @@
 use glam::{DMat3, DVec3};
 use num_traits::ToPrimitive;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
-use sscc_exact::{distance, first_contact};
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
+use sscc_testing::{distance, first_contact};
 
 use crate::common::Random;
 

@@ -5,7 +5,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Num;
 use sscc::{intersect_triangle_triangle, limits};
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 type Triangle = [DVec3; 3];
 

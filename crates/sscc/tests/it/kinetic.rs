@@ -5,7 +5,7 @@ use sscc::{
     Certificates, CertifyOptions, ContactFilter, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours,
     Query, ReducedModel, TriMesh,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model, random_options};
 

@@ -7,7 +7,7 @@ use sscc::{
     Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours, Query, ReducedModel,
     Scope, TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model};
 

@@ -7,7 +7,7 @@ use sscc::{
     Certificates, CertifyOptions, ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope,
     TriMesh,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, Soup, random_model, random_options};
 

@@ -5,7 +5,7 @@ use sscc::{
     CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours,
     PairTree, Progress, Query, ReducedModel, TriMesh,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, winding_strip};
 

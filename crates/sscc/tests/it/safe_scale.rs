@@ -5,7 +5,7 @@ use sscc::{
     CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Progress, Query,
     ReducedModel, Scope, TriMesh,
 };
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model, random_options, winding_strip};
 

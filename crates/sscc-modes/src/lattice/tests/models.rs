@@ -4,7 +4,7 @@ use super::{lattice, mesh_volume, volume};
 
 #[test]
 fn bunny_and_dragon() {
-    let Some(folder) = sscc_testdata::models("bunny_and_dragon") else { return };
+    let Some(folder) = sscc_testing::models("bunny_and_dragon") else { return };
     for name in ["bunny_14964_closed.obj", "dragon_77202_closed.ply"] {
         let mesh = sscc_io::read_mesh(&folder.join(name)).expect("a mesh");
         for cells in [None, Some(20)] {

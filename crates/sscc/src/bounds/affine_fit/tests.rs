@@ -1,7 +1,7 @@
 //! Residuals of an affine map of the modes, against exact arithmetic.
 
 use num_rational::BigRational;
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use super::*;
 use crate::bounds::pair_corners::PairCorners;

@@ -1,6 +1,6 @@
 //! Residuals of the affine map of a node, against exact arithmetic.
 
-use sscc_testdata::cases;
+use sscc_testing::cases;
 
 use super::*;
 use crate::bounds::tests::random::Random;

@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout)] // statistics for those who tune the bounds
 
 use glam::DVec3;
-use sscc_testdata::cases;
+use sscc_testing::cases;
 
 use super::models::{KINDS, ROOM, all_bounds, node_pair_bound, pair_corners, random_pair, reference};
 use super::random::Random;

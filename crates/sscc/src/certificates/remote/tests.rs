@@ -1,6 +1,6 @@
 //! Sharded certificates against those of one process.
 
-use sscc_testdata::cases;
+use sscc_testing::cases;
 
 use super::job::{Job, JobWriter};
 use super::job_result::{JobResult, ResultLayout};

@@ -60,7 +60,7 @@ impl Directions {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use sscc_testdata::{cases, threshold};
+    use sscc_testing::{cases, threshold};
 
     use super::*;
     use crate::test_models::Random;

@@ -63,7 +63,7 @@ impl SafeDistances {
 
 #[cfg(test)]
 mod tests {
-    use sscc_testdata::{cases, threshold};
+    use sscc_testing::{cases, threshold};
 
     use super::*;
     use crate::test_models::{Random, strips};

@@ -1,7 +1,7 @@
 //! Kinetic queries whose balls are of all sizes against brute force, and models to try their parts on.
 
 use glam::DVec3;
-use sscc_testdata::{cases, threshold};
+use sscc_testing::{cases, threshold};
 
 use super::kinetic_query::KineticQuery;
 use crate::test_models::Random;

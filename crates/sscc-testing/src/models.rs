@@ -1,17 +1,13 @@
-//! Real models for tests, the tests that had to do without, and how many random cases are tried.
+//! Real models for tests, and the tests that were skipped without them.
 //!
-//! The models are not part of the project: `SSCC_MODELS` names their folder, else it is `shared/models` beside
-//! the workspace. A test that needs them and finds none says so and passes; `cargo xtask test` lists
-//! those tests at its end, and fails because of them when `SSCC_NO_SKIPS` is set.
+//! The models are not part of the project: `SSCC_MODELS` names their folder, else it is `shared/models` beside the
+//! workspace. A test that needs them and finds none says so and passes; `cargo xtask test` lists those tests at its end,
+//! and fails because of them when `SSCC_NO_SKIPS` is set.
 #![allow(clippy::print_stderr)]
-
-mod cases;
 
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-pub use cases::{cases, threshold};
 
 /// Names a file to which skipped tests add a line each.
 pub const SKIP_LOG: &str = "SSCC_SKIP_LOG";

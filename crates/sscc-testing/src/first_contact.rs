@@ -1,5 +1,4 @@
-//! When two moving triangles first meet, in exact arithmetic: slow, and as simple as can be. The oracle of tests and
-//! benches.
+//! The first contact of two moving triangles in exact arithmetic: the slow oracle of tests and benches.
 //!
 //! Two hulls meet exactly when some of the corners of one and some of the other, at most five together, form a Radon
 //! partition: their homogeneous coordinates have exactly one linear dependency, and it is positive on the one
@@ -7,17 +6,10 @@
 //! at most four, which are then in one plane: the time is a root of a determinant of those corners. Where that
 //! vanishes all the time, it is a root of a smaller one. So it is enough to try time 0 and all these roots.
 
-mod distance;
-mod partition;
-mod polynomial;
-
-pub use distance::{distance, squared_distance};
-pub use polynomial::Root;
-
+use crate::partition::{corners, meet_at, minor, subsets};
+use crate::polynomial::{Polynomial, Root};
 use num_rational::BigRational;
 use num_traits::Zero;
-use partition::{corners, meet_at, minor, subsets};
-use polynomial::Polynomial;
 use sscc::MovingTriangle;
 
 /// The exact time at which they first have a point in common, if they do in [0, 1]. Touching counts.

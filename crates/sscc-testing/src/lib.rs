@@ -1,0 +1,14 @@
+//! Support of tests and benches: exact oracles, real models, and the number of random cases.
+
+mod cases;
+mod distance;
+mod first_contact;
+mod models;
+mod partition;
+mod polynomial;
+
+pub use cases::{cases, threshold};
+pub use distance::{distance, squared_distance};
+pub use first_contact::first_contact;
+pub use models::{SKIP_LOG, models, skip};
+pub use polynomial::Root;
