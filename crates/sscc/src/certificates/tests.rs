@@ -167,7 +167,7 @@ fn radii_never_fall_towards_the_leaves() {
 
 #[test]
 fn any_number_of_threads_builds_the_same_tree() {
-    for (quads, budget) in [(240, 4), (240, 64), (900, 3)] {
+    for (quads, budget) in [(240, 64), (240, 4), (900, 3)].into_iter().take(cases(3)) {
         let model = ring(quads, 4, 0.9);
         let on = |threads| {
             let options = CertifyOptions { budget, threads: Some(threads), ..Default::default() };

@@ -1,5 +1,6 @@
 //! Properties of certificates and queries, through the public interface.
 
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
@@ -56,7 +57,7 @@ fn budget(seed: u64) -> usize {
 }
 
 /// A model of more than 20 triangles, free at rest, and its certificates.
-fn middling() -> (ReducedModel, Certificates) {
+static MIDDLING: LazyLock<(ReducedModel, Certificates)> = LazyLock::new(|| {
     (0..)
         .map(random_model)
         .filter(|model| model.mesh().faces().len() > 20 && model.rank() > 1)
@@ -68,7 +69,7 @@ fn middling() -> (ReducedModel, Certificates) {
             certificates.filter(useful).map(|c| (model, c))
         })
         .unwrap()
-}
+});
 
 /// At how many of 50 random q up to far beyond the root's radius the model collides.
 fn collisions(model: &ReducedModel, certificates: &Certificates) -> usize {
@@ -280,21 +281,21 @@ fn all_methods_find_the_same_pairs() {
 /// Certificates whose hierarchy is over fewer triangles than the model has must be refused somewhere.
 #[test]
 fn hierarchy_of_another_size_is_refused() {
-    let (model, certificates) = middling();
+    let (model, certificates) = &*MIDDLING;
     let mut parts = certificates.parts().clone();
     let leaf = Node { first_triangle: 0, triangle_count: 1, first_child: 0, child_count: 0 };
     parts.hierarchy = Hierarchy::from_parts(vec![leaf], vec![0], 1).unwrap();
     parts.node_radii = vec![0.0];
     parts.root_pair_radii = vec![];
     if let Ok(certificates) = Certificates::from_parts(parts) {
-        assert!(Query::new(&model, &certificates).is_err());
+        assert!(Query::new(model, &certificates).is_err());
     }
 }
 
 /// The radius of the root may not exceed that of a pair of its children.
 #[test]
 fn root_radius_above_a_pair_is_refused() {
-    let mut parts = middling().1.parts().clone();
+    let mut parts = MIDDLING.1.parts().clone();
     parts.root_pair_radii[0] = 0.0;
     assert!(Certificates::from_parts(parts).is_err());
 }
@@ -357,13 +358,13 @@ fn answers_follow_the_order_of_the_sum() {
 
 #[test]
 fn one_bit_makes_another_model() {
-    let (model, certificates) = middling();
-    assert!(Query::new(&model, &certificates).is_ok());
+    let (model, certificates) = &*MIDDLING;
+    assert!(Query::new(model, certificates).is_ok());
     let (mesh, modes) = (model.mesh(), model.modes());
     let flip = |x: f64| f64::from_bits(x.to_bits() ^ 1);
     let refused = |mesh: TriMesh, modes: Modes| {
         let other = ReducedModel::with_metric(mesh, modes, model.metric().clone()).unwrap();
-        matches!(Query::new(&other, &certificates), Err(Error::OtherModel { .. }))
+        matches!(Query::new(&other, certificates), Err(Error::OtherModel { .. }))
     };
     let random = &mut Random::new(3);
     for _ in 0..20 {
@@ -384,10 +385,10 @@ fn one_bit_makes_another_model() {
 
 #[test]
 fn bad_coordinates_are_errors_for_every_method() {
-    let (model, certificates) = middling();
+    let (model, certificates) = &*MIDDLING;
     let rank = model.rank();
     for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
-        let mut query = Query::with_method(&model, &certificates, method).unwrap();
+        let mut query = Query::with_method(model, certificates, method).unwrap();
         for len in [0, rank - 1, rank + 1] {
             assert!(matches!(query.discrete(&vec![0.0; len]), Err(Error::CoordinatesLength { .. })));
         }
@@ -407,7 +408,7 @@ fn bad_coordinates_are_errors_for_every_method() {
 
 #[test]
 fn damaged_parts_are_refused() {
-    let good = middling().1.parts().clone();
+    let good = MIDDLING.1.parts().clone();
     assert!(Certificates::from_parts(good.clone()).is_ok());
     let refused = |damage: &dyn Fn(&mut CertificateParts)| {
         let mut parts = good.clone();
@@ -455,7 +456,7 @@ fn damaged_parts_are_refused() {
 /// A tree of one leaf, as a file could hold it: accepted while small, and answered like any other; refused beyond.
 #[test]
 fn one_leaf_is_a_tree() {
-    let (model, certificates) = middling();
+    let (model, certificates) = &*MIDDLING;
     let parts = certificates.parts();
     let triangles = model.mesh().faces().len();
     let leaf = |count: usize| Node {
@@ -475,11 +476,11 @@ fn one_leaf_is_a_tree() {
         ..parts.clone()
     })
     .unwrap();
-    let mut oracle = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+    let mut oracle = Query::without_certificates(model, Scope::of(model), Method::BruteForce).unwrap();
     let mut queries = [Method::Certified, Method::BdTree, Method::Traditional]
-        .map(|method| Query::with_method(&model, &flat, method).unwrap());
+        .map(|method| Query::with_method(model, &flat, method).unwrap());
     let mut collided = 0;
-    for q in random_q(&certificates) {
+    for q in random_q(certificates) {
         let Some(expected) = pairs(&mut oracle, &q) else { continue };
         collided += usize::from(!expected.is_empty());
         for query in &mut queries {
