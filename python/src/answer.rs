@@ -1,4 +1,4 @@
-//! `sscc.Answer`: what was found at one q.
+//! `sscc.Answer`: the result of a query at one q.
 
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -7,10 +7,10 @@ use sscc::{Pair, Statistics};
 use crate::arrays::{Cached, cached, pairs};
 use crate::errors::{kind, value};
 
-/// What `__reduce__` gives: a function and its arguments.
+/// The result of `__reduce__`: a function and its arguments.
 pub type Reduced<'py, A> = (Bound<'py, PyAny>, A);
 
-/// Pairs (little-endian numbers), norm and cost, in the order in which they are pickled.
+/// The pickled form of an answer: pairs (little-endian), norm, and the cost as in [`pickled`].
 pub type Pickled<'py> = (Bound<'py, PyBytes>, f64, (bool, bool, u64, u64, u64));
 
 #[pyclass(frozen, module = "sscc", name = "Answer")]
@@ -95,7 +95,7 @@ impl Answer {
     }
 }
 
-/// What is pickled of an answer.
+/// Returns the pickled form of an answer.
 pub fn pickled<'py>(py: Python<'py>, found: &sscc::Answer) -> Pickled<'py> {
     let s = &found.statistics;
     let bytes: Vec<u8> =
@@ -104,7 +104,7 @@ pub fn pickled<'py>(py: Python<'py>, found: &sscc::Answer) -> Pickled<'py> {
     (PyBytes::new(py, &bytes), found.norm, cost)
 }
 
-/// The answer that was pickled.
+/// Returns the answer of a pickled form. An error means damaged data.
 pub fn unpickled((bytes, norm, cost): &Pickled<'_>) -> PyResult<sscc::Answer> {
     let (root_certified, complete, opened, box_tests, triangle_tests) = *cost;
     let statistics = Statistics { root_certified, complete, opened, box_tests, triangle_tests };
@@ -117,7 +117,7 @@ pub fn unpickled((bytes, norm, cost): &Pickled<'_>) -> PyResult<sscc::Answer> {
     Ok(sscc::Answer { pairs: numbers.iter().map(pair).collect(), norm: *norm, statistics })
 }
 
-/// What a pickled answer becomes.
+/// Constructor for pickled answers.
 #[pyfunction]
 pub fn _answer(answer: Pickled<'_>) -> PyResult<Answer> {
     Ok(Answer { found: unpickled(&answer)?, array: Cached::new() })

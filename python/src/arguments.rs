@@ -1,4 +1,4 @@
-//! Arguments that are no arrays: numbers with a range, names, files.
+//! Conversion of scalar arguments: numbers with a range, switches, names, files.
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use pyo3::types::{PyBool, PyString};
 
 use crate::errors::{kind, value};
 
-/// A whole number in a range, if anything was said.
+/// Returns a whole number in a range; `None` for an absent argument.
 pub fn count(
     any: Option<&Bound<'_, PyAny>>,
     name: &str,
@@ -20,7 +20,7 @@ pub fn count(
         usize::MAX => format!("a whole number of at least {least}"),
         _ => format!("a whole number from {least} to {most}"),
     };
-    // Numbers of NumPy are taken, too; True is no number.
+    // `__index__` includes NumPy's integers. Booleans have it, too, but are refused.
     let index = any.call_method0("__index__").ok().filter(|_| !any.is_instance_of::<PyBool>());
     let Some(index) = index else {
         return Err(kind(format!("{name} is a {}: {} was expected", any.get_type().name()?, wanted())));
@@ -31,7 +31,7 @@ pub fn count(
     }
 }
 
-/// A number, if anything was said.
+/// Returns a number; `None` for an absent argument.
 pub fn number(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<f64>> {
     let Some(any) = any else { return Ok(None) };
     match any.extract::<f64>() {
@@ -40,7 +40,7 @@ pub fn number(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<f64
     }
 }
 
-/// Yes or no, if anything was said.
+/// Returns a boolean; `None` for an absent argument.
 pub fn switch(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<bool>> {
     let Some(any) = any else { return Ok(None) };
     match any.extract::<bool>() {
@@ -49,7 +49,7 @@ pub fn switch(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<boo
     }
 }
 
-/// One of a few names, if anything was said.
+/// Returns the value of one of several names; `None` for an absent argument.
 pub fn choice<T: Copy>(
     any: Option<&Bound<'_, PyAny>>,
     name: &str,
@@ -67,7 +67,7 @@ pub fn choice<T: Copy>(
     }
 }
 
-/// The name of a file: str or os.PathLike.
+/// Returns the path in a str or os.PathLike.
 pub fn path(any: &Bound<'_, PyAny>, name: &str) -> PyResult<PathBuf> {
     any.extract().map_err(|_| {
         kind(format!(
@@ -77,7 +77,7 @@ pub fn path(any: &Bound<'_, PyAny>, name: &str) -> PyResult<PathBuf> {
     })
 }
 
-/// Refuses the name of a file to be written with another ending.
+/// Refuses an output file whose name has another ending.
 pub fn check_ending(path: &std::path::Path, ending: &str) -> PyResult<()> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if name.ends_with(ending) && name.len() > ending.len() {

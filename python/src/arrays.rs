@@ -1,7 +1,7 @@
-//! Arrays in and out. In: any memory order, byte order and numeric type, or lists of numbers. Out: read-only.
+//! Conversion of arrays. Input: any memory order, byte order and numeric type, or lists of numbers. Output: read-only.
 //!
-//! Other threads may write to an array at any time, even while this one holds the GIL: NumPy releases it in long loops.
-//! So each entry is read once, into memory of our own, before anything is decided by it.
+//! Other threads may write to an array at any time, even while this thread holds the GIL, since NumPy releases it in
+//! long loops. So each entry is copied first, and decisions use the copy.
 
 use numpy::ndarray::{Array1, Array2};
 use numpy::{
@@ -19,7 +19,8 @@ use crate::errors::{kind, room, value};
 /// Beyond it, not every integer is a float64.
 const LARGEST_EXACT: i128 = 1 << 53;
 
-/// The floats of one argument in C order; `name` is the argument's. Others may write to them: see [`copied`].
+/// Returns the floats of an argument in C order; `name` is the argument's. Other threads may write to them: see
+/// [`copied`].
 pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = any.cast_exact::<PyArrayDyn<f64>>()
         && is_plain(array.as_untyped())
@@ -34,7 +35,7 @@ pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyAr
         'f' if size <= 8 => {}
         'i' | 'u' if size < 8 => {}
         'i' | 'u' => {
-            // What is checked must be what is converted.
+            // The check and the conversion must see the same numbers.
             let copy = array.call_method0("copy")?;
             check_exact(&copy, name)?;
             return borrow(require(&copy, "float64")?.cast::<PyArrayDyn<f64>>()?, name);
@@ -48,7 +49,7 @@ pub fn floats<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyAr
     borrow(require(&array, "float64")?.cast::<PyArrayDyn<f64>>()?, name)
 }
 
-/// The integers of one argument in C order. Others may write to them: see [`copied`].
+/// Returns the integers of an argument in C order. Other threads may write to them: see [`copied`].
 pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
     let array = numbers(any, name)?;
     let dtype = array.getattr("dtype")?;
@@ -63,7 +64,7 @@ pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonly
     borrow(require(&array, "int64")?.cast::<PyArrayDyn<i64>>()?, name)
 }
 
-/// The entries of an array in C order, which nobody else can write to; `name` is the argument's.
+/// Returns a copy of the entries of an array in C order; `name` is the argument's.
 pub fn copied(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<f64>> {
     let entries = array.as_slice()?;
     let mut copy = room(entries.len(), name)?;
@@ -71,7 +72,7 @@ pub fn copied(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<f
     Ok(copy)
 }
 
-/// One configuration: a copy of its r numbers. Copied from where they are, if they are float64 side by side.
+/// Returns a copy of the r numbers of one configuration. The fast case is a contiguous float64 array.
 #[inline]
 pub fn vector(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
     if let Ok(array) = any.cast_exact::<PyArray1<f64>>()
@@ -90,7 +91,7 @@ pub fn vector(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
     copied(&array, name)
 }
 
-/// Something that NumPy takes for an array of numbers, without a mask.
+/// Converts an argument by NumPy to an array of numbers without a mask.
 fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = any.py();
     let numpy = py.import("numpy")?;
@@ -115,13 +116,13 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
         let found = any.get_type().name()?;
         return Err(kind(format!("{name} is a {found} that is no array of numbers")));
     }
-    // Only now: lists that are an array are no deeper than its axes, and end.
+    // After the conversion the depth of nested lists is known and finite.
     check_unmasked(any, name, &masked, array.getattr("ndim")?.extract()?)?;
-    // What is empty has no numbers that could be of the wrong type: a list [] is float64 to NumPy.
+    // An empty list is float64 to NumPy, so its type is not checked.
     Ok(array)
 }
 
-/// Refuses what has a mask, which NumPy would leave out, also in lists and tuples down to this depth.
+/// Refuses masked arrays, also in lists and tuples down to this depth: NumPy would drop the mask.
 fn check_unmasked(
     any: &Bound<'_, PyAny>,
     name: &str,
@@ -142,7 +143,7 @@ fn check_unmasked(
     Ok(())
 }
 
-/// Whether an array of objects is one because of an integer that NumPy has no type for.
+/// Whether an array of objects contains an integer beyond NumPy's types.
 fn has_long_integer(array: &Bound<'_, PyAny>) -> PyResult<bool> {
     for item in array.getattr("flat")?.try_iter()? {
         let item = item?;
@@ -158,7 +159,7 @@ fn is_empty(array: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(array.getattr("size")?.extract::<usize>()? == 0)
 }
 
-/// Refuses integers that would be rounded.
+/// Refuses integers that a float64 cannot hold exactly.
 fn check_exact(array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
     if is_empty(array)? {
         return Ok(());
@@ -172,7 +173,7 @@ fn check_exact(array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
     Ok(())
 }
 
-/// The same numbers side by side in C order, aligned, in the machine's byte order.
+/// Returns the same numbers contiguous in C order, aligned, in the machine's byte order.
 fn require<'py>(array: &Bound<'py, PyAny>, dtype: &str) -> PyResult<Bound<'py, PyAny>> {
     array.py().import("numpy")?.call_method1("require", (array, dtype, ["C", "A", "E"]))
 }
@@ -192,10 +193,10 @@ fn borrow<'py, T: Element>(
     array.try_readonly().map_err(|_| value(format!("{name} is being written to")))
 }
 
-/// An array made when it is asked for the first time, and the same one from then on.
+/// An array that is created at the first access and then kept.
 pub type Cached = PyOnceLock<Py<PyAny>>;
 
-/// The cached array, or the one that `make` makes, which nobody can write to.
+/// Returns the cached array; `make` creates it at the first access. It is read-only.
 pub fn cached<'py>(
     py: Python<'py>,
     cell: &Cached,
@@ -205,7 +206,7 @@ pub fn cached<'py>(
     Ok(array.bind(py).clone())
 }
 
-/// The same array, which nobody can write to.
+/// Makes an array read-only.
 pub fn frozen(array: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyAny>> {
     let flags = PyDict::new(array.py());
     flags.set_item("write", false)?;
@@ -213,19 +214,19 @@ pub fn frozen(array: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyAny>> {
     Ok(array)
 }
 
-/// An array of one axis.
+/// Returns an array with one axis.
 pub fn line<'py, T: Element>(py: Python<'py>, items: Vec<T>) -> Bound<'py, PyAny> {
     PyArray1::from_owned_array(py, Array1::from_vec(items)).into_any()
 }
 
-/// An array with so many columns, from its entries in C order.
+/// Returns an array with this number of columns, from its entries in C order.
 pub fn table<'py, T: Element>(py: Python<'py>, columns: usize, items: Vec<T>) -> PyResult<Bound<'py, PyAny>> {
     let rows = items.len() / columns;
     let array = Array2::from_shape_vec((rows, columns), items).map_err(|error| value(error.to_string()))?;
     Ok(PyArray2::from_owned_array(py, array).into_any())
 }
 
-/// Pairs of triangles as an array (n, 2) of uint32.
+/// Returns triangle pairs as an array (n, 2) of uint32.
 pub fn pairs<'py>(py: Python<'py>, pairs: &[Pair]) -> PyResult<Bound<'py, PyAny>> {
     let mut entries = room(2 * pairs.len(), "pairs")?;
     entries.extend(pairs.iter().flat_map(|(i, j)| [*i, *j]));

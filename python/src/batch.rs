@@ -1,4 +1,4 @@
-//! `sscc.Batch`: the answers to many q.
+//! `sscc.Batch`: the answers for many q.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -133,13 +133,13 @@ impl Batch {
     }
 }
 
-/// What a pickled batch becomes.
+/// Constructor for pickled batches.
 #[pyfunction]
 pub fn _batch(answers: Vec<Pickled<'_>>) -> PyResult<Batch> {
     Ok(Batch::of(answers.iter().map(unpickled).collect::<PyResult<_>>()?))
 }
 
-/// The entries of Q (n, r), which nobody else can write to.
+/// Returns a copy of the entries of Q (n, r).
 pub fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64>> {
     if array.ndim() != 2 || array.shape()[1] != rank {
         let hint = if array.ndim() == 1 { "; for one q there is check" } else { "" };
@@ -148,14 +148,14 @@ pub fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec
     copied(array, "Q")
 }
 
-/// The rows of the entries of Q.
+/// Returns the rows of the entries of Q.
 pub fn rows(entries: &[f64], rank: usize) -> PyResult<Vec<&[f64]>> {
     let mut rows = room(entries.len() / rank, "Q")?;
     rows.extend(entries.chunks_exact(rank));
     Ok(rows)
 }
 
-/// The entries of Q (n, r), each row of which is a configuration of the model.
+/// Returns a copy of the entries of Q (n, r). An error names the row that is not a configuration of the model.
 pub fn checked_entries(pool: &Pool, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
     let model = &pool.borrow_owner().loaded.model;
     let entries = entries(array, model.rank())?;
@@ -165,7 +165,7 @@ pub fn checked_entries(pool: &Pool, array: &PyReadonlyArrayDyn<'_, f64>) -> PyRe
     Ok(entries)
 }
 
-/// Answers every row of Q.
+/// Answers every row of Q. Errors name the row.
 pub fn check_many(
     py: Python<'_>,
     pool: &Pool,

@@ -1,4 +1,4 @@
-//! `sscc.Certificates`: computed once for a model, asked from then on.
+//! `sscc.Certificates`: the certificates of a model, and queries that use them.
 
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ impl Certificates {
         &self.pool.borrow_owner().certificates
     }
 
-    /// Whether one comparison answers: then leaving and taking the GIL would take most of the time.
+    /// Whether the root's certificate alone answers the query. Releasing the GIL would then cost more than the query.
     #[inline]
     fn is_quick(&self, q: &[f64]) -> bool {
         let core = self.core();
@@ -247,7 +247,7 @@ impl Certificates {
     }
 }
 
-/// What pickled certificates become.
+/// Constructor for pickled certificates.
 #[pyfunction]
 pub fn _certificates(bytes: &[u8], model: &Bound<'_, Model>) -> PyResult<Certificates> {
     let name = "pickled certificates";

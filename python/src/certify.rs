@@ -1,4 +1,4 @@
-//! `Model.certify`: what was typed, and what it means.
+//! `Model.certify`: its arguments, and their conversion to options of the core.
 
 use std::sync::Arc;
 
@@ -71,7 +71,7 @@ impl Typed<'_, '_> {
     }
 }
 
-/// Computes certificates; stopped by Ctrl-C.
+/// Computes certificates. Ctrl-C stops the computation.
 pub fn certify(
     model: &Bound<'_, Model>,
     typed: &Typed<'_, '_>,

@@ -1,4 +1,4 @@
-//! What queries cost without Python, for `python/benches/`.
+//! The cost of queries without Python, for `python/benches/`.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::batch::{entries, rows};
 use crate::certificates::Certificates;
 use crate::errors::refused;
 
-/// Seconds that the core takes for the rows of Q: for all as one batch, and for each by a query of its own.
+/// Returns the time (s) of the core for the rows of Q: as one batch, and for each row as a single query.
 #[pyfunction]
 #[pyo3(signature = (certificates, Q, threads, one_by_one=true))]
 #[allow(non_snake_case)]

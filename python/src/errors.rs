@@ -1,4 +1,4 @@
-//! Refusals of the libraries as Python exceptions that name the argument.
+//! Conversion of errors to Python exceptions that name the argument.
 
 use std::ffi::CString;
 
@@ -10,31 +10,31 @@ use sscc::Error;
 use sscc_io::IoError;
 use sscc_sim::SimError;
 
-/// A `ValueError`.
+/// Returns a `ValueError`.
 pub fn value(message: impl Into<String>) -> PyErr {
     PyValueError::new_err(message.into())
 }
 
-/// A `TypeError`.
+/// Returns a `TypeError`.
 pub fn kind(message: impl Into<String>) -> PyErr {
     PyTypeError::new_err(message.into())
 }
 
-/// A refusal of the core. What it says of "q" is said of the argument `name`, such as `q1` or `Q[5]`.
+/// Converts an error of the core. `name`, such as `q1` or `Q[5]`, replaces "q" in its message.
 pub fn refused(error: &Error, name: &str) -> PyErr {
     let message = error.to_string();
     match error {
         Error::CoordinatesLength { .. } | Error::CoordinatesValue { .. } | Error::CoordinatesRange => {
             value(format!("{name}{}", message.strip_prefix('q').unwrap_or(&message)))
         }
-        // Work is cancelled for a reason, and that is raised instead.
+        // The caller raises the cause of a cancellation instead.
         Error::Cancelled => PyRuntimeError::new_err(message),
         _ if name.is_empty() => value(message),
         _ => value(format!("{name}: {message}")),
     }
 }
 
-/// A file that could not be read, understood or written.
+/// Converts an error of a file.
 pub fn file(error: &IoError) -> PyErr {
     let message = error.to_string();
     match error {
@@ -44,7 +44,7 @@ pub fn file(error: &IoError) -> PyErr {
     }
 }
 
-/// A scene or simulation that was refused.
+/// Converts an error of a scene or simulation.
 pub fn refused_simulation(error: &SimError) -> PyErr {
     match error.file() {
         Some(error) => file(error),
@@ -53,17 +53,17 @@ pub fn refused_simulation(error: &SimError) -> PyErr {
     }
 }
 
-/// Issues notes as warnings.
+/// Issues notes as Python warnings.
 pub fn warn(py: Python<'_>, notes: &[String]) -> PyResult<()> {
     let category = py.get_type::<PyUserWarning>();
     notes.iter().try_for_each(|note| {
-        // No text of ours has a NUL byte, but a file's name might.
+        // The name of a file in a note may contain a NUL byte.
         let note = CString::new(note.replace('\0', " ")).unwrap_or_default();
         PyErr::warn(py, &category, &note, 2)
     })
 }
 
-/// Room for so many entries, or a `MemoryError`: sizes come from the caller.
+/// Returns an empty vector with space for `count` entries, or a `MemoryError`: the caller of Python controls the size.
 pub fn room<T>(count: usize, what: &str) -> PyResult<Vec<T>> {
     let mut vec = Vec::new();
     match vec.try_reserve_exact(count) {

@@ -1,4 +1,4 @@
-//! `sscc.Hierarchy`: the tree over the triangles, as arrays with one entry for each node.
+//! `sscc.Hierarchy`: the BVH over the triangles, as arrays with one entry for each node.
 
 use std::sync::Arc;
 

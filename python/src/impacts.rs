@@ -1,4 +1,4 @@
-//! `sscc.Impacts`: what meets on the way from one q to another, and when.
+//! `sscc.Impacts`: the colliding pairs of a continuous query, and their times of impact.
 
 use pyo3::prelude::*;
 use sscc::{Impact, Pair, Statistics};
@@ -105,7 +105,7 @@ impl Impacts {
     }
 }
 
-/// What pickled impacts become.
+/// Constructor for pickled impacts.
 #[pyfunction]
 pub fn _impacts(found: Pickled<'_>, times: Vec<f64>) -> PyResult<Impacts> {
     let found = unpickled(&found)?;

@@ -1,5 +1,5 @@
-//! Ctrl-C and progress: only the thread that called may ask Python for signals, so it does nothing else while others
-//! work; short queries, which it answers itself, look up now and then.
+//! Ctrl-C and progress. Only the thread that Python called may check signals. During long work on other threads it only
+//! waits; short queries run on it and check signals periodically.
 
 use std::cell::RefCell;
 use std::panic::resume_unwind;
@@ -13,7 +13,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use sscc::Progress;
 
-/// How often Python is asked.
+/// Interval between two checks of signals.
 const PERIOD: Duration = Duration::from_millis(50);
 
 /// How long what is to stop is waited for.
@@ -29,7 +29,7 @@ struct Call {
     raised: Option<PyErr>,
 }
 
-/// Cancels a query on the thread that was called from Python when a signal raises something there.
+/// Cancels a query on the thread that Python called when a signal handler raises an exception.
 pub struct Signals;
 
 impl Progress for Signals {
@@ -42,7 +42,7 @@ impl Progress for Signals {
             (call.raised.is_some() || is_early).then_some(call.raised.is_some())
         });
         known.unwrap_or_else(|| {
-            // Not borrowed meanwhile: what handles the signal may ask a query of its own.
+            // No borrow is active here: a signal handler may run a query of its own.
             let raised = Python::attach(|py| py.check_signals()).err();
             let is_raised = raised.is_some();
             CALL.set(Call { asked: Some(now), raised });
@@ -51,7 +51,7 @@ impl Progress for Signals {
     }
 }
 
-/// Answers one query on this thread, without the GIL; what a signal raised meanwhile is the error.
+/// Runs one query on this thread without the GIL. The error is the exception of a signal handler.
 pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let outer = CALL.replace(Call { asked: None, raised: None });
     let answer = py.detach(work);
@@ -61,7 +61,7 @@ pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyRes
     }
 }
 
-/// How far work on other threads has come, and whether it is to stop.
+/// The progress of work on other threads, and the request to stop.
 #[derive(Default)]
 struct Monitor {
     done: AtomicUsize,
@@ -99,7 +99,7 @@ impl Shown {
         self.0.as_ref().map_or(Ok(()), |(tell, _)| tell.call1(py, (share,)).map(drop))
     }
 
-    /// The end of the work: all is done, or something was raised.
+    /// Ends the report after success or an error.
     fn close<T>(&self, py: Python<'_>, result: PyResult<T>) -> PyResult<T> {
         let result = result.and_then(|result| self.tell(py, 1.0).map(|()| result));
         if let Some((_, close)) = &self.0 {
@@ -134,9 +134,9 @@ impl Shown {
     }
 }
 
-/// Does long work on another thread, without the GIL. Meanwhile this one tells `progress` (the argument of that name)
-/// what share of it is done, and stops it when that or a signal raises something, which is the error then. Work that
-/// does not stop soon is left to itself.
+/// Runs long work on another thread, without the GIL. Meanwhile this thread reports the share done to `progress` (the
+/// argument of that name) and checks signals. An exception of either stops the work and is the error. Work that does
+/// not stop in time continues detached.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -150,7 +150,7 @@ pub fn run<T: Send + 'static>(
         let of_worker = Arc::clone(&monitor);
         let worker = thread::spawn(move || {
             let result = work(&*of_worker);
-            // Nobody waits any longer where it was left to itself.
+            // The receiver is gone if the work was detached.
             let _ = finished.send(result);
         });
         match shown.wait(&waiting, &monitor, PATIENCE)? {
@@ -164,7 +164,7 @@ pub fn run<T: Send + 'static>(
     shown.close(py, result)
 }
 
-/// As [`run`], for work on what is borrowed: it must stop soon, and is waited for.
+/// Like [`run`], for work on borrowed data. It waits for the end of the work, which must stop soon.
 pub fn run_borrowing<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

@@ -1,4 +1,4 @@
-//! `sscc.KineticQuery`: for every small step of a simulation.
+//! `sscc.KineticQuery`: queries for sequences of q with small steps.
 
 use std::sync::Arc;
 

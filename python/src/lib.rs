@@ -1,4 +1,4 @@
-//! The extension module of the Python package `sscc`. What it holds is documented in `sscc/_sscc.pyi`.
+//! The extension module of the Python package `sscc`. `sscc/_sscc.pyi` documents its contents.
 
 mod answer;
 mod arguments;
@@ -22,7 +22,7 @@ mod simulate;
 
 use pyo3::prelude::*;
 
-// Threads without a GIL have not been tried.
+// Free-threaded Python is untested.
 #[pymodule(gil_used = true)]
 mod _sscc {
     #[pymodule_export]

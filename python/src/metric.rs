@@ -1,4 +1,4 @@
-//! Metrics from Python arguments, and their factors as arrays.
+//! Conversion of metrics from Python arguments, and of their factors to arrays.
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use sscc::{Metric, MetricKind, ReducedModel};
 use crate::arrays::{copied, floats, line, table};
 use crate::errors::{refused, value};
 
-/// The metric that was asked for, if any: a name, weights (r) or a matrix (r, r).
+/// Returns the metric of an argument: a name, weights (r) or a matrix (r, r); `None` for an absent argument.
 pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Metric>> {
     let Some(any) = metric else { return Ok(None) };
     let rank = model.rank();
@@ -52,7 +52,7 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
     Ok(Some(made))
 }
 
-/// The factor S of `|z| = |S q|`: (r) where it is diagonal, else (r, r).
+/// Returns the factor S of `|z| = |S q|`: (r) if it is diagonal, else (r, r).
 pub fn factor<'py>(py: Python<'py>, metric: &Metric) -> PyResult<Bound<'py, PyAny>> {
     match metric.dense_factor() {
         Some(factor) => table(py, metric.rank(), factor.to_vec()),

@@ -1,5 +1,5 @@
-//! The Python object of a model, and meshes from arrays. Its methods are in `model_methods.rs`, above all other classes:
-//! one of them makes certificates.
+//! The Python object of a model, and meshes from arrays. Its methods are in `model_methods.rs`, which imports the other
+//! classes.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use sscc_io::ModelInfo;
 use crate::arrays::{floats, integers};
 use crate::errors::{refused, room, value};
 
-/// A model with what is known beside it.
+/// A model and the facts that its file states.
 #[derive(Clone)]
 pub struct Loaded {
     pub model: ReducedModel,
     pub info: ModelInfo,
     pub default_q: Option<Vec<f64>>,
     pub mode_names: Vec<String>,
-    /// Whether its vertices are split along seams, so that certificates weld them if nothing is said.
+    /// Whether its vertices are split along seams; then certificates weld them by default.
     pub is_split: bool,
 }
 
@@ -45,12 +45,12 @@ impl Model {
     }
 }
 
-/// A mesh from arrays: (V, 3) numbers and (F, 3) integers.
+/// Returns a mesh from arrays: (V, 3) numbers and (F, 3) integers.
 pub fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
     mesh_of(points(&floats(vertices, "vertices")?, "vertices")?, "vertices", faces)
 }
 
-/// A mesh of these vertices, which come from the argument `name`, and faces (F, 3).
+/// Returns a mesh of these vertices, which come from the argument `name`, and faces (F, 3).
 pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
     let corners = integers(faces, "faces")?;
     if corners.ndim() != 2 || corners.shape()[1] != 3 {
@@ -71,7 +71,7 @@ pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> P
     })
 }
 
-/// Positions from an array (V, 3).
+/// Returns positions from an array (V, 3).
 pub fn points(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<DVec3>> {
     if array.ndim() != 2 || array.shape()[1] != 3 {
         return Err(value(format!("{name} has shape {:?}: (V, 3) was expected", array.shape())));

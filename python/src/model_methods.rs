@@ -1,4 +1,4 @@
-//! The methods of `sscc.Model`: a mesh and its deformation modes.
+//! The methods of `sscc.Model`.
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -99,7 +99,7 @@ impl Model {
         certify::certify(slf, &typed, progress)
     }
 
-    /// Where the vertices are at q.
+    /// The vertices at q, (V, 3): exactly the positions that all queries test.
     fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let q = vector(q, "q")?;
         let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
@@ -187,7 +187,7 @@ impl Model {
     }
 }
 
-/// What a pickled model becomes.
+/// Constructor for pickled models.
 #[pyfunction]
 pub fn _model(
     bytes: &[u8],
@@ -199,11 +199,11 @@ pub fn _model(
     Ok(Model::of(Loaded { default_q, mode_names, ..Loaded::new(model, info, is_split) }))
 }
 
-/// Modes for so many vertices, in one of the shapes that the command takes.
+/// Returns modes for this number of vertices from an array in one of the shapes that the command accepts.
 fn read_modes(modes: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Modes> {
     let array = floats(modes, "modes")?;
     let entries = array.as_slice()?;
-    // As much again will be needed.
+    // The conversion needs a second copy.
     let mut copy = room::<f64>(2 * entries.len(), "modes")?;
     copy.extend_from_slice(entries);
     let array = Array::from_c_order(array.shape(), copy).ok_or_else(|| kind("modes changed its shape"))?;

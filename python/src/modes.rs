@@ -1,4 +1,4 @@
-//! `sscc.modes`: models of bodies and of samples, with modes that are made for them.
+//! `sscc.modes`: models with computed modes, from bodies and from samples.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ impl Source {
         }
     }
 
-    /// What it is called in a model's provenance.
+    /// Its name in the provenance of a model.
     fn name(&self) -> String {
         match self {
             Self::File(path) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -51,7 +51,7 @@ impl Source {
         }
     }
 
-    /// A refusal, with the name of the file.
+    /// Converts an error; the message names the file.
     fn refused(&self, error: &SimError) -> PyErr {
         match error.file() {
             Some(error) => file(error),
@@ -63,7 +63,7 @@ impl Source {
     }
 }
 
-/// What the builders of elastic bodies have in common.
+/// Model of an elastic body with linear, nonlinear or polynomial modes.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _elastic(
@@ -104,7 +104,7 @@ pub fn _elastic(
     made(py, source, threads, progress, move |source, progress| elastic(source, kind, wanted, progress))
 }
 
-/// Polynomial modes of a surface alone; a solid in a file gets its stiffness, too.
+/// Polynomial modes of a surface. A solid in a file adds its stiffness.
 #[pyfunction]
 pub fn _polynomial(
     py: Python<'_>,
@@ -121,18 +121,18 @@ pub fn _polynomial(
     })
 }
 
-/// What is asked of an elastic body beside the kind of its modes.
+/// The options of an elastic body, apart from the kind of its modes.
 #[derive(Default)]
 struct Wanted {
     rank: Option<usize>,
     material: PartialMaterial,
-    /// Vertices that do not move, and all in a box between two corners.
+    /// Fixed vertices, and a box in which all are fixed.
     fixed: Vec<u32>,
     fixed_box: Option<[DVec3; 2]>,
     resolution: Option<usize>,
 }
 
-/// A model of an elastic body, and a note on how its file was read.
+/// Returns the model of an elastic body, and a note on the reading of its file.
 fn elastic(
     source: &Source,
     kind: ModesKind,

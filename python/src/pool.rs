@@ -1,4 +1,4 @@
-//! Certificates with their model and the queries by them, one for each thread that asks at the same time.
+//! Certificates with their model, and a query for each thread that uses them concurrently.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
@@ -17,9 +17,9 @@ pub struct Certified {
 }
 
 pub struct Queries<'a> {
-    /// What the others are cloned from.
+    /// The query that others are cloned from.
     first: Query<'a>,
-    /// Those that nobody uses now.
+    /// Queries that are not in use.
     idle: Mutex<Vec<Query<'a>>>,
 }
 
@@ -42,7 +42,7 @@ impl Pool {
         })
     }
 
-    /// Asks a query that nobody else uses meanwhile.
+    /// Runs a function on a query that no other thread uses.
     #[inline]
     pub fn ask<T>(&self, ask: impl FnOnce(&mut Query<'_>) -> T) -> T {
         self.with_dependent(|_, queries| {
@@ -54,14 +54,14 @@ impl Pool {
         })
     }
 
-    /// Hands out the query that the others are cloned from.
+    /// Runs a function on the query that others are cloned from.
     pub fn with_first<T>(&self, with: impl FnOnce(&Query<'_>) -> T) -> T {
         self.with_dependent(|_, queries| with(&queries.first))
     }
 }
 
 self_cell!(
-    /// A query for small steps, and what it borrows.
+    /// A kinetic query and its pool.
     pub struct Kinetic {
         owner: Arc<Pool>,
 
@@ -104,17 +104,18 @@ impl Kinetic {
     }
 }
 
-/// A query that panicked begins anew with the next question.
+/// Locks a mutex, also after a panic: each query initialises its state.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How many threads, if anything was said.
+/// Returns the number of threads; `None` for an absent argument.
 pub fn threads(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<usize>> {
     crate::arguments::count(threads, "threads", 1..=1024)
 }
 
-/// Works on so many threads (none: all cores), in a pool of its own, which a forked process can make anew.
+/// Runs work on this number of threads (`None`: all cores), in a pool of its own: a forked process cannot use the
+/// global pool.
 pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         Ok(pool) => pool.install(work),

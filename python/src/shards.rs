@@ -1,4 +1,4 @@
-//! What `sscc.batch` needs of the core: jobs of one large model, and questions to many q in chunks.
+//! The core's part of `sscc.batch`: jobs of one large model, and queries in chunks.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,7 +17,7 @@ use crate::interrupt::{Signals, answer};
 use crate::model::Model;
 use crate::pool::{Certified, Pool};
 
-/// The keywords of `Model.certify`, `progress` apart.
+/// The keywords of `Model.certify`, except `progress`.
 const NAMES: [&str; 10] = [
     "epsilon",
     "metric",
@@ -68,7 +68,7 @@ fn options(model: &Bound<'_, Model>, typed: &Bound<'_, PyDict>) -> PyResult<Cert
     typed.options(&model.get().loaded)
 }
 
-/// Refuses options as `Model.certify` does, without computing anything; without a model, only names that there are not.
+/// Checks options as `Model.certify` does, without computing anything. Without a model it checks only their names.
 #[pyfunction]
 pub fn _check_options(model: Option<&Bound<'_, Model>>, typed: &Bound<'_, PyDict>) -> PyResult<()> {
     match model {
@@ -77,7 +77,7 @@ pub fn _check_options(model: Option<&Bound<'_, Model>>, typed: &Bound<'_, PyDict
     }
 }
 
-/// Does jobs of one model.
+/// Runs jobs of one model.
 #[pyclass(frozen, module = "sscc._sscc", name = "_ShardWorker")]
 pub struct ShardWorker {
     core: sscc::ShardWorker,
@@ -93,14 +93,14 @@ impl ShardWorker {
         Ok(Self { core: core.map_err(|error| refused(&error, ""))? })
     }
 
-    /// The result of a job, on this thread.
+    /// Returns the result of a job, computed on this thread.
     fn run<'py>(&self, py: Python<'py>, job: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
         let result = answer(py, || self.core.run(job, &Signals))?;
         Ok(PyBytes::new(py, &result.map_err(|error| refused(&error, ""))?))
     }
 }
 
-/// The share of the work that is done, as the bits of a float; Ctrl-C as in queries.
+/// The share done, as the bits of a float. Ctrl-C cancels as in queries.
 #[derive(Default)]
 struct Share(AtomicU64);
 
@@ -115,7 +115,7 @@ impl Progress for Share {
     }
 }
 
-/// `Model.certify` by jobs: `run(jobs, share)` has a list of them done, given the share of the work that is done.
+/// `Model.certify` by jobs. `run(jobs, share)` runs a list of jobs and receives the share done.
 #[pyfunction]
 pub fn _certify_in_shards(
     py: Python<'_>,
@@ -156,7 +156,7 @@ pub fn _certify_in_shards(
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
 }
 
-/// Q as float64 in C order, after what `check_many` would refuse was refused.
+/// Returns Q as float64 in C order, with the errors of `check_many`.
 #[pyfunction]
 #[allow(non_snake_case)]
 pub fn _configurations<'py>(
@@ -168,13 +168,13 @@ pub fn _configurations<'py>(
     table(Q.py(), rank, entries)
 }
 
-/// The answers of many batches in a row, as one batch.
+/// Joins batches into one.
 #[pyfunction]
 pub fn _joined(batches: Vec<Bound<'_, Batch>>) -> Batch {
     Batch::of(batches.iter().flat_map(|batch| batch.get().answers.clone()).collect())
 }
 
-/// The build whose results may be mixed: version and hash of the core's source.
+/// The version and the hash of the core's source. Results of equal builds may be mixed.
 #[pyfunction]
 pub fn _build() -> &'static str {
     sscc::BUILD

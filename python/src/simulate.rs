@@ -1,4 +1,4 @@
-//! `sscc.simulate`: what is in Rust of it.
+//! `sscc.simulate`: the part in Rust.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use crate::errors::{refused_simulation, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
 
-/// Simulates a scene: its summary (JSON), the folder and the files in it.
+/// Simulates a scene; returns its summary (JSON), the folder and the files in it.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _simulate(
@@ -46,7 +46,7 @@ pub fn _simulate(
     written.map_err(|error| refused_simulation(&error))
 }
 
-/// Simulates and writes all files.
+/// Simulates a scene and writes all files.
 fn simulated(request: &Request, steps: &Steps<'_>) -> Result<(String, PathBuf, Vec<PathBuf>), SimError> {
     let run = simulate(request, steps)?;
     let mut outputs = Outputs::write(&run);
@@ -56,7 +56,7 @@ fn simulated(request: &Request, steps: &Steps<'_>) -> Result<(String, PathBuf, V
     Ok(written)
 }
 
-/// Tells of the steps alone how many are done, so that the share only grows; keeps notes for the end.
+/// Reports the progress of steps only, so that the share done never decreases; collects notes.
 struct Steps<'a> {
     progress: &'a dyn Progress,
     are_simulated: AtomicBool,

@@ -1,4 +1,4 @@
-//! One body: its state, and what moves and tests it.
+//! State, integrators and collision detection of one body.
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
@@ -8,40 +8,41 @@ use crate::{
     Damping, DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions,
 };
 
-/// How a body looks for collisions with itself. All exact methods find the same pairs, hence the same motion.
+/// How a body detects self-collisions. All exact methods find the same pairs, hence give the same motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detection {
-    /// By certificates, each step by itself.
+    /// Certified discrete query ([`Query`]) in each step.
     #[default]
     Certified,
-    /// By certificates, and by what was known a step ago.
+    /// Kinetic query ([`KineticQuery`]), which reuses safe distances of earlier steps.
     Kinetic,
-    /// By another method.
+    /// Discrete query with this method.
     Method(Method),
-    /// Not at all: it may pass through itself.
+    /// No detection: the body can pass through itself.
     Off,
 }
 
-/// Where and how a body begins.
+/// Initial state and settings of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Whether it moves as a whole. Others are held where they are: their modes must be those of a held shape.
+    /// Whether the body has rigid motion. A held body (false) keeps its pose, and its modes must be those of a held
+    /// shape.
     pub is_free: bool,
-    /// Where the centre of mass is (model unit); none: where the rest pose has it.
+    /// Position of the centre of mass (model unit). None: that of the rest pose.
     pub position: Option<DVec3>,
-    /// From the rest pose's axes to those of the world.
+    /// Rotation from axes of the rest pose to axes of the world.
     pub orientation: DQuat,
-    /// Of the centre of mass (model unit per s).
+    /// Velocity of the centre of mass (model unit per s).
     pub velocity: DVec3,
-    /// Angular velocity in axes of the world (1/s).
+    /// Angular velocity in axes of the world (rad/s).
     pub spin: DVec3,
-    /// Deformation; empty: none.
+    /// Initial q (r numbers). Empty: zeros.
     pub q: Vec<f64>,
-    /// Its rate (1/s); empty: none.
+    /// Initial rate of q (r numbers, 1/s). Empty: zeros.
     pub v: Vec<f64>,
     /// Damping of the modes.
     pub damping: Damping,
-    /// How it looks for collisions with itself.
+    /// Method of self-collision detection.
     pub detection: Detection,
 }
 
@@ -61,26 +62,26 @@ impl Default for Start {
     }
 }
 
-/// A body. A vertex is at `R (p + U q - c) + x` in the world: c is the centre of mass of the rest pose, R and x are
-/// the rigid motion. What the motion of the frame does to q (centrifugal forces) and deformation to the inertia is
-/// left out.
+/// A body of a [`World`](crate::World). The world position of a vertex is `R (p + U q - c) + x`, where c is the centre of mass of the
+/// rest pose, and R and x are the rigid motion. The equations neglect centrifugal forces on q and the change of the
+/// inertia by deformation.
 pub struct Body<'a> {
     shape: &'a Shape,
     is_free: bool,
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// The last acceleration of q, where forces are nonlinear.
+    /// Acceleration of q after the last step (r numbers); empty for linear forces.
     pub(crate) a: Vec<f64>,
-    /// Forces on q that stay the same: gravity, where the body is held.
+    /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,
-    /// Of each mode, how much of it follows a contact slowly: see [`Mobility`](crate::contact::Mobility).
+    /// Share of each mode in the slow mobility: see [`Mobility`](crate::contact::Mobility).
     pub(crate) shares: Vec<f64>,
     oscillator: Oscillator<'a>,
     detection: Detection,
     detector: Detector<'a>,
     pub(crate) posed: PosedShape<'a>,
-    /// What collides within the body, as of the last detection.
+    /// Colliding triangle pairs within the body, found by the last detection.
     pub(crate) pairs: Vec<Pair>,
     pub(crate) root_failed: bool,
     pub(crate) is_pushed: bool,
@@ -104,7 +105,8 @@ enum Detector<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// A body at its start. A twin, another body of the same shape, lends what both can share.
+    /// Creates a body in its initial state. `same_shape` is an existing body of the same shape; its query and posed
+    /// shape are cloned instead of computed.
     pub(crate) fn new(
         shape: &'a Shape,
         start: &Start,
@@ -193,43 +195,43 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// What it shares with others.
+    /// The shape, shared by all bodies that use it.
     pub fn shape(&self) -> &'a Shape {
         self.shape
     }
 
-    /// Whether it moves as a whole.
+    /// Whether the body has rigid motion (false: it is held).
     pub fn is_free(&self) -> bool {
         self.is_free
     }
 
-    /// Its deformation.
+    /// Modal coordinates q (r numbers).
     pub fn q(&self) -> &[f64] {
         &self.q
     }
 
-    /// The rate of its deformation (1/s).
+    /// Rate of q (r numbers, 1/s).
     pub fn v(&self) -> &[f64] {
         &self.v
     }
 
-    /// Its motion as a whole.
+    /// Rigid motion of the body.
     pub fn rigid(&self) -> &RigidMotion {
         &self.rigid
     }
 
-    /// From rest axes to the world: a vertex is at [`Pose::apply`] of `p + U q`.
+    /// Pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
     pub fn pose(&self) -> Pose {
         let rotation = self.rotation();
         Pose { rotation, translation: self.rigid.position - rotation * self.shape.mass().center }
     }
 
-    /// The pairs of its triangles that collided when the last step began.
+    /// Pairs of the body's triangles that collided at the start of the last step.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// Kinetic and elastic energy (weight apart).
+    /// Kinetic and elastic energy, without the potential energy of gravity.
     pub fn energy(&self) -> f64 {
         let elastic = match &self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.energy(&self.q, &self.v),
@@ -238,18 +240,18 @@ impl<'a> Body<'a> {
         elastic + self.rigid.energy()
     }
 
-    /// Kinetic energy.
+    /// Kinetic energy of rigid motion and vibration.
     pub fn kinetic_energy(&self) -> f64 {
         self.v.iter().map(|v| v * v / 2.0).sum::<f64>() + self.rigid.energy()
     }
 
-    /// Energy of position: of its weight, and of the load on held bodies.
+    /// Potential energy of the weight, and of the load on a held body.
     pub fn potential(&self, gravity: DVec3) -> f64 {
         let load: f64 = self.load.iter().zip(&self.q).map(|(f, q)| f * q).sum();
         -self.shape.mass().mass * gravity.dot(self.rigid.position) - load
     }
 
-    /// The corners of a triangle, in axes of the rest pose.
+    /// Positions of the corners of a triangle, in axes of the rest pose.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let model = self.shape.model();
         model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.q))
@@ -259,7 +261,7 @@ impl<'a> Body<'a> {
         DMat3::from_quat(self.rigid.orientation)
     }
 
-    /// Finds what collides within the body.
+    /// Detects self-collisions and stores the pairs in `pairs`.
     pub(crate) fn detect(&mut self) -> Result<(), DynamicsError> {
         self.pairs.clear();
         let statistics = match &mut self.detector {
@@ -277,14 +279,14 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Puts the posed shape where the body is; gives a box around it.
+    /// Updates the posed shape to the body's pose and q. Returns its AABB in the world.
     pub(crate) fn place(&mut self) -> Result<sscc::Aabb, DynamicsError> {
         let pose = self.pose();
         Ok(self.posed.place(&self.q, &pose)?)
     }
 
-    /// One step of free motion. Weight acts half before and half after the way, which is exact for the way of the
-    /// centre.
+    /// Advances the body by one step without contacts. Half of the impulse of the weight acts before and half after the
+    /// displacement, which is exact for the position of the centre of mass.
     pub(crate) fn advance(&mut self, gravity: DVec3, step: f64) -> Result<(), DynamicsError> {
         let was_pushed = std::mem::take(&mut self.is_pushed);
         match &self.oscillator {

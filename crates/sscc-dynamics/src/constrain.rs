@@ -1,16 +1,16 @@
-//! The cheap response to self-collisions (paper, section 7): q stays in the ellipsoid that the root's certificate
-//! proves free.
+//! Response to self-collisions without contacts: q stays in the ellipsoid that the certificate of the root proves free
+//! (paper, section 7).
 
 use sscc::Certificates;
 
 use crate::DynamicsError;
 use crate::body::Body;
 
-/// Takes q back to the ellipsoid, and from v what leads out of it. Where the ellipsoid is centred at the rest pose,
-/// both lose energy.
+/// Projects q onto the ellipsoid, and removes the outward component of v. If the ellipsoid is centred at the rest pose,
+/// both lower the energy.
 ///
 /// # Errors
-/// When q is no configuration.
+/// When q has a wrong length or a number that is not finite.
 pub(crate) fn constrain(body: &mut Body<'_>) -> Result<(), DynamicsError> {
     let certificates = body.shape().certificates();
     if certificates.norm(&body.q) < certificates.root_radius() {
@@ -29,7 +29,7 @@ pub(crate) fn constrain(body: &mut Body<'_>) -> Result<(), DynamicsError> {
     Ok(())
 }
 
-/// Of `|S (q - c)|^2 / 2`: `S' S (q - c)`.
+/// Gradient of `|S (q - c)|^2 / 2`, which is `S' S (q - c)`.
 fn gradient(certificates: &Certificates, q: &[f64]) -> Vec<f64> {
     let offset: Vec<f64> = q.iter().zip(certificates.center()).map(|(q, c)| q - c).collect();
     let Some(factor) = certificates.metric().dense_factor() else {

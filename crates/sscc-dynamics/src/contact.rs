@@ -1,4 +1,4 @@
-//! Contacts between triangles: born where two triangles collide, kept while they stay close.
+//! Contact between two triangles: its geometry, which is kept over many steps.
 
 use glam::{DMat3, DVec3};
 use sscc::Pair;
@@ -7,52 +7,56 @@ use crate::Shape;
 use crate::body::Body;
 use crate::crossing::{Crossing, Facet};
 
-/// A material point of a body: a mean of the corners of a triangle.
+/// Material point of a body, as barycentric weights on a triangle.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Anchor {
     pub triangle: u32,
     pub weights: [f64; 3],
 }
 
-/// Two triangles in contact. Its points stay those where it began, so that in axes of the body a gap within one body
-/// is a linear function of q: a step costs O(r). It outlasts the collision by a skin, so that what rests does not go
-/// on colliding.
+/// Contact between two triangles. It begins when they collide, and ends when their distance exceeds a multiple of the
+/// skin; so triangles at rest do not collide again and again.
+///
+/// The material points and the normal stay those of the beginning. A gap within one body is therefore a linear function
+/// of q, and a step costs O(r).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contact {
-    /// The two bodies; the same one twice for a contact within it.
+    /// Numbers of the two bodies; equal for a contact within one body.
     pub bodies: [u32; 2],
     pub anchors: [Anchor; 2],
-    /// Out of the second one, in its axes.
+    /// Unit normal, out of the second body, in axes of the second body.
     pub normal: DVec3,
-    /// What the distance of the points along the normal lacks to the gap: the depth at the beginning.
+    /// Difference between the distance of the points along the normal and the gap: the penetration depth at the
+    /// beginning.
     pub offset: f64,
-    /// How far the points may slide apart.
+    /// Maximum tangential distance of the points (model unit). Beyond it the contact ends.
     pub slack: f64,
-    /// By how much the spring is longer than the skin: see [`adapted`](crate::contacts::adapted).
+    /// Length by which the spring exceeds the skin: see [`adapted`](crate::contacts::adapted).
     pub preload: f64,
-    /// For how many steps its triangles have collided since it was measured.
+    /// Number of steps in which its triangles have collided since its geometry was computed.
     pub age: u32,
-    /// The gap at present.
+    /// Current gap; negative where the bodies penetrate.
     pub gap: f64,
-    /// Of the two points: place at rest, from the centre of mass.
+    /// Rest positions of the two points, from the centre of mass.
     pub rest: [DVec3; 2],
-    /// Of the two points: displacements by the modes. Within one body the first is the difference, the second empty.
+    /// Displacements of the two points by each mode (r vectors). Within one body the first list holds the differences,
+    /// and the second is empty.
     pub modes: [Vec<DVec3>; 2],
-    /// What an impulse of 1 along each axis does to the velocity of each point by the modes; and slowly, when only
-    /// modes slower than the contact follow.
+    /// Mobility of the two points.
     pub mobility: [Mobility; 2],
 }
 
-/// How easily the modes move a point: `sum_k U_k U_k'`, in axes of the body.
+/// Inverse effective mass of a point due to its modes, `sum_k U_k U_k'`, in axes of the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mobility {
-    /// At once.
+    /// All modes with weight 1: the immediate velocity change by a unit impulse.
     pub quick: DMat3,
-    /// With each mode's share `w^2 / (w^2 + lambda)`, where w is the angular frequency of contacts.
+    /// Each mode with weight `w^2 / (w^2 + lambda)`, where w is the angular frequency of contacts: modes slower than
+    /// the contact dominate.
     pub slow: DMat3,
 }
 
-/// None. (The default of a matrix is the identity.)
+/// Zero matrices; the default of a matrix is the identity.
 impl Default for Mobility {
     fn default() -> Self {
         Self { quick: DMat3::ZERO, slow: DMat3::ZERO }
@@ -94,12 +98,12 @@ impl Contact {
         })
     }
 
-    /// Whether both triangles are of one body.
+    /// Whether both triangles belong to one body.
     pub fn is_within(&self) -> bool {
         self.bodies[0] == self.bodies[1]
     }
 
-    /// What it is known by, in the order in which contacts are kept.
+    /// Key that identifies the contact and orders the list of contacts.
     pub fn key(&self) -> ([u32; 2], Pair) {
         (self.bodies, (self.anchors[0].triangle, self.anchors[1].triangle))
     }

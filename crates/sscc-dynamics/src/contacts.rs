@@ -1,4 +1,4 @@
-//! All contacts between triangles: which there are, and what they do in a step.
+//! Set of all triangle contacts of a world: begins, keeps and ends contacts, and turns them into contact constraints.
 
 use glam::DVec3;
 
@@ -12,14 +12,13 @@ use crate::solve::{Source, Touch};
 pub(crate) struct Contacts {
     /// Sorted by [`Contact::key`].
     pub list: Vec<Contact>,
-    /// Memory of contacts that ended.
+    /// Ended contacts, whose memory new contacts reuse.
     spare: Vec<Contact>,
 }
 
 impl Contacts {
-    /// Ends contacts that are over, and begins those of new collisions; `within` says whether those within bodies
-    /// count.
-    /// What collides for `patience` steps is measured anew.
+    /// Ends contacts that opened, and begins contacts of new collisions. `within` selects whether collisions within a
+    /// body make contacts. The geometry of a pair that collides in `max_age` steps is computed again.
     pub fn update(
         &mut self,
         bodies: &[Body<'_>],
@@ -111,8 +110,8 @@ const LOST: f64 = 3.0;
 /// By how many skins a spring may be longer than its skin.
 const MOST_PRELOAD: f64 = 100.0;
 
-/// A spring is pressed together by what it holds. So that what rests does so within the skin, it grows by and by
-/// where the gap is less than half the skin.
+/// Returns the preload for the next step. A load compresses the spring; the preload therefore grows slowly while the
+/// gap is less than half the skin, so that resting bodies stay apart.
 pub(crate) fn adapted(preload: f64, gap: f64, skin: f64, creep: f64) -> f64 {
     (preload + creep * (skin / 2.0 - gap).min(skin)).clamp(0.0, MOST_PRELOAD * skin)
 }

@@ -1,10 +1,10 @@
-//! Where two triangles cross, and which way apart.
+//! Common point, contact normal and penetration depth of two intersecting triangles.
 
 use glam::{DMat3, DVec3};
 
 use crate::{DepthField, Shape, SignedDistance};
 
-/// A deformed triangle of a shape, in any axes.
+/// Deformed triangle of a shape, in any axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Facet<'a> {
     pub shape: &'a Shape,
@@ -12,25 +12,26 @@ pub(crate) struct Facet<'a> {
     pub rest: [DVec3; 3],
 }
 
-/// Two crossing triangles.
+/// Intersection of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing {
-    /// The middle of what they have in common, by weights of the corners of each.
+    /// Mean of the intersection points, as barycentric weights on each triangle.
     pub weights: [[f64; 3]; 2],
-    /// Pushes the first away from the second.
+    /// Unit contact normal; pushes the first triangle away from the second.
     pub normal: DVec3,
-    /// How far, along the normal, corners of one are inside the other one's material.
+    /// Penetration depth: how deep, along the normal, corners of one triangle are inside the other shape's material.
     pub depth: f64,
 }
 
 impl Crossing {
-    /// Of two triangles that have a point in common.
+    /// Returns the intersection of two triangles that have a point in common. None if their normals are similar: such
+    /// triangles graze each other, and adjacent triangles define the contact.
     ///
-    /// Each corner is taken into the other shape's rest pose through the frame of the triangle there; its depth in
-    /// the material, and the way out, taken back, are depth and normal (Hirota et al. 2000). That way must lead out
-    /// through the triangle that was crossed: near an edge it may lead through the face behind, along which nothing
-    /// comes apart. Where no corner is inside, or the way is another one, the normals of both triangles tell it. None
-    /// where both look the same way: such triangles graze each other, and others beside them tell where to go.
+    /// Each corner is mapped into the rest pose of the other shape through the frame of the triangle there. The
+    /// material depth at the mapped point and the direction out of the material, mapped back, give penetration depth
+    /// and normal (Hirota et al. 2000). The direction must leave through the intersected triangle: near an edge it may
+    /// leave through the face behind the edge, which separates nothing. If no corner is inside, or no direction
+    /// qualifies, the normals of both triangles give the contact normal.
     pub fn of(a: &Facet<'_>, b: &Facet<'_>) -> Option<Self> {
         let x = middle(&a.corners, &b.corners);
         let weights = [a, b].map(|facet| inside(weights(x, &facet.corners)));
@@ -49,7 +50,7 @@ impl Crossing {
                 }
             }
         }
-        // The less one reaches behind the other's plane, the more likely it came through there.
+        // A triangle that reaches less far behind the other's plane is more likely to have entered through that plane.
         let behind = |from: &Facet<'_>, to: &Facet<'_>, outwards: DVec3| {
             let deepest = from.corners.iter().map(|x| outwards.dot(to.corners[0] - *x)).fold(0.0, f64::max);
             outwards / deepest.max(LEAST)
@@ -69,7 +70,7 @@ const ALIKE: f64 = 0.5;
 /// The cosine of the angle between a triangle's normal and a way out that leads through it.
 const THROUGH: f64 = 0.7;
 
-/// The way from the axes of a deformed triangle into its rest pose.
+/// Map from the neighbourhood of a deformed triangle into its rest pose.
 struct RestFrame<'a> {
     field: &'a DepthField,
     inverse: DMat3,
@@ -86,11 +87,11 @@ impl<'a> RestFrame<'a> {
         inverse.is_finite().then_some(Self { field: facet.shape.depth(), inverse, rest, deformed })
     }
 
-    /// How deep a point is inside, and the way out (length 1); none outside.
+    /// Returns the depth of a point inside the material and the unit direction out of it. None outside.
     fn depth(&self, x: DVec3) -> Option<(f64, DVec3)> {
         let SignedDistance { distance, gradient } =
             self.field.at(self.rest + self.inverse * (x - self.deformed))?;
-        // The derivative of the distance by the deformed position.
+        // Derivative of the distance with respect to the deformed position.
         let slope = self.inverse.transpose() * gradient;
         let depth = -distance / slope.length();
         (depth > 0.0 && depth.is_finite()).then(|| (depth, slope.normalize()))
@@ -101,8 +102,8 @@ fn normal(x: &[DVec3; 3]) -> DVec3 {
     (x[1] - x[0]).cross(x[2] - x[0])
 }
 
-/// The mean of the points where edges of one pass through the other. It is on both up to rounding; where rounding
-/// hides all points, the triangles only touch.
+/// Returns the mean of the points where edges of one triangle pass through the other. It lies on both triangles up to
+/// rounding. If rounding hides all points, it is the mean of the six corners.
 fn middle(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for (edges, face) in [(a, b), (b, a)] {
@@ -122,7 +123,8 @@ fn middle(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     if count > 0.0 { sum / count } else { (a.iter().sum::<DVec3>() + b.iter().sum::<DVec3>()) / 6.0 }
 }
 
-/// Barycentric coordinates of the foot of a point; equal ones on a triangle without area.
+/// Barycentric coordinates of the projection of a point onto the triangle's plane; 1/3 each for a triangle without
+/// area.
 fn weights(x: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
     let n = normal(corners);
     let square = n.length_squared();
@@ -149,7 +151,7 @@ mod tests {
     fn the_middle_is_on_both_triangles() {
         let a = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
         let b = [DVec3::new(1.0, 1.0, -1.0), DVec3::new(1.0, 1.0, 2.0), DVec3::new(3.0, 3.0, 0.5)];
-        // They have in common the way from (1, 1, 0) to (2, 2, 0).
+        // Their intersection is the segment from (1, 1, 0) to (2, 2, 0).
         let x = middle(&a, &b);
         assert!((x - DVec3::new(1.5, 1.5, 0.0)).length() < 1e-12, "{x}");
         for corners in [a, b] {

@@ -1,9 +1,9 @@
-//! Material depth: how deep a point of the rest pose lies under the surface (Hirota et al. 2000).
+//! Material depth: signed distances of points from the rest surface, on a grid (Hirota et al. 2000).
 //!
-//! A grid of signed distances, between its points trilinear. They are exact within two cells of the surface; deeper
-//! inside the nearest triangle is one that is nearest to a neighbour. Signs come from the normals of what is nearest
-//! (angle-weighted pseudonormals, Baerentzen and Aanaes 2005). A surface that is not closed has no inside: behind its
-//! faces, too, there are distances within two cells only.
+//! Values between grid points are interpolated trilinearly. Distances are exact within two cells of the surface. Deeper
+//! inside, the nearest triangle is taken from those of the neighbouring grid points. Signs come from angle-weighted
+//! pseudonormals (Baerentzen and Aanaes 2005). A surface that is not closed has no inside: its distances end two cells
+//! from the surface on both sides.
 
 use std::collections::VecDeque;
 
@@ -25,28 +25,30 @@ const BAND: f64 = 2.0;
 /// Triangles of more cells than this are cut.
 const LARGE: f64 = 8.0;
 
-/// The signed distance from a surface, in and around it.
+/// Grid of signed distances from a surface.
 #[derive(Clone, Debug)]
 pub struct DepthField {
     origin: DVec3,
     spacing: f64,
-    /// Points along each axis.
+    /// Number of grid points along each axis.
     size: [usize; 3],
-    /// Distances, negative inside, x runs fastest; infinite far outside.
+    /// Distances: negative inside, infinite outside the band. x varies fastest.
     distances: Vec<f32>,
 }
 
-/// The distance of a point from a surface.
+/// Signed distance of a point from a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignedDistance {
-    /// Negative inside (model unit).
+    /// Distance (model unit), negative inside.
     pub distance: f64,
-    /// Its derivative by position: the direction in which it grows, of a length of about 1.
+    /// Derivative of the distance with respect to the position: the direction in which the distance grows, with a
+    /// length of about 1.
     pub gradient: DVec3,
 }
 
 impl DepthField {
-    /// Measures the rest pose. Near the rims of a surface that is not closed signs mean nothing.
+    /// Computes the distances from the rest pose. Signs near the boundary edges of an open surface are undefined. Costs
+    /// at most 2^21 grid points of 4 bytes, and time proportional to grid points and triangles.
     pub fn new(mesh: &TriMesh) -> Self {
         let p = mesh.rest_positions();
         let corners = || mesh.faces().as_flattened().iter().map(|v| p[*v as usize]);
@@ -66,7 +68,7 @@ impl DepthField {
         field
     }
 
-    /// The distance of a point from the surface; none further outside than about two cells.
+    /// Returns the signed distance of a point from the surface; None farther outside than about two cells.
     pub fn at(&self, x: DVec3) -> Option<SignedDistance> {
         let cell = (x - self.origin) / self.spacing;
         let base = cell.floor();
@@ -77,7 +79,7 @@ impl DepthField {
         let ([i, j, k], t) = (base.to_array().map(|x| x as usize), cell - base);
         let at = |a: usize, b: usize, c: usize| f64::from(self.distances[self.place([i + a, j + b, k + c])]);
         let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-        // Along x, then y, then z; derivatives beside.
+        // Interpolates along x, then y, then z, with derivatives.
         let x0 = [at(0, 0, 0), at(0, 1, 0), at(0, 0, 1), at(0, 1, 1)];
         let x1 = [at(1, 0, 0), at(1, 1, 0), at(1, 0, 1), at(1, 1, 1)];
         let x: [f64; 4] = std::array::from_fn(|n| mix(x0[n], x1[n], t.x));
@@ -160,7 +162,7 @@ impl DepthField {
         if !normals.is_closed {
             queue.clear();
         }
-        // Inwards: what is nearest to a point is nearly what is nearest to its neighbour.
+        // Propagates inwards: the triangle nearest to a point is nearly the nearest one of its neighbours.
         while let Some(at) = queue.pop_front() {
             let t = nearest[self.place(at)].1;
             for axis in 0..3 {
@@ -178,7 +180,7 @@ impl DepthField {
                     } else if nearest[place].0.is_finite() {
                         continue;
                     }
-                    // Reached from several sides: the nearest counts.
+                    // A point that is reached from several neighbours keeps the minimum distance.
                     let distance = nearest_point_triangle(x, corners(t)).0.distance(x) as f32;
                     if distance < self.distances[place].abs() {
                         self.distances[place] = -distance;
@@ -190,7 +192,7 @@ impl DepthField {
     }
 }
 
-/// A triangle cut through the middle of its longest edge.
+/// Splits a triangle at the midpoint of its longest edge.
 fn halves([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 2] {
     let lengths = [(b - a).length_squared(), (c - b).length_squared(), (a - c).length_squared()];
     let [a, b, c] = if lengths[0] >= lengths[1].max(lengths[2]) {

@@ -1,20 +1,21 @@
-//! Collisions between bodies: boxes over bodies first, then tree against tree, down to triangles.
+//! Collisions between different bodies: a sweep over the AABBs of bodies, then a traversal of two BVHs down to triangle
+//! pairs.
 
 use sscc::{Aabb, Pair};
 
 use crate::DynamicsError;
 use crate::body::Body;
 
-/// Two bodies that collide.
+/// Two bodies that collide, with their colliding triangle pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodyPairs<'a> {
-    /// Their numbers, ascending.
+    /// Numbers of the bodies, ascending.
     pub bodies: [usize; 2],
-    /// The pairs of triangles that have a point in common, one triangle of each body, sorted.
+    /// Triangle pairs that have a point in common, one triangle of each body, sorted.
     pub pairs: &'a [Pair],
 }
 
-/// Two bodies that collide, and where their pairs are.
+/// Two colliding bodies, and the range of their triangle pairs in [`BodyCollisions::pairs`].
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     bodies: [usize; 2],
@@ -22,11 +23,11 @@ struct Meeting {
     end: usize,
 }
 
-/// What collides between bodies.
+/// Collisions between bodies in the current step, and the buffers to find them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
     boxes: Vec<Aabb>,
-    /// Bodies by the lower end of their boxes along x.
+    /// Bodies ordered by the lower end of their AABBs along x.
     order: Vec<usize>,
     candidates: Vec<[usize; 2]>,
     meetings: Vec<Meeting>,
@@ -61,10 +62,10 @@ impl Neighbours {
         Ok(())
     }
 
-    /// The pairs of bodies whose boxes overlap, sorted.
+    /// Finds the pairs of bodies whose AABBs overlap, sorted.
     fn sweep(&mut self) {
         let boxes = &self.boxes;
-        // Bodies are added at the end, and the order of the last step is nearly right.
+        // New bodies come last. The order of the last step is nearly sorted.
         self.order.retain(|n| *n < boxes.len());
         self.order.extend(self.order.len()..boxes.len());
         self.order.sort_by(|a, b| boxes[*a].lower.x.total_cmp(&boxes[*b].lower.x).then(a.cmp(b)));
@@ -82,7 +83,7 @@ impl Neighbours {
         self.candidates.sort_unstable();
     }
 
-    /// The bodies that collide, sorted.
+    /// Returns the colliding bodies, sorted, with their triangle pairs.
     pub fn colliding(&self) -> impl Iterator<Item = BodyPairs<'_>> {
         let pairs = |meeting: &Meeting| &self.pairs[meeting.first..meeting.end];
         self.meetings.iter().map(move |meeting| BodyPairs { bodies: meeting.bodies, pairs: pairs(meeting) })

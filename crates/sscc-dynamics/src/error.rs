@@ -1,6 +1,6 @@
-//! Why something cannot be simulated.
+//! Errors of dynamics.
 
-/// A simulation cannot begin, or not go on. One line, naming the cause.
+/// Error of a simulation; its message is one line that names the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DynamicsError {
@@ -10,35 +10,35 @@ pub enum DynamicsError {
         /// The step (s).
         step: f64,
     },
-    /// Damping that would drive.
+    /// A damping coefficient is negative or not finite.
     #[error(
         "damping with the coefficients {mass:e} (1/s) and {stiffness:e} (s): they must be finite and at least 0"
     )]
     Damping {
-        /// Of mass.
+        /// Coefficient of the mass (1/s).
         mass: f64,
-        /// Of stiffness.
+        /// Coefficient of the stiffness (s).
         stiffness: f64,
     },
     /// A stiffness that no rest pose has.
     #[error("mode {mode} (counted from 0) has the stiffness {value:e}: it must be finite and at least 0")]
     Stiffness {
-        /// The mode.
+        /// Number of the mode, from 0.
         mode: usize,
         /// Its eigenvalue (1/s^2).
         value: f64,
     },
-    /// Linear forces of modes that do not swing by themselves.
+    /// The stiffness of linear modes is not diagonal.
     #[error("the stiffness of linear modes is not diagonal: diagonalize it first")]
     Coupled,
-    /// A body without mass or inertia.
+    /// Mass or inertia is not positive and finite.
     #[error(
         "a mass of {mass:e} with the least moment of inertia {inertia:e}: both must be positive and finite"
     )]
     Mass {
         /// Mass.
         mass: f64,
-        /// Least principal moment of inertia.
+        /// Smallest leading minor of the inertia tensor; all must be positive.
         inertia: f64,
     },
     /// Elasticity, moments or a state of another number of modes.
@@ -52,14 +52,14 @@ pub enum DynamicsError {
     /// A body cannot begin there.
     #[error("a body's position, orientation, velocity and spin must be finite, its orientation not 0")]
     Start,
-    /// Gravity, ground or contacts that cannot be.
+    /// An option of the world, its contacts or its ground is outside its range.
     #[error("{what} is {value}: it must be {range}")]
     Option {
-        /// What is wrong.
+        /// Name of the option.
         what: &'static str,
-        /// Its value.
+        /// Value of the option.
         value: f64,
-        /// What it may be.
+        /// Allowed range.
         range: &'static str,
     },
     /// A body that begins in another one, in itself or in the ground.
@@ -67,50 +67,50 @@ pub enum DynamicsError {
     Interpenetration {
         /// The body.
         body: usize,
-        /// What it begins in.
+        /// The penetrated obstacle.
         what: Obstacle,
-        /// How many.
+        /// Number of penetrations.
         count: usize,
-        /// Of what.
+        /// Unit of the count: triangle pairs or vertices.
         unit: &'static str,
     },
     /// A step of the nonlinear forces that has no solution within reach.
     #[error("a step cannot be solved (energy {energy:e}): take a smaller one, or more damping")]
     Unsolved {
-        /// The energy before it.
+        /// Energy of the body before the step.
         energy: f64,
     },
-    /// The motion grows without bound.
+    /// The kinetic energy exceeds the available energy or is not finite.
     #[error(
         "step {step}: the motion of body {body} (both counted from 0) diverges (energy {energy:e}): take a smaller time step, or more damping"
     )]
     Diverged {
-        /// The step.
+        /// Number of the step, from 0.
         step: u64,
         /// The body.
         body: usize,
-        /// Its energy when it was noticed.
+        /// Kinetic energy of the body when the divergence was detected.
         energy: f64,
     },
     /// A state of other bodies.
     #[error("the state is of another world: {found} numbers where {expected} belong")]
     State {
-        /// Numbers found.
+        /// Count of numbers in the state.
         found: usize,
-        /// Numbers of this world's state.
+        /// Count of numbers for the bodies of this world, without contacts.
         expected: usize,
     },
-    /// What the core refuses.
+    /// Error of the crate `sscc`.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }
 
-/// What a body can begin in.
+/// Obstacle that a body penetrates at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// Another body.
     Body(usize),
-    /// Itself.
+    /// The body itself.
     Itself,
     /// The ground.
     Ground,

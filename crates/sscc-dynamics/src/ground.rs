@@ -1,13 +1,13 @@
-//! The ground: a plane.
+//! Ground plane of a world.
 
 use glam::DVec3;
 
-/// A plane that nothing passes; inside is where `normal . x < height`.
+/// Ground plane. Its inside is the half-space `normal . x < height`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Upwards, of length 1.
+    /// Unit normal, upwards.
     pub normal: DVec3,
-    /// `normal . x` on the plane (model unit).
+    /// Value of `normal . x` on the plane (model unit).
     pub height: f64,
     /// Coulomb's coefficient of friction.
     pub friction: f64,

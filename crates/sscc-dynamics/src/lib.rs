@@ -1,12 +1,12 @@
-//! Dynamics of reduced deformable models (paper, section 7): bodies that fall, touch, hit themselves and each other,
-//! and sound.
+//! Dynamics of reduced deformable models with self-collisions, collisions between bodies, ground contact and sound
+//! (paper, section 7).
 //!
-//! - [`Shape`]: a model with certificates, elasticity, mass and material depth, shared by all bodies of its kind;
-//! - [`World`]: bodies, ground and contacts, step by step. It knows no clock: an [`Observer`] is told when a phase of
-//!   a step begins;
-//! - [`State`]: all that changes, as plain numbers, to go on later with the same bits;
-//! - [`SoundBank`]: modes that contact impulses strike, sample by sample;
-//! - [`LinearOscillator`], [`NonlinearOscillator`] and [`RigidMotion`], of which bodies are made.
+//! - [`Shape`]: a model with certificates, elasticity, mass and material depth, shared by all bodies that use it;
+//! - [`World`]: bodies, ground and contacts, advanced in fixed time steps. The crate reads no clock: a caller that
+//!   measures time implements [`Observer`], whose method runs at the start of each phase of a step;
+//! - [`State`]: the state of a world as plain numbers. A restored world continues with the same bits;
+//! - [`SoundBank`]: sound of modes that contact impulses excite, computed sample by sample;
+//! - [`LinearOscillator`], [`NonlinearOscillator`] and [`RigidMotion`]: the integrators of a body.
 //!
 //! ```
 //! use glam::DVec3;
@@ -16,7 +16,7 @@
 //! use sscc_solid::{Material, Solid};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // A cube of a metre with its lowest vibrations; all its vertices are on the boundary.
+//! // A cube with sides of 1 m and its six lowest modes. All vertices are on the boundary.
 //! let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 //! let vertices = corners.map(|corner| DVec3::from_array(corner.map(f64::from))).to_vec();
 //! let solid = Solid::uniform(vertices, vec![], vec![[0, 1, 2, 3, 4, 5, 6, 7]], Material::default())?;
@@ -31,30 +31,31 @@
 //! for _ in 0..400 {
 //!     world.advance(&mut ())?;
 //! }
-//! assert!(world.bodies()[0].rigid().position.y > 0.4); // it lies on the ground, not in it
+//! assert!(world.bodies()[0].rigid().position.y > 0.4); // the cube rests on the ground
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! # What is promised
+//! # Guarantees
 //!
-//! - **The same bits** in every run, for any number of threads, for every exact method of [`Detection`], and after a
-//!   restart.
-//! - **Collisions are exact**: within a body those of [`sscc::Query`], between bodies those of the f64 positions
-//!   [`Body::pose`] applied to `p + U q`, down to pairs of triangles.
-//! - **Contacts never add energy**, up to rounding: they give back no more than they have taken
-//!   ([`World::dissipated`]), whatever stiffness and step are. Linear modes and free flight keep it up to rounding,
-//!   tumbling and Newmark's method to second order in the step.
-//! - **Momenta are kept** exactly between bodies and within them.
+//! - **Determinism.** The bits are the same in every run, for any number of threads, for every exact method of
+//!   [`Detection`], and after a restart.
+//! - **Exact collisions.** Collisions within a body are those of [`sscc::Query`]. Collisions between bodies are those
+//!   of the f64 positions [`Body::pose`] applied to `p + U q`, down to pairs of triangles.
+//! - **Contacts never add energy**, up to rounding: they return at most the energy that they have dissipated
+//!   ([`World::dissipated`]), for every stiffness and step. Linear modes and free flight conserve energy up to
+//!   rounding; tumbling and Newmark's method conserve it to second order in the step.
+//! - **Momenta** are conserved exactly between bodies and within them.
 //!
 //! # Limitations
 //!
-//! The motion of the frame does not act on q (no centrifugal forces), and deformation does not change the inertia.
-//! Contacts are found at the ends of steps: what moves farther in a step than it is thick passes through. A contact
-//! pushes along the direction found when it began, where two bodies have interlocked that may be the wrong one.
+//! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia.
+//! The solver tests for contacts at the ends of steps only: a body that moves farther in a step than it is thick can
+//! pass through another one. A contact pushes along the direction that was computed when it began; where two bodies
+//! interlock, this direction may be wrong.
 //!
-//! Units are the model's: where the material is in SI units, times are seconds. q are mass-orthonormal coordinates,
-//! so generalised forces are accelerations of q.
+//! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
+//! mass-orthonormal, so generalised forces are accelerations of q.
 
 mod body;
 mod constrain;

@@ -1,13 +1,13 @@
-//! Linear modal dynamics, exact for each mode.
+//! Exact integrator for linear modal dynamics.
 
 use crate::DynamicsError;
 
-/// Rayleigh damping: a mode of stiffness `lambda` is damped by `mass + stiffness lambda` (1/s).
+/// Rayleigh damping: a mode with eigenvalue `lambda` has the damping rate `mass + stiffness lambda` (1/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Damping {
-    /// Damps all motion alike (1/s).
+    /// Coefficient of the mass (1/s): damps all modes equally.
     pub mass: f64,
-    /// Damps high frequencies more (s).
+    /// Coefficient of the stiffness (s): damps high frequencies more.
     pub stiffness: f64,
 }
 
@@ -23,13 +23,13 @@ impl Damping {
         }
     }
 
-    /// The damping of a mode (1/s).
+    /// Returns the damping rate (1/s) of a mode with this eigenvalue (1/s^2).
     pub fn of(self, stiffness: f64) -> f64 {
         self.mass + self.stiffness * stiffness
     }
 }
 
-/// A step without the force, and what a constant force adds: `(q, v) -> (qq q + qv v + qf f, vq q + vv v + vf f)`.
+/// Coefficients of a step under a constant force: `(q, v) -> (qq q + qv v + qf f, vq q + vv v + vf f)`.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     qq: f64,
@@ -40,8 +40,8 @@ struct Step {
     vf: f64,
 }
 
-/// Independent modes, `q'' + c q' + lambda q = f`, advanced by steps of one length. A step is exact for forces that
-/// are constant during it, whatever the frequency: nothing is unstable, and nothing loses energy but by damping.
+/// Integrator for independent modes, `q'' + c q' + lambda q = f`, with a fixed step. A step is exact for a force that
+/// is constant during it, at every frequency: the integrator is unconditionally stable and adds no numerical damping.
 #[derive(Clone, Debug)]
 pub struct LinearOscillator {
     steps: Vec<Step>,
@@ -49,7 +49,7 @@ pub struct LinearOscillator {
 }
 
 impl LinearOscillator {
-    /// Modes of these eigenvalues (1/s^2), steps of `step` seconds.
+    /// Creates the integrator for modes with these eigenvalues (r numbers, 1/s^2) and steps of `step` seconds.
     ///
     /// # Errors
     /// When the step is not positive, or an eigenvalue or the damping is negative or not finite.
@@ -68,7 +68,7 @@ impl LinearOscillator {
         Ok(Self { steps: steps.collect::<Result<_, _>>()?, eigenvalues: eigenvalues.to_vec() })
     }
 
-    /// One step under the forces f (one number for each mode, as q and v).
+    /// Advances q and v by one step under the forces f (r numbers each).
     pub fn advance(&self, q: &mut [f64], v: &mut [f64], f: &[f64]) {
         for (((step, q), v), f) in self.steps.iter().zip(q).zip(v).zip(f) {
             let before = (*q, *v);
@@ -77,20 +77,21 @@ impl LinearOscillator {
         }
     }
 
-    /// Kinetic and elastic energy.
+    /// Returns kinetic and elastic energy.
     pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.eigenvalues.iter().zip(q).zip(v).map(|((lambda, q), v)| (v * v + lambda * q * q) / 2.0).sum()
     }
 }
 
 impl Step {
-    /// With `a = c / 2` and `d = lambda - a^2`: `q = e^(-a t) (q0 (C + a S) + v0 S)` for `C = cos(t root d)` and `S =
-    /// sin(t root d) / root d`, hyperbolic where d is negative. A constant force adds the integral of `e^(-a t) S`.
+    /// Coefficients for a step of h seconds. With `a = c / 2` and `d = lambda - a^2`: `q = e^(-a t) (q0 (C + a S) + v0
+    /// S)` for `C = cos(t root d)` and `S = sin(t root d) / root d`, hyperbolic where d is negative. A constant force
+    /// adds the integral of `e^(-a t) S`.
     fn new(lambda: f64, damping: f64, h: f64) -> Self {
         let a = damping / 2.0;
         let (c, s) = decaying(lambda, a, h);
-        // (1 - e^(-a h) (C + a S)) / lambda cancels where little happens in a step; then the integrand is smooth, or,
-        // of strong damping, the difference of two that decay.
+        // (1 - e^(-a h) (C + a S)) / lambda cancels when the step is short against the period. Then the integrand is
+        // smooth; with strong damping it is the difference of two decaying exponentials.
         let qf = if a * h > 1.0 && a * a > 2.0 * lambda {
             let root = (a * a - lambda).sqrt();
             let integral = |x: f64| if x > 0.0 { -libm::expm1(-x * h) / x } else { h };
@@ -104,7 +105,7 @@ impl Step {
     }
 }
 
-/// `e^(-a t) C` and `e^(-a t) S`.
+/// Returns `e^(-a t) C` and `e^(-a t) S`.
 fn decaying(lambda: f64, a: f64, t: f64) -> (f64, f64) {
     let d = lambda - a * a;
     let x = d * t * t;
@@ -122,7 +123,7 @@ fn decaying(lambda: f64, a: f64, t: f64) -> (f64, f64) {
     }
 }
 
-/// Points and weights of Gauss and Legendre on (0, 1), exact to degree 9.
+/// Nodes and weights of Gauss-Legendre quadrature on (0, 1), exact to degree 9.
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
@@ -143,7 +144,7 @@ mod tests {
 
     #[test]
     fn free_vibration_has_the_frequency_and_keeps_the_energy() {
-        // From slow to a hundred times faster than the steps.
+        // Periods from far above to far below the step.
         let eigenvalues = [1e-6, 1.0, 400.0, 4e6, 4e10];
         let step = 1e-3;
         let oscillator = LinearOscillator::new(&eigenvalues, NONE, step).unwrap();
@@ -165,7 +166,7 @@ mod tests {
 
     #[test]
     fn damping_and_forces_follow_the_closed_forms() {
-        // Under, critically and over damped; no stiffness at all.
+        // Underdamped, critically damped and overdamped modes, and modes without stiffness.
         for (lambda, c) in [(100.0, 2.0), (100.0, 20.0), (100.0, 50.0), (0.0, 3.0), (0.0, 0.0), (1e-9, 1e-3)]
         {
             let oscillator =
@@ -174,7 +175,7 @@ mod tests {
             for _ in 0..100 {
                 oscillator.advance(&mut q, &mut v, &[5.0]);
             }
-            // The same by many tiny steps of the classical Runge-Kutta method.
+            // Reference: the classical Runge-Kutta method with short steps.
             let slope = |q: f64, v: f64| (v, 5.0 - c * v - lambda * q);
             let (mut x, mut y, h) = (0.3, -1.0, 1e-4);
             for _ in 0..10_000 {

@@ -1,30 +1,30 @@
-//! What sounds how.
+//! Table of materials for sound, with density, stiffness and damping.
 
 use sscc_solid::{Material, PartialMaterial};
 
 use crate::Damping;
 
-/// A material that sounds.
+/// Material of a sounding body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoundMaterial {
-    /// What scenes call it.
+    /// Name in scene files.
     pub name: &'static str,
-    /// Density and stiffness, in SI units.
+    /// Density and elastic constants, in SI units.
     pub elastic: Material,
-    /// How fast its vibrations die away.
+    /// Rayleigh damping of the vibrations.
     pub damping: Damping,
 }
 
-/// A row of the table: kg/m^3, N/m^2, Poisson's ratio, 1/s, s.
+/// Row of the table: name, density (kg/m^3), Young's modulus (N/m^2), Poisson's ratio, damping coefficients (1/s, s).
 const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64) -> SoundMaterial {
     let known = PartialMaterial { density: Some(d), youngs_modulus: Some(y), poisson_ratio: Some(nu) };
-    // Numbers out of range would be refused at compile time.
+    // A value outside its range fails the build.
     let Ok(elastic) = Material::new(&known) else { panic!("numbers of a material") };
     SoundMaterial { name, elastic, damping: Damping { mass: alpha, stiffness: beta } }
 }
 
-/// Materials of everyday things. Round values of the order found in handbooks, and Rayleigh damping chosen to sound
-/// right: none of them was measured.
+/// Materials of everyday objects. Elastic constants are round values in the range of handbooks. Damping was chosen by
+/// ear; no value was measured.
 pub const MATERIALS: [SoundMaterial; 8] = [
     row("steel", 7850.0, 2.0e11, 0.29, 5.0, 3e-8),
     row("aluminium", 2700.0, 7.0e10, 0.33, 4.0, 5e-8),
@@ -37,7 +37,7 @@ pub const MATERIALS: [SoundMaterial; 8] = [
 ];
 
 impl SoundMaterial {
-    /// The material of that name.
+    /// Returns the material with this name; None if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         MATERIALS.into_iter().find(|material| material.name == name)
     }

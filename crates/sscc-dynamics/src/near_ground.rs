@@ -1,4 +1,4 @@
-//! Vertices of a body near the ground.
+//! Vertices of a body near the ground, found once for many steps.
 
 use glam::DVec3;
 use sscc::Aabb;
@@ -15,30 +15,30 @@ const STEPS: f64 = 64.0;
 /// And at least this share of the body's radius.
 const LEAST: f64 = 1e-3;
 
-/// The vertices of one body that can reach the ground soon, found once for many steps.
+/// Vertices of one body that can reach the ground within the margin of the last search.
 ///
-/// No vertex has come nearer to the plane since then than `|n . dx| + |da| (radius + sum_k u_k |q_k|) + sum_k u_k
-/// |dq_k|` for the plane's normal a in axes of the body, moved by dx. While that is less than what the search reached
-/// beyond the skin, no other vertex touches.
+/// Since the search, no vertex has approached the plane by more than `|n . dx| + |da| (radius + sum_k u_k |q_k|) +
+/// sum_k u_k |dq_k|`. Here a is the plane's normal in axes of the body, and dx the displacement of the body. While this
+/// bound is below the margin, no other vertex is within the skin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NearGround {
-    /// How near the others may have come; none: nothing is known.
+    /// Distance beyond the skin that the last search covered; None before the first search.
     margin: Option<f64>,
     position: DVec3,
     normal: DVec3,
     q: Vec<f64>,
-    /// How much of the margin the last step used up.
+    /// Bound on the approach since the search, as of the last step.
     used: f64,
-    /// Ascending.
+    /// Numbers of the vertices, ascending.
     vertices: Vec<u32>,
-    /// How easily each is moved.
+    /// Mobility of each vertex.
     mobilities: Vec<Mobility>,
-    /// By how much the springs of the ground are longer than the skin: see [`adapted`].
+    /// Length by which the springs of the ground exceed the skin: see [`adapted`].
     pub(crate) preload: f64,
 }
 
 impl NearGround {
-    /// Brings the list up to date: afterwards it holds every vertex below `ground.height + skin`.
+    /// Updates the list. Afterwards it holds every vertex below `ground.height + skin`.
     pub(crate) fn update(
         &mut self,
         body: &mut Body<'_>,
@@ -62,7 +62,7 @@ impl NearGround {
             self.used = moved;
             return Ok(());
         }
-        // Of a body that begins nothing is known of its speed.
+        // The speed is unknown before the first search.
         let step = if step.is_finite() { step } else { 0.0 };
         let near = (STEPS * step).max(LEAST * shape.radius());
         self.vertices.clear();

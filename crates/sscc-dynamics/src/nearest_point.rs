@@ -1,8 +1,8 @@
-//! The point of a triangle that is nearest to a point (Ericson, Real-Time Collision Detection, 5.1.5).
+//! Nearest point of a triangle to a point (Ericson, Real-Time Collision Detection, 5.1.5).
 
 use glam::DVec3;
 
-/// What of a triangle is nearest; corners are counted from 0, edge n begins at corner n.
+/// Feature of a triangle that holds the nearest point. Corners are counted from 0; edge n begins at corner n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Feature {
     Face,
@@ -10,7 +10,7 @@ pub(crate) enum Feature {
     Vertex(usize),
 }
 
-/// The nearest point, and what it lies on.
+/// Returns the nearest point of the triangle to x, and its feature.
 pub(crate) fn nearest_point_triangle(x: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Feature) {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (ab.dot(x - a), ac.dot(x - a));

@@ -1,4 +1,4 @@
-//! Reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
+//! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
 
 use faer::Mat;
 use faer::prelude::Solve;
@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1e-6;
 /// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
 const SOLVED: f64 = 1e-11;
 
-/// A new acceleration that is tried, and what it leads to.
+/// Trial acceleration of Newton's method, and the state that it leads to.
 struct Trial {
     b: Vec<f64>,
     x: Vec<f64>,
@@ -31,19 +31,19 @@ struct Trial {
     size: f64,
 }
 
-/// A body with reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`, advanced by the implicit Newmark method
-/// of average acceleration (second order, no artificial damping), each step solved by Newton's method. The damping is
-/// that of the stiffness at rest.
+/// Integrator for reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`. It uses the implicit Newmark method of
+/// average acceleration (second order, no numerical damping) and solves each step by Newton's method. The Rayleigh
+/// damping uses the stiffness at rest.
 #[derive(Clone, Debug)]
 pub struct NonlinearOscillator<'a> {
     forces: &'a ReducedForces,
-    /// r x r, row after row.
+    /// Damping matrix C, r x r, row after row.
     damping: Vec<f64>,
     step: f64,
 }
 
 impl<'a> NonlinearOscillator<'a> {
-    /// Steps of `step` seconds.
+    /// Creates the integrator with steps of `step` seconds.
     ///
     /// # Errors
     /// When the step is not positive, or the damping is negative or not finite.
@@ -58,16 +58,16 @@ impl<'a> NonlinearOscillator<'a> {
         Ok(Self { forces, damping, step })
     }
 
-    /// The acceleration at (q, v) under the forces g: for the first step.
+    /// Returns the acceleration at (q, v) under the forces g (r numbers each); the first step needs it.
     pub fn acceleration(&self, q: &[f64], v: &[f64], g: &[f64]) -> Vec<f64> {
         let (inner, damped) = (self.forces.at(q), self.damped(v));
         g.iter().zip(inner).zip(damped).map(|((g, f), c)| g - f - c).collect()
     }
 
-    /// One step under the forces g; `a` is the acceleration before and after it.
+    /// Advances q, v and the acceleration `a` by one step under the forces g (r numbers each).
     ///
     /// # Errors
-    /// When the step cannot be solved: the motion diverges.
+    /// When Newton's method does not converge; then q, v and `a` are unchanged.
     pub fn advance(
         &self,
         q: &mut [f64],
@@ -109,7 +109,7 @@ impl<'a> NonlinearOscillator<'a> {
                 .solve(Mat::from_fn(r, 1, |i, _| trial.rest[i]));
             let step = |share: f64| residual((0..r).map(|k| trial.b[k] - share * change[(k, 0)]).collect());
             let mut next = step(1.0);
-            // Along Newton's own direction a part of the step is better than none.
+            // A shorter step in Newton's direction may lower the residual where the full step does not.
             let mut share = 1.0;
             while is_fresh && next.left >= trial.left && share > LEAST_SHARE {
                 share /= 2.0;
@@ -138,7 +138,7 @@ impl<'a> NonlinearOscillator<'a> {
         })
     }
 
-    /// Kinetic and elastic energy.
+    /// Returns kinetic and elastic energy.
     pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.forces.energy(q) + v.iter().map(|v| v * v / 2.0).sum::<f64>()
     }
@@ -156,7 +156,7 @@ mod tests {
 
     const NONE: Damping = Damping { mass: 0.0, stiffness: 0.0 };
 
-    /// Two modes of the energy `l1 x^2 / 2 + l2 y^2 / 2 + s (x^2 + x y)^2 / 4`.
+    /// Forces of two modes with the energy `l1 x^2 / 2 + l2 y^2 / 2 + s (x^2 + x y)^2 / 4`.
     fn forces(l1: f64, l2: f64, s: f64) -> ReducedForces {
         // d/dx: l1 x + s (x^2 + x y) (2 x + y) / 2 = .. + s (2 x^3 + 3 x^2 y + x y^2) / 2
         // d/dy: l2 y + s (x^2 + x y) x / 2 = .. + s (x^3 + x^2 y) / 2
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn free_vibration_has_the_frequency() {
         let lambda = 40.0_f64;
-        // 200 steps a period: the method is slow by (omega h)^2 / 12.
+        // 200 steps a period; the method lengthens the period by (omega h)^2 / 12.
         let period = std::f64::consts::TAU / lambda.sqrt();
         let step = period / 200.0;
         let forces = forces(lambda, 90.0, 0.0);

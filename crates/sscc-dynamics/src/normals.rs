@@ -1,4 +1,4 @@
-//! Normals of a surface, for telling inside from outside (Baerentzen and Aanaes 2005).
+//! Pseudonormals of a surface, which give the sign of a distance (Baerentzen and Aanaes 2005).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,20 +7,21 @@ use sscc::TriMesh;
 
 use crate::nearest_point::Feature;
 
-/// Of faces, edges and vertices: those of edges are sums of their faces', those of vertices weigh them by angles.
+/// Pseudonormals of faces, edges and vertices. That of an edge is the sum over its faces; that of a vertex is the sum
+/// over its faces weighted by angle.
 pub(crate) struct Normals {
     faces: Vec<DVec3>,
     classes: Vec<[u32; 3]>,
     edges: BTreeMap<(u32, u32), DVec3>,
     vertices: Vec<DVec3>,
-    /// Whether at each edge an even number of faces meets: else there is no inside.
+    /// Whether an even number of faces meets at each edge. Otherwise the surface has no inside.
     pub is_closed: bool,
 }
 
 impl Normals {
     pub fn new(mesh: &TriMesh) -> Self {
         let p = mesh.rest_positions();
-        // Vertices of equal position are one.
+        // Vertices of equal position are welded.
         let mut order: Vec<u32> = (0..p.len() as u32).collect();
         let key = |v: u32| p[v as usize].to_array().map(|x| x + 0.0);
         let compare = |a: &u32, b: &u32| {
@@ -57,7 +58,7 @@ impl Normals {
         Self { faces, classes, edges, vertices, is_closed: rims.is_empty() }
     }
 
-    /// The normal (of any length) where the point of a triangle is nearest that lies on this part of it.
+    /// Returns the pseudonormal (not normalized) of a feature of a triangle.
     pub fn of(&self, triangle: u32, feature: Feature) -> DVec3 {
         let face = self.classes[triangle as usize];
         match feature {

@@ -1,26 +1,26 @@
-//! What holds for a whole world.
+//! Options of a world and of its contacts.
 
 use glam::DVec3;
 
 use crate::{DynamicsError, Ground};
 
-/// How contacts answer. Each is a spring with a damper that only pushes, as stiff as the masses that meet there ask
-/// for: what counts is how fast it is. Contacts take energy, by damping and friction, and never give more than all
-/// have taken before.
+/// Options of contacts. A contact is a spring with a damper that can only push. Its stiffness follows from the
+/// effective mass and the frequency. Contacts dissipate energy by damping and friction, and never return more than they
+/// have dissipated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
-    /// Frequency (Hz) of a mass on the spring: a contact lasts about half a period, and what comes with a speed v is
-    /// pressed in by about `v / (2 pi frequency)`.
+    /// Frequency (Hz) of the effective mass on the spring. A contact lasts about half a period; an impact with speed v
+    /// penetrates by about `v / (2 pi frequency)`.
     pub frequency: f64,
-    /// Damping ratio. 0: as much comes back as came; see [`ContactOptions::restitution`].
+    /// Damping ratio. With 0 the contact is elastic; see [`ContactOptions::restitution`].
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// How far what was in contact is kept apart (model unit); none: a thousandth of the smallest body's radius. What
-    /// rests is held by a spring within this distance, hence free of collisions while `frequency` is not too low: it
-    /// must hold the weight, `(2 pi frequency)^2 skin` well above that of gravity.
+    /// Distance at which bodies in contact are held apart (model unit). None: a thousandth of the smallest body's
+    /// radius. A spring holds a resting body within this distance, so it stays free of collisions if the spring can
+    /// bear the weight: `(2 pi frequency)^2 skin` must be well above the acceleration of gravity.
     pub skin: Option<f64>,
-    /// Rounds of the iteration that finds impulses, at most.
+    /// Maximum number of iterations of the impulse solver.
     pub rounds: usize,
 }
 
@@ -31,16 +31,16 @@ impl Default for ContactOptions {
 }
 
 impl ContactOptions {
-    /// Angular frequency (1/s).
+    /// Angular frequency (rad/s).
     pub fn rate(&self) -> f64 {
         std::f64::consts::TAU * self.frequency
     }
 
-    /// The share of its speed with which a mass leaves a contact, when steps are short: `exp(-zeta t)`, where t is
-    /// the time, times the angular frequency, after which spring and damper together no longer push.
+    /// Coefficient of restitution for short steps: `exp(-zeta t)`, where t is the time, times the angular frequency, at
+    /// which the force of spring and damper ends.
     pub fn restitution(&self) -> f64 {
         let zeta = self.damping;
-        // x'' + 2 zeta x' + x = 0 from x = 0, x' = 1: the force 2 zeta x' + x ends.
+        // x'' + 2 zeta x' + x = 0 from x = 0, x' = 1; the contact ends when 2 zeta x' + x = 0.
         if zeta < 1.0 {
             let d = (1.0 - zeta * zeta).sqrt();
             let t = libm::atan2(2.0 * zeta * d, 2.0 * zeta * zeta - 1.0) / d;
@@ -55,36 +55,36 @@ impl ContactOptions {
     }
 }
 
-/// What becomes of bodies that would collide with themselves.
+/// Response of bodies to self-collisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Response {
-    /// Colliding triangles push each other out.
+    /// Contact constraints push colliding triangles apart.
     #[default]
     Contact,
-    /// q is kept inside the ellipsoid that the root's certificate proves free (paper, section 7): nothing has to be
-    /// detected.
+    /// q stays inside the ellipsoid that the certificate of the root proves free (paper, section 7). No detection is
+    /// needed.
     Constrain,
-    /// Nothing: bodies pass through themselves.
+    /// No response: bodies pass through themselves.
     Ignore,
 }
 
-/// What holds for a whole world.
+/// Options of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldOptions {
-    /// Time of a step (s).
+    /// Time step (s).
     pub step: f64,
-    /// Acceleration (model unit per s^2).
+    /// Acceleration of gravity (model unit per s^2).
     pub gravity: DVec3,
-    /// If there is one.
+    /// Ground plane, if any.
     pub ground: Option<Ground>,
-    /// How contacts answer.
+    /// Options of contacts.
     pub contact: ContactOptions,
-    /// What becomes of bodies that would collide with themselves.
+    /// Response of bodies to self-collisions.
     pub response: Response,
 }
 
 impl Default for WorldOptions {
-    /// Steps of a millisecond, weight of 9.81 m/s^2 along -y, the ground at y = 0.
+    /// A time step of 1 ms, gravity of 9.81 m/s^2 along -y, and the ground at y = 0.
     fn default() -> Self {
         Self {
             step: 1e-3,

@@ -1,20 +1,23 @@
-//! The rigid motion of a free body (floating frame).
+//! Rigid motion of a free body (floating frame).
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc_solid::MassProperties;
 
 use crate::DynamicsError;
 
-/// Position, orientation and momenta. The inertia is that of the rest pose: deformations change it little.
+/// Position, orientation and momenta of a body. The inertia is that of the rest pose, which small deformations change
+/// little.
+///
+/// Forces act as impulses between steps. During a step the body moves freely and both momenta are constant.
 ///
 /// Forces are given as impulses; between them the body moves freely, and both momenta stay exactly what they are.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidMotion {
     properties: MassProperties,
     inverse: DMat3,
-    /// Where the centre of mass is (model unit).
+    /// Position of the centre of mass (model unit).
     pub position: DVec3,
-    /// From the rest pose's axes to those of the world.
+    /// Rotation from axes of the rest pose to axes of the world.
     pub orientation: DQuat,
     /// Linear momentum.
     pub momentum: DVec3,
@@ -26,14 +29,14 @@ pub struct RigidMotion {
 const ITERATIONS: usize = 20;
 
 impl RigidMotion {
-    /// At rest in its rest pose.
+    /// Creates the motion of a body at rest in its rest pose.
     ///
     /// # Errors
     /// When mass or inertia are not positive and finite.
     pub fn new(properties: MassProperties) -> Result<Self, DynamicsError> {
         let MassProperties { mass, center, inertia } = properties;
         let inverse = inertia.inverse();
-        // Positive definite (Sylvester): the leading minors are.
+        // The inertia is positive definite if its leading minors are positive (Sylvester).
         let [x, y, _] = [inertia.x_axis, inertia.y_axis, inertia.z_axis];
         let minors = [x.x, x.x * y.y - x.y * y.x, inertia.determinant()];
         let least = minors.into_iter().fold(f64::INFINITY, f64::min);
@@ -51,12 +54,12 @@ impl RigidMotion {
         })
     }
 
-    /// The angular velocity, in axes of the world.
+    /// Returns the angular velocity (rad/s), in axes of the world.
     pub fn angular_velocity(&self) -> DVec3 {
         self.spin(self.orientation)
     }
 
-    /// The inverse of the inertia tensor, in axes of the rest pose.
+    /// Returns the inverse of the inertia tensor, in axes of the rest pose.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
         self.inverse
     }
@@ -65,8 +68,8 @@ impl RigidMotion {
         orientation * (self.inverse * (orientation.inverse() * self.angular_momentum))
     }
 
-    /// Moves freely for a time h (s). The orientation turns with the angular velocity of the middle of the step,
-    /// which keeps the energy to second order, without drift.
+    /// Advances free motion by h seconds. The rotation uses the angular velocity at the midpoint of the step, which
+    /// conserves energy to second order, without drift.
     pub fn advance(&mut self, h: f64) {
         self.position += self.momentum * (h / self.properties.mass);
         let mut spin = self.angular_velocity();
@@ -81,7 +84,7 @@ impl RigidMotion {
         self.orientation = (DQuat::from_scaled_axis(spin * h) * self.orientation).normalize();
     }
 
-    /// Kinetic energy of the frame.
+    /// Returns the kinetic energy of the rigid motion.
     pub fn energy(&self) -> f64 {
         let linear = self.momentum.length_squared() / (2.0 * self.properties.mass);
         linear + self.angular_momentum.dot(self.angular_velocity()) / 2.0

@@ -1,4 +1,4 @@
-//! What all bodies of one shape share.
+//! Data shared by all bodies of one shape.
 
 use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
@@ -6,8 +6,9 @@ use sscc_solid::{Elasticity, MassProperties};
 
 use crate::{DepthField, DynamicsError};
 
-/// A model with its certificates and all that its motion needs, shared by any number of bodies. The modes must be
-/// mass-orthonormal, those of free bodies also orthogonal to rigid motions, as `sscc-modes` makes them.
+/// A model with its certificates and the data of its motion, shared by any number of bodies. The modes must be
+/// mass-orthonormal; those of free bodies must also be orthogonal to rigid motions. The crate `sscc-modes` computes
+/// such modes.
 #[derive(Clone, Debug)]
 pub struct Shape {
     model: ReducedModel,
@@ -16,17 +17,18 @@ pub struct Shape {
     mass: MassProperties,
     moments: Vec<DVec3>,
     depth: DepthField,
-    /// The largest distance of a vertex from the centre of mass, at rest.
+    /// Maximum distance of a vertex from the centre of mass, at rest.
     radius: f64,
-    /// The largest displacement by a unit of each mode.
+    /// Maximum displacement of a vertex by a unit of each mode.
     reach: Vec<f64>,
 }
 
 impl Shape {
-    /// A shape that nothing but contacts deforms. Takes a while: it measures the depth of the rest pose everywhere.
+    /// Creates a shape with zero mode moments. Computes the material depth of the rest pose: see [`DepthField::new`]
+    /// for the cost.
     ///
     /// # Errors
-    /// When certificates, elasticity and mass are not of this model, or linear forces couple modes.
+    /// When certificates or elasticity do not belong to this model, or linear forces couple modes.
     pub fn new(
         model: ReducedModel,
         certificates: Certificates,
@@ -60,11 +62,11 @@ impl Shape {
         })
     }
 
-    /// The same shape, whose modes a uniform acceleration g excites by `moment . g` each: for bodies that are held
-    /// somewhere. See [`mode_moments`](sscc_solid::Solid::mode_moments).
+    /// Returns the shape with a moment for each mode (r vectors): a uniform acceleration g exerts the generalised force
+    /// `moment . g`. Held bodies need it. See [`mode_moments`](sscc_solid::Solid::mode_moments).
     ///
     /// # Errors
-    /// When there is not one moment for each mode.
+    /// When the number of moments is not r.
     pub fn with_moments(mut self, moments: Vec<DVec3>) -> Result<Self, DynamicsError> {
         if moments.len() != self.model.rank() {
             return Err(DynamicsError::Rank { found: moments.len(), rank: self.model.rank() });
@@ -73,7 +75,7 @@ impl Shape {
         Ok(self)
     }
 
-    /// Mesh and modes.
+    /// Returns mesh and modes.
     pub fn model(&self) -> &ReducedModel {
         &self.model
     }
@@ -93,22 +95,22 @@ impl Shape {
         &self.mass
     }
 
-    /// The integral of each mode over the mass.
+    /// Integral of each mode over the mass (r vectors).
     pub fn moments(&self) -> &[DVec3] {
         &self.moments
     }
 
-    /// How deep a point of the rest pose lies inside.
+    /// Material depth of the rest pose.
     pub fn depth(&self) -> &DepthField {
         &self.depth
     }
 
-    /// The largest distance of a vertex from the centre of mass, at rest (model unit).
+    /// Maximum distance of a vertex from the centre of mass, at rest (model unit).
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The largest displacement of any vertex by a unit of each mode (model unit).
+    /// Maximum displacement of a vertex by a unit of each mode (r numbers, model unit).
     pub fn reach(&self) -> &[f64] {
         &self.reach
     }

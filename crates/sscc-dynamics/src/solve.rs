@@ -1,37 +1,40 @@
-//! Contact impulses.
+//! Solver for contact impulses: projected Gauss-Seidel with an energy budget for each body.
 //!
-//! A contact is a spring and a damper that only push, taken implicitly, and Coulomb friction. Impulses are found one
-//! contact after the other, several times over (projected Gauss-Seidel). Each changes the energy by exactly `p . (v +
-//! v') / 2`, where v and v' are the relative velocities before and after it. Each body has a ledger of what its
-//! contacts have taken so far, and none of them may give more than the ledgers of its bodies hold: whatever stiffness
-//! and step are, contacts never add energy to that of the start, up to rounding, and what is far away gives none.
+//! A contact constraint is a spring with a damper that can only push, integrated implicitly, and Coulomb friction. The
+//! solver visits one constraint after the other, several times. An impulse p changes the energy by exactly `p . (v +
+//! v') / 2`, where v and v' are the relative velocities before and after it.
+//!
+//! The energy budget of a body is the energy that its contacts have dissipated so far. An impulse may add at most the
+//! sum of the budgets of its bodies. Contacts therefore never add energy to that of the start, up to rounding, for
+//! every stiffness and step. Budgets of bodies that take no part in a contact are not used.
 
 use glam::{DMat3, DVec3};
 
 use crate::body::Body;
 use crate::contact::{Contact, Mobility, moved};
 
-/// The ground, where a body's number would stand.
+/// Number that stands for the ground in place of a body.
 pub(crate) const GROUND: u32 = u32::MAX;
 
-/// What touches.
+/// Origin of a contact constraint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    /// A vertex and the ground.
+    /// Contact of this vertex with the ground.
     Vertex(u32),
-    /// The contact of that number.
+    /// Triangle contact with this number.
     Contact(u32),
 }
 
-/// One contact in one step. Vectors are in axes of the world; within one body in those of the body.
+/// Contact constraint of one step. Vectors are in axes of the world; for a contact within one body, in axes of the
+/// body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
     pub bodies: [u32; 2],
     pub source: Source,
     pub normal: DVec3,
-    /// From the centres of mass to where impulses act, the same place for both.
+    /// Vectors from the centres of mass to the common point on which impulses act.
     pub arms: [DVec3; 2],
-    /// How far it is pressed beyond the skin; negative: not at all.
+    /// Compression of the spring: penetration depth beyond the skin; negative where the contact is open.
     pub depth: f64,
     pub mobility: [Mobility; 2],
     pub friction: f64,
@@ -40,20 +43,20 @@ pub(crate) struct Touch {
     pub drag: DVec3,
 }
 
-/// A body in a touch.
+/// Body that takes part in a constraint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
-    /// The first or the second.
+    /// 0 for the first body, 1 for the second.
     pub n: usize,
     pub body: usize,
-    /// Of the impulse on it.
+    /// Sign of the impulse on this body.
     pub sign: f64,
 }
 
-/// A touch and what makes it a spring.
+/// Constants of a constraint in the solver.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// Impulse to velocity.
+    /// Matrix from impulse to velocity change (inverse effective mass).
     response: DMat3,
     along: f64,
     softness: f64,
@@ -61,7 +64,7 @@ struct Row {
     target: f64,
 }
 
-/// A body's velocities while impulses act.
+/// Velocities and inverse masses of a body while impulses act.
 #[derive(Clone, Copy, Debug)]
 struct Mover {
     velocity: DVec3,
@@ -71,10 +74,10 @@ struct Mover {
     rotation: DMat3,
 }
 
-/// The constants of all contacts.
+/// Constants of all contacts in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring {
-    /// Angular frequency (1/s).
+    /// Angular frequency (rad/s).
     pub rate: f64,
     /// Damping ratio.
     pub damping: f64,
@@ -100,7 +103,7 @@ pub(crate) struct Solver {
 }
 
 impl Solver {
-    /// Finds all impulses and lets them act.
+    /// Computes the impulses of all constraints and applies them to the bodies.
     pub fn solve(&mut self, bodies: &mut [Body<'_>], contacts: &[Contact], spring: &Spring) {
         if self.touches.is_empty() {
             return;
@@ -146,7 +149,7 @@ impl Solver {
         }
     }
 
-    /// One contact; gives the change of velocity along its normal.
+    /// Updates the impulse of one constraint. Returns the change of velocity along its normal.
     fn visit(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact]) -> f64 {
         let (row, touch) = (self.rows[n], self.touches[n]);
         let ledger: f64 = touch.sides().map(|side| bodies[side.body].ledger).sum();
@@ -234,9 +237,9 @@ impl Solver {
 }
 
 impl Spring {
-    /// The share of a spring's force that is that of the step's end, where so many act on one body: together they are
-    /// as fast as the root of their number. 0 keeps the energy but is unstable for long steps, 1 is always stable and
-    /// damps.
+    /// Implicit share of the spring force when `count` constraints act on one body. The frequency of `count` springs
+    /// together is higher by the square root of `count`. A share of 0 conserves energy but is unstable for long steps;
+    /// a share of 1 is always stable but damps.
     fn implicit(&self, count: usize) -> f64 {
         let angle = self.rate * self.step;
         (angle * angle * count as f64).clamp(f64::EPSILON, 1.0)
@@ -249,7 +252,7 @@ impl Touch {
         self.bodies[0] == self.bodies[1]
     }
 
-    /// Its bodies, each once, without the ground.
+    /// Returns the bodies of the constraint, each once, without the ground.
     pub fn sides(&self) -> impl Iterator<Item = Side> + use<> {
         let (bodies, within) = (self.bodies, self.is_within());
         let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || !within);
@@ -296,7 +299,7 @@ impl Mover {
         }
     }
 
-    /// Impulse to velocity at a place: at once, and slowly.
+    /// Returns the matrices from impulse to velocity at a point: with all modes, and with slow modes only.
     fn responses(&self, arm: DVec3, mobility: &Mobility, within: bool) -> [DMat3; 2] {
         if within {
             return [mobility.quick, mobility.slow];

@@ -1,19 +1,19 @@
-//! Sound of modes (paper, section 7: clattering): a bank of resonators that contact impulses strike.
+//! Sound of vibrating modes (paper, section 7: clattering): a bank of resonators that contact impulses excite.
 
 use glam::DVec3;
 use sscc::{Modes, TriMesh, vertex_areas};
 
 use crate::{Damping, DynamicsError, Impulse, LinearOscillator};
 
-/// The vibrations of one body that are heard, advanced sample by sample, each one exactly.
+/// Audible modes of one body, advanced sample by sample; each mode is integrated exactly.
 ///
-/// A sample is the velocity of the surface along its normal: of each mode the root mean square over the surface,
-/// times the rate of the mode. That is a measure of what it radiates, without distance, direction or phase. In model
-/// units per second; scale it to what a file can hold.
+/// A sample is the sum over the modes of the rate of the mode times the root mean square, over the surface, of its
+/// normal displacement. It measures the radiated sound without distance, direction or phase. The unit is model units
+/// per second; scale samples to the range of the file format.
 #[derive(Clone, Debug)]
 pub struct SoundBank {
     resonators: LinearOscillator,
-    /// Of each vertex, x of all modes, then y, then z: single precision, side by side.
+    /// Modes of each vertex: x of all modes, then y, then z, in single precision.
     modes: Vec<f32>,
     weights: Vec<f64>,
     q: Vec<f64>,
@@ -23,11 +23,11 @@ pub struct SoundBank {
 }
 
 impl SoundBank {
-    /// Mass-orthonormal modes of a surface, with their eigenvalues (1/s^2), heard at `rate` samples a second. Modes
-    /// above half that rate cannot be heard, and are left out.
+    /// Creates a bank from mass-orthonormal modes of a surface and their eigenvalues (r numbers, 1/s^2), at `rate`
+    /// samples per second. Modes above half that rate are inaudible and left out. Needs 12 bytes per vertex and mode.
     ///
     /// # Errors
-    /// When modes, mesh and eigenvalues do not fit, or the rate or the damping cannot be.
+    /// When modes, mesh and eigenvalues have different sizes, or the rate or the damping is outside its range.
     pub fn new(
         mesh: &TriMesh,
         modes: &Modes,
@@ -69,12 +69,12 @@ impl SoundBank {
         })
     }
 
-    /// How many modes are heard.
+    /// Returns the number of audible modes.
     pub fn modes(&self) -> usize {
         self.weights.len()
     }
 
-    /// An impulse on the surface, in axes of the rest pose.
+    /// Applies an impulse to the surface, in axes of the rest pose. It acts at the next sample.
     pub fn strike(&mut self, impulse: &Impulse) {
         let r = self.struck.len();
         for (v, weight) in impulse.vertices.iter().zip(impulse.weights) {
@@ -91,7 +91,7 @@ impl SoundBank {
         }
     }
 
-    /// The next sample.
+    /// Advances the bank by one sample and returns the sample.
     pub fn sample(&mut self) -> f64 {
         for (v, struck) in self.v.iter_mut().zip(&mut self.struck) {
             *v += f64::from(std::mem::take(struck));
@@ -100,15 +100,15 @@ impl SoundBank {
         self.v.iter().zip(&self.weights).map(|(v, w)| v * w).sum()
     }
 
-    /// All that changes from sample to sample: for going on later.
+    /// Returns the state (2 numbers per audible mode), from which [`SoundBank::restore`] continues.
     pub fn state(&self) -> Vec<f64> {
         [&self.q[..], &self.v].concat()
     }
 
-    /// Takes up a state of a bank of the same modes.
+    /// Restores a state of a bank with the same modes.
     ///
     /// # Errors
-    /// When it is of another length.
+    /// When the state has another length.
     pub fn restore(&mut self, state: &[f64]) -> Result<(), DynamicsError> {
         let r = self.q.len();
         if state.len() != 2 * r {
@@ -121,7 +121,7 @@ impl SoundBank {
     }
 }
 
-/// Normals of vertices (length 1): the mean of those of their triangles, by area.
+/// Unit normals of vertices: area-weighted means over their triangles.
 fn vertex_normals(mesh: &TriMesh) -> Vec<DVec3> {
     let p = mesh.rest_positions();
     let mut normals = vec![DVec3::ZERO; p.len()];
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use sscc_modes::shapes;
 
-    /// A spring with three modes: the last one too high to be heard.
+    /// A spring with three modes; the frequency of the last one is above half the sample rate.
     fn bank(damping: Damping) -> SoundBank {
         let mesh = shapes::spring_of(60, 6);
         let p = mesh.rest_positions().to_vec();
@@ -170,10 +170,10 @@ mod tests {
         };
         let (early, late) = (&samples[..4410], &samples[39_690..]);
         for (mode, hertz) in [440.0, 1000.0].into_iter().enumerate() {
-            // Amplitudes fall by e^(-5 t).
+            // Amplitudes decay as e^(-5 t).
             let decay = power(hertz, late) / power(hertz, early);
             assert!((decay / libm::exp(-4.5) - 1.0).abs() < 0.05, "{decay}");
-            // Struck alone: its power is where its frequency is.
+            // Excited alone, a mode has its spectral peak at its frequency.
             let mut bank = bank(Damping::default());
             bank.v[mode] = 1.0;
             let alone: Vec<f64> = (0..4410).map(|_| bank.sample()).collect();

@@ -1,4 +1,4 @@
-//! A world's state as plain numbers: to stop, and to go on later as if nothing had happened.
+//! State of a world as plain numbers, to stop a simulation and continue it with the same bits.
 
 use glam::{DQuat, DVec3};
 
@@ -6,13 +6,12 @@ use crate::body::Body;
 use crate::contact::{Anchor, Contact};
 use crate::{DynamicsError, World};
 
-/// All that changes from step to step. A world of the same options and bodies that is given it goes on with the same
-/// bits.
+/// State of a world. A world with the same options and bodies continues from it with the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Steps so far.
+    /// Number of completed steps.
     pub step: u64,
-    /// Motions, the energy that contacts have taken, and contacts, in an order of their own.
+    /// Motion and energy budget of each body, then the contacts; the order is internal.
     pub numbers: Vec<f64>,
 }
 
@@ -23,7 +22,7 @@ const RIGID: usize = 13 + 3;
 const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
 
 impl World<'_> {
-    /// The present state.
+    /// Returns the current state.
     pub fn state(&self) -> State {
         let mut numbers = Vec::new();
         for (body, near) in self.bodies.iter().zip(&self.near) {
@@ -45,10 +44,10 @@ impl World<'_> {
         State { step: self.step, numbers }
     }
 
-    /// Takes up a state of a world of the same options and bodies.
+    /// Restores a state of a world with the same options and bodies.
     ///
     /// # Errors
-    /// When it is of other bodies, or a number in it cannot be; then nothing has changed.
+    /// When the state does not fit the bodies or holds an invalid number; then the world is unchanged.
     pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
         let own = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
         let expected = self.bodies.iter().map(own).sum::<usize>();
@@ -60,7 +59,7 @@ impl World<'_> {
         }
         let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
         let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
-        // Contacts are looked up by their keys.
+        // The search for contacts needs them in the order of their keys.
         let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key());
         if !in_order || !self.can_be(motion) {
             return Err(DynamicsError::State { found, expected });

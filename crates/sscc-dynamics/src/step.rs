@@ -1,27 +1,27 @@
-//! What a step of a world consists of, and what it tells.
+//! Phases of a step, its counts and its impulses.
 
 use glam::DVec3;
 
-/// The parts of a step, in this order.
+/// Phases of a step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Phase {
-    /// Finding collisions within bodies.
+    /// Self-collision detection.
     SelfCollision,
-    /// Finding collisions between bodies.
+    /// Detection of collisions between bodies.
     InterObject,
-    /// Finding what touches the ground.
+    /// Search for vertices in contact with the ground.
     Ground,
-    /// Contacts and their impulses.
+    /// Contact constraints and their impulses.
     Penalty,
-    /// Moving on.
+    /// Integration of the motion.
     Dynamics,
-    /// The step is over.
+    /// End of the step.
     Done,
 }
 
-/// Is told when a phase of a step begins: for clocks, which this crate does not have. `()` ignores it.
+/// Receives the start of each phase of a step, for example to measure times. `()` ignores all calls.
 pub trait Observer {
-    /// What comes next.
+    /// Called at the start of `phase`.
     fn enter(&mut self, phase: Phase);
 }
 
@@ -35,34 +35,34 @@ impl<F: FnMut(Phase)> Observer for F {
     }
 }
 
-/// What a step found when it began.
+/// Counts of collisions and contacts at the start of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Bodies that collide with themselves.
+    /// Number of bodies that collide with themselves.
     pub self_colliding: usize,
-    /// Pairs of triangles of one body each that collide.
+    /// Number of colliding triangle pairs within bodies.
     pub self_pairs: usize,
-    /// Bodies for which the root's certificate alone proves nothing.
+    /// Number of bodies whose q is outside the certificate of the root.
     pub root_failed: usize,
-    /// Pairs of bodies that collide.
+    /// Number of colliding pairs of bodies.
     pub colliding_bodies: usize,
-    /// Pairs of their triangles that collide.
+    /// Number of colliding triangle pairs between bodies.
     pub inter_pairs: usize,
-    /// Vertices that touch the ground.
+    /// Number of vertices in contact with the ground.
     pub ground: usize,
-    /// Pairs of triangles in contact, colliding or held apart.
+    /// Number of triangle contacts, colliding or within the skin.
     pub contacts: usize,
 }
 
-/// An impulse on a body in the last step: what makes it sound.
+/// Impulse on a body in the last step; input of [`SoundBank`](crate::SoundBank).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impulse {
-    /// The body.
+    /// Number of the body.
     pub body: usize,
-    /// The vertices on which it acted ...
+    /// Vertices on which the impulse acts.
     pub vertices: [u32; 3],
-    /// ... and the share of each.
+    /// Share of each vertex.
     pub weights: [f64; 3],
-    /// Force times time, in axes of the rest pose.
+    /// Force times time (mass unit times model unit per s), in axes of the rest pose.
     pub impulse: DVec3,
 }

@@ -1,4 +1,4 @@
-//! Many bodies, step by step.
+//! World of bodies, and its time step: detection, contacts, integration.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ use crate::{
     BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions,
 };
 
-/// Bodies, and what holds for all of them. The same steps give the same bits on every run and for any number of
+/// Bodies with their ground, contacts and options. The same steps give the same bits in every run and for any number of
 /// threads.
 pub struct World<'a> {
     options: WorldOptions,
@@ -26,7 +26,7 @@ pub struct World<'a> {
     pub(crate) impulses: Vec<Impulse>,
 }
 
-/// The energies at the start, of all bodies: motion can have no more than these and what weights gave.
+/// Total energies of all bodies at the start. They bound the kinetic energy of later steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reference {
     energy: f64,
@@ -41,7 +41,7 @@ const BLOW_UP: f64 = 4.0;
 const CREEP: f64 = 1.0 / 300.0;
 
 impl<'a> World<'a> {
-    /// An empty world.
+    /// Creates a world without bodies.
     ///
     /// # Errors
     /// When an option is outside its range.
@@ -60,10 +60,10 @@ impl<'a> World<'a> {
         })
     }
 
-    /// Adds a body; gives its number. Bodies of one shape share its certificates and tables.
+    /// Adds a body and returns its number. Bodies of one shape share its certificates.
     ///
     /// # Errors
-    /// When it cannot begin like that: see [`Start`].
+    /// When the initial state is invalid: see [`Start`].
     pub fn add(&mut self, shape: &'a Shape, start: &Start) -> Result<usize, DynamicsError> {
         let twin = self.bodies.iter().find(|body| std::ptr::eq(body.shape(), shape));
         let body = Body::new(shape, start, &self.options, twin)?;
@@ -74,58 +74,58 @@ impl<'a> World<'a> {
         Ok(self.bodies.len() - 1)
     }
 
-    /// What holds for all bodies.
+    /// Returns the options of the world.
     pub fn options(&self) -> &WorldOptions {
         &self.options
     }
 
-    /// All bodies, by their numbers.
+    /// Returns all bodies, in the order of their numbers.
     pub fn bodies(&self) -> &[Body<'a>] {
         &self.bodies
     }
 
-    /// Steps so far.
+    /// Returns the number of completed steps.
     pub fn steps(&self) -> u64 {
         self.step
     }
 
-    /// Seconds so far.
+    /// Returns the simulated time (s).
     pub fn time(&self) -> f64 {
         self.step as f64 * self.options.step
     }
 
-    /// Kinetic and elastic energy of all bodies, and that of their weights.
+    /// Returns kinetic, elastic and potential energy of all bodies.
     pub fn energy(&self) -> f64 {
         self.bodies.iter().map(|body| body.energy() + body.potential(self.options.gravity)).sum()
     }
 
-    /// The energy that contacts have taken so far (heat), less what they gave back: never negative.
+    /// Returns the energy that contacts have dissipated (heat), less the energy that they have returned; never
+    /// negative.
     pub fn dissipated(&self) -> f64 {
         self.bodies.iter().map(|body| body.ledger).sum()
     }
 
-    /// The impulses of the last step, in the order of contacts.
+    /// Returns the impulses of the last step, in the order of contacts.
     pub fn impulses(&self) -> &[Impulse] {
         &self.impulses
     }
 
-    /// The pairs of triangles of different bodies that collided when the last step began.
+    /// Returns the colliding bodies and their triangle pairs at the start of the last step.
     pub fn inter_pairs(&self) -> impl Iterator<Item = BodyPairs<'_>> {
         self.neighbours.colliding()
     }
 
-    /// The distance within which contacts are held (model unit).
+    /// Returns the skin: the distance at which bodies in contact are held apart (model unit).
     pub fn skin(&self) -> f64 {
         let smallest = || self.bodies.iter().map(|body| body.shape().radius()).fold(f64::INFINITY, f64::min);
         self.options.contact.skin.unwrap_or_else(|| 1e-3 * smallest())
     }
 
-    /// Refuses a start at which bodies collide with themselves, with each other, or lie in the ground. Who collides
-    /// with itself is refused only where contacts answer that ([`Response::Contact`]): lips that are closed at rest
-    /// would push each other apart for ever.
+    /// Checks that no body penetrates another one, the ground or itself. Self-collisions are rejected only with
+    /// [`Response::Contact`], where contacts would push surfaces that constraint at rest apart for ever.
     ///
     /// # Errors
-    /// Naming the first body that does.
+    /// When a body penetrates; the error names the first one.
     pub fn check_start(&mut self) -> Result<(), DynamicsError> {
         let refused =
             |body, what, count, unit| Err(DynamicsError::Interpenetration { body, what, count, unit });
@@ -152,11 +152,11 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// One step: detection, contacts, motion. `observer` is told what begins.
+    /// Advances the world by one step: detection, contacts, integration. `observer` receives the start of each phase.
+    /// Returns counts of collisions and contacts at the start of the step.
     ///
     /// # Errors
-    /// When the motion diverges, or leaves the range of numbers. Nothing more can be done with the world then but to
-    /// read it.
+    /// When the motion diverges or a number is not finite. After an error the world can be read, but not advanced.
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
         let mut counts = Counts::default();
         observer.enter(Phase::SelfCollision);
@@ -211,7 +211,7 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// How much of what lacks to half the skin, or is more, is added to springs in a step.
+    /// Share of the difference between half the skin and the gap by which preloads change in a step.
     fn creep(&self) -> f64 {
         (CREEP * self.options.contact.rate() * self.options.step).min(1.0)
     }

@@ -1,4 +1,4 @@
-//! Motion against closed forms and conservation laws.
+//! Tests of motion against closed forms and conservation laws.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -105,7 +105,7 @@ fn bodies_that_hit_each_other_keep_their_momenta() {
             assert!((now.1 - angular).length() < 1e-12 * (angular.length() + linear.length()));
         }
         assert!(pairs > 100, "{pairs}");
-        // Newmark's energy wavers where forces are nonlinear.
+        // The energy of Newmark's method oscillates where forces are nonlinear.
         assert!(most <= energy * if large { 1.002 } else { 1.0 + 1e-9 }, "{energy} to {most}");
         assert!(world.dissipated() > 0.02 * energy, "{} of {energy}", world.dissipated());
         let apart = world.bodies()[1].rigid().position - world.bodies()[0].rigid().position;
@@ -113,9 +113,9 @@ fn bodies_that_hit_each_other_keep_their_momenta() {
     }
 }
 
-/// The two arms of a fork swing towards each other.
+/// A world with a fork whose two arms swing towards each other.
 fn clapping<'a>(shape: &'a Shape, options: WorldOptions, damping: Damping) -> World<'a> {
-    // The mode that changes the distance of the tips most.
+    // Selects the mode that changes the distance of the tips most.
     let (p, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
     let tips = |x: f64| (0..p.len()).filter(move |v| p[*v].y > 0.59 && (p[*v].x - x).abs() < 1e-9);
     let close = |k: usize| -> f64 {
@@ -170,7 +170,7 @@ fn a_ball_bounces_as_its_spring_and_damper_say() {
                 top = top.max(rigid.position.y);
             }
         }
-        // It falls from 1 m above the ground, less the skin, in which contacts begin.
+        // The ball falls 1 m, less the skin in which contacts begin.
         let bounce = (top - 0.501) / 0.999;
         let expected = contact.restitution().powi(2);
         assert!((bounce - expected).abs() < 0.01, "damping {damping}: {bounce}, not {expected}");

@@ -1,4 +1,4 @@
-//! What worlds find and refuse, that they can be stopped, and that threads do not matter.
+//! Tests of worlds: collisions, errors, restart from a state, and determinism across threads.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -20,7 +20,7 @@ fn shapes() -> [Shape; 2] {
     [elastic(&block([2, 1, 2], 0.2, rubber()), 6, false, &[]), elastic(&fork(4, 0.1, rubber()), 6, true, &[])]
 }
 
-/// Five bodies that fall onto each other.
+/// A world of five bodies that fall onto each other.
 fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
     let mut world = World::new(WorldOptions { step: 2e-3, ..WorldOptions::default() }).unwrap();
     for n in 0..5 {
@@ -84,7 +84,7 @@ fn pairs_between_bodies_are_those_of_all_triangles() {
 
 #[test]
 fn faces_that_touch_are_in_contact() {
-    // Triangles of one plane, one looking up from below, one down from above.
+    // Coplanar triangles, one with its normal up from below, one down from above.
     let triangle = |corners: [[f64; 3]; 3]| {
         let positions = corners.map(DVec3::from_array).to_vec();
         common::rigid(TriMesh::new(positions, vec![[0, 1, 2]]).unwrap(), 1.0)
@@ -147,11 +147,12 @@ fn states_of_other_worlds_are_refused() {
     for length in 0..state.numbers.len() {
         let mut damaged = state.clone();
         damaged.numbers.truncate(length);
-        // A state with fewer contacts is one.
+        // A state with fewer contacts is valid.
         let whole = length >= other.numbers.len() && (length - other.numbers.len()).is_multiple_of(17);
         assert_eq!(world.restore(&damaged).is_ok(), whole, "{length}");
     }
-    // Energy from nowhere, an orientation that stretches, contacts out of order and twice.
+    // Invalid states: a negative energy budget, an orientation that is not normalized, contacts out of order or
+    // duplicated.
     let modes = shapes[0].model().rank();
     let contact = &state.numbers[other.numbers.len()..][..17];
     let mut turned = contact.to_vec();
@@ -190,7 +191,7 @@ fn bodies_that_begin_in_something_are_refused() {
     assert!(error.to_string().starts_with("body 1 (counted from 0) begins in body 0"), "{error}");
     let error = with(&[at(0.0, 0.5), at(5.0, 0.05)]).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 1, what: Obstacle::Ground, .. }));
-    // Folded.
+    // A folded body.
     let r = shapes[1].model().rank();
     let folded = (0..r).flat_map(|k| [-1.0, 1.0].map(|s| (k, s))).find_map(|(k, s)| {
         let mut q = vec![0.0; r];
@@ -207,7 +208,7 @@ fn bodies_that_begin_in_something_are_refused() {
     };
     let error = begun(Response::Contact).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 0, what: Obstacle::Itself, .. }));
-    // Who does not answer may begin like that.
+    // Bodies without a contact response may begin in self-collision.
     assert_eq!((begun(Response::Ignore).is_ok(), begun(Response::Constrain).is_ok()), (true, true));
 }
 
@@ -283,7 +284,7 @@ fn phases_come_in_order_and_quiet_steps_allocate_nothing() {
     assert_eq!(allocations.count_total, 0);
 }
 
-/// Linear modes are moved one by one, so their stiffness must be diagonal.
+/// The integrator advances linear modes independently, so their stiffness must be diagonal.
 #[test]
 fn coupled_linear_modes_are_refused() {
     let mesh = octahedron(1.0);

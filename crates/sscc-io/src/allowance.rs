@@ -1,8 +1,7 @@
-//! How much a small file may grow in memory.
+//! Limit on the memory that the content of a file may take.
 //!
-//! A file may say a lot in few bytes: a compressed entry holds up to 1032 times its size, and a glTF file
-//! may name the same numbers for any number of targets. Real files stay far below this limit: compressed
-//! modes shrink 1 to 3 times, and blendshapes stored sparsely about 50 times.
+//! A compressed entry expands up to 1032 times, and a glTF file may refer to the same numbers in any number of targets.
+//! Real files stay far below this limit: compressed modes shrink 1 to 3 times, and sparse blendshapes about 50 times.
 
 /// Times the bytes read that may be decoded from them ...
 const GROWTH: u64 = 100;
@@ -10,7 +9,7 @@ const GROWTH: u64 = 100;
 /// ... beside what any file may take.
 const SMALL: u64 = 64 << 20;
 
-/// Bytes that may yet be decoded from a file.
+/// Number of bytes that may still be decoded from a file.
 #[derive(Debug)]
 pub(crate) struct Allowance {
     left: u64,
@@ -24,7 +23,7 @@ impl Allowance {
         Self { left: all, all }
     }
 
-    /// Takes `count` items of `size` bytes; the cause of the refusal when they are more than is left.
+    /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if more is taken than is left.
     pub fn take(&mut self, count: u64, size: u64) -> Result<(), String> {
         match count.checked_mul(size).and_then(|bytes| self.left.checked_sub(bytes)) {
             Some(left) => {

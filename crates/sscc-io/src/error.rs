@@ -1,65 +1,65 @@
-//! What can be wrong with a file: always one line, with the file, the place and the cause.
+//! Errors of reading and writing files: one line with the file, the place and the cause.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A file that could not be read, understood or written.
+/// Error of reading, parsing or writing a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum IoError {
-    /// No file of that name.
+    /// No file has this name.
     #[error("{}: not found", line(path))]
     NotFound {
         /// The file.
         path: PathBuf,
     },
-    /// A directory, a device or a pipe in place of a file.
+    /// The path is a directory, a device or a pipe.
     #[error("{}: is {found}, a file was expected", line(path))]
     NotAFile {
-        /// What was named.
+        /// The path.
         path: PathBuf,
-        /// What it is.
+        /// Kind of the object at the path.
         found: &'static str,
     },
-    /// The system refused.
+    /// The operating system reports an error.
     #[error("{}: cannot be {action}: {cause}", line(path))]
     System {
         /// The file.
         path: PathBuf,
         /// "read" or "written".
         action: &'static str,
-        /// What the system said.
+        /// Error of the operating system.
         cause: std::io::Error,
     },
-    /// The bytes of the file are not what they should be.
+    /// The content of the file is malformed.
     #[error("{}: {error}", line(path))]
     Format {
         /// The file.
         path: PathBuf,
-        /// The place in it and the cause.
+        /// Place and cause of the error.
         error: FormatError,
     },
-    /// A file name whose ending is not known.
+    /// The ending of the file name is not supported.
     #[error("{}: unknown kind of {what} file; supported: {supported}", line(path))]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What was to be read: "mesh", "modes", ...
+        /// Kind of content: "mesh", "modes", ...
         what: &'static str,
-        /// The endings that are read.
+        /// Supported endings.
         supported: &'static str,
     },
-    /// Files that do not go together, or values that no file can hold.
+    /// Files that do not fit each other, or values that the format cannot hold.
     #[error("{}: {cause}", line(path))]
     Request {
-        /// The file at fault.
+        /// The file to which the error belongs.
         path: PathBuf,
-        /// What is wrong, and what to do.
+        /// Cause, and how to correct it.
         cause: String,
     },
 }
 
-/// What is wrong with the bytes of one file, and where. It does not know the file's name.
+/// Error in the content of one file: place and cause, without the file's name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{cause}")]
 pub struct FormatError {
@@ -71,17 +71,17 @@ pub struct FormatError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Place {
-    /// The file as a whole.
+    /// The whole file.
     Whole,
-    /// A line of a text file, counted from 1.
+    /// Line of a text file, counted from 1.
     Line(usize),
-    /// An offset in bytes from the beginning.
+    /// Offset in bytes from the beginning.
     Byte(usize),
-    /// A tensor of a container.
+    /// Tensor of a container, by name.
     Tensor(String),
-    /// A text entry of a container.
+    /// Text entry of a container, by key.
     Key(String),
-    /// A part with a name of its own: of a glTF file (`meshes[2]`), or of an archive.
+    /// Named part of a glTF file (`meshes[2]`) or of an archive.
     Part(String),
 }
 
@@ -103,63 +103,63 @@ impl FormatError {
         Self { place, cause: cause.into() }
     }
 
-    /// Something wrong with the file as a whole.
+    /// Returns an error for the whole file.
     pub(crate) fn whole(cause: impl Into<String>) -> Self {
         Self::new(Place::Whole, cause)
     }
 
-    /// Something wrong with a line, counted from 1.
+    /// Returns an error for a line, counted from 1.
     pub(crate) fn line(line: usize, cause: impl Into<String>) -> Self {
         Self::new(Place::Line(line), cause)
     }
 
-    /// Something wrong with a named part.
+    /// Returns an error for a named part.
     pub(crate) fn part(name: impl Into<String>, cause: impl Into<String>) -> Self {
         Self::new(Place::Part(name.into()), cause)
     }
 
-    /// Where it is.
+    /// Returns the place of the error.
     pub fn place(&self) -> &Place {
         &self.place
     }
 
-    /// What it is, and where useful what to do about it.
+    /// Returns the cause, with advice where there is one.
     pub fn cause(&self) -> &str {
         &self.cause
     }
 
-    /// The same, with the name of the file.
+    /// Adds the name of the file.
     pub(crate) fn of(self, path: &Path) -> IoError {
         IoError::Format { path: path.to_owned(), error: self }
     }
 }
 
-/// The core's own refusals say which vertex, face or mode; that is place enough.
+/// Errors of `sscc` name the vertex, face or mode; the place is the whole file.
 impl From<sscc::Error> for FormatError {
     fn from(error: sscc::Error) -> Self {
         Self::whole(error.to_string())
     }
 }
 
-/// A mesh as a whole is refused: its elements are named by their numbers.
+/// Errors of `sscc-solid` name elements by their numbers; the place is the whole file.
 impl From<sscc_solid::SolidError> for FormatError {
     fn from(error: sscc_solid::SolidError) -> Self {
         Self::whole(error.to_string())
     }
 }
 
-/// A path on one line, whatever characters are in it.
+/// Returns a path on one line, with control characters escaped.
 fn line(path: &Path) -> String {
     let shown = path.to_string_lossy();
     if shown.chars().any(char::is_control) { shown.escape_debug().to_string() } else { shown.into_owned() }
 }
 
-/// Text from a file for use in a message: quoted, on one line, and cut when long.
+/// Returns text from a file for a message: quoted, on one line, truncated.
 pub(crate) fn quoted(text: &str) -> String {
     format!("'{}'", cut(text, 40))
 }
 
-/// Text that may hold some of a file's, on one line and cut when long.
+/// Returns text that may contain content of a file, on one line and truncated.
 pub(crate) fn cut(text: &str, longest: usize) -> String {
     let mut line = String::new();
     for c in text.chars().take(longest) {

@@ -1,7 +1,7 @@
-//! VegaFEM's `.cub`: reduced internal forces as cubic polynomials.
+//! Reader for VegaFEM's `.cub` files: reduced internal forces as cubic polynomials.
 //!
-//! Little endian: r (i32), the numbers of monomials of degree 1, 2 and 3 (i32: r, r(r+1)/2, r(r+1)(r+2)/6), then as
-//! float64 the coefficients of degree 1, 2 and 3.
+//! Layout, little endian: r (i32); the numbers of monomials of degree 1, 2 and 3 (i32: r, r(r+1)/2, r(r+1)(r+2)/6); the
+//! coefficients of degree 1, 2 and 3 (float64).
 
 use std::path::Path;
 
@@ -11,14 +11,15 @@ use sscc_solid::{ReducedForces, SolidError, Stiffness, monomials};
 use crate::file::{ending, read_whole, unsupported};
 use crate::{FormatError, IoError, Place};
 
-/// The bytes before the coefficients.
+/// Number of bytes before the coefficients.
 const HEADER: usize = 16;
 
 /// Reads a `.cub` file.
 ///
 /// # Errors
-/// When the name has another ending, the file cannot be read, its size or the numbers of its monomials do not agree
-/// with its rank, that is 0, a coefficient is not finite or beyond [`sscc::limits`], or the linear part is not symmetric.
+/// When the name has another ending, or the file cannot be read; when its size or numbers of monomials do not fit its
+/// rank, or the rank is 0; when a coefficient is not finite or beyond [`sscc::limits`], or the linear part is not
+/// symmetric.
 pub fn read_reduced_forces(path: &Path) -> Result<ReducedForces, IoError> {
     if ending(path) != "cub" {
         return Err(unsupported(path, "reduced forces", ".cub"));
@@ -47,7 +48,7 @@ pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> 
             return Err(FormatError::new(Place::Byte(4 * degree), cause));
         }
     }
-    // Each number of monomials is below 2^31 now, so rank is below 2^16.
+    // Each number of monomials is below 2^31, so the rank is below 2^16.
     let all = expected.iter().map(|size| 8 * rank as u64 * *size as u64).sum::<u64>();
     if body.len() as u64 != all {
         let cause = format!("rank {rank} needs {all} bytes, but {} follow: is the file cut off?", body.len());

@@ -1,9 +1,8 @@
-//! Every reader and writer of sscc: meshes, solids, modes, glTF, arrays and the sealed containers.
+//! Readers and writers of sscc: meshes, solids, modes, glTF, arrays and sealed containers.
 //!
-//! [`load_model`] takes a model by the names of its files, whatever their form; [`load_model_with`] also tells what the
-//! files say beside it (names of morph targets, variances, the pose at which a glTF file is shown).
-//! Models and certificates are kept in containers ([`container`]): NumPy reads them too, and any flipped byte is
-//! noticed.
+//! [`load_model`] loads a model from files of any supported format. [`load_model_with`] also returns the names of morph
+//! targets, the variances and the default pose of a glTF file. Containers ([`container`]) store models and
+//! certificates; NumPy reads them, and a digest detects any changed byte.
 //!
 //! ```
 //! use sscc::{Certificates, CertifyOptions, Query};
@@ -33,7 +32,7 @@
 //! # }
 //! ```
 //!
-//! | what | here |
+//! | content | item |
 //! | --- | --- |
 //! | meshes: OBJ, PLY, OFF, STL | [`read_mesh`], [`mesh`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
@@ -42,15 +41,14 @@
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
-//! | bodies that move: mesh, modes and q(t) as glTF | [`gltf::write_animation`] |
+//! | animation: mesh, modes and q(t) as glTF | [`gltf::write_animation`] |
 //! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
 //!
-//! Formats for drawing split vertices along seams ([`splits_vertices`]): certify such models with `weld`.
+//! STL and glTF split vertices along seams ([`splits_vertices`]): compute the certificates of such models with `weld`.
 //!
-//! All readers take hostile bytes: they answer with an error of one line that names the file, the place in
-//! it and the cause. They never panic, and never allocate by a number that the file's size does not bear out.
-//! Files are read whole (a mapped file that is replaced while in use kills the process), and written
-//! whole or not at all.
+//! All readers accept untrusted bytes. They report an error of one line with the file, the place and the cause. They
+//! never panic, and never allocate by a number that the size of the file does not confirm. Files are read as a whole,
+//! because a mapped file that is truncated while in use ends the process. Files are replaced atomically.
 //!
 //! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 

@@ -1,4 +1,4 @@
-//! A model by the names of its files.
+//! Loads a model from its files, in any supported format.
 
 use std::path::Path;
 
@@ -9,24 +9,24 @@ use crate::{
     IoError, ModelInfo, NamedModes, NpzModel, gltf, read_mesh, read_model, read_modes_for, read_npz_model,
 };
 
-/// What beside the model's own file is needed.
+/// Options for loading a model.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct LoadOptions<'a> {
-    /// The modes of a mesh file: a file, or a folder of target meshes.
+    /// Modes of a mesh file: a file, or a folder of target meshes.
     pub modes: Option<&'a Path>,
-    /// The mesh of a glTF file with several.
+    /// Name of the mesh in a glTF file with several meshes.
     pub mesh_name: Option<&'a str>,
 }
 
 impl<'a> LoadOptions<'a> {
-    /// With these.
+    /// Creates options with these values.
     pub fn new(modes: Option<&'a Path>, mesh_name: Option<&'a str>) -> Self {
         Self { modes, mesh_name }
     }
 }
 
-/// A model with what its files say beside it.
+/// A model with the additional data of its files.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LoadedModel {
@@ -34,15 +34,15 @@ pub struct LoadedModel {
     pub model: ReducedModel,
     /// Units and provenance.
     pub info: ModelInfo,
-    /// The q that a glTF file shows when nothing moves it (r).
+    /// Default q of a glTF file (r numbers).
     pub default_q: Option<Vec<f64>>,
-    /// Names of the modes (r), or none where the files have none.
+    /// Names of the modes (r), or empty.
     pub mode_names: Vec<String>,
-    /// One number for each mode from a `.npz` file (r), such as variances.
+    /// One number per mode from a `.npz` file (r), such as variances.
     pub mode_weights: Option<Vec<f64>>,
 }
 
-/// Loads a model and drops what is known beside it: [`load_model_with`] with modes alone.
+/// Loads a model with modes alone and returns the model with its units and provenance: see [`load_model_with`].
 ///
 /// # Errors
 /// As [`load_model_with`].
@@ -51,15 +51,16 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
     Ok((loaded.model, loaded.info))
 }
 
-/// Loads a model: a `*.model.safetensors`; a `.glb` or `.gltf` with morph targets; a complete `.npz`; or a
-/// mesh file with its modes ([`read_modes_for`]). Its metric is the file's own, else displacement.
+/// Loads a model from a `*.model.safetensors` file, from a `.glb` or `.gltf` file with morph targets, from a complete
+/// `.npz` file, or from a mesh file with its modes ([`read_modes_for`]). The metric is that of the file, else
+/// displacement.
 ///
 /// # Errors
-/// When modes are missing for a mesh, or given for a model that has its own; when a mesh is named for a file
-/// other than glTF; when a file cannot be read or is malformed; when the modes are of another mesh.
+/// When modes are missing for a mesh, or given for a model that contains modes; when a mesh is named for a file other
+/// than glTF; when a file cannot be read or is malformed; when the modes belong to another mesh.
 pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedModel, IoError> {
     let refused = |cause: &str| IoError::Request { path: path.to_owned(), cause: cause.into() };
-    // What is not there is told before what it should be.
+    // A missing file is reported first.
     check_exists(path)?;
     let format = ending(path);
     let is_gltf = matches!(format.as_str(), "glb" | "gltf");
@@ -86,7 +87,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             Err(refused("a model file has its own modes: leave out --modes"))
         }
         (_, None) => {
-            // A file that is missing or no mesh at all is told first: modes would not help.
+            // A missing or malformed mesh is reported before missing modes.
             read_mesh(path)?;
             Err(refused("a mesh has no modes: add --modes FILE, or make some first: sscc modes"))
         }
@@ -99,13 +100,13 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
     }
 }
 
-/// Whether the format of a file splits vertices along seams, so that triangles that belong together share
-/// none: STL and glTF. There vertices of equal position and equal modes should count as one for adjacency.
+/// Whether the format splits vertices along seams, so that adjacent triangles share no vertex: STL and glTF. For
+/// adjacency in such files, vertices of equal position and equal modes should be welded.
 pub fn splits_vertices(path: &Path) -> bool {
     matches!(ending(path).as_str(), "stl" | "glb" | "gltf")
 }
 
-/// `at` is the file to blame when mesh and modes make no model.
+/// Builds the model; `at` is the file of the error if mesh and modes do not fit.
 fn assemble(
     at: &Path,
     mesh: TriMesh,

@@ -1,4 +1,4 @@
-//! The modes of a mesh, whatever the form of their files.
+//! Reads the modes of a mesh from any supported format.
 
 use std::path::Path;
 
@@ -8,8 +8,8 @@ use crate::file::{ending, read_whole};
 use crate::modes::{NamedModes, folder, read_modes};
 use crate::{IoError, npz};
 
-/// Reads the modes of a mesh, with names where the files have some: as [`read_modes`], and also
-/// from a `.npz` archive ([`npz`]) or a folder of target meshes ([`folder`]). `mesh_path` is the mesh's own file.
+/// Reads the modes of a mesh, with names if the files have names. Supports the formats of [`read_modes`], a `.npz`
+/// archive ([`npz`]) and a folder of target meshes ([`folder`]). `mesh_path` is the file of the mesh.
 ///
 /// # Errors
 /// As [`read_modes`], [`npz::parse_modes`] and [`folder::read`].

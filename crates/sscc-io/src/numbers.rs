@@ -1,4 +1,4 @@
-//! Plain numbers: trajectories of q, and vectors such as the weights of a metric.
+//! Readers for tables of numbers: trajectories of q, vectors and matrices.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::file::{ending, read_whole, unsupported};
 use crate::text::{Lines, decoded, number, without_comment};
 use crate::{FormatError, IoError, npy};
 
-/// A table of numbers, row after row: for a trajectory one q in each.
+/// Table of numbers, row after row; a trajectory has one q in each row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
     /// Number of rows, at least 1.
@@ -18,17 +18,17 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// The rows in order.
+    /// Returns the rows in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[f64]> {
         self.data.chunks_exact(self.columns)
     }
 }
 
-/// Reads a trajectory: a `.npy` array of shape (T, r), one q in each row, or (r), a single q. Its numbers are
-/// not looked at: a query refuses a q of another length, or one that is not finite.
+/// Reads a trajectory: a `.npy` array of shape (T, r), one q in each row, or (r), a single q. The numbers are not
+/// checked: a query rejects a q of another length or one that is not finite.
 ///
 /// # Errors
-/// When the file is no `.npy`, cannot be read or is malformed, or the array is empty or of another dimension.
+/// When the file is not a `.npy` file, cannot be read or is malformed, or the array is empty or of another dimension.
 pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
     if ending(path) != "npy" {
         return Err(unsupported(path, "trajectory", ".npy"));
@@ -36,18 +36,18 @@ pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
     parse_rows(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// Reads a vector: a `.npy` array of shape (r), or text with numbers between white space (`.txt`, or any
-/// other ending), where `#` begins a comment.
+/// Reads a vector: a `.npy` array of shape (r), or a text file (any other ending) with numbers between white space,
+/// where `#` begins a comment.
 ///
 /// # Errors
-/// When the file cannot be read or is malformed, or there is no number in it.
+/// When the file cannot be read, is malformed or has no numbers.
 pub fn read_vector(path: &Path) -> Result<Vec<f64>, IoError> {
     let bytes = read_whole(path)?;
     let parse = if ending(path) == "npy" { parse_vector } else { parse_text };
     parse(&bytes).map_err(|error| error.of(path))
 }
 
-/// Reads a matrix: a `.npy` array of shape (n, m); a vector of any form that [`read_vector`] reads becomes one row.
+/// Reads a matrix: a `.npy` array of shape (n, m), or a vector of any form that [`read_vector`] reads, as one row.
 ///
 /// # Errors
 /// As [`read_rows`] and [`read_vector`].

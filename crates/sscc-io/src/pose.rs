@@ -1,4 +1,4 @@
-//! A deformed pose as a mesh file, with its colliding triangles marked.
+//! Writers for a deformed pose as a mesh file, with its colliding triangles marked.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,16 +8,16 @@ use sscc::TriMesh;
 
 use crate::{IoError, write_whole};
 
-/// Red, green and blue of a triangle in a PLY file.
+/// Colours (RGB) of free and colliding triangles in a PLY file.
 const FREE: [u8; 3] = [200, 200, 200];
 const COLLIDING: [u8; 3] = [220, 30, 30];
 
-/// Writes a pose as OBJ: the triangles in the mesh's order, in the groups `free` and `colliding` (a group
-/// occurs as often as the order needs it). Positions (V, model unit) read back bit for bit.
+/// Writes a pose as OBJ: the triangles in the order of the mesh, in the groups `free` and `colliding` (a group can
+/// occur several times). Positions (V, model unit) are written exactly.
 ///
 /// # Errors
-/// When there is not one position for each vertex and one mark for each triangle, a position is not finite,
-/// or the file cannot be written.
+/// When the number of positions is not V or that of marks is not N, a position is not finite, or the file cannot be
+/// written.
 pub fn write_obj_pose(
     path: &Path,
     mesh: &TriMesh,
@@ -28,7 +28,7 @@ pub fn write_obj_pose(
     write_whole(path, obj(mesh, positions, colliding).as_bytes())
 }
 
-/// Writes a pose as binary PLY: positions as float64, and the faces' colours, red where they collide.
+/// Writes a pose as binary PLY: positions as float64, and a colour per face, red for colliding triangles.
 ///
 /// # Errors
 /// As [`write_obj_pose`].
@@ -57,8 +57,8 @@ fn check(path: &Path, mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -
 }
 
 fn obj(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> String {
-    // Writing to a String never fails. Debug prints the shortest digits that read back equal, with an
-    // exponent where many zeros would be needed.
+    // Writing to a String never fails. Debug prints the shortest decimal that reads back equal, with an exponent where
+    // this is shorter.
     let mut text = String::new();
     for p in positions {
         let _ = writeln!(text, "v {:?} {:?} {:?}", p.x, p.y, p.z);

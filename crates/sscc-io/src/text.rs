@@ -3,8 +3,8 @@
 use crate::FormatError;
 use crate::error::quoted;
 
-/// The lines of a text file, each with its number from 1. Lines end with LF or CR LF; a byte order mark is
-/// skipped. Lines are bytes: comments are often written in other encodings, and nobody needs them.
+/// Iterator over the lines of a text file, each with its number from 1. Lines end with LF or CR LF; a byte order mark
+/// is skipped. Lines are bytes, because comments may have other encodings.
 pub(crate) struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
@@ -34,23 +34,23 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// The line without a comment: everything from the first `#`.
+/// Returns the line up to the first `#`.
 pub(crate) fn without_comment(line: &[u8]) -> &[u8] {
     line.iter().position(|b| *b == b'#').map_or(line, |end| &line[..end])
 }
 
-/// The first word of a line (bytes), and what follows it.
+/// Returns the first word of a line (bytes), and the remainder.
 pub(crate) fn split_word(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii_start();
     line.split_at(line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len()))
 }
 
-/// The bytes of a line as text.
+/// Returns the bytes of a line as text.
 pub(crate) fn decoded(bytes: &[u8], line: usize) -> Result<&str, FormatError> {
     std::str::from_utf8(bytes).map_err(|_| FormatError::line(line, "not UTF-8 text"))
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub(crate) fn number(word: &str, line: usize) -> Result<f64, FormatError> {
     match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -59,7 +59,7 @@ pub(crate) fn number(word: &str, line: usize) -> Result<f64, FormatError> {
     }
 }
 
-/// A number of things: an integer from 0.
+/// Parses a count: an integer from 0.
 pub(crate) fn count(word: &str, line: usize) -> Result<usize, FormatError> {
     word.parse().map_err(|_| FormatError::line(line, format!("{} is not a count", quoted(word))))
 }

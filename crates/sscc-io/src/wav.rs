@@ -1,4 +1,4 @@
-//! Sound files: WAV, one channel.
+//! Writer for WAV sound files with one channel.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -7,20 +7,19 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::{IoError, write_whole};
 
-/// How a sample is stored.
+/// Number format of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavFormat {
-    /// Integers of 16 bits: 1 is 32,767, and what is louder is cut there.
+    /// 16-bit integers: 1 is 32,767; louder samples are clipped.
     Pcm16,
-    /// Single precision, as loud as it is.
+    /// Single precision, without clipping.
     Float32,
 }
 
 /// The largest size that the format's 32 bits can tell, less its header.
 const MOST_BYTES: usize = u32::MAX as usize - 4096;
 
-/// Writes a sound of one channel; `rate` is samples in a second, and samples between -1 and 1 are what loudspeakers
-/// play.
+/// Writes a sound with one channel. `rate` is in samples per second; the nominal range of samples is -1 to 1.
 ///
 /// # Errors
 /// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.
@@ -30,10 +29,10 @@ pub fn write_wav(path: &Path, rate: u32, samples: &[f64], format: WavFormat) -> 
     write_whole(path, &bytes)
 }
 
-/// The bytes of the file that [`write_wav`] writes.
+/// Returns the bytes of the file that [`write_wav`] writes.
 ///
 /// # Errors
-/// As [`write_wav`]: one line without a file's name.
+/// As [`write_wav`]; the message has one line without a file name.
 pub fn wav_to_bytes(rate: u32, samples: &[f64], format: WavFormat) -> Result<Vec<u8>, String> {
     let (bits_per_sample, sample_format) = match format {
         WavFormat::Pcm16 => (16, SampleFormat::Int),

@@ -1,4 +1,4 @@
-//! Bodies: solids with fixed vertices, their mass and stiffness, and what moves in them without energy.
+//! Solids with fixed vertices: mass and stiffness matrices, and rigid motions.
 
 use faer::Mat;
 use glam::{DMat3, DVec3};
@@ -14,11 +14,11 @@ use crate::sparse::{BlockSparse, FIXED};
 /// Directions in which fixed vertices hold less than this share of the others are free: rounding.
 const HELD: f64 = 1e-10;
 
-/// A solid, some vertices of which may not move, with its matrices at rest.
+/// Solid with optional fixed vertices, and its matrices at rest.
 pub(crate) struct Body<'a> {
     /// The solid.
     pub solid: &'a Solid,
-    /// Each vertex's row in the matrices, or [`FIXED`].
+    /// Row of each vertex in the matrices, or [`FIXED`].
     rows: Vec<u32>,
     /// Rest positions of the free vertices.
     free: Vec<DVec3>,
@@ -26,7 +26,7 @@ pub(crate) struct Body<'a> {
     pub stiffness: BlockSparse,
     /// Consistent mass.
     pub mass: BlockSparse,
-    /// M-orthonormal rigid motions that the fixed vertices allow: six columns for a free body.
+    /// M-orthonormal rigid motions that the fixed vertices permit: six columns for a free body.
     pub rigid: Mat<f64>,
 }
 
@@ -56,12 +56,12 @@ impl<'a> Body<'a> {
         Ok(body)
     }
 
-    /// The `count` lowest vibrations beside the rigid motions.
+    /// Computes the `count` lowest vibrations, without rigid motions.
     pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<Lowest, ModesError> {
         lowest_modes(&self.stiffness, &self.mass, &self.free, self.rigid.as_ref(), count, progress)
     }
 
-    /// Takes the rigid motions away, M-orthogonally.
+    /// Removes the rigid motions, M-orthogonally.
     pub fn without_rigid(&self, x: &mut Mat<f64>) {
         if self.rigid.ncols() > 0 {
             for _ in 0..2 {
@@ -78,7 +78,7 @@ impl<'a> Body<'a> {
         vertices.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p)).distance(low)
     }
 
-    /// A field on the free vertices as a field on all.
+    /// Extends a field on the free vertices to all vertices, with zeros.
     pub fn on_all(&self, field: &[f64]) -> Vec<DVec3> {
         let at = |row: &u32| match *row {
             FIXED => DVec3::ZERO,
@@ -87,13 +87,13 @@ impl<'a> Body<'a> {
         self.rows.iter().map(at).collect()
     }
 
-    /// A field on all vertices, restricted to the free ones.
+    /// Restricts a field on all vertices to the free ones.
     pub fn on_free(&self, field: &[DVec3]) -> Vec<f64> {
         let free = self.rows.iter().zip(field).filter(|(row, _)| **row != FIXED);
         free.flat_map(|(_, u)| u.to_array()).collect()
     }
 
-    /// Translations and rotations that vanish at the fixed vertices, M-orthonormal.
+    /// Returns the translations and rotations that vanish at the fixed vertices, M-orthonormal.
     fn rigid_motions(&self) -> Result<Mat<f64>, ModesError> {
         let centre = self.free.iter().sum::<DVec3>() / self.free.len() as f64;
         let size = self.diagonal();
@@ -119,8 +119,8 @@ impl<'a> Body<'a> {
     }
 }
 
-/// An M-orthonormal basis of the columns: the `most` directions of the largest mass, without those of less than `least`
-/// times the largest.
+/// Returns an M-orthonormal basis of the columns: the `most` directions of the largest mass, without those of less than
+/// `least` times the largest.
 pub(crate) fn m_orthonormal(
     mass: &BlockSparse,
     mut x: Mat<f64>,
@@ -137,7 +137,8 @@ pub(crate) fn m_orthonormal(
     Ok(x)
 }
 
-/// The matrix T for which the columns of `X T` are M-orthonormal; directions as [`m_orthonormal`] takes them.
+/// Returns the matrix T for which the columns of `X T` are M-orthonormal; the directions are those of
+/// [`m_orthonormal`].
 pub(crate) fn whitening(
     mass: &BlockSparse,
     x: &Mat<f64>,

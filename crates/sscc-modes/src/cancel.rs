@@ -1,4 +1,4 @@
-//! Cancellation of the work on modes.
+//! Cancellation of computations of modes.
 
 use sscc::{Error, Progress};
 

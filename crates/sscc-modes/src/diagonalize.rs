@@ -1,4 +1,4 @@
-//! Modes in which the stiffness is diagonal (paper, section 6).
+//! Rotation of modes that makes the stiffness diagonal (paper, section 6).
 
 use faer::Mat;
 use glam::DVec3;
@@ -9,11 +9,11 @@ use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
 
-/// An eigenvalue of at most this share of the largest is 0. Rounding leaves about 1e-14 of a rigid motion's
-/// 0, of either sign, and such noise must not become the smallest positive weight.
+/// Maximum eigenvalue, relative to the largest, that counts as 0. Rounding leaves about 1e-14 of a rigid motion, of
+/// either sign, which must not become the smallest positive weight.
 const ZERO_SHARE: f64 = 1e-12;
 
-/// Modes in which a stiffness is diagonal: see [`diagonalize`].
+/// Modes with a diagonal stiffness: see [`diagonalize`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagonalized {
     /// `U' = U Q` (3V x r).
@@ -25,21 +25,20 @@ pub struct Diagonalized {
     pub rotation: Vec<f64>,
 }
 
-/// Rotates modes so that a stiffness becomes diagonal: `K~ = Q Lambda Q'`, `U' = U Q`. The new modes span the
-/// same shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding; certificates of a model with the new modes
-/// speak of its positions alone, to the last bit.
+/// Rotates modes so that a stiffness becomes diagonal: `K~ = Q Lambda Q'`, `U' = U Q`. The new modes span the same
+/// shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding. Certificates of a model with the new modes hold
+/// exactly for its own positions.
 ///
 /// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), say from
 /// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
 /// single modes, so that a diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
 ///
-/// The signs are fixed: the largest component of each column of `Q` is positive, the first one if several are
-/// equally large. For equal eigenvalues any orthonormal basis of their space may come out. The same input
-/// gives the same bits again, but other processors may round differently.
+/// The signs are unique: the largest component of each column of `Q` is positive, the first one of equals. Equal
+/// eigenvalues permit any orthonormal basis of their space. The same input gives the same bits on one processor; other
+/// processors may round differently.
 ///
-/// Eigenvalues of 1e-12 of the largest or less become 0. So give all modes about the same length first (best,
-/// make them mass-orthonormal: then `Lambda` holds squared natural angular frequencies); the result depends
-/// on it.
+/// Eigenvalues of at most 1e-12 of the largest become 0. The result depends on the lengths of the modes, so they should
+/// be similar; mass-orthonormal modes are best, with squared natural angular frequencies in `Lambda`.
 ///
 /// ```
 /// use glam::DVec3;
@@ -71,8 +70,8 @@ pub struct Diagonalized {
 /// ```
 ///
 /// # Errors
-/// When the stiffness is of another number of modes or has an eigenvalue below -1e-12 of the largest; and when an
-/// entry of the new modes is out of range.
+/// When the stiffness has another rank or an eigenvalue below -1e-12 of the largest, or an entry of the new modes is
+/// out of range.
 pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized, ModesError> {
     let rank = modes.rank();
     if stiffness.rank() != rank {
@@ -97,8 +96,8 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized,
     Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
 }
 
-/// The eigenvalues of a stiffness, ascending: of modes that are mass-orthonormal, squared natural angular frequencies.
-/// Rounding leaves about 1e-14 of the largest, of either sign, of those that are 0.
+/// Returns the eigenvalues of a stiffness, ascending. For mass-orthonormal modes they are squared natural angular
+/// frequencies. Rounding leaves about 1e-14 of the largest, of either sign, for zeros.
 ///
 /// # Errors
 /// When the eigenvalues do not converge.
@@ -106,7 +105,7 @@ pub fn stiffness_eigenvalues(stiffness: &Stiffness) -> Result<Vec<f64>, ModesErr
     Ok(eigen(stiffness.rank(), &stiffness.symmetrised())?.0)
 }
 
-/// Eigenvalues, ascending, and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
+/// Returns ascending eigenvalues and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
 /// matrix, the largest component of each positive.
 pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
     let matrix = Mat::from_fn(rank, rank, |i, j| matrix[i * rank + j]);

@@ -1,4 +1,4 @@
-//! A surface that moves with a solid around it.
+//! Surface embedded in a lattice of cubes.
 
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
@@ -7,10 +7,10 @@ use sscc_solid::{Material, Solid};
 use crate::ModesError;
 use crate::lattice::{Interpolation, Lattice};
 
-/// A closed surface and the lattice of cubes around it, which has its mass and stiffness.
+/// Closed surface with the lattice of cubes around it, which carries mass and stiffness.
 ///
-/// Parts that are close in space but apart along the shape are not glued, however narrow the gap. Cubes at the surface
-/// count by the share of each octant that lies inside.
+/// The lattice keeps parts separate that are close in space but not along the surface, however narrow the gap. The
+/// filled share of each octant scales mass and stiffness of cubes at the surface.
 pub struct Embedded {
     solid: Solid,
     interpolation: Interpolation,

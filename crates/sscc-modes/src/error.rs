@@ -1,6 +1,6 @@
-//! Why a surface, a stiffness or an animation gives no modes.
+//! Errors of the computation of modes.
 
-/// No modes could be made. One line, naming the cause.
+/// Error of a computation of modes; the message is one line with the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModesError {
@@ -17,7 +17,7 @@ pub enum ModesError {
         /// Root mean square distance of the surface from the origin (model unit).
         distance: f64,
     },
-    /// A stiffness of another number of modes.
+    /// The stiffness has another number of modes.
     #[error("the stiffness is of {found} modes, not of {rank}: pass U'KU of these modes")]
     StiffnessRank {
         /// Modes of the stiffness.
@@ -25,7 +25,7 @@ pub enum ModesError {
         /// Number of modes.
         rank: usize,
     },
-    /// Some deformation has a negative energy.
+    /// The stiffness has a negative eigenvalue.
     #[error(
         "the stiffness has the eigenvalue {eigenvalue:e} (largest magnitude {largest:e}): none may be negative; take it where the model is at rest"
     )]
@@ -48,7 +48,7 @@ pub enum ModesError {
         "the mass or the stiffness leaves the range of numbers (1e-308 to 1e308): take units in which size, density and Young's modulus are nearer to 1"
     )]
     OutOfRange,
-    /// Not all vibrations reached the accuracy asked for.
+    /// Not all vibrations converged.
     #[error("{}", unconverged(*.converged, *.wanted, *.ratio, *.is_rounding))]
     Unconverged {
         /// The vibrations that reached it.
@@ -60,7 +60,7 @@ pub enum ModesError {
         /// Whether the rounding errors of the lowest vibration are larger than the error allowed for the highest.
         is_rounding: bool,
     },
-    /// Rounding hides the number of vibrations, so that it is not known whether one was missed.
+    /// Rounding hides the number of vibrations, so one may be missing.
     #[error(
         "rounding hides whether a vibration was missed: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; take elements and materials that differ less, or larger elements"
     )]
@@ -78,23 +78,23 @@ pub enum ModesError {
         /// The largest residual, as a share of the force.
         residual: f64,
     },
-    /// An eigenvalue that no stiffness at rest has.
+    /// An eigenvalue is negative or not finite.
     #[error(
         "eigenvalue {index} (counted from 0) is {value:e}: it must be finite and at least 0; set small negative ones to 0"
     )]
     Eigenvalue {
-        /// Its place, from 0.
+        /// Index, from 0.
         index: usize,
         /// Its value.
         value: f64,
     },
-    /// A filter that would leave nothing.
+    /// The parameter `ell` of the filter is not positive and finite.
     #[error("ell is {value:e}: it must be positive and finite; the paper takes 100")]
     Ell {
         /// Its value.
         value: f64,
     },
-    /// A fixed vertex that is not there.
+    /// A fixed vertex does not exist.
     #[error("vertex {vertex} (counted from 0) cannot be fixed: the solid has {vertices} vertices")]
     FixedVertex {
         /// The vertex, from 0.
@@ -102,13 +102,13 @@ pub enum ModesError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// Nothing is left to move.
+    /// All vertices are fixed.
     #[error("all {vertices} vertices are fixed: leave some free")]
     AllFixed {
         /// Number of vertices.
         vertices: usize,
     },
-    /// More modes than a body can have.
+    /// More modes were requested than the body has.
     #[error(
         "{asked} modes were asked for, but the body has {available}: ask for fewer, or take a finer mesh"
     )]
@@ -118,7 +118,7 @@ pub enum ModesError {
         /// Degrees of freedom, without fixed vertices and rigid motions.
         available: usize,
     },
-    /// More modes for large deformations than their forces have room for.
+    /// More nonlinear modes were requested than the limit.
     #[error(
         "{asked} nonlinear modes were asked for: their forces have rank^4 coefficients; ask for at most {most}"
     )]
@@ -128,7 +128,7 @@ pub enum ModesError {
         /// The most there may be.
         most: usize,
     },
-    /// A deformation of a solid has a negative energy, or none.
+    /// A diagonal entry of the stiffness is not positive.
     #[error(
         "the stiffness is not positive at free vertex {vertex} (counted from 0): check the elements and materials around it"
     )]
@@ -136,7 +136,7 @@ pub enum ModesError {
         /// The vertex at which that was noticed, from 0, fixed vertices not counted.
         vertex: usize,
     },
-    /// Parts that hang together by less than a face.
+    /// Parts are connected by less than a face.
     #[error(
         "the body has {found} motions that cost no energy, a connected one has {expected}: parts hang together by an edge or a vertex only, or by nothing (join them, or fix more vertices); or the body is so slender, or its materials so unlike, that rounding hides its lowest vibrations (take larger elements)"
     )]
@@ -159,7 +159,7 @@ pub enum ModesError {
     /// Not enough memory for the factor of the stiffness.
     #[error("the stiffness of this body is too large for the memory: take a coarser mesh, or fewer cubes")]
     Memory,
-    /// A surface with a hole, or with triangles that are oriented differently.
+    /// The surface has a hole, or its triangles are not oriented consistently.
     #[error(
         "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes; vertices of exactly equal position are one already), and orient its triangles alike"
     )]
@@ -173,10 +173,10 @@ pub enum ModesError {
         /// Triangles that pass it in the other.
         backward: usize,
     },
-    /// A surface that encloses nothing.
+    /// The surface encloses no volume.
     #[error("the surface encloses no volume: a lattice needs the surface of a solid, thicker than rounding")]
     NoVolume,
-    /// What is inside of a surface that cuts itself is ambiguous.
+    /// The surface collides with itself at rest, so its inside is ambiguous.
     #[error(
         "triangles {a} and {b} (counted from 0) collide at rest: a lattice needs a surface that neither cuts nor touches itself; move them apart, or remove one"
     )]
@@ -186,7 +186,7 @@ pub enum ModesError {
         /// The other triangle, from 0.
         b: u32,
     },
-    /// A lattice of no cells, or of so many that memory would not suffice.
+    /// The number of lattice cells is 0 or too large.
     #[error("{cells} cells along the longest side: for this surface it must be 1 to {most}")]
     Resolution {
         /// Cells asked for.
@@ -194,7 +194,7 @@ pub enum ModesError {
         /// The most for this surface.
         most: usize,
     },
-    /// A body within a body, or a part of a surface that is inside out.
+    /// A part of the surface lies inside the solid, or is inside out.
     #[error(
         "the part of the surface with triangle {triangle} (counted from 0) lies inside the solid or is inside out: remove it, or turn its triangles over (outward, and for a hollow towards its middle)"
     )]
@@ -202,19 +202,19 @@ pub enum ModesError {
         /// A triangle of that part, from 0.
         triangle: u32,
     },
-    /// Several solids.
+    /// The solid has several components.
     #[error("the solid is in {count} separate pieces: make a lattice for each, or join them")]
     Pieces {
         /// How many pieces there are.
         count: usize,
     },
-    /// Fewer than two frames do not differ.
+    /// An animation has fewer than two frames.
     #[error("{found} frames are too few: principal components need at least two")]
     TooFewFrames {
         /// Number of frames.
         found: usize,
     },
-    /// A frame of another mesh.
+    /// A frame belongs to another mesh.
     #[error(
         "frame {frame} (counted from 0) has {found} vertices, the mesh {expected}: all frames must be of the same mesh"
     )]
@@ -226,7 +226,7 @@ pub enum ModesError {
         /// That of the mesh.
         expected: usize,
     },
-    /// A position out of range.
+    /// A position of a frame is out of range.
     #[error(
         "vertex {vertex} of frame {frame} (counted from 0) has a coordinate that is not finite or beyond 2^200"
     )]
@@ -236,13 +236,13 @@ pub enum ModesError {
         /// The vertex, from 0.
         vertex: usize,
     },
-    /// Nothing moves.
+    /// All frames are equal.
     #[error("all {frames} frames are equal, up to rounding: give frames that differ")]
     StillFrames {
         /// Number of frames.
         frames: usize,
     },
-    /// More components than the frames have.
+    /// More components were requested than the frames have.
     #[error(
         "{asked} components were asked for, but the frames differ in {available} independent ways: ask for at most that many"
     )]
@@ -252,10 +252,10 @@ pub enum ModesError {
         /// Components there are.
         available: usize,
     },
-    /// The solid or the stiffness is none.
+    /// Error of the crate `sscc-solid`.
     #[error(transparent)]
     Solid(#[from] sscc_solid::SolidError),
-    /// The core refused the modes or the metric: a number is out of range.
+    /// Error of the crate `sscc`: a number of the modes or the metric is out of range.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }

@@ -6,13 +6,14 @@ use sscc_solid::Stiffness;
 
 use crate::{ModesError, stiffness_eigenvalues};
 
-/// An eigenvalue counts as 0 where it is at most this share of the largest entry: rounding leaves that much.
+/// Maximum eigenvalue, relative to the largest entry, that counts as 0; rounding leaves that much.
 const ROUNDING: f64 = 1e-12;
 
-/// Natural frequencies (Hz) of mass-orthonormal modes: of each mode where the stiffness is diagonal, else ascending.
+/// Returns the natural frequencies (Hz) of mass-orthonormal modes: in the order of the modes if the stiffness is
+/// diagonal, else ascending.
 ///
 /// # Errors
-/// When an eigenvalue is negative, as where the model is not at rest, or the eigenvalues do not converge.
+/// When an eigenvalue is negative (the model is not at rest), or the eigenvalues do not converge.
 pub fn natural_frequencies(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError> {
     let eigenvalues = match stiffness.is_diagonal() {
         true => stiffness.diagonal().collect(),
@@ -25,8 +26,8 @@ pub fn natural_frequencies(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError
     })
 }
 
-/// The frequency (Hz) of each mode by itself; none where the stiffness is not diagonal, so that modes swing together,
-/// or one is negative.
+/// Returns the frequency (Hz) of each mode; None if the stiffness is not diagonal (modes are coupled), or an eigenvalue
+/// is negative.
 pub fn mode_frequencies(stiffness: &Stiffness) -> Option<Vec<f64>> {
     if !stiffness.is_diagonal() {
         return None;

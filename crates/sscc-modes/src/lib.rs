@@ -1,4 +1,4 @@
-//! Where deformation modes come from, and shapes to try them on.
+//! Computes deformation modes, and provides example shapes.
 //!
 //! - [`polynomial_modes`]: displacements that are quadratic polynomials of the rest position (paper,
 //!   section 7), for any surface, without a material or a solid mesh;
@@ -22,13 +22,12 @@
 //! # }
 //! ```
 //!
-//! Modes from a program of your own need nothing of this: [`sscc::Modes`] takes any matrix. If you also have
-//! the stiffness of the solid, an example at [`diagonalize`] makes a model whose metric is strain energy.
+//! Modes of other programs do not need this crate: [`sscc::Modes`] takes any matrix. With the stiffness of the solid,
+//! the example at [`diagonalize`] gives a model whose metric is strain energy.
 //!
-//! Everything here gives the same bits on every machine: sums have a fixed order, and sines and
-//! cosines come from `libm`, not from the platform. The exceptions are [`diagonalize`],
-//! [`pca_modes`] and the modes of solids: their linear algebra is rounded as the vector instructions of the processor
-//! do.
+//! All results have the same bits on every machine: sums have a fixed order, and sines and cosines come from `libm`.
+//! The exceptions are [`diagonalize`], [`pca_modes`] and the modes of solids, whose linear algebra depends on the
+//! vector instructions of the processor.
 
 mod body;
 mod cancel;

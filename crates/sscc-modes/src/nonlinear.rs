@@ -1,10 +1,10 @@
 //! Modal derivatives, and the basis that they and the linear modes give (Barbic and James 2005).
 //!
-//! A linear mode cannot bend far: what a large bend needs beside it is, to second order, its derivative. `K d_ij =
-//! -(H : x_i) x_j`, where H is the second derivative of the forces. Both are scaled by how much of them is likely to
-//! occur, modes by `q_i = a lambda_1 / lambda_i`, derivatives by `q_i q_j`; then the directions of the most mass are
-//! taken. With the amplitude a, which the original does not have, the basis does not depend on units: a first mode of
-//! that amplitude moves some vertex by a fifth of the body's diagonal.
+//! Linear modes alone do not represent large bends; modal derivatives add the terms of second order. They solve `K d_ij
+//! = -(H : x_i) x_j`, where H is the second derivative of the forces. Modes are scaled by their amplitude `q_i = a
+//! lambda_1 / lambda_i`, derivatives by `q_i q_j`. The basis consists of the directions of the largest mass. The
+//! amplitude a, which the original method does not have, makes the basis independent of units: with it, the first mode
+//! moves some vertex by a fifth of the body's diagonal.
 
 use faer::Mat;
 use sscc::Progress;
@@ -16,10 +16,10 @@ use crate::eigen::Lowest;
 use crate::eigen::tall::{inner, product};
 use crate::elasticity::second_derivatives;
 
-/// Linear modes for each mode of the basis: 20 for r = 30, as in the paper's models.
+/// Linear modes per mode of the basis: 20 for r = 30, as in the paper's models.
 const LINEAR_SHARE: f64 = 2.0 / 3.0;
 
-/// The largest displacement by the first mode that the basis is made for, as a share of the body's diagonal.
+/// Maximum displacement by the first mode, relative to the body's diagonal.
 const AMPLITUDE: f64 = 0.2;
 
 /// Right-hand sides solved at once.

@@ -1,7 +1,7 @@
-//! A basis that stays orthonormal while vectors are added one by one.
+//! Orthonormal basis that grows vector by vector.
 
-/// A vector is dependent on those before it when this share of its length, or less, is new. Rounding
-/// leaves about 1e-16 of a dependent vector; a second projection repairs what a share of 1e-10 loses.
+/// Maximum new share of a dependent vector. Rounding leaves about 1e-16; a second projection repairs the loss at a
+/// share of 1e-10.
 const NEW_SHARE: f64 = 1e-10;
 
 /// Orthonormal vectors under the inner product `<x, y> = sum_i weights[i] x[i] y[i]`.

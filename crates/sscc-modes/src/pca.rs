@@ -1,4 +1,4 @@
-//! Modes of an animation: the principal components of its frames.
+//! Principal components of an animation.
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
@@ -12,11 +12,10 @@ use crate::diagonalize::eigen;
 /// Without a rank, as many components as explain this share of the variance.
 const EXPLAINED: f64 = 0.999;
 
-/// A component of at most this share of the largest variance is none: products of frames leave about 1e-15 for each
-/// frame.
+/// Minimum variance of a component, relative to the largest: products of frames leave about 1e-15 for each frame.
 const ZERO_SHARE: f64 = 1e-12;
 
-/// So many rows of frames, or vertices, are worked on at once.
+/// Number of rows of frames, or vertices, per task.
 const CHUNK: usize = 1 << 12;
 
 /// The mean of an animation, and the principal components about it: see [`pca_modes`].
@@ -96,7 +95,7 @@ pub fn pca_modes(
     })
 }
 
-/// Refuses frames that are none of a mesh with so many vertices.
+/// Returns an error for frames that do not fit a mesh with this number of vertices.
 fn check(frames: &[Vec<DVec3>], vertices: usize) -> Result<(), ModesError> {
     if frames.len() < 2 {
         return Err(ModesError::TooFewFrames { found: frames.len() });
@@ -154,7 +153,7 @@ fn components(
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
 }
 
-/// How many of the largest variances it takes to explain so much.
+/// Returns the number of largest variances that explain this share.
 fn explaining(wanted: f64, variances: &[f64]) -> usize {
     let mut sum = 0.0;
     let reached = variances.iter().position(|x| {

@@ -5,9 +5,9 @@ use sscc_solid::Stiffness;
 
 use crate::ModesError;
 
-/// The reduced stiffness matrix `U'KU` (exactly symmetric) of a stiffness matrix `K`
-/// (3V x 3V, force per length) that is given by what it does: `apply(u, force)` is handed a displacement
-/// `u` (3V, vertex by vertex) and overwrites `force` (3V) with `K u`.
+/// Returns the reduced stiffness matrix `U'KU` (exactly symmetric) of a stiffness matrix `K` (3V x 3V, force per
+/// length), given as an operator: `apply(u, force)` receives a displacement `u` (3V, vertex by vertex) and overwrites
+/// `force` (3V) with `K u`.
 ///
 /// ```
 /// use sscc::Modes;

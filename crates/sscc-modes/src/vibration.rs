@@ -1,4 +1,4 @@
-//! Linear modes: the lowest natural vibrations of a solid.
+//! Modes of solids: vibrations, nonlinear bases and polynomial modes.
 
 use faer::Mat;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use crate::eigen::tall::{inner, product};
 use crate::elasticity::reduced_forces;
 use crate::{DEFAULT_ELL, ModesError, energy_metric, filter_eigenvalues, nonlinear};
 
-/// Modes of a solid's vertices in which mass is the identity and the stiffness at rest is diagonal.
+/// Modes of a solid's vertices with identity mass and diagonal stiffness at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidModes {
     /// One displacement for each vertex of the solid and each mode; mass-orthonormal (1 / root of mass). Fixed
@@ -51,7 +51,7 @@ impl SolidModes {
 /// The `rank` lowest vibrations of a solid: `K x = lambda M x` (linear modal analysis; paper, section 6). Rigid motions
 /// that the `fixed` vertices allow are left out: six of a free body.
 ///
-/// None is missed: eigenvalues below the last one are counted by the inertia of `K - sigma M`.
+/// The inertia of `K - sigma M` counts the eigenvalues below the last one, so none is missing.
 ///
 /// # Errors
 /// When a fixed vertex does not exist, all are fixed, there are fewer modes, parts of the body hang together by an edge
@@ -89,7 +89,7 @@ pub fn nonlinear_modes(
     }
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
-    // Rigid motions are not in the basis: a soft direction is a soft one.
+    // The basis has no rigid motions, so low eigenvalues are those of soft directions.
     let (turn, eigenvalues) = rotation(&body, &basis, 0.0)?;
     if eigenvalues.len() < rank {
         return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });

@@ -1,4 +1,4 @@
-//! The surface of a solid.
+//! Boundary mesh of a solid.
 
 use glam::DVec3;
 use sscc::{Modes, TriMesh};
@@ -6,21 +6,21 @@ use sscc::{Modes, TriMesh};
 use crate::element::{CUBE_FACES, TET_FACES};
 use crate::{Solid, SolidError};
 
-/// The boundary of a solid.
+/// Boundary of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// The faces that belong to one element only, outward, in the order of the elements; those of cubes cut in two. Its
-    /// vertices are those of the solid that are on the boundary, in their order.
+    /// Faces that belong to exactly one element, outward, in the order of the elements; faces of cubes are split into
+    /// two triangles. Vertices are those of the solid on the boundary, in their order.
     pub mesh: TriMesh,
-    /// The vertex of the solid that each vertex of the mesh is.
+    /// Vertex of the solid for each vertex of the mesh.
     pub vertices: Vec<u32>,
 }
 
 impl Solid {
-    /// The boundary.
+    /// Returns the boundary. Costs O(n log n) in the number of faces.
     ///
     /// # Errors
-    /// When three elements share a face, so that some overlap.
+    /// When three elements share a face, so that elements overlap.
     pub fn boundary(&self) -> Result<Boundary, SolidError> {
         let tets = self.tets().iter().flat_map(|tet| TET_FACES.map(|f| f.map(|k| tet[k]).to_vec()));
         let cubes = self.cubes().iter().flat_map(|cube| CUBE_FACES.map(|f| f.map(|k| cube[k]).to_vec()));
@@ -53,10 +53,10 @@ impl Solid {
 }
 
 impl Boundary {
-    /// Modes of the solid's vertices as modes of the boundary's vertices.
+    /// Restricts modes of the solid's vertices to the boundary's vertices.
     ///
     /// # Errors
-    /// When the modes are of fewer vertices than the solid has.
+    /// When the modes have fewer vertices than the solid.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SolidError> {
         let (rank, found) = (modes.rank(), modes.vertices());
         let needed = self.vertices.iter().max().map_or(0, |v| *v as usize + 1);
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn modes_of_the_solid_become_those_of_its_boundary() {
-        // A corner of four tetrahedra within a larger one: vertex 4 is inside.
+        // Four tetrahedra within a larger one: vertex 4 is inside.
         let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [1, 1, 1]];
         let vertices = corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec();
         let tets = vec![[0, 2, 1, 4], [0, 1, 3, 4], [1, 2, 3, 4], [0, 3, 2, 4]];

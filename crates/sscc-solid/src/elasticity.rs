@@ -2,18 +2,18 @@
 
 use crate::{ReducedForces, Stiffness};
 
-/// The reduced internal forces at q, for modes of which the reduced mass matrix is the identity. So the eigenvalues of
-/// the stiffness are squared natural angular frequencies (1/s^2).
+/// Reduced internal forces at q, for modes whose reduced mass matrix is the identity. The eigenvalues of the stiffness
+/// are then squared natural angular frequencies (1/s^2).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elasticity {
-    /// The forces are `K~ q`.
+    /// Linear forces `K~ q`.
     Linear(Stiffness),
-    /// The forces of large deformations (St. Venant-Kirchhoff); their linear part is the stiffness at rest.
+    /// Forces of large deformations (St. Venant-Kirchhoff); their linear part is the stiffness at rest.
     Nonlinear(ReducedForces),
 }
 
 impl Elasticity {
-    /// The stiffness at rest.
+    /// Returns the stiffness at rest.
     pub fn stiffness(&self) -> &Stiffness {
         match self {
             Self::Linear(stiffness) => stiffness,
@@ -21,12 +21,12 @@ impl Elasticity {
         }
     }
 
-    /// Number of modes r.
+    /// Returns the number of modes r.
     pub fn rank(&self) -> usize {
         self.stiffness().rank()
     }
 
-    /// The same body in small deformations: the stiffness at rest alone.
+    /// Returns the linear forces of the stiffness at rest.
     #[must_use]
     pub fn linearized(&self) -> Self {
         Self::Linear(self.stiffness().clone())

@@ -1,14 +1,14 @@
-//! Elements, and the points at which they are integrated.
+//! Elements and their integration points.
 //!
-//! A tetrahedron has constant gradients: one point. A cube (trilinear hexahedron) has 2 x 2 x 2 Gauss points, one in
-//! each octant; where only a share of an octant is filled, its point counts by that share. Everything that is
-//! integrated (stiffness, forces, their polynomials) is a sum over these points, so that all of it speaks of one body.
+//! A tetrahedron has constant gradients and needs one point. A cube (trilinear hexahedron) has 2 x 2 x 2 Gauss points,
+//! one in each octant; the filled share of an octant scales the weight of its point. Stiffness, forces and polynomials
+//! are sums over the same points, so they agree with each other.
 
 use glam::{DMat3, DVec3};
 
 use crate::Material;
 
-/// The corners of the cube from -1 to 1, in the order of a solid's cubes.
+/// Corners of the cube from -1 to 1, in the order of a solid's cubes.
 const CORNERS: [DVec3; 8] = [
     DVec3::new(-1.0, -1.0, -1.0),
     DVec3::new(1.0, -1.0, -1.0),
@@ -20,48 +20,48 @@ const CORNERS: [DVec3; 8] = [
     DVec3::new(-1.0, 1.0, 1.0),
 ];
 
-/// Distance of the Gauss points from the middle, 1 / sqrt(3).
+/// Distance of the Gauss points from the centre, 1 / sqrt(3).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
-/// The faces of a tetrahedron of positive volume, outward.
+/// Faces of a tetrahedron of positive volume, outward.
 pub(crate) const TET_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
-/// The faces of a cube, outward.
+/// Faces of a cube, outward.
 pub(crate) const CUBE_FACES: [[usize; 4]; 6] =
     [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
 /// An element of a solid.
 #[derive(Clone, Debug)]
 pub struct Element<'a> {
-    /// Its vertices: four or eight.
+    /// Four or eight vertices.
     pub vertices: &'a [u32],
-    /// Its material.
+    /// Material.
     pub material: &'a Material,
     /// Integration points: one or eight.
     points: [IntegrationPoint; 8],
     count: usize,
 }
 
-/// A point of integration.
+/// Integration point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntegrationPoint {
-    /// The gradient of each vertex's shape function at the point (1 / length).
+    /// Gradient of each vertex's shape function at the point (1 / length).
     pub gradients: [DVec3; 8],
-    /// Each vertex's shape function.
+    /// Value of each vertex's shape function.
     pub shape: [f64; 8],
-    /// The volume that the point stands for.
+    /// Weight of the point: its volume.
     pub volume: f64,
 }
 
 impl<'a> Element<'a> {
-    /// A tetrahedron with its corners' positions.
+    /// Creates a tetrahedron from the positions of its corners.
     pub(crate) fn tet(vertices: &'a [u32; 4], corners: [DVec3; 4], material: &'a Material) -> Self {
         let mut points = [IntegrationPoint::default(); 8];
         points[0] = tet_point(corners);
         Self { vertices, material, points, count: 1 }
     }
 
-    /// A cube with its corners' positions, and the share of each octant (at corner k) that is filled.
+    /// Creates a cube from the positions of its corners and the filled share of each octant (at corner k).
     pub(crate) fn cube(
         vertices: &'a [u32; 8],
         corners: &[DVec3; 8],
@@ -76,13 +76,13 @@ impl<'a> Element<'a> {
         Self { vertices, material, points, count: 8 }
     }
 
-    /// The integration points.
+    /// Returns the integration points.
     #[inline]
     pub fn points(&self) -> &[IntegrationPoint] {
         &self.points[..self.count]
     }
 
-    /// Consistent masses: the integral of density times the product of two shape functions.
+    /// Returns the consistent mass matrix: integrals of density times the product of two shape functions.
     pub fn masses(&self) -> [[f64; 8]; 8] {
         let mut masses = [[0.0; 8]; 8];
         if let [tet] = self.points() {
@@ -106,7 +106,7 @@ impl<'a> Element<'a> {
     }
 }
 
-/// The only point of a tetrahedron.
+/// Integration point of a tetrahedron.
 fn tet_point([a, b, c, d]: [DVec3; 4]) -> IntegrationPoint {
     let edges = DMat3::from_cols(b - a, c - a, d - a);
     let inverse = edges.inverse(); // its rows are the gradients of b, c, d
@@ -118,7 +118,7 @@ fn tet_point([a, b, c, d]: [DVec3; 4]) -> IntegrationPoint {
     point
 }
 
-/// Shape functions of the cube from -1 to 1, and their gradients there.
+/// Returns shape functions and their gradients at a point of the cube from -1 to 1.
 fn trilinear(at: DVec3) -> ([f64; 8], [DVec3; 8]) {
     let factors = CORNERS.map(|c| DVec3::ONE + c * at);
     let shape = factors.map(|f| f.x * f.y * f.z / 8.0);
@@ -129,13 +129,13 @@ fn trilinear(at: DVec3) -> ([f64; 8], [DVec3; 8]) {
     (shape, std::array::from_fn(gradient))
 }
 
-/// The derivative of position in the cube from -1 to 1.
+/// Derivative of the position with respect to coordinates of the cube from -1 to 1.
 fn jacobian(corners: &[DVec3; 8], gradients: &[DVec3; 8]) -> DMat3 {
     let column = |axis: usize| corners.iter().zip(gradients).map(|(p, g)| *p * g[axis]).sum();
     DMat3::from_cols(column(0), column(1), column(2))
 }
 
-/// The point of a whole cube at a place of the cube from -1 to 1, for an eighth of its volume.
+/// Returns the integration point at a position of the cube from -1 to 1, for an eighth of its volume.
 fn cube_point(corners: &[DVec3; 8], at: DVec3) -> IntegrationPoint {
     let (shape, local) = trilinear(at);
     let jacobian = jacobian(corners, &local);
@@ -148,7 +148,7 @@ pub(crate) fn cube_is_inverted(corners: &[DVec3; 8]) -> bool {
     let size = corners.iter().map(|p| p.distance(corners[0])).fold(0.0, f64::max);
     CORNERS.iter().flat_map(|c| [*c, *c * GAUSS]).any(|at| {
         let determinant = jacobian(corners, &trilinear(at).1).determinant();
-        // In halves of lengths; NaN (an overflow) is inverted, too.
+        // Lengths count in halves; NaN (an overflow) also counts as inverted.
         determinant.is_nan() || determinant <= 1e-9 * size * size * size
     })
 }

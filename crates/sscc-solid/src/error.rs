@@ -1,24 +1,24 @@
-//! Why a volumetric mesh, a solid, a stiffness or reduced forces are refused.
+//! Errors of volumetric meshes, solids, stiffness matrices and reduced forces.
 
 use crate::MaterialError;
 
-/// Data that are no solid, or no forces of one. One line that names the place and the cause.
+/// Invalid data of a solid or its forces; the message is one line with the place and the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolidError {
-    /// A mesh without vertices.
+    /// The mesh has no vertices.
     #[error("the mesh has no vertices")]
     NoVertices,
-    /// More vertices than indices can name.
+    /// The number of vertices exceeds 32-bit indices.
     #[error("{count} vertices are more than 32-bit indices can name")]
     TooManyVertices {
         /// Number of vertices.
         count: usize,
     },
-    /// A mesh without elements.
+    /// The mesh has no elements.
     #[error("the mesh has no elements: no tetrahedra and no cubes (hexahedra)")]
     NoElements,
-    /// Material numbers that do not fit the elements.
+    /// The material indices do not fit the elements.
     #[error(
         "{found} material numbers for {elements} elements: each element needs one, of a material that is there"
     )]
@@ -28,13 +28,13 @@ pub enum SolidError {
         /// Number of material numbers.
         found: usize,
     },
-    /// Filled shares that do not fit the cubes.
+    /// The filled shares do not fit the cubes.
     #[error("the filled shares do not fit {cubes} cubes: each cube needs eight numbers, from 0 to 1")]
     Fill {
         /// Number of cubes.
         cubes: usize,
     },
-    /// An element or a listed face of a vertex that is not there.
+    /// An element or a listed face names a vertex that does not exist.
     #[error("an element names vertex {index} (counted from 0), but there are {vertices}")]
     ElementIndex {
         /// The vertex, from 0.
@@ -42,13 +42,13 @@ pub enum SolidError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// An element or a listed face that names a vertex twice.
+    /// An element or a listed face names a vertex twice.
     #[error("an element names vertex {index} (counted from 0) twice")]
     RepeatedCorner {
         /// The vertex, from 0.
         index: u32,
     },
-    /// An element that is there twice: it would be twice as stiff.
+    /// An element is duplicated, which would double its stiffness.
     #[error("{kind} {first} and {second} (counted from 0) have the same corners")]
     SameCorners {
         /// "tetrahedra" or "cubes".
@@ -58,13 +58,13 @@ pub enum SolidError {
         /// The other one, from 0.
         second: usize,
     },
-    /// A vertex that no element holds: it has neither mass nor stiffness.
+    /// A vertex belongs to no element, so it has neither mass nor stiffness.
     #[error("vertex {vertex} (counted from 0) of the solid belongs to no element: remove it")]
     OrphanVertex {
         /// The vertex, from 0.
         vertex: usize,
     },
-    /// A vertex out of range.
+    /// A vertex has a coordinate out of range.
     #[error(
         "vertex {vertex} (counted from 0) of the solid has a coordinate that is not finite or beyond 2^200"
     )]
@@ -72,7 +72,7 @@ pub enum SolidError {
         /// The vertex, from 0.
         vertex: usize,
     },
-    /// A tetrahedron without volume.
+    /// A tetrahedron has no volume.
     #[error(
         "tetrahedron {tet} (counted from 0, vertices {corners:?}) is flat: mesh the solid anew, or remove it"
     )]
@@ -82,7 +82,7 @@ pub enum SolidError {
         /// Its vertices.
         corners: [u32; 4],
     },
-    /// A tetrahedron that is turned the other way than most.
+    /// A tetrahedron is inverted, while others are not.
     #[error(
         "tetrahedron {tet} (counted from 0, vertices {corners:?}) is inverted, one of {count}: exchange two of its vertices, or mesh the solid anew"
     )]
@@ -91,10 +91,10 @@ pub enum SolidError {
         tet: usize,
         /// Its vertices.
         corners: [u32; 4],
-        /// How many are inverted.
+        /// Number of inverted tetrahedra.
         count: usize,
     },
-    /// A cube that is flat or turned inside out somewhere.
+    /// A cube is flat or inverted at some point.
     #[error(
         "cube {cube} (counted from 0) is flat or inverted at a corner: its corners go around its lower face, then around its upper one"
     )]
@@ -102,7 +102,7 @@ pub enum SolidError {
         /// The cube, from 0.
         cube: usize,
     },
-    /// A face of more than two elements.
+    /// A face belongs to more than two elements.
     #[error(
         "the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew"
     )]
@@ -110,10 +110,10 @@ pub enum SolidError {
         /// Its vertices.
         face: Vec<u32>,
     },
-    /// A number that no material has.
+    /// A property of a material is outside its range.
     #[error(transparent)]
     Material(#[from] MaterialError),
-    /// A stiffness of another number of modes.
+    /// The size of the stiffness does not fit the number of modes.
     #[error("the stiffness has {found} entries, {rank} modes need {rank} x {rank}: pass U'KU of these modes")]
     StiffnessLength {
         /// Entries given.
@@ -121,7 +121,7 @@ pub enum SolidError {
         /// Number of modes.
         rank: usize,
     },
-    /// A stiffness with a NaN, an infinity or a number out of range.
+    /// An entry of the stiffness is not finite or out of range.
     #[error(
         "the stiffness is {value:e} at row {row}, column {column} (counted from 0): not finite, or beyond 2^200; change its unit or repair it"
     )]
@@ -133,7 +133,7 @@ pub enum SolidError {
         /// The entry.
         value: f64,
     },
-    /// Mirrored entries differ by more than rounding.
+    /// The stiffness is not symmetric up to rounding.
     #[error(
         "the stiffness is {entry:e} at row {row}, column {column} (counted from 0), but {mirrored:e} mirrored: it must be symmetric; pass all of it, not a triangle"
     )]
@@ -147,7 +147,7 @@ pub enum SolidError {
         /// The entry with row and column exchanged.
         mirrored: f64,
     },
-    /// Reduced forces with another number of coefficients than their rank says.
+    /// The number of coefficients does not fit the rank.
     #[error("the forces have {found} coefficients of degree {degree}, rank {rank} needs {expected}")]
     ForceLength {
         /// 2 or 3.
@@ -159,7 +159,7 @@ pub enum SolidError {
         /// Coefficients of that degree in forces of that rank.
         expected: usize,
     },
-    /// A coefficient of reduced forces that is a NaN, an infinity or out of range.
+    /// A coefficient is not finite or out of range.
     #[error(
         "a coefficient of degree {degree} is {value:e} at row {row}, column {column} (counted from 0): not finite, or beyond 2^200"
     )]
@@ -173,7 +173,7 @@ pub enum SolidError {
         /// The coefficient.
         value: f64,
     },
-    /// The core refused a mesh or modes.
+    /// Error of the crate `sscc` for a mesh or modes.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }

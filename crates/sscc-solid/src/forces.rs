@@ -4,11 +4,11 @@ use sscc::limits;
 
 use crate::{SolidError, Stiffness, monomials};
 
-/// The reduced internal forces of a body under modes U, `U' f(U q)`, for the St. Venant-Kirchhoff material: a
-/// polynomial of degree 3 in q without a constant term (Barbic and James 2005), the gradient of an energy.
+/// Reduced internal forces `U' f(U q)` of a body under modes U, for the St. Venant-Kirchhoff material: a polynomial of
+/// degree 3 in q without a constant term, the gradient of an energy (Barbic and James 2005).
 ///
-/// Coefficients are those of force 0, then of force 1, and so on; within one force the monomials are in lexicographic
-/// order ([`monomials`]): `q_0 q_0, q_0 q_1, .., q_1 q_1, ..`. That is the layout of VegaFEM's `.cub`.
+/// Coefficients are stored force by force. Within a force, monomials are in lexicographic order ([`monomials`]): `q_0
+/// q_0, q_0 q_1, .., q_1 q_1, ..`. VegaFEM's `.cub` has the same layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReducedForces {
     linear: Stiffness,
@@ -17,19 +17,19 @@ pub struct ReducedForces {
 }
 
 impl ReducedForces {
-    /// The forces with these coefficients: the stiffness at rest; r rows of r (r + 1) / 2 coefficients of `q_i q_j`,
-    /// i <= j; r rows of r (r + 1) (r + 2) / 6 coefficients of `q_i q_j q_k`, i <= j <= k.
+    /// Creates forces from the stiffness at rest, r rows of r (r + 1) / 2 coefficients of `q_i q_j` with i <= j, and r
+    /// rows of r (r + 1) (r + 2) / 6 coefficients of `q_i q_j q_k` with i <= j <= k.
     ///
     /// # Errors
-    /// When there are more or fewer coefficients, or one is not finite or beyond 2^200. Whether the forces are the
-    /// gradient of an energy is not checked: see [`ReducedForces::asymmetry`].
+    /// When the number of coefficients is wrong, or one is not finite or beyond 2^200. The constructor does not check
+    /// that the forces are the gradient of an energy: see [`ReducedForces::asymmetry`].
     pub fn new(linear: Stiffness, quadratic: Vec<f64>, cubic: Vec<f64>) -> Result<Self, SolidError> {
         check(linear.rank(), 2, &quadratic)?;
         check(linear.rank(), 3, &cubic)?;
         Ok(Self { linear, quadratic, cubic })
     }
 
-    /// The same with another stiffness at rest.
+    /// Replaces the stiffness at rest.
     ///
     /// # Errors
     /// When it is of another rank.
@@ -37,27 +37,27 @@ impl ReducedForces {
         Self::new(linear, self.quadratic, self.cubic)
     }
 
-    /// Length of q, and the number of forces r.
+    /// Returns the number of modes and forces r.
     pub fn rank(&self) -> usize {
         self.linear.rank()
     }
 
-    /// The stiffness at rest.
+    /// Returns the stiffness at rest.
     pub fn linear(&self) -> &Stiffness {
         &self.linear
     }
 
-    /// Coefficients of `q_i q_j` (r rows of r (r + 1) / 2).
+    /// Returns the coefficients of `q_i q_j` (r rows of r (r + 1) / 2).
     pub fn quadratic(&self) -> &[f64] {
         &self.quadratic
     }
 
-    /// Coefficients of `q_i q_j q_k` (r rows of r (r + 1) (r + 2) / 6).
+    /// Returns the coefficients of `q_i q_j q_k` (r rows of r (r + 1) (r + 2) / 6).
     pub fn cubic(&self) -> &[f64] {
         &self.cubic
     }
 
-    /// The forces at q (r numbers) that hold the body there.
+    /// Returns the internal forces at q (r numbers). Costs O(r^4).
     ///
     /// # Panics
     /// When q has another length than r.
@@ -74,7 +74,7 @@ impl ReducedForces {
             .collect()
     }
 
-    /// The stiffness at q, the derivative of the forces (r x r, row after row).
+    /// Returns the stiffness at q, the derivative of the forces (r x r, row after row). Costs O(r^4).
     ///
     /// # Panics
     /// When q has another length than r.
@@ -103,7 +103,7 @@ impl ReducedForces {
                     let q_ab = q[a] * q[b];
                     let coefficients = &cubic[at..][..r - b];
                     at += r - b;
-                    // Common to the derivatives by a and by b.
+                    // Shared by the derivatives with respect to a and b.
                     let ab = dot(coefficients, &q[b..]);
                     row[b..].iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += c * q_ab);
                     row[a] += ab * q[b];
@@ -114,7 +114,7 @@ impl ReducedForces {
         stiffness
     }
 
-    /// The elastic energy at q: `q . (f1 / 2 + f2 / 3 + f3 / 4)` for the forces of each degree.
+    /// Returns the elastic energy at q: `q . (f1 / 2 + f2 / 3 + f3 / 4)` for the forces of each degree.
     ///
     /// # Panics
     /// When q has another length than r.
@@ -129,9 +129,9 @@ impl ReducedForces {
             + part(&self.cubic, &cubes) / 4.0
     }
 
-    /// How far the polynomial is from being the gradient of an energy: the largest difference of `d f_i / d q_j` and
-    /// `d f_j / d q_i`, coefficient by coefficient, as a share of the largest coefficient of that degree. 0 for exact
-    /// forces; about 1 where coefficients are in another order.
+    /// Returns the deviation from the gradient of an energy: the maximum difference of the coefficients of `d f_i / d
+    /// q_j` and `d f_j / d q_i`, relative to the largest coefficient of that degree. 0 for exact forces; about 1 for
+    /// coefficients in another order.
     pub fn asymmetry(&self) -> f64 {
         let parts = [(1, self.linear.entries()), (2, &self.quadratic), (3, &self.cubic)];
         parts.into_iter().map(|(degree, part)| self.asymmetry_of(degree, part)).fold(0.0, f64::max)
@@ -161,7 +161,7 @@ impl ReducedForces {
     }
 }
 
-/// Refuses another number of coefficients of a degree, and those out of range.
+/// Checks the number and the range of the coefficients of a degree.
 fn check(rank: usize, degree: usize, coefficients: &[f64]) -> Result<(), SolidError> {
     let columns = monomials::count(rank, degree);
     let (found, expected) = (coefficients.len(), rank.saturating_mul(columns));
@@ -177,7 +177,7 @@ fn check(rank: usize, degree: usize, coefficients: &[f64]) -> Result<(), SolidEr
     }
 }
 
-/// The sum of products, in eight sums that the processor adds side by side.
+/// Returns the sum of products, as eight partial sums that the processor adds in parallel.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a, b) = (a.chunks_exact(sums.len()), b.chunks_exact(sums.len()));
@@ -192,7 +192,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of the energy `(x^2 + 4 y^2) / 2 + s (x^2 + x y)^2 / 4`.
+    /// Forces of the energy `(x^2 + 4 y^2) / 2 + s (x^2 + x y)^2 / 4`.
     fn forces(s: f64) -> ReducedForces {
         let cubic = [1.0, 1.5, 0.5, 0.0, 0.5, 0.5, 0.0, 0.0].map(|c| s * c).to_vec();
         ReducedForces::new(Stiffness::from_diagonal(&[1.0, 4.0]).unwrap(), vec![0.0; 6], cubic).unwrap()

@@ -1,22 +1,22 @@
-//! Elastic solids as data: elements, materials and reduced forces.
+//! Data types of elastic solids: elements, materials and reduced forces.
 //!
-//! `sscc-io` reads and writes these types, `sscc-modes` makes modes from them, and `sscc-dynamics` moves them.
+//! `sscc-io` reads and writes these types, `sscc-modes` computes modes from them, and `sscc-dynamics` simulates them.
 //!
-//! - [`VolumeMesh`]: tetrahedra and cubes as a file states them, checked without geometry;
-//! - [`Solid`]: elements of positive volume, each with a [`Material`]; [`VolumeMesh::solid`] makes one;
-//! - [`PartialMaterial`]: the numbers of a material that are known; [`Material::new`] fills in the others;
-//! - [`Element`]: one tetrahedron or cube with its points of integration;
+//! - [`VolumeMesh`]: tetrahedra and cubes of a file, before the checks of geometry;
+//! - [`Solid`]: elements of positive volume, each with a [`Material`]; [`VolumeMesh::solid`] creates one;
+//! - [`PartialMaterial`]: the known properties of a material; [`Material::new`] fills in the others;
+//! - [`Element`]: one tetrahedron or cube with its integration points;
 //! - [`Boundary`] and [`MassProperties`] of a solid;
 //! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q.
 //!
-//! Each type is checked where it is made, so functions that take one check nothing again.
+//! Constructors check their data, so functions can rely on valid values.
 //!
 //! ```
 //! use glam::DVec3;
 //! use sscc_solid::{Material, PartialMaterial, Solid};
 //!
 //! # fn main() -> Result<(), sscc_solid::SolidError> {
-//! // A tetrahedron of soft rubber: the numbers left out are those of the default material.
+//! // A tetrahedron of soft rubber; unset properties are those of the default material.
 //! let soft = PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() };
 //! let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 //! let solid = Solid::uniform(corners, vec![[0, 1, 2, 3]], vec![], Material::new(&soft)?)?;

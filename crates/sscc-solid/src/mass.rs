@@ -1,27 +1,27 @@
-//! Mass, centre and inertia of a solid.
+//! Mass properties of a solid.
 
 use glam::{DMat3, DVec3};
 use sscc::Modes;
 
 use crate::{Solid, SolidError};
 
-/// Mass, its centre and inertia of a body at rest.
+/// Mass, centre of mass and inertia of a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
     /// Mass.
     pub mass: f64,
-    /// The centre of mass.
+    /// Centre of mass (model unit).
     pub center: DVec3,
-    /// The inertia tensor about the centre of mass: the integral of `|x|^2 - x x'` over the mass.
+    /// Inertia tensor about the centre of mass: the integral of `|x|^2 - x x'` over the mass.
     pub inertia: DMat3,
 }
 
 impl Solid {
-    /// Mass, its centre and inertia, by the mass matrix that the modes are made with.
+    /// Returns the mass properties of the consistent mass matrix, which the modes also use.
     pub fn mass_properties(&self) -> MassProperties {
         let (mut mass, mut moment) = (0.0, DVec3::ZERO);
         let mut second = DMat3::ZERO;
-        // About a vertex: less is lost where the body is far from the origin.
+        // Positions relative to a vertex lose less precision if the body is far from the origin.
         let origin = self.vertices()[0];
         for index in 0..self.element_count() {
             let element = self.element(index);
@@ -45,11 +45,11 @@ impl Solid {
         MassProperties { mass, center: origin + center, inertia }
     }
 
-    /// The integral of each mode of the solid's vertices over the mass: times an acceleration, the force of gravity
-    /// on it. 0 for modes of a free body, which move its centre of mass nowhere.
+    /// Returns the integral of each mode over the mass (r vectors). Its product with an acceleration is the generalised
+    /// force of gravity. It is 0 for modes of a free body, which do not move the centre of mass.
     ///
     /// # Errors
-    /// When the modes are of another number of vertices.
+    /// When the modes have another number of vertices.
     pub fn mode_moments(&self, modes: &Modes) -> Result<Vec<DVec3>, SolidError> {
         let vertices = self.vertices().len();
         if modes.vertices() != vertices {

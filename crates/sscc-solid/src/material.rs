@@ -1,9 +1,9 @@
-//! Materials: the numbers that are known of one, and a complete one.
+//! Elastic materials, complete or with unknown properties.
 
 use std::fmt;
 
-/// A linear isotropic elastic material, in any consistent units; in SI units frequencies come out in Hz. Its numbers
-/// are within the limits that [`Material::new`] names.
+/// Linear isotropic elastic material, in any consistent units; SI units give frequencies in Hz. The values are within
+/// the limits of [`Material::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     density: f64,
@@ -11,8 +11,7 @@ pub struct Material {
     poisson_ratio: f64,
 }
 
-/// The numbers that are known of a material: those that a file states, or those that a caller gives. They are not
-/// checked before [`Material::new`].
+/// Known properties of a material, from a file or a caller. [`Material::new`] checks them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartialMaterial {
     /// Mass per volume (kg/m^3).
@@ -23,24 +22,24 @@ pub struct PartialMaterial {
     pub poisson_ratio: Option<f64>,
 }
 
-/// A material of a file: its name, and the numbers that the file states.
+/// Material of a file: name and known properties.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedMaterial {
-    /// Its name in the file; the reference number in formats that have numbers only; else `default`.
+    /// Name in the file; the reference number if the format has no names; else `default`.
     pub name: String,
-    /// The numbers that the file states. Units are the file's: SI in all files of VegaFEM.
+    /// Properties in the file's units: SI in all files of VegaFEM.
     pub stated: PartialMaterial,
 }
 
-/// A number that no material has.
+/// A property of a material is outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {value:e}: it must be {range}")]
 pub struct MaterialError {
-    /// Which number.
+    /// Name of the property.
     pub what: &'static str,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// The range of that number.
+    /// Allowed range.
     pub range: &'static str,
 }
 
@@ -48,7 +47,7 @@ impl Material {
     /// Firm rubber: 1,000 kg/m^3, 1e6 N/m^2, 0.4. Shapes of modes depend on Poisson's ratio alone.
     pub const DEFAULT: Self = Self { density: 1000.0, youngs_modulus: 1e6, poisson_ratio: 0.4 };
 
-    /// The material of these numbers; those left out are the default material's.
+    /// Returns the material with these properties; unset ones are those of the default material.
     ///
     /// # Errors
     /// When density or Young's modulus is outside 1e-60 to 1e60, or Poisson's ratio is not between -0.9999 and 0.4999.
@@ -111,7 +110,7 @@ impl Default for Material {
 }
 
 impl PartialMaterial {
-    /// These numbers, and where one is missing the other's.
+    /// Returns these properties, with missing ones taken from the other.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
         Self {
@@ -133,7 +132,7 @@ impl From<Material> for PartialMaterial {
     }
 }
 
-/// The numbers that are known, as in `youngs=1e6 poisson=0.4 density=1000`.
+/// Known properties as text, such as `youngs=1e6 poisson=0.4 density=1000`.
 impl fmt::Display for PartialMaterial {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let numbers = [
@@ -152,7 +151,7 @@ const fn or(number: Option<f64>, default: f64) -> f64 {
     }
 }
 
-/// NaN is not.
+/// NaN is not positive.
 const fn is_positive(x: f64) -> bool {
     x >= 1e-60 && x <= 1e60
 }

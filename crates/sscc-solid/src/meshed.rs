@@ -1,35 +1,35 @@
-//! The solid that a volumetric mesh describes.
+//! Conversion of a volumetric mesh into a solid.
 
 use glam::DVec3;
 
 use crate::{Material, PartialMaterial, Solid, SolidError, VolumeMesh, tets_within};
 
-/// A solid made of a volumetric mesh.
+/// Solid of a volumetric mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshedSolid {
     /// The solid.
     pub solid: Solid,
-    /// The solid's vertex for each vertex of the mesh; none where only elements that were left out have it.
+    /// Vertex of the solid for each vertex of the mesh; None for vertices of removed elements only.
     pub vertices: Vec<Option<u32>>,
-    /// The numbers that the mesh states for the materials of the solid's elements.
+    /// Properties that the mesh gives for the materials of the solid's elements.
     pub stated: Vec<PartialMaterial>,
-    /// Tetrahedra outside of the surface that the mesh lists: they were left out.
+    /// Number of removed tetrahedra: those outside of the surface that the mesh lists.
     pub outside: usize,
 }
 
 impl VolumeMesh {
-    /// The solid of this mesh, without tetrahedra outside of the surface that it lists ([`tets_within`]). Materials have
-    /// the numbers in `given`, then those that the mesh states, then the default material's.
+    /// Returns the solid of this mesh, without tetrahedra outside of the surface that it lists ([`tets_within`]).
+    /// Properties of materials are those in `given`, then those of the mesh, then those of the default material.
     ///
     /// # Errors
-    /// As [`Solid::new`], and when a material has a number outside of its limits.
+    /// As [`Solid::new`], and when a property of a material is outside its range.
     pub fn solid(&self, given: &PartialMaterial) -> Result<MeshedSolid, SolidError> {
         let within = tets_within(self.tets(), self.surface());
         let kept: Vec<usize> = (0..within.len()).filter(|t| within[*t]).collect();
         let outside = within.len() - kept.len();
         let tets: Vec<[u32; 4]> = kept.iter().map(|t| self.tets()[*t]).collect();
 
-        // Vertices of elements that were left out alone are left out, too.
+        // Vertices of removed elements only are removed, too.
         let mut used = vec![outside == 0; self.vertices().len()];
         tets.as_flattened().iter().chain(self.cubes().as_flattened()).for_each(|v| used[*v as usize] = true);
         let mut count = 0;
@@ -45,7 +45,7 @@ impl VolumeMesh {
         let of_tets = kept.iter().map(|t| self.element_material()[*t]);
         let of_cubes = self.element_material()[within.len()..].iter().copied();
         let element_material: Vec<u32> = of_tets.chain(of_cubes).collect();
-        // A file may name materials that none of its elements has.
+        // A file may list materials without elements.
         let mut is_used = vec![false; self.materials().len()];
         element_material.iter().for_each(|at| is_used[*at as usize] = true);
         let named = self.materials().iter().zip(is_used);

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-/// The number of monomials of a degree in `rank` variables. Numbers beyond `usize` come out as its maximum.
+/// Returns the number of monomials of a degree in `rank` variables, at most `usize::MAX`.
 pub fn count(rank: usize, degree: usize) -> usize {
     let mut product = 1_usize;
     for k in 0..degree {
@@ -16,7 +16,7 @@ pub fn count(rank: usize, degree: usize) -> usize {
     product
 }
 
-/// The place of the monomial with these indices, ascending, among those of its degree.
+/// Returns the index of the monomial with these ascending indices among those of its degree.
 pub fn place(rank: usize, indices: &[usize]) -> usize {
     let mut place = 0;
     let mut least = 0;
@@ -29,7 +29,7 @@ pub fn place(rank: usize, indices: &[usize]) -> usize {
     place
 }
 
-/// All monomials of a degree, as ascending indices.
+/// Returns all monomials of a degree, as ascending indices.
 pub fn all(rank: usize, degree: usize) -> Vec<Vec<usize>> {
     let mut all = vec![Vec::new()];
     for _ in 0..degree {
@@ -43,7 +43,7 @@ pub fn all(rank: usize, degree: usize) -> Vec<Vec<usize>> {
     all
 }
 
-/// The values of all monomials of degree 2 or 3.
+/// Returns the values of all monomials of degree 2 or 3.
 pub(crate) fn values(q: &[f64], degree: usize) -> Vec<f64> {
     let r = q.len();
     let mut values = Vec::with_capacity(count(r, degree));

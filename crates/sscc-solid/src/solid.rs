@@ -1,4 +1,4 @@
-//! Solids: elements of positive volume with materials.
+//! Elastic solids: elements of positive volume with materials.
 
 use glam::DVec3;
 use sscc::limits;
@@ -9,8 +9,8 @@ use crate::{Material, SolidError};
 /// A tetrahedron whose volume is below this share of its longest edge cubed is flat: its stiffness would be rounding.
 const FLAT: f64 = 1e-10;
 
-/// An elastic solid: tetrahedra and hexahedra ("cubes") of positive volume, each of one material. Every vertex belongs
-/// to an element.
+/// Elastic solid: tetrahedra and hexahedra ("cubes") of positive volume, each with a material. Every vertex belongs to
+/// an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     vertices: Vec<DVec3>,
@@ -22,9 +22,9 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Elements index `vertices` (rest positions, model unit). The corners of a cube are ordered as for the unit cube
-    /// 000, 100, 110, 010 (xyz), then 001, 101, 111, 011. Each element has a material, tetrahedra first. Where all
-    /// tetrahedra have a negative volume, the order of their corners is another convention, and they are turned.
+    /// Creates a solid. Elements index `vertices` (rest positions, model unit). The corners of a cube are ordered as
+    /// for the unit cube 000, 100, 110, 010 (xyz), then 001, 101, 111, 011. Each element has a material, tetrahedra
+    /// first. If all tetrahedra have a negative volume, the constructor reverses all of them.
     ///
     /// # Errors
     /// When there is no element, an index is out of range, a coordinate is beyond [`sscc::limits`], a vertex belongs
@@ -40,7 +40,7 @@ impl Solid {
         Self { vertices, tets, cubes, fill, materials, element_material }.checked()
     }
 
-    /// The same of one material.
+    /// Creates a solid with one material.
     ///
     /// # Errors
     /// As [`Solid::new`].
@@ -54,8 +54,8 @@ impl Solid {
         Self::new(vertices, tets, cubes, vec![material], vec![0; elements])
     }
 
-    /// Cubes of one material, of which a share of each octant (at corner k) is filled: mass and stiffness count by that
-    /// share.
+    /// Creates a solid of cubes with one material, in which a share of each octant (at corner k) is filled. The share
+    /// scales mass and stiffness.
     ///
     /// # Errors
     /// As [`Solid::new`], and when there are not eight shares from 0 to 1 for each cube.
@@ -111,30 +111,30 @@ impl Solid {
         Ok(self)
     }
 
-    /// Rest positions (model unit).
+    /// Returns the rest positions (model unit).
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Corners of each tetrahedron; all have positive volume.
+    /// Returns the corners of each tetrahedron; all have positive volume.
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.tets
     }
 
-    /// Corners of each cube.
+    /// Returns the corners of each cube.
     pub fn cubes(&self) -> &[[u32; 8]] {
         &self.cubes
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn element_count(&self) -> usize {
         self.tets.len() + self.cubes.len()
     }
 
-    /// An element by its number, tetrahedra first.
+    /// Returns an element by its number, tetrahedra first.
     ///
     /// # Panics
-    /// When there are not so many.
+    /// When the element does not exist.
     pub fn element(&self, index: usize) -> Element<'_> {
         let material = &self.materials[self.element_material[index] as usize];
         if let Some(tet) = self.tets.get(index) {
@@ -147,12 +147,12 @@ impl Solid {
     }
 }
 
-/// Six times the volume of a tetrahedron.
+/// Returns six times the volume of a tetrahedron.
 fn sixfold_volume([a, b, c, d]: [DVec3; 4]) -> f64 {
     (b - a).cross(c - a).dot(d - a)
 }
 
-/// Turns all tetrahedra if all are negative; an error if one is flat or only some are negative.
+/// Reverses all tetrahedra if all are negative. Returns an error if one is flat or only some are negative.
 fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
     let mut negative = Vec::new();
     for (tet, corners) in tets.iter().enumerate() {
@@ -170,7 +170,7 @@ fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
     if negative.len() == tets.len() {
         tets.iter_mut().for_each(|corners| corners.swap(2, 3));
     } else if let Some(tet) = negative.first() {
-        // The fewer are wrong.
+        // The smaller group counts as inverted.
         let minority = if 2 * negative.len() <= tets.len() {
             *tet
         } else {
@@ -213,7 +213,7 @@ mod tests {
             made(&nan, vec![[0, 1, 2, 3]])
                 .contains("vertex 3 (counted from 0) of the solid has a coordinate")
         );
-        // All negative: another convention.
+        // All volumes are negative: another convention.
         assert!(Solid::uniform(corners[..4].to_vec(), vec![[0, 2, 1, 3]], vec![], good).is_ok());
         let corners =
             [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];

@@ -1,19 +1,19 @@
-//! Reduced stiffness: a symmetric matrix.
+//! Reduced stiffness matrix.
 
 use sscc::limits;
 
 use crate::SolidError;
 
-/// A matrix is taken for symmetric when mirrored entries differ by at most this share of the largest
-/// entry. Sums over millions of vertices, in any order, leave about 1e-11; mistakes leave far more.
+/// Maximum difference of mirrored entries of a symmetric matrix, relative to the largest entry. Sums over millions of
+/// vertices, in any order, leave about 1e-11; mistakes leave far more.
 const SYMMETRY_SHARE: f64 = 1e-9;
 
-/// A matrix counts as diagonal where no other entry exceeds this share of the largest: rounding leaves that much.
+/// Maximum off-diagonal entry of a diagonal matrix, relative to the largest entry; rounding leaves that much.
 const DIAGONAL_SHARE: f64 = 1e-12;
 
 /// The reduced stiffness `K~ = U'KU` of modes U (r x r): symmetric up to rounding, entries within [`sscc::limits`].
 ///
-/// Where the modes are mass-orthonormal, its eigenvalues are squared natural angular frequencies (1/s^2).
+/// For mass-orthonormal modes, its eigenvalues are squared natural angular frequencies (1/s^2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stiffness {
     rank: usize,
@@ -21,11 +21,11 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// The stiffness of `rank` modes with these entries (r x r, row-major).
+    /// Creates the stiffness of `rank` modes from its entries (r x r, row-major).
     ///
     /// # Errors
-    /// When there are no modes, the entries are not r x r, one is not finite or beyond 2^200, or mirrored ones differ
-    /// by more than 1e-9 of the largest.
+    /// When the rank is 0, the entries are not r x r, one is not finite or beyond 2^200, or mirrored ones differ by
+    /// more than 1e-9 of the largest.
     pub fn new(rank: usize, entries: Vec<f64>) -> Result<Self, SolidError> {
         if rank == 0 {
             return Err(sscc::Error::RankZero.into());
@@ -47,10 +47,10 @@ impl Stiffness {
         Ok(stiffness)
     }
 
-    /// The diagonal stiffness of modes with these eigenvalues.
+    /// Creates the diagonal stiffness of modes with these eigenvalues.
     ///
     /// # Errors
-    /// When there are none, or one is not finite or beyond 2^200.
+    /// When there is none, or one is not finite or beyond 2^200.
     pub fn from_diagonal(eigenvalues: &[f64]) -> Result<Self, SolidError> {
         let rank = eigenvalues.len();
         let mut entries = vec![0.0; rank * rank];
@@ -58,34 +58,34 @@ impl Stiffness {
         Self::new(rank, entries)
     }
 
-    /// Number of modes r.
+    /// Returns the number of modes r.
     pub fn rank(&self) -> usize {
         self.rank
     }
 
-    /// All entries (r x r, row-major).
+    /// Returns all entries (r x r, row-major).
     pub fn entries(&self) -> &[f64] {
         &self.entries
     }
 
-    /// The stiffness of each mode alone (r).
+    /// Returns the diagonal: the stiffness of each mode (r).
     pub fn diagonal(&self) -> impl ExactSizeIterator<Item = f64> {
         self.entries.iter().step_by(self.rank + 1).copied()
     }
 
-    /// Whether each mode swings by itself: entries beside the diagonal are rounding.
+    /// Whether the modes are uncoupled: off-diagonal entries are rounding.
     pub fn is_diagonal(&self) -> bool {
         let noise = DIAGONAL_SHARE * self.largest();
         let is_off = |(at, x): (usize, &f64)| at % (self.rank + 1) != 0 && x.abs() > noise;
         !self.entries.iter().enumerate().any(is_off)
     }
 
-    /// The largest magnitude of an entry.
+    /// Returns the largest magnitude of an entry.
     pub fn largest(&self) -> f64 {
         self.entries.iter().fold(0.0, |m, x| m.max(x.abs()))
     }
 
-    /// The mean of the matrix and its mirror image (r x r, row-major): exactly symmetric.
+    /// Returns the mean of the matrix and its transpose (r x r, row-major), exactly symmetric.
     pub fn symmetrised(&self) -> Vec<f64> {
         let mut mean = self.entries.clone();
         for (row, column) in (0..self.rank).flat_map(|row| (0..row).map(move |column| (row, column))) {

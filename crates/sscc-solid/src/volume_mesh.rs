@@ -1,41 +1,39 @@
-//! Volumetric meshes as files state them: indices are checked, geometry is not.
+//! Volumetric meshes of files, with valid indices but unchecked geometry.
 
 use glam::DVec3;
 use sscc::limits;
 
 use crate::{NamedMaterial, SolidError};
 
-/// The content of a volumetric mesh, before it is checked. Indices count from 0. Lengths are in the file's unit, which
-/// no format states.
+/// Content of a volumetric mesh, before the checks. Indices count from 0. Lengths are in the file's unit, which no
+/// format specifies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VolumeMeshParts {
     /// Rest positions, within [`sscc::limits`], at least one.
     pub vertices: Vec<DVec3>,
-    /// The corners of each tetrahedron, four different vertices. Most files order them such that `(b - a) x
-    /// (c - a)` points to d.
+    /// Corners of each tetrahedron, four different vertices. In most files `(b - a) x (c - a)` points to d.
     pub tets: Vec<[u32; 4]>,
-    /// The corners of each cube (hexahedron), eight different vertices in VegaFEM's order: for the unit cube 000,
-    /// 100, 110, 010 (xyz), then 001, 101, 111, 011. Medit and gmsh have the same order. There is at least one
-    /// tetrahedron or cube.
+    /// Corners of each cube (hexahedron), eight different vertices in the order of VegaFEM, Medit and gmsh: for the
+    /// unit cube 000, 100, 110, 010 (xyz), then 001, 101, 111, 011. There is at least one tetrahedron or cube.
     pub cubes: Vec<[u32; 8]>,
-    /// The faces that the file lists beside the elements: maybe none, maybe some that lie inside. Quadrilaterals
+    /// Faces that the file lists in addition to the elements; there may be none, and some may be inside. Quadrilaterals
     /// become two triangles, fanned from their first corner.
     pub surface: Vec<[u32; 3]>,
     /// The materials that the file names.
     pub materials: Vec<NamedMaterial>,
-    /// The index of each element's material: those of the tetrahedra, then those of the cubes.
+    /// Index of each element's material: tetrahedra first, then cubes.
     pub element_material: Vec<u32>,
 }
 
-/// A volumetric mesh as a file states it, checked as far as it can be without geometry: elements may be flat, inverted
-/// or overlap, and vertices may belong to none. [`VolumeMesh::solid`] makes a [`Solid`](crate::Solid) of it.
+/// Volumetric mesh of a file with valid indices. Elements may be flat, inverted or overlap, and vertices may belong to
+/// no element. [`VolumeMesh::solid`] converts it into a [`Solid`](crate::Solid).
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeMesh {
     parts: VolumeMeshParts,
 }
 
 impl VolumeMesh {
-    /// The mesh of these parts.
+    /// Creates a mesh from these parts.
     ///
     /// # Errors
     /// When there is no vertex or no element, an index is out of range, a coordinate is beyond [`sscc::limits`], an
@@ -64,10 +62,10 @@ impl VolumeMesh {
         Ok(Self { parts })
     }
 
-    /// The same elements with other materials.
+    /// Replaces the materials.
     ///
     /// # Errors
-    /// When an element has none.
+    /// When an element has no material.
     pub fn with_materials(
         mut self,
         materials: Vec<NamedMaterial>,
@@ -79,22 +77,22 @@ impl VolumeMesh {
         Ok(self)
     }
 
-    /// Rest positions (the file's unit).
+    /// Returns the rest positions (the file's unit).
     pub fn vertices(&self) -> &[DVec3] {
         &self.parts.vertices
     }
 
-    /// Corners of each tetrahedron, in the file's order.
+    /// Returns the corners of each tetrahedron, in the file's order.
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.parts.tets
     }
 
-    /// Corners of each cube.
+    /// Returns the corners of each cube.
     pub fn cubes(&self) -> &[[u32; 8]] {
         &self.parts.cubes
     }
 
-    /// The faces that the file lists beside the elements, as triangles.
+    /// Returns the faces that the file lists in addition to the elements, as triangles.
     pub fn surface(&self) -> &[[u32; 3]] {
         &self.parts.surface
     }
@@ -104,18 +102,18 @@ impl VolumeMesh {
         &self.parts.materials
     }
 
-    /// The index of each element's material, tetrahedra first.
+    /// Returns the index of each element's material, tetrahedra first.
     pub fn element_material(&self) -> &[u32] {
         &self.parts.element_material
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn element_count(&self) -> usize {
         self.parts.tets.len() + self.parts.cubes.len()
     }
 }
 
-/// Refuses indices of no vertex, and corners that occur twice.
+/// Returns an error for an invalid index or a repeated corner.
 fn check_corners<const N: usize>(items: &[[u32; N]], vertices: usize) -> Result<(), SolidError> {
     for corners in items {
         if let Some(index) = corners.iter().find(|index| **index as usize >= vertices) {
@@ -128,7 +126,7 @@ fn check_corners<const N: usize>(items: &[[u32; N]], vertices: usize) -> Result<
     Ok(())
 }
 
-/// Refuses elements that are there twice. gmsh writes such files in version 2.2, for volumes in two physical groups.
+/// Returns an error for duplicate elements. gmsh writes such files in version 2.2, for volumes in two physical groups.
 fn check_different<const N: usize>(kind: &'static str, elements: &[[u32; N]]) -> Result<(), SolidError> {
     let mut sorted: Vec<_> = elements.iter().copied().zip(0_usize..).collect();
     sorted.iter_mut().for_each(|(corners, _)| corners.sort_unstable());

@@ -1,10 +1,10 @@
-//! Tetrahedra within a surface that a file lists.
+//! Selection of tetrahedra within a surface that a file lists.
 
 use crate::element::TET_FACES;
 
-/// Which tetrahedra lie within a surface made of their faces: all but those that can be reached from outside without
-/// crossing it. Some meshers fill the convex hull of a surface. All of them where a triangle of the surface is not a
-/// face, or where the surface encloses nothing.
+/// Returns which tetrahedra lie within a surface made of their faces: those that cannot be reached from outside without
+/// crossing it. Some meshers fill the convex hull of a surface. Returns all tetrahedra if a triangle of the surface is
+/// not a face, or if the surface encloses nothing.
 pub fn tets_within(tets: &[[u32; 4]], surface: &[[u32; 3]]) -> Vec<bool> {
     let all = vec![true; tets.len()];
     let sorted = |mut face: [u32; 3]| {

@@ -1,4 +1,4 @@
-//! The report of an animation: the page with one shape whose q is known in every frame.
+//! Reports of animations: one shape, with its q and its colliding pairs in every frame.
 
 use sscc::{Certificates, ReducedModel};
 
@@ -6,35 +6,35 @@ use crate::{
     Arrays, Axis, Body, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series, ViewError,
 };
 
-/// An animation of one shape, and what was found in each of its frames.
+/// An animation of one shape, and the answers of the queries in its frames.
 pub struct Animation<'a> {
     /// The title of the page.
     pub title: &'a str,
-    /// What the shape is called.
+    /// Name of the shape on the page.
     pub name: &'a str,
     /// The shape.
     pub model: &'a ReducedModel,
-    /// Of the shape.
+    /// Certificates of the shape.
     pub certificates: &'a Certificates,
-    /// Of each mode (Hz), where they are known.
+    /// Frequency of each mode (Hz); `None` where unknown.
     pub frequencies: Option<Vec<f64>>,
-    /// Frames in a second.
+    /// Frames per second.
     pub rate: f64,
-    /// q of each frame, one after the other.
+    /// The q of all frames (frames x r), row by row.
     pub q: &'a [f64],
-    /// The colliding pairs of triangles of each frame.
+    /// The colliding triangle pairs of each frame.
     pub pairs: &'a [Vec<(u32, u32)>],
-    /// Name of each method, and its time for each frame (microseconds).
+    /// For each method its name and the time of its query in each frame (microseconds).
     pub costs: Vec<(&'a str, &'a [f64])>,
-    /// Lines of a table: label and value.
+    /// Rows of the summary table: label and value.
     pub summary: Vec<(String, String)>,
 }
 
 impl Animation<'_> {
-    /// One file of HTML.
+    /// Returns the report as one HTML file.
     ///
     /// # Errors
-    /// When the certificates are of another model, or numbers are beyond what a page can show.
+    /// If the certificates belong to another model, or a number exceeds the range of the page (1e30).
     pub fn report(self) -> Result<String, ViewError> {
         let mut arrays = Arrays::default();
         let mut scene = Scene::new(self.title);

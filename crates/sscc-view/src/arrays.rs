@@ -1,4 +1,4 @@
-//! Numbers of the page: named arrays, little-endian.
+//! Named binary arrays for the page, little-endian.
 
 use std::collections::BTreeMap;
 
@@ -6,36 +6,36 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Serialize, Serializer};
 
-/// Arrays by name; as JSON their bytes are base64. Names are of letters, digits and `-`.
+/// Arrays by name. JSON holds their bytes in base64. A name consists of letters, digits and `-`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Arrays {
     arrays: BTreeMap<String, Vec<u8>>,
 }
 
 impl Arrays {
-    /// Adds numbers in single precision; gives the name.
+    /// Adds an array of 32-bit floats; returns its name.
     pub fn add_f32(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = f32>) -> String {
         self.add_bytes(name, values.into_iter().flat_map(f32::to_le_bytes).collect())
     }
 
-    /// Adds whole numbers; gives the name.
+    /// Adds an array of 32-bit integers; returns its name.
     pub fn add_u32(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = u32>) -> String {
         self.add_bytes(name, values.into_iter().flat_map(u32::to_le_bytes).collect())
     }
 
-    /// Adds bytes as they are; gives the name.
+    /// Adds an array of bytes; returns its name.
     pub fn add_bytes(&mut self, name: impl Into<String>, bytes: Vec<u8>) -> String {
         let name = name.into();
         self.arrays.insert(name.clone(), bytes);
         name
     }
 
-    /// The bytes of an array.
+    /// The bytes of an array; `None` if no array has this name.
     pub fn get(&self, name: &str) -> Option<&[u8]> {
         self.arrays.get(name).map(Vec::as_slice)
     }
 
-    /// All of them.
+    /// The total size of all arrays (bytes).
     pub fn bytes(&self) -> usize {
         self.arrays.values().map(Vec::len).sum()
     }

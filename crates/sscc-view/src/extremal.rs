@@ -1,4 +1,4 @@
-//! Extremal deformations of the root's ellipsoid (paper, Figure 11).
+//! The largest deformations along single modes that the root's certificate proves free (paper, Figure 11).
 
 use serde::Serialize;
 use sscc::Certificates;
@@ -6,19 +6,19 @@ use sscc::Certificates;
 /// The paper shows the first four modes, in the positive and the negative direction.
 const MODES: usize = 4;
 
-/// Just inside, whatever rounding does.
+/// Scale that keeps q inside the root's radius in spite of rounding.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// A q as far along one mode as the root's certificate reaches.
+/// A q just inside the root's radius, along one mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Extremal {
-    /// The mode, counted from 1, and the direction.
+    /// The mode's number, counted from 1, and the sign of the direction.
     pub name: String,
-    /// Where.
+    /// The q (r numbers).
     pub q: Vec<f64>,
 }
 
-/// For each of the first modes both of them; none where the root's radius is 0 or without limit.
+/// Returns both directions of each of the first modes; empty if the root's radius is 0 or infinite.
 pub fn extremal(certificates: &Certificates) -> Vec<Extremal> {
     let (center, radius) = (certificates.center(), certificates.root_radius());
     if radius <= 0.0 || !radius.is_finite() {

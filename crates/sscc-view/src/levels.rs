@@ -1,4 +1,4 @@
-//! How radii grow down the hierarchy (paper, Figure 7).
+//! Statistics of the radii on each level of the hierarchy (paper, Figure 7).
 
 use serde::Serialize;
 use sscc::Certificates;
@@ -6,21 +6,21 @@ use sscc::Certificates;
 /// The radii of one level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Level {
-    /// 0 for the root's.
+    /// The level; 0 is the root.
     pub level: usize,
     /// Number of nodes.
     pub nodes: usize,
     /// The smallest radius.
     pub least: f64,
-    /// The middle one.
+    /// The median radius.
     pub median: f64,
-    /// The largest.
+    /// The largest radius.
     pub largest: f64,
-    /// Share of the nodes whose radius ends at the global one.
+    /// Share of the nodes whose radius is the global radius.
     pub capped: f64,
 }
 
-/// All levels, the root's first.
+/// Returns the statistics of all levels, the root's first.
 pub fn levels(certificates: &Certificates) -> Vec<Level> {
     let parts = certificates.parts();
     let of = |(level, nodes): (usize, std::ops::Range<usize>)| {

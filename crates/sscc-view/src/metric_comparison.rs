@@ -1,19 +1,20 @@
-//! Energy against displacement: how the root's certificate shrinks as modes are added, under both metrics (paper,
-//! Figure 9).
+//! A plot of the root's certificate over the number of modes, for the energy and the displacement metric (paper, Figure
+//! 9).
 
 use sscc::{Certificates, CertifyOptions, Error, Metric, MetricKind, Modes, Progress, ReducedModel};
 
 use crate::{Axis, Plot, Series};
 
-/// The numbers of modes: these, as far as there are, and all.
+/// Numbers of modes to compare, below the model's rank. The rank itself is added.
 const RANKS: [usize; 6] = [1, 5, 10, 20, 40, 80];
 
-/// For each number of modes and both metrics the largest deformation along the first mode alone that the root proves
-/// free: the displacement of the vertex that moves farthest, in the model's `unit` (empty: not named). The model's own
-/// metric is the diagonal energy metric. Computes certificates for each of these models.
+/// Returns for each number of modes, and for both metrics, the largest deformation along the first mode that the root
+/// proves free. A deformation is measured by the displacement of the vertex that moves farthest. `unit` is its unit on
+/// the axis; empty: no unit. The model's own metric must be the diagonal energy metric. Computes certificates of each
+/// of these models.
 ///
 /// # Errors
-/// When `progress` cancels.
+/// If `progress` cancels.
 pub fn metric_comparison(model: &ReducedModel, unit: &str, progress: &dyn Progress) -> Result<Plot, Error> {
     let energy = model.metric();
     let rank = model.rank();

@@ -1,30 +1,30 @@
-//! The page itself: one file of HTML, made from `viewer/`.
+//! The built page, and the insertion of a report's data into it.
 
 use serde::Serialize;
 
-/// As it was built.
+/// The page as built from `viewer/`: one HTML file.
 pub const PAGE: &str = include_str!("../page/index.html");
 
 /// Where the data of a report goes: in live pages it stays as it is.
 const BEFORE: &str = "<script type=\"application/json\" id=\"sscc-report\">";
 const AFTER: &str = "</script>";
 
-/// A report may load nothing, not even from its own folder.
+/// Content security policy of reports. A report loads nothing, not even from its own folder.
 const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; \
      script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; media-src data: blob:\">";
 
-/// The page with data put in.
+/// Returns the page with data inserted as JSON.
 pub(crate) fn with_data(data: &impl Serialize) -> serde_json::Result<String> {
     Ok(with_json(&serde_json::to_string(data)?))
 }
 
-/// The text of the data in a page.
+/// Returns the JSON in a page; `None` if the page has no element for data.
 pub(crate) fn json_in(page: &str) -> Option<&str> {
     let (_head, rest) = page.split_once(BEFORE)?;
     Some(rest.split_once(AFTER)?.0)
 }
 
-/// The page with JSON put in. `<` is written as its number, so that no text of the data can end the element.
+/// Returns the page with JSON inserted. `<` is escaped, so no text in the data can end the element.
 pub(crate) fn with_json(json: &str) -> String {
     let json = json.replace('<', "\\u003c");
     let (head, rest) = PAGE.split_once(BEFORE).unwrap_or((PAGE, ""));

@@ -1,52 +1,51 @@
-//! Motions that the page plays.
+//! Recorded motions, which the page plays.
 
 use serde::Serialize;
 
 use crate::Plot;
 
-/// Bodies that move by q and as a whole.
+/// The recorded motion of bodies, each with a deformation q and a rigid motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Playback {
-    /// Of the frames (s), ascending.
+    /// Times of the frames (s), ascending.
     pub times: Vec<f64>,
-    /// What moves.
+    /// The bodies.
     pub bodies: Vec<Body>,
-    /// For each frame the most pairs of triangles in which all bodies collide with themselves in one step between the
-    /// frame before and this one (neither of both counts; 0 at the first); none where there are no such steps.
+    /// For each frame the number of self-colliding triangle pairs of all bodies, as the maximum over the steps strictly
+    /// between the previous frame and this one; 0 for the first frame. `None` if the motion has no such steps.
     pub pairs_since: Option<Vec<u64>>,
-    /// Triangles that collide, where they are known.
+    /// The colliding triangles, where known.
     pub colliding: Option<Colliding>,
-    /// How high the ground is (z).
+    /// Height of the ground (z).
     pub ground: Option<f64>,
-    /// Name of the array with a WAV file.
+    /// Name of the array with the sound as a WAV file.
     pub sound: Option<String>,
-    /// What the steps cost, over the same time.
+    /// Cost of the steps over the same time.
     pub costs: Option<Plot>,
 }
 
-/// A body: `R (p + U q - center) + x` is where a vertex p is.
+/// The motion of a body. A vertex p is at `R (p + U q - center) + x`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Body {
-    /// What it is called.
+    /// Name of the body.
     pub name: String,
-    /// Which of the models it is.
+    /// Index of its model in the scene.
     pub model: usize,
-    /// Name of the array of q, frame after frame (T x r).
+    /// Name of the array of q (frames x r).
     pub q: String,
-    /// Name of the array of x and R as a quaternion x y z w (T x 7).
+    /// Name of the array of x and of R as a quaternion x y z w (frames x 7).
     pub rigid: Option<String>,
-    /// The point about which it turns.
+    /// The point about which the body turns.
     pub center: [f64; 3],
-    /// For each frame the number of pairs of triangles in which it collides with itself in that very frame; none where
-    /// they are not known.
+    /// For each frame the number of self-colliding triangle pairs in that frame; `None` if unknown.
     pub pairs: Option<Vec<u64>>,
 }
 
-/// Which triangles collide, for each frame and body.
+/// Colliding triangles of each frame and body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Colliding {
-    /// Name of the array of where each list begins: frame after frame, in it body after body; at last the end.
+    /// Name of the array of offsets into `triangles`: one for each list, ordered by frame, then by body, and the end.
     pub offsets: String,
-    /// Name of the array of triangles.
+    /// Name of the array of triangle numbers.
     pub triangles: String,
 }

@@ -1,54 +1,54 @@
-//! Plots that the page draws.
+//! Line plots, which the page draws.
 
 use serde::Serialize;
 
-/// Lines over a common axis.
+/// A line plot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plot {
-    /// What it shows.
+    /// Title above the plot.
     pub title: String,
-    /// Along.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Up.
+    /// Vertical axis.
     pub y: Axis,
     /// The lines.
     pub series: Vec<Series>,
 }
 
-/// An axis.
+/// An axis of a plot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Axis {
-    /// What it measures, with its unit.
+    /// Quantity and unit.
     pub label: String,
-    /// Whether it is logarithmic.
+    /// Whether the axis is logarithmic.
     pub log: bool,
 }
 
 impl Axis {
-    /// Of even steps.
+    /// Returns a linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
         Self { label: label.into(), log: false }
     }
 
-    /// Of even ratios.
+    /// Returns a logarithmic axis.
     pub fn logarithmic(label: impl Into<String>) -> Self {
         Self { label: label.into(), log: true }
     }
 }
 
-/// A line.
+/// A line of a plot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// What it is.
+    /// Name of the line.
     pub name: String,
-    /// Its points.
+    /// x of each point.
     pub x: Vec<f64>,
-    /// As many.
+    /// y of each point.
     pub y: Vec<f64>,
 }
 
 impl Series {
-    /// Of points.
+    /// Returns the line through points `[x, y]`.
     pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let (x, y) = points.into_iter().map(|[x, y]| (x, y)).unzip();
         Self { name: name.into(), x, y }

@@ -6,28 +6,29 @@ use serde::{Deserialize, Serialize};
 use crate::page::{json_in, with_data, with_json};
 use crate::{Arrays, Scene, ViewError};
 
-/// A scene and its numbers.
+/// A report: a scene and its arrays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What is shown.
+    /// The scene.
     pub scene: Scene,
-    /// Its numbers.
+    /// The arrays that the scene names.
     pub arrays: Arrays,
 }
 
 impl Report {
-    /// One file of HTML that needs no other and asks for none.
+    /// Returns the report as one HTML file, which loads no other file.
     ///
     /// # Errors
-    /// Never, for scenes made of text and numbers.
+    /// If a value cannot be written as JSON. The types of a scene exclude this.
     pub fn html(&self) -> serde_json::Result<String> {
         with_data(self)
     }
 
-    /// The page of this program with the data of a report, and nothing else of that file, whoever wrote it.
+    /// Returns this program's page with the data of the report `html`. All other parts of `html` are dropped, since
+    /// another program may have written them.
     ///
     /// # Errors
-    /// When there is no report in it.
+    /// If `html` contains no report.
     pub fn shown_anew(html: &str) -> Result<String, ViewError> {
         let json = json_in(html).ok_or_else(|| ViewError::NoReport("it has no data".into()))?;
         let _: Shape = serde_json::from_str(json).map_err(|error| ViewError::NoReport(error.to_string()))?;
@@ -35,7 +36,7 @@ impl Report {
     }
 }
 
-/// What a report has: enough to tell that the text is JSON, of a report, without building any of it.
+/// The keys of a report. They show that a text is the JSON of a report, without building its values.
 #[derive(Deserialize)]
 struct Shape {
     #[serde(rename = "scene")]

@@ -1,4 +1,4 @@
-//! What the page shows, as the JSON that it reads.
+//! The scene of the page: the JSON that describes models, plots and motions.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -8,25 +8,25 @@ use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
 use crate::{Arrays, Playback, Plot, ViewError};
 
-/// All that a page shows. Numbers that are not finite become `null`.
+/// A scene: models, plots, a motion and a table. Numbers that are not finite become `null`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
-    /// Its title.
+    /// Title of the page.
     pub title: String,
-    /// Of this program.
+    /// Version of this program.
     pub version: &'static str,
-    /// The shapes.
+    /// The models.
     pub models: Vec<ModelScene>,
-    /// Further plots.
+    /// Plots beside those of models and motions.
     pub plots: Vec<Plot>,
-    /// A motion.
+    /// A recorded motion.
     pub playback: Option<Playback>,
-    /// Lines of a table: label and value.
+    /// Rows of the summary table: label and value.
     pub summary: Vec<(String, String)>,
 }
 
 impl Scene {
-    /// Nothing yet.
+    /// Returns an empty scene.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -39,7 +39,7 @@ impl Scene {
     }
 }
 
-/// A shape, and what its certificates say.
+/// A model and the facts of its certificates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelScene {
     name: String,
@@ -47,7 +47,7 @@ pub struct ModelScene {
     vertices: usize,
     rank: usize,
     arrays: ModelArrays,
-    /// At rest.
+    /// The AABB of the rest pose.
     #[serde(rename = "box")]
     bounds: Bounds,
     frequencies: Option<Vec<f64>>,
@@ -59,7 +59,8 @@ pub struct ModelScene {
     limits: Vec<f64>,
     root_radius: f64,
     global_radius: f64,
-    /// The limit of the pair tree: below it no pair of nodes is opened without need; none where there is no tree.
+    /// The limit of the pair tree: below it the pair tree contains every node pair that can collide. `None` if the pair
+    /// tree is empty.
     resolved_up_to: Option<f64>,
     metric: &'static str,
     exceptions: usize,
@@ -68,7 +69,7 @@ pub struct ModelScene {
     extremal: Vec<Extremal>,
 }
 
-/// Names of the arrays of a shape.
+/// Names of a model's arrays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct ModelArrays {
     positions: String,
@@ -82,27 +83,27 @@ struct Bounds {
     max: [f64; 3],
 }
 
-/// What files say of a model beside its shape.
+/// Facts about a model that its file may state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelDetails {
-    /// Of each mode (Hz), where it is known.
+    /// Frequency of each mode (Hz); `None` where unknown.
     pub frequencies: Option<Vec<f64>>,
-    /// Of each mode, or none.
+    /// Name of each mode; empty where unknown.
     pub mode_names: Vec<String>,
-    /// The q that a file shows when nothing moves it; none: the centre.
+    /// The initial q of the page; `None`: the centre.
     pub default_q: Option<Vec<f64>>,
 }
 
 impl ModelScene {
-    /// What it is called.
+    /// The model's name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Describes a model, and adds its arrays under names that end in `-INDEX`.
+    /// Returns the description of a model and adds its arrays, whose names end in `-INDEX`.
     ///
     /// # Errors
-    /// When the certificates are of another model, or its numbers are too large for the page.
+    /// If the certificates belong to another model, or a number of the model exceeds the range of the page.
     pub fn new(
         index: usize,
         name: impl Into<String>,
@@ -154,14 +155,14 @@ impl ModelScene {
     }
 }
 
-/// The box around all vertices; of no vertices a point.
+/// The AABB of points, as minimum and maximum; zero for no points.
 fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((*first, *first), |(min, max), p| (min.min(*p), max.max(*p)))
 }
 
-/// For each mode how far from the centre the vertex that it moves farthest has moved by half the box's diagonal; 1 for
-/// modes that move nothing.
+/// For each mode the range of its slider. At its end the vertex that moves farthest has moved by half the diagonal of
+/// the AABB. It is 1 for a mode without displacement.
 fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
     let mut fastest = vec![0.0_f64; model.rank()];
     for (i, u) in model.modes().displacements().iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Shapes made of few cubes.
+//! Test shapes built from few cubes.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
@@ -13,11 +13,11 @@ pub fn certified(model: &ReducedModel) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default(), &()).unwrap()
 }
 
-/// A shape that does not deform: its only mode moves nothing.
+/// A rigid shape: its only mode has no displacement.
 pub fn rigid(mesh: TriMesh, mass: f64) -> Shape {
     let p = mesh.rest_positions();
     let center = p.iter().sum::<DVec3>() / p.len() as f64;
-    // As if all mass were at the vertices.
+    // Mass properties of equal point masses at the vertices.
     let mut inertia = DMat3::ZERO;
     for x in p.iter().map(|x| *x - center) {
         let outer = DMat3::from_cols(x * x.x, x * x.y, x * x.z);
@@ -31,7 +31,7 @@ pub fn rigid(mesh: TriMesh, mass: f64) -> Shape {
     Shape::new(model, certificates, elasticity, mass).unwrap()
 }
 
-/// Six vertices, a corner at the bottom.
+/// An octahedron with a vertex at the bottom.
 pub fn octahedron(radius: f64) -> TriMesh {
     let positions = [DVec3::X, DVec3::Y, DVec3::Z].map(|x| [x * radius, -x * radius]).concat();
     let faces = (0..8).map(|n: u32| {
@@ -41,7 +41,7 @@ pub fn octahedron(radius: f64) -> TriMesh {
     TriMesh::new(positions, faces.collect()).unwrap()
 }
 
-/// Cubes of the given size at places of a grid.
+/// A solid of cubes of the given size at points of a grid.
 pub fn cubes(places: &[[i32; 3]], size: f64, material: Material) -> Solid {
     let mut numbers = BTreeMap::new();
     let mut vertices = Vec::new();
@@ -60,14 +60,14 @@ pub fn cubes(places: &[[i32; 3]], size: f64, material: Material) -> Solid {
     Solid::uniform(vertices, Vec::new(), cubes, material).unwrap()
 }
 
-/// A block of cubes.
+/// A solid block of cubes.
 pub fn block(counts: [i32; 3], size: f64, material: Material) -> Solid {
     let all =
         (0..counts[0]).flat_map(|x| (0..counts[1]).flat_map(move |y| (0..counts[2]).map(move |z| [x, y, z])));
     cubes(&all.collect::<Vec<_>>(), size, material)
 }
 
-/// Two arms side by side, one cube apart, joined at one end.
+/// A solid with two parallel arms, one cube apart, joined at one end.
 pub fn fork(arm: i32, size: f64, material: Material) -> Solid {
     let mut places = Vec::new();
     for y in 0..arm {
@@ -77,7 +77,7 @@ pub fn fork(arm: i32, size: f64, material: Material) -> Solid {
     cubes(&places, size, material)
 }
 
-/// The boundary of a solid with its lowest modes; a few vertices may be held.
+/// The shape of a solid with its lowest modes; `fixed` lists the held vertices.
 pub fn elastic(solid: &Solid, rank: usize, large: bool, fixed: &[u32]) -> Shape {
     let found =
         if large { nonlinear_modes(solid, fixed, rank, &()) } else { linear_modes(solid, fixed, rank, &()) };

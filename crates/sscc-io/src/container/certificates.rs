@@ -1,12 +1,12 @@
-//! Certificates: `*.sscc.safetensors`.
+//! Reader and writer for certificates: `*.sscc.safetensors`.
 //!
 //! | tensor | type | shape | |
 //! | --- | --- | --- | --- |
-//! | `model_digest` | U8 | 32 | BLAKE3 of everything that the certificates speak of |
+//! | `model_digest` | U8 | 32 | BLAKE3 of the data that the certificates depend on |
 //! | `nodes` | U32 | n x 4 | first triangle, number of triangles, first child, number of children |
-//! | `order` | U32 | N | all triangles, so that each node's are contiguous |
+//! | `order` | U32 | N | permutation of the triangles; those of a node are contiguous |
 //! | `node_radii` | F64 | n | `R_n` |
-//! | `node_states` | U8 | n | 0: the radius was resolved, far from the root's roughly; 1: capped at the limit, the true one is no smaller |
+//! | `node_states` | U8 | n | 0: resolved radius, coarse far above that of the root; 1: capped at the limit, the true radius is not smaller |
 //! | `root_pair_radii` | F64 | p | `R_nm` of the pairs of the root's children: (0,1), (0,2), ..., (2,3) |
 //! | `root_pair_states` | U8 | p | as `node_states` |
 //! | `metric_scales` | F64 | r | the diagonal of the metric's factor S, or |
@@ -14,23 +14,23 @@
 //! | `limit` | F64 | 1 | `R_global`: radii are resolved and stored up to here; may be infinite |
 //! | `epsilon` | F64 | 1 | relative error allowed |
 //! | `center` | F64 | r | the q from which radii are measured: they are norms `\|S (q - center)\|` |
-//! | `exceptions` | U32 | e x 2 | pairs that no radius speaks of and every query tests, sorted |
-//! | `ignored` | U32 | i x 2 | pairs that never count, sorted |
+//! | `exceptions` | U32 | e x 2 | triangle pairs that no radius covers; every query tests them; sorted |
+//! | `ignored` | U32 | i x 2 | ignored triangle pairs, sorted |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
-//! | `pair_limit` | F64 | 1 | the pair tree is complete below this: a pair of nodes that it lacks is certified up to here; 0: no tree |
-//! | `pair_starts` | U32 | n or 0 | for each node where the pairs of its children start; 2^32 - 1: none is below the limit, or the node is small |
-//! | `pair_radii` | F32 | t | the radius of each pair of nodes, rounded down, below the limit |
-//! | `pair_links` | U32 | t | bits 0 to 27: where its children start (0: none, both nodes are small); 28 to 30: which child of its parent it is; 31: no sibling follows |
+//! | `pair_limit` | F64 | 1 | the pair tree holds all node pairs with a smaller radius: a missing node pair is certified up to here; 0: no tree |
+//! | `pair_starts` | U32 | n or 0 | for each node, the index of the first pair of its children; 2^32 - 1: no pair is below the limit, or the node is a bucket |
+//! | `pair_radii` | F32 | t | radius of each node pair, rounded down, below the limit |
+//! | `pair_links` | U32 | t | bits 0 to 27: index of its first child (0: none, both nodes are buckets); 28 to 30: its number among the children of its parent; 31: last sibling |
 //!
-//! A pair of nodes is split into the pairs of the children of the one of more triangles (the first of equals; never a
-//! leaf) with the other one. Lists of siblings stand breadth first, those of the nodes' children before all others.
+//! A node pair is split at the node with more triangles (the first of equals; never a leaf): its children pair with the
+//! other node. Lists of siblings are stored breadth first; the lists of the nodes' own children come first.
 //!
-//! Text: `metric` (the kind), `scheme` ("full" where there is a pair tree, else "paper"), `neighbours` ("exclude":
-//! triangles that share a vertex are no pair; "include-one-vertex": those that share just one count where they meet
-//! beside it), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). Nothing is
-//! inferred from the scheme's name. A small node has at most 64 triangles, and is not the root: the tree says nothing
-//! of the pairs within it. Version 3 has a tree that does, which is not read; versions 1 and 2 have none, and a text
-//! `pairs` ("root-children") instead.
+//! Text: `metric` (the kind), `scheme` ("full" with a pair tree, else "paper"), `neighbours` ("exclude": triangles that
+//! share a vertex are no pair; "include-one-vertex": triangles that share exactly one vertex count if they meet at
+//! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). The
+//! name of the scheme implies nothing. A bucket has at most 64 triangles and is not the root; the tree holds no pairs
+//! within a bucket. Version 3 has a tree with such pairs, which is not read. Versions 1 and 2 have no tree, and a text
+//! `pairs` ("root-children").
 
 use std::path::Path;
 
@@ -42,11 +42,11 @@ use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
 
-/// How the weld is stated.
+/// Values of the text `weld`.
 const WELD: &str = "equal";
 const NO_WELD: &str = "none";
 
-/// The scheme, as a file names it.
+/// Returns the value of the text `scheme`.
 fn scheme(tree: &PairTree) -> &'static str {
     if tree.limit() > 0.0 { "full" } else { "paper" }
 }
@@ -73,7 +73,7 @@ const TENSORS: [&str; 19] = [
     "root_pair_states",
 ];
 
-/// Writes certificates. Reading them back gives the same numbers, bit for bit.
+/// Writes certificates. Reading returns the same numbers, bit for bit.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -84,15 +84,15 @@ pub fn write_certificates(path: &Path, certificates: &Certificates) -> Result<()
 /// Reads certificates.
 ///
 /// # Errors
-/// When the file cannot be read, is damaged, of another kind or a newer version, or its parts do not fit.
+/// When the file cannot be read, is damaged, of another kind or a newer version, or its parts do not fit each other.
 pub fn read_certificates(path: &Path) -> Result<Certificates, IoError> {
     certificates_from_bytes(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// The bytes of a certificate file: the same certificates give the same bytes.
+/// Returns the bytes of a certificate file: a function of the certificates.
 ///
 /// # Errors
-/// None in practice: all names and texts are short.
+/// None in practice, because all names and texts are short.
 pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, FormatError> {
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
@@ -135,7 +135,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
 /// Parses a certificate file.
 ///
 /// # Errors
-/// As [`read_certificates`], but for the file's name.
+/// As [`read_certificates`], without the file's name.
 pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError> {
     let file = Sealed::parse(bytes, CERTIFICATES)?;
     file.only(&TENSORS)?;
@@ -209,7 +209,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     })?)
 }
 
-/// Pairs of triangles `i < j`, sorted, each once.
+/// Reads triangle pairs `i < j`, sorted, without duplicates.
 fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
     let tensor = file.u32(name)?.shaped(&[ANY, 2])?;
     let pairs: Vec<Pair> = tensor.values.as_chunks().0.iter().map(|&[i, j]| (i, j)).collect();
@@ -220,7 +220,7 @@ fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
     }
 }
 
-/// The pair tree; whether it is one over the hierarchy is told by [`Certificates::from_parts`].
+/// Reads the pair tree. [`Certificates::from_parts`] checks that it fits the hierarchy.
 fn read_pair_tree(file: &Sealed<'_>) -> Result<PairTree, FormatError> {
     if file.version() < 4 {
         return Ok(PairTree::default());
@@ -250,7 +250,7 @@ fn read_hierarchy(file: &Sealed<'_>) -> Result<Hierarchy, FormatError> {
     Ok(Hierarchy::from_parts(nodes, order, triangles)?)
 }
 
-/// 1 for a radius that reaches the limit, else 0.
+/// Returns 1 for each radius that reaches the limit, else 0.
 fn states(radii: &[f64], limit: f64) -> Vec<u8> {
     radii.iter().map(|radius| u8::from(*radius >= limit)).collect()
 }

@@ -1,5 +1,5 @@
-//! The elastic forces in a model file: `stiffness` (r x r), and for large deformations
-//! `forces_quadratic` and `forces_cubic`.
+//! Elastic forces in a model file: `stiffness` (r x r), and for large deformations `forces_quadratic` and
+//! `forces_cubic`.
 
 use sscc_solid::{Elasticity, ReducedForces, SolidError, Stiffness, monomials};
 
@@ -10,22 +10,22 @@ pub(super) const STIFFNESS: &str = "stiffness";
 pub(super) const QUADRATIC: &str = "forces_quadratic";
 pub(super) const CUBIC: &str = "forces_cubic";
 
-/// The text entry that states the reduced mass matrix.
+/// Key of the text entry for the reduced mass matrix.
 const MASS: &str = "mass";
-/// Its one value: `M~` is the identity.
+/// Its only value: `M~` is the identity.
 const IDENTITY: &str = "identity";
 
-/// The shapes of the three tensors.
+/// Returns the shapes of the three tensors.
 fn shapes(rank: usize) -> [(&'static str, [usize; 2]); 3] {
-    // A length that no `usize` holds fits no tensor; the largest one means any.
+    // A length beyond `usize` fits no tensor; `ANY` itself would match every length.
     let [one, two, three] = [1, 2, 3].map(|degree| [rank, monomials::count(rank, degree).min(ANY - 1)]);
     [(STIFFNESS, one), (QUADRATIC, two), (CUBIC, three)]
 }
 
-/// Adds the forces of a model of that many modes, and its mass as text.
+/// Adds the forces of a model of rank r, and the text for its mass.
 ///
 /// # Errors
-/// When they are of another number of modes.
+/// When the rank of the forces differs.
 pub(super) fn write(
     writer: &mut SealedWriter,
     elasticity: &Elasticity,
@@ -48,7 +48,7 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Reads the forces of a model of that many modes; none where the file has none.
+/// Reads the forces of a model of rank r; None if the file has no forces.
 pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Option<Elasticity>, FormatError> {
     let names = file.names();
     let there = |name: &str| names.iter().any(|known| known == name);
@@ -71,7 +71,7 @@ pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Option<Elasticity>,
     Ok(Some(Elasticity::Nonlinear(forces)))
 }
 
-/// The refusal, at the tensor with the entry.
+/// Returns the error at the tensor with the entry.
 fn refused(error: SolidError) -> FormatError {
     let tensor = match error {
         SolidError::ForceEntry { degree: 2, .. } | SolidError::ForceLength { degree: 2, .. } => QUADRATIC,

@@ -1,4 +1,4 @@
-//! The header of a container, in the one form that is written.
+//! Header of a container, in its canonical form.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -8,22 +8,22 @@ use safetensors::Dtype;
 
 use crate::FormatError;
 
-/// The header of any container begins so; the digest's 64 digits follow. They are always at the same place.
+/// Start of every header. The 64 digits of the digest follow, always at the same offset.
 pub(super) const PREFIX: &str = r#"{"__metadata__":{"blake3":""#;
 
-/// Bytes of the length in front of the header.
+/// Number of bytes of the length before the header.
 pub(super) const LENGTH: usize = 8;
 
-/// Where the digest is in the file.
+/// Range of the digest in the file.
 pub(super) const DIGEST: std::ops::Range<usize> = LENGTH + PREFIX.len()..LENGTH + PREFIX.len() + 64;
 
-/// The key of the digest.
+/// Key of the digest.
 pub(super) const DIGEST_KEY: &str = "blake3";
 
 /// Longer headers are refused on both sides: parsed JSON takes many times the memory of its text.
 pub(super) const LARGEST_HEADER: usize = 1 << 20;
 
-/// The types of entries in use.
+/// Number types of tensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Item {
     F64,
@@ -64,21 +64,21 @@ impl Item {
     }
 }
 
-/// What the header says of one tensor, apart from its place.
+/// Entry of the header for one tensor, without its offset.
 pub(super) struct Entry {
     pub name: String,
     pub item: Item,
     pub shape: Vec<usize>,
-    /// Bytes of its data.
+    /// Number of bytes of its data.
     pub size: usize,
 }
 
-/// Brings entries into the order of the file: large items first, so that all are aligned, then by name.
+/// Sorts entries: large number types first, so that all are aligned, then by name.
 pub(super) fn sort(entries: &mut [Entry]) {
     entries.sort_by(|a, b| (Reverse(a.item.size()), &a.name).cmp(&(Reverse(b.item.size()), &b.name)));
 }
 
-/// The header of these entries (sorted) and text entries, padded to a multiple of 8.
+/// Returns the header of these entries (sorted) and text entries, padded to a multiple of 8.
 pub(super) fn to_text(
     digest: &str,
     texts: &BTreeMap<String, String>,
@@ -108,9 +108,9 @@ pub(super) fn to_text(
     Ok(header)
 }
 
-/// The digest of a file: its BLAKE3 with the digits of the digest taken as zeros.
+/// Returns the digest of a file: its BLAKE3 with the digits of the digest replaced by zeros.
 ///
-/// The file must be long enough to hold them.
+/// The file must contain [`DIGEST`].
 pub(super) fn digest(bytes: &[u8]) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&bytes[..DIGEST.start]);

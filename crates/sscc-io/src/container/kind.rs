@@ -1,29 +1,29 @@
-//! The kinds of containers, and which versions of them this build reads.
+//! Kinds of containers, and the versions of them that can be read.
 
 use crate::error::quoted;
 use crate::{FormatError, Place};
 
-/// A kind of container.
+/// Kind of a container.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// The text entry `format` of such files.
+    /// Text entry `format` of such files.
     pub format: &'static str,
-    /// What a person calls it, with an article.
+    /// Name in messages, with an article.
     pub called: &'static str,
-    /// The version that is written, and the newest that is read; from 1.
+    /// Version that is written, and newest version that can be read; from 1.
     pub version: u32,
 }
 
-/// A mesh with its modes: `*.model.safetensors`.
+/// Mesh with its modes: `*.model.safetensors`.
 pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 1 };
 
 /// Certificates of a model: `*.sscc.safetensors`.
-/// Version 1 knew no pairs to be ignored, and no other centre, rule or exceptions than none; version 2 no pair tree;
-/// that of version 3 went into small nodes, and is not read.
+/// Version 1 has no ignored pairs, centre, contact filter or exceptions; version 2 has no pair tree. The pair tree of
+/// version 3 includes pairs within buckets and is not read.
 pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 4 };
 
 impl Kind {
-    /// Checks the text entries `format` and `version`; gives the version.
+    /// Checks the text entries `format` and `version`, and returns the version.
     pub(super) fn check(self, format: &str, version: &str) -> Result<u32, FormatError> {
         if format != self.format {
             let found = match [MODEL, CERTIFICATES].iter().find(|kind| kind.format == format) {

@@ -1,9 +1,9 @@
 //! Containers: safetensors files sealed with a digest of themselves.
 //!
-//! A container is an ordinary safetensors file (NumPy and others read it): a JSON header with named tensors
-//! and text, then the data. Its first text entry, `blake3`, is the BLAKE3 of the whole file with this
-//! entry's own 64 digits taken as zeros, so that any flipped byte is refused: of the data, the header or
-//! the seal. The bytes are a function of the content: the same content gives the same file.
+//! A container is an ordinary safetensors file, which NumPy and other tools read: a JSON header with named tensors and
+//! text, then the data. Its first text entry, `blake3`, is the BLAKE3 digest of the whole file with the 64 digits of
+//! this entry replaced by zeros. A changed byte of data, header or digest is therefore an error. The bytes are a
+//! function of the content.
 
 mod certificates;
 mod elasticity;

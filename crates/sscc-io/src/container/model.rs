@@ -1,4 +1,4 @@
-//! Models: `*.model.safetensors`.
+//! Reader and writer for models: `*.model.safetensors`.
 //!
 //! | tensor | type | shape | |
 //! | --- | --- | --- | --- |
@@ -11,9 +11,9 @@
 //! | `forces_quadratic` | F64 | r x r(r+1)/2 | optional, beside it: coefficients of `q_i q_j` in each force, i <= j |
 //! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with the former: of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
 //!
-//! Text: `metric` (the name of the metric's kind), `units`, `provenance`; beside a stiffness `mass`, which is
-//! "identity": the modes are mass-orthonormal, `M~` is the identity, and the natural frequencies in Hz are the roots
-//! of the stiffness's eigenvalues over 2 pi (where it is in SI units, or in others with the second as unit of time).
+//! Text: `metric` (the kind of the metric), `units`, `provenance`. A file with a stiffness also has the text `mass`
+//! with the value "identity": the modes are mass-orthonormal, and `M~` is the identity. The natural frequencies in Hz
+//! are then the square roots of the stiffness's eigenvalues over 2 pi, if the unit of time is the second.
 
 use std::path::Path;
 
@@ -25,32 +25,32 @@ use super::{ANY, MODEL, Sealed, SealedWriter, elasticity, metric};
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError};
 
-/// What a model file says beside the model. Texts are free, and empty where nothing is known.
+/// Additional data of a model file. Texts are free, and empty if unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelInfo {
-    /// The unit of length ("m", "cm", ...).
+    /// Unit of length ("m", "cm", ...).
     pub units: String,
-    /// Where the mesh and the modes come from.
+    /// Source of the mesh and the modes.
     pub provenance: String,
-    /// The elastic forces, where they are known.
+    /// Elastic forces, if known.
     pub elasticity: Option<Elasticity>,
 }
 
 impl ModelInfo {
-    /// Of these texts, and no forces.
+    /// Creates the data from these texts, without forces.
     pub fn new(units: impl Into<String>, provenance: impl Into<String>) -> Self {
         Self { units: units.into(), provenance: provenance.into(), elasticity: None }
     }
 
-    /// The same with elastic forces, of a model whose modes are mass-orthonormal.
+    /// Adds elastic forces of a model whose modes are mass-orthonormal.
     #[must_use]
     pub fn with_elasticity(self, elasticity: Elasticity) -> Self {
         Self { elasticity: Some(elasticity), ..self }
     }
 }
 
-/// Writes a model. Reading it back gives the same numbers, bit for bit.
+/// Writes a model. Reading returns the same numbers, bit for bit.
 ///
 /// # Errors
 /// When the texts are beyond 1 MiB, the elastic forces are of another rank, or the file cannot be written.
@@ -61,12 +61,12 @@ pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Resul
 /// Reads a model.
 ///
 /// # Errors
-/// When the file cannot be read, is damaged, of another kind or a newer version, or its content is no model.
+/// When the file cannot be read, is damaged, of another kind or a newer version, or its content is not a valid model.
 pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
     model_from_bytes(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// The bytes of a model file.
+/// Returns the bytes of a model file.
 ///
 /// # Errors
 /// When the texts are beyond 1 MiB, or the elastic forces are of another rank.
@@ -96,7 +96,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 /// Parses a model file.
 ///
 /// # Errors
-/// As [`read_model`], but for the file's name.
+/// As [`read_model`], without the file's name.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
     let file = Sealed::parse(bytes, MODEL)?;
     file.only(&[

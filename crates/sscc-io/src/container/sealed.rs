@@ -1,4 +1,4 @@
-//! Reading a container.
+//! Reader for containers.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::{Kind, Tensor};
 use crate::error::cut;
 use crate::{FormatError, Place};
 
-/// A container whose seal, kind and version have been checked.
+/// Container whose seal, kind and version are valid.
 #[derive(Debug)]
 pub struct Sealed<'a> {
     version: u32,
@@ -19,17 +19,17 @@ pub struct Sealed<'a> {
 }
 
 impl<'a> Sealed<'a> {
-    /// Checks a file of the given kind: the seal first, so that a damaged file is called damaged and
-    /// nothing else. All later versions are to keep the seal as it is, so that they are recognised.
+    /// Checks a file of the given kind. The seal is checked first, so that a damaged file is always reported as
+    /// damaged. Later versions must keep the seal, so that this version recognises them.
     ///
     /// # Errors
-    /// When the file is no container of sscc, any byte of it has changed, it is of another kind or of a newer
-    /// version, or it has a form that is never written (such as two tensors of one name).
+    /// When the file is not a container of sscc, a byte of it has changed, it is of another kind or a newer version, or
+    /// its header is not in the canonical form (for example two tensors of one name).
     pub fn parse(bytes: &'a [u8], kind: Kind) -> Result<Self, FormatError> {
         let header = checked_header(bytes)?;
         let at_header = |cause: String| FormatError::new(Place::Byte(LENGTH), cause);
-        // `SafeTensors::deserialize` would do this and the next step. But it adds the tensors' end to the
-        // header's length without a check, which a hostile file makes overflow.
+        // `SafeTensors::deserialize` would do this and the next step, but it adds the end of the tensors to the length
+        // of the header without a check for overflow.
         let metadata: Metadata = serde_json::from_str(header)
             .map_err(|e| at_header(format!("not a safetensors header: {}", cut(&e.to_string(), 120))))?;
         let data = &bytes[LENGTH + header.len()..];
@@ -41,8 +41,8 @@ impl<'a> Sealed<'a> {
         let mut texts: BTreeMap<String, String> =
             metadata.metadata().iter().flatten().map(|(key, text)| (key.clone(), text.clone())).collect();
         let digest = texts.remove(DIGEST_KEY).unwrap_or_default();
-        // What is written has one form only. A header that reads as this content but looks otherwise has
-        // something hidden in it: a name twice, of which the parser kept one.
+        // The header has one canonical form. A header with the same content in another form may hide data: the parser
+        // keeps only one of two equal names.
         if header::to_text(&digest, &texts, &entries(&metadata)?)? != header {
             return Err(at_header("not as sscc writes it: a name twice, or another order".into()));
         }
@@ -51,31 +51,31 @@ impl<'a> Sealed<'a> {
         Ok(file)
     }
 
-    /// The version of the file's format, from 1 to the kind's newest.
+    /// Returns the version of the file's format, from 1 to the newest of its kind.
     pub fn version(&self) -> u32 {
         self.version
     }
 
-    /// A text entry.
+    /// Returns a text entry.
     ///
     /// # Errors
-    /// When there is none of that key.
+    /// When the key does not exist.
     pub fn text(&self, key: &str) -> Result<&str, FormatError> {
         let missing = || FormatError::new(Place::Key(key.into()), "missing");
         self.texts.get(key).map(String::as_str).ok_or_else(missing)
     }
 
-    /// The names of all tensors, ascending.
+    /// Returns the names of all tensors, ascending.
     pub fn names(&self) -> Vec<String> {
         let mut names = self.metadata.offset_keys();
         names.sort();
         names
     }
 
-    /// Refuses tensors other than these.
+    /// Checks that the file has no other tensors than these.
     ///
     /// # Errors
-    /// When there is another one.
+    /// When there is another tensor.
     pub fn only(&self, known: &[&str]) -> Result<(), FormatError> {
         match self.names().into_iter().find(|name| !known.contains(&name.as_str())) {
             Some(name) => {
@@ -85,15 +85,15 @@ impl<'a> Sealed<'a> {
         }
     }
 
-    /// An array of f64.
+    /// Returns an array of f64.
     ///
     /// # Errors
-    /// When there is none of that name, or it is of another type. So too for the other types.
+    /// When the name does not exist, or the type differs. The same holds for the other types.
     pub fn f64(&self, name: &str) -> Result<Tensor<f64>, FormatError> {
         self.tensor(name, Item::F64, f64::from_le_bytes)
     }
 
-    /// An array of u64.
+    /// Returns an array of u64.
     ///
     /// # Errors
     /// As [`Sealed::f64`].
@@ -101,7 +101,7 @@ impl<'a> Sealed<'a> {
         self.tensor(name, Item::U64, u64::from_le_bytes)
     }
 
-    /// An array of f32.
+    /// Returns an array of f32.
     ///
     /// # Errors
     /// As [`Sealed::f64`].
@@ -109,7 +109,7 @@ impl<'a> Sealed<'a> {
         self.tensor(name, Item::F32, f32::from_le_bytes)
     }
 
-    /// An array of u32.
+    /// Returns an array of u32.
     ///
     /// # Errors
     /// As [`Sealed::f64`].
@@ -117,7 +117,7 @@ impl<'a> Sealed<'a> {
         self.tensor(name, Item::U32, u32::from_le_bytes)
     }
 
-    /// An array of u8.
+    /// Returns an array of u8.
     ///
     /// # Errors
     /// As [`Sealed::f64`].
@@ -136,14 +136,14 @@ impl<'a> Sealed<'a> {
         if Item::from_dtype(info.dtype) != Some(item) {
             return Err(refused(format!("it has the type {}, {} was expected", info.dtype, item.name())));
         }
-        // Offsets were checked against the data, and sizes against shapes, when the header was read.
+        // Parsing the header checked the offsets against the data, and the sizes against the shapes.
         let (begin, end) = info.data_offsets;
         let values = self.data[begin..end].as_chunks::<N>().0.iter().map(|bytes| decode(*bytes)).collect();
         Ok(Tensor { name: name.into(), shape: info.shape.clone(), values })
     }
 }
 
-/// The header's text, once the seal has been found whole.
+/// Checks the seal, and returns the text of the header.
 fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
     let no_container = || FormatError::whole("not a file written by sscc, or its beginning is damaged");
     let (length, rest) = bytes.split_first_chunk::<LENGTH>().ok_or_else(no_container)?;
@@ -155,7 +155,7 @@ fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
             "the file is damaged: its content does not match its BLAKE3 digest; copy or create it anew",
         ));
     }
-    // Whoever seals a file anew can still write anything, so nothing below trusts it.
+    // A valid seal does not make the content trustworthy: the steps below check it.
     let length = u64::from_le_bytes(*length);
     let cause = match usize::try_from(length).ok().filter(|n| *n <= rest.len()) {
         Some(n) if n > LARGEST_HEADER => format!("a header of {n} bytes is too long"),
@@ -168,7 +168,7 @@ fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
     Err(FormatError::new(Place::Byte(0), cause))
 }
 
-/// What the header says of the tensors, in the order of the file.
+/// Returns the entries of the header, in the order of the file.
 fn entries(metadata: &Metadata) -> Result<Vec<Entry>, FormatError> {
     let mut entries = Vec::new();
     for (name, info) in metadata.tensors() {

@@ -1,23 +1,23 @@
-//! A tensor of a container, read out.
+//! Tensor read from a container.
 
 use crate::{FormatError, Place};
 
-/// Stands for any length of an axis in [`Tensor::shaped`].
+/// Matches any length of an axis in [`Tensor::shaped`].
 pub const ANY: usize = usize::MAX;
 
 /// A named array (C order: last axis fastest).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tensor<T> {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
-    /// The length of each axis; their product is the number of values.
+    /// Length of each axis; the product is the number of values.
     pub shape: Vec<usize>,
-    /// The entries.
+    /// Values.
     pub values: Vec<T>,
 }
 
 impl<T> Tensor<T> {
-    /// The same, if it has this shape, where [`ANY`] stands for any length.
+    /// Returns the tensor if it has this shape, where [`ANY`] matches any length.
     ///
     /// # Errors
     /// When it has another shape; the message names the tensor and both shapes.
@@ -32,7 +32,7 @@ impl<T> Tensor<T> {
         Err(FormatError::new(Place::Tensor(self.name), cause))
     }
 
-    /// The error of something wrong with the values.
+    /// Returns an error for the values of the tensor.
     pub fn refused(&self, cause: impl Into<String>) -> FormatError {
         FormatError::new(Place::Tensor(self.name.clone()), cause)
     }

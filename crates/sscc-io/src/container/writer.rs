@@ -23,12 +23,12 @@ use crate::{FormatError, Place};
 pub struct SealedWriter {
     texts: BTreeMap<String, String>,
     tensors: BTreeMap<String, (Item, Vec<usize>, Vec<u8>)>,
-    /// The first thing that no file can hold, told at the end.
+    /// First error, which [`SealedWriter::finish`] returns.
     refused: Option<FormatError>,
 }
 
 impl SealedWriter {
-    /// A container of that kind and its newest version, with nothing in it.
+    /// Creates a container of the given kind in its newest version, without content.
     pub fn new(kind: Kind) -> Self {
         let mut writer = Self { texts: BTreeMap::new(), tensors: BTreeMap::new(), refused: None };
         writer.text("format", kind.format).text("version", &kind.version.to_string());
@@ -85,11 +85,10 @@ impl SealedWriter {
         self.refused.get_or_insert_with(|| FormatError::new(place, cause));
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// When a name was used twice, values did not fill their shape, or names and texts are beyond 1 MiB in
-    /// all.
+    /// When a name was used twice, values did not fill their shape, or names and texts exceed 1 MiB in all.
     pub fn finish(self) -> Result<Vec<u8>, FormatError> {
         if let Some(refused) = self.refused {
             return Err(refused);

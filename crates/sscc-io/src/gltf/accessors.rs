@@ -1,4 +1,4 @@
-//! Numbers of a glTF file: accessors, plain, strided and sparse.
+//! Reader for accessors of a glTF file: plain, strided and sparse.
 
 use super::buffers::Buffers;
 use super::component::Component;
@@ -6,16 +6,16 @@ use super::json::{Accessor, Kind, Root};
 use crate::FormatError;
 use crate::allowance::Allowance;
 
-/// What an accessor is read for.
+/// Use of an accessor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// Positions or displacements: three floating point numbers, or quantised ones.
+    /// Positions or displacements: three floating point or quantized numbers.
     Positions,
-    /// Vertex numbers.
+    /// Indices of vertices.
     Indices,
 }
 
-/// Reads accessors, and watches how much memory they take.
+/// Reads accessors within a memory allowance.
 pub(super) struct Accessors<'a> {
     root: &'a Root,
     buffers: Buffers<'a>,
@@ -23,7 +23,7 @@ pub(super) struct Accessors<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Reads the buffers of those accessors. `size` is that of the glTF file itself.
+    /// Creates a reader for these buffers. `size` is the size of the glTF file.
     pub fn new(
         root: &'a Root,
         mut buffers: Buffers<'a>,
@@ -42,12 +42,12 @@ impl<'a> Accessors<'a> {
         Ok(Self { root, buffers, allowance })
     }
 
-    /// How many items an accessor has. Not yet checked against the file.
+    /// Returns the count of an accessor, not yet checked against the file.
     pub fn count(&self, index: usize) -> Result<usize, FormatError> {
         Ok(self.accessor(index)?.count)
     }
 
-    /// All numbers of an accessor, item after item.
+    /// Returns all numbers of an accessor, item after item.
     pub fn read(&mut self, index: usize, role: Role) -> Result<Vec<f64>, FormatError> {
         let refused = |cause| FormatError::part(format!("accessors[{index}]"), cause);
         let accessor = self.accessor(index)?;
@@ -106,8 +106,8 @@ impl<'a> Accessors<'a> {
         self.root.accessors.get(index).ok_or_else(missing)
     }
 
-    /// `count` items in a view, from that offset on. They are in the view's bytes, so they are no more than
-    /// the file bears out.
+    /// Reads `count` items in a view from an offset. They lie within the view's bytes, so the size of the file bounds
+    /// their number.
     fn numbers(
         &self,
         index: usize,
@@ -137,7 +137,7 @@ impl<'a> Accessors<'a> {
         if stride < size {
             return refused(format!("a stride of {stride} bytes for items of {size}"));
         }
-        // The last item may end before its stride does.
+        // The last item may end before the stride ends.
         let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size));
         let Some(bytes) =
             bytes.get(offset..).filter(|rest| needed.is_some_and(|needed| needed <= rest.len()))
@@ -155,7 +155,7 @@ impl<'a> Accessors<'a> {
 #[derive(Clone, Copy)]
 struct Layout {
     component: Component,
-    /// Numbers in one item.
+    /// Count of numbers in one item.
     width: usize,
     normalized: bool,
 }

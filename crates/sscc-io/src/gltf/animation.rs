@@ -1,13 +1,12 @@
-//! Bodies that move, as a binary glTF file: modes as morph targets, q(t) as their weights, rigid motion on nodes.
+//! Writer for animated bodies as binary glTF: modes as morph targets, q(t) as their weights, rigid motion on nodes.
 //!
-//! That is the reduced motion itself, so a player shows `R (p + U q - c) + x` for a body at x, turned by R about its
-//! centre c. Numbers are rounded to single precision (2^-24 of each), which is all that the format has; between key
-//! frames weights and places are interpolated linearly, turns on the shortest arc. Bodies of one model share its
-//! numbers in the file.
+//! A player shows `R (p + U q - c) + x` for a body with rotation R about its centre c and position x. Numbers are
+//! rounded to single precision (relative error 2^-24). Between key frames players interpolate weights and positions
+//! linearly, and rotations on the shortest arc. Bodies of one model share its data in the file.
 //!
-//! After the motion, the first animation, which players play by default, there are two of one key frame, the least and
-//! the greatest weights that occur: Blender (5.0) clamps weights to [0, 1], widened only by the first key frame of each
-//! animation.
+//! Two animations of one key frame follow the motion, with the minimum and the maximum of each weight. Blender (5.0)
+//! needs them: it clamps weights to [0, 1] and to the weights of the first key frame of each animation. Players show
+//! the first animation, the motion, by default.
 
 use std::path::Path;
 
@@ -26,28 +25,28 @@ pub struct NamedModel<'a> {
     pub model: &'a ReducedModel,
 }
 
-/// How one body moves: one entry for each key frame.
+/// Motion of one body: one entry for each key frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// The name of its node.
+    /// Name of the node.
     pub name: String,
-    /// Which of the models it is.
+    /// Index of the model.
     pub model: usize,
-    /// The point of the model about which it turns.
+    /// Centre of rotation, in the model.
     pub center: DVec3,
-    /// Where that point is.
+    /// Positions of the centre.
     pub positions: Vec<DVec3>,
-    /// How it is turned (unit quaternions).
+    /// Rotations (unit quaternions).
     pub orientations: Vec<DQuat>,
     /// q, frame after frame (r numbers each).
     pub weights: Vec<f64>,
 }
 
-/// Writes an animation (`.glb`). `times` are those of the key frames (s), ascending; models have names.
+/// Writes an animation (`.glb`). `times` are the times of the key frames (s), ascending.
 ///
 /// # Errors
-/// When a track has not one entry for each time, or names no model; when a number is not finite in single precision;
-/// when the file would have more than 4 GiB, or cannot be written.
+/// When a track does not have one entry per time, or its model does not exist; when a number is not finite in single
+/// precision; when the file exceeds 4 GiB or cannot be written.
 pub fn write_animation(
     path: &Path,
     models: &[NamedModel<'_>],
@@ -59,16 +58,16 @@ pub fn write_animation(
     write_whole(path, &bytes)
 }
 
-/// Indices of the steps that are key frames at about `rate` frames in a second: the step nearest to each frame's time,
-/// the first and the last of `steps`, each once. `step` is the time between two (s).
+/// Returns the indices of the key frames for about `rate` frames per second: the step nearest to the time of each
+/// frame, the first and the last of `steps`, each once. `step` is the time step (s).
 pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     let Some(last) = steps.checked_sub(1) else { return Vec::new() };
     let stride = (1.0 / (rate * step)).max(1.0);
-    // Not a number, or slower than the whole: the ends alone.
+    // With NaN or a rate below one frame, only the first and the last step remain.
     let count = if stride.is_finite() { (last as f64 / stride) as usize } else { 0 };
     let mut frames: Vec<usize> =
         (0..=count).map(|frame| ((frame as f64 * stride).round() as usize).min(last)).collect();
-    // Files hold times in single precision, in which frames may be too near to each other.
+    // Times are stored in single precision, in which close frames may coincide.
     let time = |frame: usize| (frame as f64 * step) as f32;
     frames.dedup_by_key(|frame| time(*frame));
     while frames.last().is_some_and(|frame| *frame > 0 && time(*frame) >= time(last)) {
@@ -79,10 +78,10 @@ pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     frames
 }
 
-/// The bytes of the file that [`write_animation`] writes.
+/// Returns the bytes of the file that [`write_animation`] writes.
 ///
 /// # Errors
-/// As [`write_animation`]: one line without a file's name.
+/// As [`write_animation`]; the message has one line without a file name.
 pub fn animation_to_bytes(
     models: &[NamedModel<'_>],
     times: &[f64],
@@ -143,7 +142,7 @@ pub fn animation_to_bytes(
     joined(root.to_string().into_bytes(), file.binary)
 }
 
-/// What moves, and how.
+/// Animation of the JSON: samplers and channels.
 struct Animation {
     name: &'static str,
     samplers: Vec<Value>,
@@ -170,7 +169,7 @@ fn check(models: &[NamedModel<'_>], times: &[f64], tracks: &[Track]) -> Result<(
     if times.is_empty() || tracks.is_empty() {
         return Err("an animation needs a key frame and a body".into());
     }
-    // As they will be stored.
+    // Times in the precision of the file.
     if let Some(at) = times.windows(2).position(|pair| (pair[0] as f32) >= pair[1] as f32) {
         return Err(format!("key frame {} is not after the one before it", at + 1));
     }
@@ -186,7 +185,8 @@ fn check(models: &[NamedModel<'_>], times: &[f64], tracks: &[Track]) -> Result<(
     Ok(())
 }
 
-/// Components of a turn, x y z w, each turn on the side of the one before it (q and -q are the same turn).
+/// Components x y z w of rotations. The sign of each is chosen next to its predecessor (q and -q are the same
+/// rotation).
 fn continued(orientations: &[DQuat]) -> Vec<f64> {
     let mut before = DQuat::IDENTITY;
     let mut values = Vec::with_capacity(4 * orientations.len());
@@ -201,16 +201,16 @@ fn singles(values: &[f64]) -> Vec<f32> {
     values.iter().map(|x| *x as f32).collect()
 }
 
-/// Names and widths of items.
+/// Name and width of accessor types.
 const SCALAR: (&str, usize) = ("SCALAR", 1);
 const VEC3: (&str, usize) = ("VEC3", 3);
 const VEC4: (&str, usize) = ("VEC4", 4);
 
-/// What a view is for: vertices or corners.
+/// Targets of views: vertices or indices.
 const VERTICES: u32 = 34962;
 const CORNERS: u32 = 34963;
 
-/// The numbers of the file, and what tells of them.
+/// Binary data of the file, with its views and accessors.
 #[derive(Default)]
 struct File {
     binary: Vec<u8>,
@@ -244,7 +244,7 @@ impl File {
         }))
     }
 
-    /// Single precision numbers, with their bounds, which the format wants of positions and times.
+    /// Adds single precision numbers with their bounds, which the format requires for positions and times.
     fn accessor(
         &mut self,
         (kind, width): (&str, usize),
@@ -280,7 +280,7 @@ impl File {
     }
 }
 
-/// Header and both chunks; numbers are all of 4 bytes, so only the JSON is padded.
+/// Returns header and both chunks. Only the JSON needs padding: all numbers have 4 bytes.
 fn joined(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, String> {
     json.resize(json.len().next_multiple_of(4), b' ');
     let total = 12 + 8 + json.len() + 8 + binary.len();

@@ -1,4 +1,4 @@
-//! The bytes behind a glTF file's numbers: in the file itself, or in files beside it.
+//! Buffers of a glTF file: in the file itself, or in separate files.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,12 +10,12 @@ use super::json;
 use crate::error::quoted;
 use crate::{FormatError, read_whole};
 
-/// Buffers, read when they are first needed.
+/// Buffers, loaded on demand.
 pub(super) struct Buffers<'a> {
     declared: &'a [json::Buffer],
-    /// The binary chunk of a GLB.
+    /// Binary chunk of a GLB.
     chunk: Option<&'a [u8]>,
-    /// Where files of numbers are; none may be read without it.
+    /// Folder of separate buffer files; None forbids them.
     folder: Option<&'a Path>,
     sources: BTreeMap<usize, Source>,
     files: BTreeMap<PathBuf, Vec<u8>>,
@@ -32,7 +32,7 @@ impl<'a> Buffers<'a> {
         Self { declared, chunk, folder, sources: BTreeMap::new(), files: BTreeMap::new() }
     }
 
-    /// Reads a buffer, once.
+    /// Loads a buffer if it is not loaded.
     pub fn load(&mut self, index: usize) -> Result<(), FormatError> {
         let refused = |cause: String| FormatError::part(format!("buffers[{index}]"), cause);
         if self.sources.contains_key(&index) {
@@ -65,13 +65,13 @@ impl<'a> Buffers<'a> {
         Ok(())
     }
 
-    /// The bytes of a buffer that has been loaded; else none.
+    /// Returns the bytes of a loaded buffer, else none.
     pub fn get(&self, index: usize) -> &[u8] {
         let length = self.declared.get(index).map_or(0, |buffer| buffer.byte_length);
         self.all_of(index).get(..length).unwrap_or_default()
     }
 
-    /// The size of all files that were read.
+    /// Returns the total size of the files that were read.
     pub fn read_beside(&self) -> u64 {
         self.files.values().map(|file| file.len() as u64).sum()
     }
@@ -90,7 +90,7 @@ fn has_scheme(uri: &str, scheme: &str) -> bool {
     uri.get(..scheme.len()).is_some_and(|start| start.eq_ignore_ascii_case(scheme))
 }
 
-/// The bytes within a `data:` URI.
+/// Returns the bytes of a `data:` URI.
 fn embedded(uri: &str) -> Result<Vec<u8>, String> {
     let Some((media_type, text)) = uri.split_once(',') else {
         return Err("a data URI without a comma".into());
@@ -101,8 +101,8 @@ fn embedded(uri: &str) -> Result<Vec<u8>, String> {
     BASE64.decode(text).map_err(|error| format!("not base64: {error}"))
 }
 
-/// The path that a URI names, in or below the glTF file's own folder: a file from elsewhere must not make us
-/// read what is none of its business.
+/// Returns the path of a URI, in or below the folder of the glTF file. Other paths are rejected: an untrusted file must
+/// not select arbitrary files to read.
 fn beside(uri: &str) -> Result<PathBuf, String> {
     let refused = |cause: &str| Err(format!("{} {cause}", quoted(uri)));
     let Some(name) = percent_decoded(uri) else {

@@ -1,6 +1,6 @@
-//! Types of numbers in a glTF file.
+//! Number types of a glTF file.
 
-/// A type of numbers, all little endian.
+/// Number type; all are little endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Component {
     I8,
@@ -12,7 +12,7 @@ pub(super) enum Component {
 }
 
 impl Component {
-    /// The type of OpenGL's number for it.
+    /// Returns the type with this OpenGL number.
     pub fn from_code(code: u32) -> Option<Self> {
         Some(match code {
             5120 => Self::I8,
@@ -25,7 +25,7 @@ impl Component {
         })
     }
 
-    /// Bytes of one number.
+    /// Size of one number in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -39,13 +39,13 @@ impl Component {
         self != Self::U32
     }
 
-    /// Whether vertex numbers may be of this type.
+    /// Whether indices may be of this type.
     pub fn is_index(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// One number from its bytes ([`Component::size`] of them). Normalised integers are divided by the
-    /// largest of their type, in f64; the smallest signed one counts as -1.
+    /// Decodes one number from its bytes ([`Component::size`] of them). Normalized integers are divided by the largest
+    /// of their type, in f64; the smallest signed one counts as -1.
     pub fn decode(self, bytes: &[u8], normalized: bool) -> f64 {
         let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
         let (two, four) = ([byte(0), byte(1)], [byte(0), byte(1), byte(2), byte(3)]);

@@ -1,11 +1,11 @@
-//! Binary glTF (GLB): a header, a chunk of JSON and mostly one of numbers.
+//! Parser for binary glTF (GLB): a header, a JSON chunk and an optional binary chunk.
 
 use crate::{FormatError, Place};
 
 /// A glTF file in either form.
 pub(super) struct Chunks<'a> {
     pub json: &'a [u8],
-    /// The numbers of the first buffer.
+    /// Data of the first buffer.
     pub binary: Option<&'a [u8]>,
 }
 
@@ -13,10 +13,10 @@ const MAGIC: &[u8] = b"glTF";
 const JSON: &[u8; 4] = b"JSON";
 const BINARY: &[u8; 4] = b"BIN\0";
 
-/// Bytes of the header: magic, version and length of the file.
+/// Size of the header: magic, version and length of the file.
 const HEADER: usize = 12;
 
-/// Splits a GLB; any other file is taken for JSON alone.
+/// Splits a GLB into its chunks. Any other file counts as JSON.
 pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, FormatError> {
     let at = |byte, cause: String| FormatError::new(Place::Byte(byte), cause);
     if !bytes.starts_with(MAGIC) {
@@ -44,7 +44,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, FormatError> {
             let cause = format!("a chunk of {size} bytes does not fit into the file");
             return Err(at(next, cause));
         };
-        // JSON is the first chunk, numbers are the second; readers must skip chunks of other kinds.
+        // JSON is the first chunk, binary data the second; readers must skip other chunks.
         match (number, &kind) {
             (0, JSON) | (1, BINARY) => chunks[number] = Some(chunk),
             (0, _) => return Err(at(next, "the first chunk is not JSON".into())),

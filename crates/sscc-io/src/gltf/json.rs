@@ -1,7 +1,7 @@
-//! The parts of a glTF file's JSON that speak of meshes.
+//! Structure of a glTF file's JSON, as far as meshes need it.
 //!
-//! What the format requires is required here too. Beside being right it keeps hostile text from growing: a
-//! list of empty entries would take a hundred times its bytes in memory.
+//! Fields that the format requires are required here, which also bounds memory: a list of empty entries would take a
+//! hundred times its bytes.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -113,14 +113,14 @@ pub(super) struct Primitive {
     pub extensions: Extensions,
 }
 
-/// Accessors of a primitive, or of one of its morph targets.
+/// Accessors of a primitive or of one of its morph targets.
 #[derive(Deserialize)]
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
     pub position: Option<usize>,
 }
 
-/// Extras may be anything; the names of the targets by the custom of all exporters.
+/// Extras can have any content; exporters store the names of targets here.
 #[derive(Deserialize)]
 #[serde(untagged)]
 pub(super) enum Extras {
@@ -132,7 +132,7 @@ pub(super) enum Extras {
     Other(IgnoredAny),
 }
 
-/// The extensions that hide geometry.
+/// Extensions with compressed geometry.
 #[derive(Default, Deserialize)]
 pub(super) struct Extensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
@@ -144,7 +144,7 @@ pub(super) struct Extensions {
 }
 
 impl Extensions {
-    /// Refuses compressed geometry.
+    /// Returns an error for compressed geometry.
     pub fn check(&self, part: impl FnOnce() -> String) -> Result<(), FormatError> {
         let name = match self {
             Self { draco: Some(_), .. } => "KHR_draco_mesh_compression",
@@ -172,7 +172,7 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Extensions that leave positions as they are: colours, pictures, light, and quantised numbers, which are read.
+/// Supported extensions: they do not change positions (colours, images, light), or quantize numbers, which is read.
 const HARMLESS: [&str; 8] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -188,7 +188,7 @@ impl Root {
     pub fn parse(text: &[u8]) -> Result<Self, FormatError> {
         let refused = |e: serde_json::Error| FormatError::part("JSON", cut(&e.to_string(), 160));
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-        // The version first: other versions have another structure.
+        // The version is checked first: other versions have another structure.
         let Head { asset } = serde_json::from_slice(text).map_err(refused)?;
         let newest = asset.min_version.as_ref().is_none_or(|least| least == "2.0");
         if !asset.version.starts_with("2.") || !newest {

@@ -1,14 +1,12 @@
-//! Morph targets from glTF 2.0 files, `.gltf` and `.glb`; and bodies that move, written as `.glb`
+//! Reads morph targets from glTF 2.0 files (`.gltf` and `.glb`), and writes animated bodies as `.glb`
 //! ([`write_animation`]).
 //!
-//! A mesh with its morph targets is a reduced model as it is: rest positions are the base mesh, and mode k is
-//! what target k adds to them. What else a file has (nodes and their transforms, skins, materials,
-//! animations) is left aside. Where a node places the mesh, what collides stays the same: an affine map takes
-//! crossing triangles to crossing triangles.
+//! A mesh with morph targets is a reduced model: rest positions are the base mesh, and mode k is the displacement of
+//! target k. Other content (nodes and their transforms, skins, materials, animations) is ignored. The transform of a
+//! node does not change which triangles collide: an affine map preserves intersections.
 //!
-//! A reader of our own over the JSON. The gltf crate (1.4.1) computes the end of an accessor without a check:
-//! a count of zero, a huge offset, or positions that are no vectors make it panic, and a sparse accessor
-//! without a buffer has as many items as it claims to have.
+//! The module has its own parser: version 1.4.1 of the crate `gltf` panics on unchecked accessors. See [the
+//! note](https://placeholder).
 
 mod accessors;
 mod animation;
@@ -30,8 +28,8 @@ pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_ani
 pub use morph::{MorphModel, PrimitiveRange};
 pub use select::MeshInfo;
 
-/// Reads a mesh with its morph targets: the one of that name (`#3`: the fourth), else the only one that
-/// has any. Buffers may be in the file or in files in its folder or below; links on disk are followed.
+/// Reads a mesh with its morph targets: the mesh of that name (`#3` is the fourth), else the only one with targets.
+/// Buffers may be in the file, or in files in its folder or below; symbolic links are followed.
 ///
 /// - Primitives of triangles, strips and fans are joined in file order, indexed or not.
 /// - Positions are float32, or integers of 8 or 16 bits as in KHR_mesh_quantization, accessors plain or sparse.
@@ -47,7 +45,7 @@ pub fn read(path: &Path, mesh_name: Option<&str>) -> Result<MorphModel, IoError>
     parse_in(&read_whole(path)?, mesh_name, Some(folder)).map_err(|error| error.of(path))
 }
 
-/// As [`read`], from the bytes of a file that needs no others.
+/// As [`read`], from the bytes of a file without external buffers.
 ///
 /// # Errors
 /// As [`read`], and when a buffer is in another file.
@@ -55,7 +53,7 @@ pub fn parse(bytes: &[u8], mesh_name: Option<&str>) -> Result<MorphModel, Format
     parse_in(bytes, mesh_name, None)
 }
 
-/// The meshes of a file, in file order, those without morph targets too. Buffers are not looked at.
+/// Returns the meshes of a file, in file order, including those without morph targets. Buffers are not read.
 ///
 /// # Errors
 /// When the file cannot be read or is malformed.

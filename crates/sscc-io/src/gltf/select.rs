@@ -1,4 +1,4 @@
-//! Which of a glTF file's meshes is meant.
+//! Selection of a mesh in a glTF file.
 
 use super::json::{Mesh, Root};
 use crate::FormatError;
@@ -8,7 +8,7 @@ use crate::error::{cut, quoted};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshInfo {
-    /// The name that chooses it: its own, or `#3` for an unnamed fourth mesh.
+    /// Name that selects it: its own, or `#3` for an unnamed fourth mesh.
     pub name: String,
     /// Number of primitives.
     pub primitives: usize,
@@ -16,7 +16,7 @@ pub struct MeshInfo {
     pub targets: usize,
 }
 
-/// All meshes in file order.
+/// Returns all meshes in file order.
 pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
     let info = |(index, mesh): (usize, &Mesh)| MeshInfo {
         name: mesh.name.clone().unwrap_or_else(|| format!("#{index}")),
@@ -26,8 +26,8 @@ pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
     root.meshes.iter().enumerate().map(info).collect()
 }
 
-/// The index of the mesh of that name, else of the only one with morph targets. `#3` is the fourth mesh,
-/// unless one has that very name.
+/// Returns the index of the mesh of that name, else of the only one with morph targets. `#3` is the fourth mesh, unless
+/// a mesh has this name.
 pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
     let all = list(root);
     let movable: Vec<usize> = (0..all.len()).filter(|i| all[*i].targets > 0).collect();

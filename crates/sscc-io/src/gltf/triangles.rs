@@ -1,6 +1,6 @@
-//! The triangles of a primitive, from its list of corners.
+//! Triangles of a primitive, from its list of corners.
 
-/// How a primitive's corners make triangles.
+/// Topology of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Topology {
     List,
@@ -9,7 +9,7 @@ pub(super) enum Topology {
 }
 
 impl Topology {
-    /// By the number in the file; its name where it makes no triangles.
+    /// Returns the topology of a number in the file; the error is the name of a topology without triangles.
     pub fn from_mode(mode: Option<u32>) -> Result<Self, String> {
         Err(match mode {
             None | Some(4) => return Ok(Self::List),
@@ -21,11 +21,11 @@ impl Topology {
         })
     }
 
-    /// The triangles of these corners, in order, with the winding of the standard. None when a list has no
-    /// multiple of 3 corners, or there are too few.
+    /// Returns the triangles of these corners, in order, with the winding of the standard. None if the number of
+    /// corners is not a multiple of 3 in a list, or too small.
     ///
-    /// Strips jump from place to place by triangles with a repeated corner. These are no part of the shape (they
-    /// would be segments that pierce it), so they are left out.
+    /// Triangles of a strip with a repeated corner are left out: exporters use them to connect parts, and they would be
+    /// segments that pierce the shape.
     pub fn triangles(self, corners: &[u32]) -> Option<Vec<[u32; 3]>> {
         if corners.len() < 3 {
             return None;

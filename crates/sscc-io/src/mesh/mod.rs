@@ -1,7 +1,7 @@
-//! Triangle meshes from files: OBJ, OFF, PLY and STL.
+//! Readers for triangle meshes: OBJ, OFF, PLY and STL.
 //!
-//! Every vertex of the file is kept, in the file's order, used by a face or not, so that modes given for
-//! the file's vertices fit. Polygons become fans of triangles around their first corner, in file order.
+//! All vertices of the file are kept in its order, even unused ones, so that modes for the file's vertices fit.
+//! Polygons become fans of triangles around their first corner, in file order.
 
 pub mod obj;
 pub mod off;
@@ -19,10 +19,10 @@ use crate::{FormatError, IoError};
 
 pub(crate) use soup::Soup;
 
-/// The endings that [`read_mesh`] knows.
+/// Endings that [`read_mesh`] supports.
 const SUPPORTED: &str = ".obj, .off, .ply, .stl";
 
-/// Reads a triangle mesh; the format goes by the file name's ending, in any case.
+/// Reads a triangle mesh; the ending of the file name, in any case, selects the format.
 ///
 /// # Errors
 /// When the ending is none of `.obj`, `.off`, `.ply`, `.stl`, or the file cannot be read or is no such mesh.
@@ -30,7 +30,7 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, IoError> {
     read_soup(path)?.into_mesh().map_err(|error| error.of(path))
 }
 
-/// The same, with or without triangles.
+/// As [`read_mesh`], but the mesh may have no triangles.
 pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
     let Some(parse) = parser(path) else {
         return Err(unsupported(path, "mesh", SUPPORTED));
@@ -38,7 +38,7 @@ pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
     parse(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// Whether the name is one of a mesh file.
+/// Whether the ending is that of a mesh file.
 pub(crate) fn is_mesh_name(path: &Path) -> bool {
     parser(path).is_some()
 }

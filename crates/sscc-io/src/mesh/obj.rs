@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 //!
-//! A reader of our own: general ones renumber vertices by first use and drop unused ones, after which
-//! modes given for the file's `v` lines no longer fit.
+//! The module has its own parser: general ones renumber vertices by first use and drop unused ones, after which modes
+//! for the `v` lines of the file no longer fit.
 
 use std::borrow::Cow;
 
@@ -55,8 +55,8 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     polygons.finish(positions)
 }
 
-/// A line with those that continue it. Only `v` and `f` lines are joined: a comment or a material's path may
-/// well end in a backslash, and must not swallow the vertex in the line below.
+/// Returns a line with its continuation lines. Only `v` and `f` lines are joined: a comment or a path may end in a
+/// backslash, and must not consume the next line.
 fn joined<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
     let Some(start) = text.strip_suffix(b"\\") else {
         return Cow::Borrowed(text);
@@ -76,7 +76,7 @@ fn joined<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
     Cow::Owned(all)
 }
 
-/// What follows the keyword.
+/// Returns the text after the keyword.
 fn arguments(statement: &[u8]) -> &[u8] {
     split_word(statement).1
 }
@@ -98,7 +98,7 @@ fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
     Ok(DVec3::new(values[0], values[1], values[2]))
 }
 
-/// The vertex of a corner, from 0. `vertices` are known so far.
+/// Returns the vertex of a corner, from 0. `vertices` is the number of vertices so far.
 fn corner(word: &str, vertices: usize, line: usize) -> Result<u64, FormatError> {
     let refused = |cause: &str| Err(FormatError::line(line, format!("corner {}: {cause}", quoted(word))));
     let mut parts = word.split('/');

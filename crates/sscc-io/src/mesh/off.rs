@@ -1,4 +1,4 @@
-//! Object File Format (OFF), text.
+//! Reader for the Object File Format (OFF), text.
 
 use glam::DVec3;
 use sscc::TriMesh;
@@ -32,7 +32,7 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
         let (line, text) = lines.required("the counts")?;
         (line, counts(text.split_ascii_whitespace(), line)?)
     };
-    // The counts only say how many lines follow. Nothing is allocated by them.
+    // The counts give the number of lines that follow; nothing is allocated by them.
     let mut positions = Vec::new();
     for done in 0..vertices {
         let (line, text) = lines.wanted("vertices", done, vertices, line)?;
@@ -50,7 +50,7 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     polygons.finish(positions)
 }
 
-/// Lines that are not blank, without comments.
+/// Lines without comments and blank lines.
 struct Statements<'a>(Lines<'a>);
 
 impl<'a> Iterator for Statements<'a> {
@@ -96,7 +96,7 @@ fn check_magic(word: &str, line: usize) -> Result<(), FormatError> {
     Err(FormatError::line(line, format!("the OFF variant {} is not supported", quoted(word))))
 }
 
-/// The counts of vertices and faces; that of edges is unused and may be missing.
+/// Parses the counts of vertices and faces. The count of edges is unused and may be missing.
 fn counts<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<[usize; 2], FormatError> {
     let mut next = || match words.next() {
         Some("BINARY") => Err(FormatError::line(line, "binary OFF is not supported: save it as text")),

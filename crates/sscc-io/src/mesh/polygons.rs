@@ -1,17 +1,16 @@
-//! Polygons collected as fans of triangles.
+//! Collects polygons as fans of triangles.
 
 use glam::DVec3;
 
 use super::Soup;
 use crate::{FormatError, Place};
 
-/// Triangles of the polygons seen so far. Indices may come before the vertices they name (OBJ allows it),
-/// so they are checked at the end.
+/// Triangles of the polygons so far. OBJ allows indices before their vertices, so `finish` checks them.
 pub(super) struct Polygons {
     triangles: Vec<[u32; 3]>,
-    /// The largest index, from 0, and where it is.
+    /// Largest index, from 0, and its place.
     largest: Option<(u64, Place)>,
-    /// What the format calls its first vertex: 0 or 1. Only for messages.
+    /// Number of the first vertex in the format: 0 or 1. Only for messages.
     first: u64,
 }
 
@@ -36,7 +35,7 @@ impl Polygons {
         Ok(())
     }
 
-    /// The triangles of these polygons, with the vertices they name.
+    /// Returns the triangles with the given vertices, after checking the indices.
     pub fn finish(self, positions: Vec<DVec3>) -> Result<Soup, FormatError> {
         if positions.is_empty() {
             return Err(FormatError::whole("the mesh has no vertices"));

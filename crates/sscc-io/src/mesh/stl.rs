@@ -1,10 +1,10 @@
-//! Stereolithography files (STL), binary and text.
+//! Reader for stereolithography files (STL), binary and text.
 //!
-//! STL has no shared vertices: each triangle brings its own three corners. They stay apart here, corner `c` of
-//! triangle `t` as vertex `3 t + c`; whoever needs adjacency joins vertices of equal position.
+//! STL has no shared vertices: corner `c` of triangle `t` becomes vertex `3 t + c`. For adjacency, vertices of equal
+//! position must be welded.
 //!
-//! A reader of our own: both forms are short, places of errors are named, and stl_io joins equal vertices
-//! on its usual way. Many binary files begin with `solid` too, so their size decides.
+//! The module has its own parser: it names the places of errors, and the crate `stl_io` welds equal vertices. Many
+//! binary files begin with `solid`, so the size decides between the forms.
 
 use glam::DVec3;
 use sscc::TriMesh;
@@ -14,10 +14,10 @@ use crate::error::quoted;
 use crate::text::{Lines, decoded, number, split_word};
 use crate::{FormatError, Place};
 
-/// Bytes of free text and of the count of triangles, before the triangles of a binary file.
+/// Size of free text and count before the triangles of a binary file.
 const HEADER: usize = 84;
 
-/// Bytes of one triangle: normal, three corners (f32 each) and two attribute bytes.
+/// Size of one triangle: normal, three corners (f32 each) and two attribute bytes.
 const TRIANGLE: usize = 50;
 
 /// Parses an STL file. It is binary when its size is the one that its count of triangles gives
@@ -70,10 +70,10 @@ fn binary(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
     Ok(triangles.iter().flat_map(|t| t[12..48].as_chunks().0).map(corner).collect())
 }
 
-/// The corners of a text file, three for each facet.
+/// Parses a text file; returns three corners for each facet.
 fn text(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
     let mut positions = Vec::new();
-    // Where we are: outside a solid, in one, in a facet, in its loop with so many corners, behind the loop.
+    // State of the parser: outside a solid, in a solid, in a facet, in its loop after n corners, after the loop.
     let mut state = State::Outside;
     for (line, text) in Lines::new(bytes)? {
         let refused = |cause: String| Err(FormatError::line(line, cause));

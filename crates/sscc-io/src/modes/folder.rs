@@ -1,4 +1,4 @@
-//! Modes as a folder of target meshes beside a neutral one.
+//! Reads modes from a folder of target meshes.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -26,7 +26,7 @@ const MOST: usize = 10_000;
 /// coordinate that is not finite or too large.
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
-    // The same file by another name (links, `..`) is the neutral one all the same.
+    // The neutral mesh may have another path (links, `..`).
     let paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
     let rest = neutral.rest_positions();
     let displacements = |path: &PathBuf| {
@@ -34,7 +34,7 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
         positions.iter_mut().zip(rest).for_each(|(moved, rest)| *moved -= rest);
         Ok::<_, IoError>(positions)
     };
-    // What a target takes in memory is borne out by its file, which has all vertices in it.
+    // The file of a target bounds its memory: it contains all vertices.
     let columns = paths.iter().map(displacements).collect::<Result<Vec<_>, _>>()?;
     let vertices = rest.len();
     let by_vertex = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
@@ -43,8 +43,8 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     Ok(NamedModes { modes, names: paths.iter().map(name).collect() })
 }
 
-/// The mesh files of a folder but for the neutral one (its canonical path), sorted; at least one. They are called
-/// `what`.
+/// Returns the mesh files of a folder without the neutral one (its canonical path), sorted; at least one. `what` names
+/// them in messages.
 pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
     let refused = |cause: std::io::Error| match cause.kind() {
         ErrorKind::NotFound => IoError::NotFound { path: folder.to_owned() },
@@ -71,7 +71,7 @@ pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
     Ok(names.iter().map(|name| folder.join(name)).collect())
 }
 
-/// The positions of a mesh that is to be like another: as many vertices, and the same faces or none.
+/// Returns the positions of a mesh with the same number of vertices, and the same faces or none.
 pub(super) fn positions_like(
     path: &Path,
     model: &TriMesh,
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(modes.of_vertex(0), [DVec3::ZERO; 3]);
         assert_eq!(modes.of_vertex(1), [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0]);
 
-        // From elsewhere the neutral mesh is a target like any other.
+        // In another folder the neutral mesh is an ordinary target.
         let NamedModes { modes, names } = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
         assert_eq!((modes.rank(), names[3].as_str()), (4, "neutral"));
     }

@@ -1,4 +1,4 @@
-//! An animation as a folder of meshes with the same faces.
+//! Reads an animation from a folder of meshes with the same faces.
 
 use std::path::{Path, PathBuf};
 
@@ -8,15 +8,15 @@ use sscc::TriMesh;
 use super::folder::{mesh_files, positions_like};
 use crate::{IoError, read_mesh};
 
-/// The frames of an animation.
+/// Frames of an animation.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Frames {
-    /// The first one, as a mesh.
+    /// First frame, as a mesh.
     pub mesh: TriMesh,
-    /// The positions of all vertices in each frame, the first one included.
+    /// Positions of all vertices in each frame, including the first one.
     pub positions: Vec<Vec<DVec3>>,
-    /// The file of each.
+    /// File name of each frame.
     pub paths: Vec<PathBuf>,
 }
 

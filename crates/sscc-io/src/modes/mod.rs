@@ -1,5 +1,5 @@
-//! Deformation modes from files: NumPy arrays and archives, VegaFEM modal matrices, folders of target meshes. And
-//! animations, of which modes can be made.
+//! Readers for deformation modes (NumPy arrays and archives, VegaFEM modal matrices, folders of target meshes), and for
+//! animations from which modes can be computed.
 
 pub mod array;
 pub mod folder;

@@ -2,11 +2,11 @@
 
 use sscc::Modes;
 
-/// Modes, with names where the files have some.
+/// Modes, with names if the files have names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedModes {
     /// The modes.
     pub modes: Modes,
-    /// A name for each mode (r), or none.
+    /// Name of each mode (r), or empty.
     pub names: Vec<String>,
 }

@@ -1,8 +1,8 @@
-//! Modes of another mesh.
+//! Error for modes that belong to another mesh.
 
 use crate::FormatError;
 
-/// The refusal of modes that have `rows` rows (3 for each vertex).
+/// Returns the error for modes with `rows` rows (3 per vertex).
 pub(super) fn other_mesh(rows: usize, vertices: usize) -> FormatError {
     let of = match rows % 3 {
         0 => format!("{} vertices", rows / 3),

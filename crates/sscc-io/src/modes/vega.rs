@@ -1,14 +1,14 @@
-//! VegaFEM's modal matrix.
+//! Reader for VegaFEM's modal matrices.
 //!
-//! Little endian: rows m = 3V (i32), columns r (i32), then m r numbers, column after column. Nothing in the
-//! file says whether they are float64 or float32; the file's name does, and its size must agree.
+//! Layout, little endian: rows m = 3V (i32), columns r (i32), then m r numbers, column after column. The ending of the
+//! file name gives the type, float64 or float32; the size must agree.
 
 use sscc::Modes;
 
 use super::other_mesh::other_mesh;
 use crate::{FormatError, Place};
 
-/// The type of the entries, which goes by the file's name.
+/// Type of the entries, by the ending of the file name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// `*.float`
@@ -18,7 +18,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Bytes of one entry.
+    /// Size of one entry.
     fn size(self) -> u64 {
         match self {
             Self::Single => 4,
@@ -27,10 +27,10 @@ impl Precision {
     }
 }
 
-/// The bytes before the entries.
+/// Size of the header.
 const HEADER: usize = 8;
 
-/// Parses a modal matrix for a mesh of that many vertices.
+/// Parses a modal matrix for a mesh with this number of vertices.
 ///
 /// # Errors
 /// When the size of the file does not agree with its header and the precision, the modes are of a mesh with

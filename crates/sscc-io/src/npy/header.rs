@@ -1,4 +1,4 @@
-//! The header of a `.npy` file: a Python dictionary with the keys `descr`, `fortran_order` and `shape`.
+//! Parser for the header of a `.npy` file: a Python dictionary with the keys `descr`, `fortran_order` and `shape`.
 
 use crate::error::quoted;
 use crate::{FormatError, Place};
@@ -8,7 +8,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// More axes than any array here has; NumPy itself stops at 64.
 const LARGEST_DIMENSION: usize = 32;
 
-/// A kind of numbers.
+/// Kind of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Class {
     Float,
@@ -16,16 +16,16 @@ pub(super) enum Class {
     Unsigned,
 }
 
-/// A type of entries.
+/// Type of entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item {
     pub class: Class,
-    /// Bytes of one entry: 4 or 8 of floats, 1, 2, 4 or 8 of integers.
+    /// Size of one entry: 4 or 8 for floats; 1, 2, 4 or 8 for integers.
     pub size: usize,
     pub big: bool,
 }
 
-/// What a caller can use.
+/// Supported kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     Floats,
@@ -38,7 +38,7 @@ pub(super) struct Header {
     pub fortran: bool,
     /// Not yet checked against the file.
     pub shape: Vec<usize>,
-    /// The byte after the header.
+    /// Offset of the first byte after the header.
     pub body: usize,
 }
 
@@ -128,7 +128,7 @@ fn dictionary(text: &str, wanted: Wanted) -> Result<(Item, bool, Vec<usize>), St
     }
 }
 
-/// What is left of the header's text.
+/// Unparsed remainder of the header.
 struct Scan<'a>(&'a str);
 
 impl<'a> Scan<'a> {

@@ -1,8 +1,8 @@
-//! NumPy arrays (`.npy`) of numbers.
+//! Reader for NumPy arrays (`.npy`) of numbers.
 //!
-//! A reader of our own. The npyz crate hands the header to a general parser of Python literals whose time is
-//! exponential in the number of open brackets: a file of 60 bytes keeps it busy for years. Here the header can
-//! only be what NumPy writes for an array of numbers. The tests compare the two on good files.
+//! The module has its own parser: in the crate `npyz`, parsing takes time exponential in the number of open brackets.
+//! Here the header must have the form that NumPy writes for an array of numbers. The tests compare both on valid files.
+//! See `docs/notes/2026-11-23-parsers-of-other-crates.md`.
 
 mod header;
 mod write;
@@ -16,7 +16,7 @@ pub use write::{to_bytes, write_npy};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<T = f64> {
     shape: Vec<usize>,
-    /// How far apart in `data` neighbours along each axis are.
+    /// Stride of each axis in `data`.
     strides: Vec<usize>,
     data: Vec<T>,
 }
@@ -58,7 +58,7 @@ fn array<T>(
 }
 
 impl<T: Copy> Array<T> {
-    /// An array of that shape, from its entries in C order (last axis fastest); none where their number is another.
+    /// Returns an array of that shape from its entries in C order (last axis fastest); None if their number differs.
     pub fn from_c_order(shape: &[usize], data: Vec<T>) -> Option<Self> {
         let size = shape.iter().try_fold(1_usize, |size, n| size.checked_mul(*n));
         (size == Some(data.len())).then(|| Self {
@@ -68,12 +68,12 @@ impl<T: Copy> Array<T> {
         })
     }
 
-    /// The length of each axis. Their product is the number of entries.
+    /// Returns the length of each axis; the product is the number of entries.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// One entry; `index` has one number for each axis.
+    /// Returns one entry; `index` has one number per axis.
     ///
     /// # Panics
     /// When the index is beyond the shape.
@@ -81,7 +81,7 @@ impl<T: Copy> Array<T> {
         self.data[index.iter().zip(&self.strides).map(|(i, stride)| i * stride).sum::<usize>()]
     }
 
-    /// All entries in C order (last axis fastest).
+    /// Returns all entries in C order (last axis fastest).
     pub fn to_c_order(&self) -> Vec<T> {
         if self.strides == strides(&self.shape, false) {
             return self.data.clone();

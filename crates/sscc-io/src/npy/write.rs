@@ -1,11 +1,11 @@
-//! Writing NumPy arrays.
+//! Writer for NumPy arrays.
 
 use std::path::Path;
 
 use crate::{IoError, write_whole};
 
-/// The bytes of a `.npy` file (version 1.0, little-endian f8, C order) with this shape; `None` when the
-/// values are not as many as the shape has entries, or the shape has more than 32 axes.
+/// Returns the bytes of a `.npy` file (version 1.0, little-endian f8, C order) with this shape; `None` if the number of
+/// values does not fit the shape, or the shape has more than 32 axes.
 pub fn to_bytes(shape: &[usize], values: &[f64]) -> Option<Vec<u8>> {
     let entries = shape.iter().try_fold(1_usize, |n, axis| n.checked_mul(*axis));
     if entries != Some(values.len()) || shape.len() > 32 {
@@ -31,7 +31,7 @@ pub fn to_bytes(shape: &[usize], values: &[f64]) -> Option<Vec<u8>> {
 /// Writes an array of f64 (C order: last axis fastest) as `.npy`.
 ///
 /// # Errors
-/// When the values are not as many as the shape has entries, or the file cannot be written.
+/// When the number of values does not fit the shape, or the file cannot be written.
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> Result<(), IoError> {
     let Some(bytes) = to_bytes(shape, values) else {
         let cause = format!("{} values do not make an array of shape {shape:?}", values.len());

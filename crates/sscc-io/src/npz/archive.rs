@@ -1,4 +1,4 @@
-//! Entries of a zip archive, with limits.
+//! Reader for entries of a zip archive, with limits.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
@@ -12,10 +12,10 @@ use crate::{FormatError, Place};
 /// An archive may hold no more than this, whatever its size: 4 GiB.
 const MOST: u64 = 4 << 30;
 
-/// The record at the end of an archive, without its comment.
+/// Size of the record at the end of an archive, without its comment.
 const END: usize = 22;
 
-/// The bytes of those entries (`NAME.npy`) whose name is wanted, by name. All others are not looked at.
+/// Returns the bytes of the entries (`NAME.npy`) with accepted names, by name. Other entries are not read.
 pub(super) fn entries(
     bytes: &[u8],
     wanted: impl Fn(&str) -> bool,
@@ -51,7 +51,7 @@ pub(super) fn entries(
         let refused = |cause: String| FormatError::part(place(&name), cause);
         entry = archive.by_index(index).map_err(|e| refused(cut(&e.to_string(), 120)))?;
         let mut content = Vec::new();
-        // One byte more than promised shows that it is longer. At the end the checksum is compared.
+        // Reading one byte beyond the declared size detects longer entries. Reading to the end verifies the checksum.
         let read = entry.by_ref().take(size.saturating_add(1)).read_to_end(&mut content);
         read.map_err(|e| refused(format!("damaged: {}", cut(&e.to_string(), 120))))?;
         if content.len() as u64 != size {
@@ -65,13 +65,13 @@ pub(super) fn entries(
     Ok(found)
 }
 
-/// The place of an entry, for messages.
+/// Returns the place of an entry, for messages.
 pub(super) fn place(name: &str) -> String {
     format!("array {}", quoted(name))
 }
 
-/// Refuses bytes before and behind the archive, which zip readers skip, and names that are there twice, of
-/// which they keep the last.
+/// Rejects bytes before and after the archive, which zip readers skip, and duplicate names, of which they keep the
+/// last.
 fn check_ends(bytes: &[u8], archive: &ZipArchive<Cursor<&[u8]>>) -> Result<(), FormatError> {
     let end = bytes.len().checked_sub(END + archive.comment().len());
     let Some(end) = end.filter(|end| bytes[*end..].starts_with(b"PK\x05\x06")) else {
@@ -80,7 +80,7 @@ fn check_ends(bytes: &[u8], archive: &ZipArchive<Cursor<&[u8]>>) -> Result<(), F
     if archive.offset() != 0 {
         return Err(FormatError::new(Place::Byte(0), "there is something before the archive"));
     }
-    // The largest number stands for one that is elsewhere.
+    // The largest number means that the value is stored elsewhere.
     let entries = u16::from_le_bytes([bytes[end + 10], bytes[end + 11]]);
     if entries != u16::MAX && usize::from(entries) != archive.len() {
         let cause = format!("it has {} names for {entries} entries: a name twice?", archive.len());

@@ -1,6 +1,6 @@
-//! Models in NumPy archives (`.npz`): PCA models, body models.
+//! Reads models from NumPy archives (`.npz`): PCA models, body models.
 //!
-//! Arrays are known by their names; all others are skipped. V vertices, r modes, N triangles:
+//! The name of an array decides its use; other arrays are skipped. V vertices, r modes, N triangles:
 //!
 //! | array | names | shape |
 //! | --- | --- | --- |
@@ -10,12 +10,11 @@
 //! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
 //! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
 //!
-//! Where a shape fits two readings the one further left counts. A file with two names for one thing is
-//! refused. Arrays are float64 or float32, faces integers. An archive may be stored or deflated
-//! (`numpy.savez`, `numpy.savez_compressed`); its recognised arrays may take up to 100 times the file's size
-//! and 64 MiB, and never more than 4 GiB.
+//! If a shape fits two forms, the one further left applies. Two names for one part are an error. Arrays are float64 or
+//! float32, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
+//! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB.
 //!
-//! Arrays of any names are written by [`write_npz`].
+//! [`write_npz`] writes arrays of any names.
 
 mod archive;
 mod names;
@@ -55,7 +54,7 @@ pub fn read_npz_model(path: &Path) -> Result<NpzModel, IoError> {
 /// As [`read_npz_model`], from bytes.
 ///
 /// # Errors
-/// As [`read_npz_model`], but for the file's name.
+/// As [`read_npz_model`], without the file's name.
 pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     let all = [Part::Mean, Part::Modes, Part::Components, Part::Faces, Part::Weights];
     let parts = Parts::read(bytes, &all)?;

@@ -1,6 +1,6 @@
-//! The names of arrays by which a model's parts are known.
+//! Names of the arrays that hold the parts of a model.
 
-/// A part of a model.
+/// Part of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
     Mean,
@@ -22,12 +22,12 @@ const NAMES: [(Part, &[&str]); 5] = [
 ];
 
 impl Part {
-    /// The part that an array of this name holds, if any.
+    /// Returns the part that an array of this name holds, if any.
     pub fn of(name: &str) -> Option<Self> {
         NAMES.iter().find(|(_, names)| names.contains(&name)).map(|(part, _)| *part)
     }
 
-    /// All names of a part, for messages.
+    /// Returns all names of a part, for messages.
     pub fn names(self) -> String {
         let names = NAMES.iter().find(|(part, _)| *part == self).map(|(_, names)| *names);
         names.unwrap_or_default().join(", ")

@@ -1,4 +1,4 @@
-//! Arrays of an archive as parts of a model.
+//! Converts arrays of an archive into parts of a model.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use crate::modes::array;
 use crate::npy::{self, Array};
 use crate::{FormatError, Place};
 
-/// The recognised arrays of an archive: name and bytes.
+/// Recognised arrays of an archive: name and bytes.
 pub(super) struct Parts(BTreeMap<Part, (String, Vec<u8>)>);
 
 impl Parts {
-    /// Reads those parts.
+    /// Reads these parts.
     pub fn read(bytes: &[u8], wanted: &[Part]) -> Result<Self, FormatError> {
         let is_wanted = |name: &str| Part::of(name).is_some_and(|part| wanted.contains(&part));
         let mut parts = BTreeMap::new();
@@ -47,7 +47,7 @@ impl Parts {
         FormatError::whole(format!("there is no array of {}{advice}", part.names()))
     }
 
-    /// Rest positions, one for each vertex.
+    /// Returns the rest positions, one per vertex.
     pub fn mean(&self) -> Result<Option<Vec<DVec3>>, FormatError> {
         self.get(Part::Mean, |bytes| {
             let array = npy::parse(bytes)?;
@@ -64,7 +64,7 @@ impl Parts {
         })
     }
 
-    /// The modes of that many vertices.
+    /// Returns the modes for this number of vertices.
     pub fn modes(&self, vertices: usize) -> Result<Modes, FormatError> {
         let rows = |bytes: &[u8]| array::from_rows(&npy::parse(bytes)?, vertices);
         if let Some(modes) = self.get(Part::Components, rows)? {
@@ -75,7 +75,7 @@ impl Parts {
             .ok_or_else(|| Self::missing(Part::Modes, &format!(", {}", Part::Components.names())))
     }
 
-    /// The mesh of a complete model.
+    /// Returns the mesh of a complete model.
     pub fn mesh(&self) -> Result<TriMesh, FormatError> {
         let mean = self.mean()?.ok_or_else(|| Self::missing(Part::Mean, ""))?;
         let faces = self.get(Part::Faces, |bytes| faces(&npy::parse_integers(bytes)?, mean.len()))?;
@@ -84,8 +84,8 @@ impl Parts {
         Ok(TriMesh::new(mean, faces)?)
     }
 
-    /// One number for each of r modes. Body models have skinning weights of that name: arrays of two axes are
-    /// something else and left aside.
+    /// Returns one number for each of r modes. An array of this name with two axes is ignored: body models store
+    /// skinning weights there.
     pub fn weights(&self, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
         let weights = self.get(Part::Weights, |bytes| {
             let array = npy::parse(bytes)?;

@@ -1,4 +1,4 @@
-//! Archives of named arrays.
+//! Writer for archives of named arrays.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -12,19 +12,19 @@ use crate::{IoError, write_whole};
 /// An array with its name, in C order (last axis fastest).
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedArray<'a> {
-    /// What `numpy.load` calls it.
+    /// Name in `numpy.load`.
     pub name: &'a str,
     /// The length of each axis.
     pub shape: Vec<usize>,
-    /// As many as the shape has entries.
+    /// Values; their number is the product of the shape.
     pub values: &'a [f64],
 }
 
-/// Writes arrays of f64 as `.npz`, not compressed, in this order; equal arrays make equal bytes.
+/// Writes arrays of f64 as `.npz`, uncompressed, in this order. The bytes are a function of the arrays.
 ///
 /// # Errors
-/// When values are not as many as a shape has entries, a name is there twice or is none (letters, digits and `_`), or
-/// the file cannot be written.
+/// When the number of values does not fit a shape, a name is duplicated or invalid (allowed: letters, digits and `_`),
+/// or the file cannot be written.
 pub fn write_npz(path: &Path, arrays: &[NamedArray<'_>]) -> Result<(), IoError> {
     let bytes = to_bytes(arrays).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
     write_whole(path, &bytes)

@@ -1,4 +1,4 @@
-//! A volumetric mesh in the making: the checks that name a place in the file, for all formats.
+//! Builder for volumetric meshes: checks for all formats, with places in the file.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,17 @@ use sscc_solid::{NamedMaterial, VolumeMesh, VolumeMeshParts};
 
 use crate::{FormatError, Place};
 
-/// The name of the material of elements about which the file says nothing.
+/// Name of the material of elements without a material.
 const DEFAULT: &str = "default";
 
-/// Vertices and elements read so far. Elements may come before the vertices they name, so indices are checked at
-/// the end.
+/// Vertices and elements read so far. Elements may precede their vertices, so `finish` checks the indices.
 pub(super) struct Builder {
     parts: VolumeMeshParts,
     cube_material: Vec<u32>,
     by_name: BTreeMap<String, u32>,
-    /// The largest index, from 0, and where it is.
+    /// Largest index, from 0, and its place.
     largest: Option<(u64, Place)>,
-    /// What the file calls its first vertex: 0 or 1. Only for messages.
+    /// Number of the first vertex in the file: 0 or 1. Only for messages.
     pub first: u64,
 }
 
@@ -49,7 +48,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The index of the material of that name.
+    /// Returns the index of the material of that name.
     pub fn material(&mut self, name: &str) -> u32 {
         if let Some(known) = self.by_name.get(name) {
             return *known;
@@ -60,7 +59,7 @@ impl Builder {
         index
     }
 
-    /// The index of the material of elements about which the file says nothing.
+    /// Returns the index of the material of elements without a material.
     pub fn default_material(&mut self) -> u32 {
         self.material(DEFAULT)
     }
@@ -89,7 +88,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Indices beyond 32 bits are cut when they are stored, but are also `largest`, which `finish` refuses.
+    /// Stored indices are truncated to 32 bits; `largest` keeps the true value, which `finish` rejects.
     fn check(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
         if let Some(twice) = repeated(corners) {
             let (vertex, first) = (twice.saturating_add(self.first), self.first);
@@ -105,7 +104,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The mesh, when all its indices name vertices.
+    /// Returns the mesh if all its indices are valid.
     pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
         let there = self.parts.vertices.len();
         match self.largest {
@@ -121,7 +120,7 @@ impl Builder {
     }
 }
 
-/// A corner that occurs twice.
+/// Returns a corner that occurs twice.
 pub(super) fn repeated(corners: &[u64]) -> Option<u64> {
     corners.iter().enumerate().find(|(i, corner)| corners[..*i].contains(corner)).map(|(_, corner)| *corner)
 }

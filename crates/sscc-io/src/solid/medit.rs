@@ -1,4 +1,4 @@
-//! Medit's `.mesh`, text.
+//! Reader for Medit's `.mesh` files, text.
 
 use glam::DVec3;
 use sscc_solid::VolumeMesh;
@@ -8,10 +8,10 @@ use super::words::Words;
 use crate::FormatError;
 use crate::error::quoted;
 
-/// The versions of the format that exist; they differ in the width of numbers, which text does not show.
+/// Existing versions of the format. They differ in the width of numbers, which does not matter in text.
 const VERSIONS: std::ops::RangeInclusive<i64> = 1..=4;
 
-/// Solid elements that are not read. As beginnings of names: `TetrahedraP2` and the like are of higher order.
+/// Beginnings of the names of unsupported solid elements, such as `TetrahedraP2` of higher order.
 const REFUSED: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "Pentahedra"];
 
 /// Parses a Medit file: `MeshVersionFormatted` 1 to 4, `Dimension 3`, then sections in any order. `Vertices`,
@@ -87,7 +87,7 @@ fn vertices(words: &mut Words, builder: &mut Builder) -> Result<(), FormatError>
     })
 }
 
-/// The items of a section, as many as the count before them says. Nothing is allocated by the count.
+/// Reads the items of a section, as many as its count. Nothing is allocated by the count.
 fn elements(
     words: &mut Words,
     mut item: impl FnMut(&mut Words) -> Result<(), FormatError>,
@@ -107,7 +107,7 @@ fn material(words: &mut Words, builder: &mut Builder) -> Result<u32, FormatError
     Ok(builder.material(&reference.to_string()))
 }
 
-/// Corners from 0; in the file they count from 1.
+/// Returns corners from 0; the file counts from 1.
 fn corners<const N: usize>(words: &mut Words) -> Result<[u64; N], FormatError> {
     let mut corners = [0; N];
     for corner in &mut corners {
@@ -119,7 +119,7 @@ fn corners<const N: usize>(words: &mut Words) -> Result<[u64; N], FormatError> {
     Ok(corners)
 }
 
-/// A section that is not read ends where a word begins with a letter.
+/// Skips an unsupported section, up to a word that begins with a letter.
 fn skip(keyword: &str, words: &mut Words) -> Result<(), FormatError> {
     let is_name = |word: &str| word.starts_with(|c: char| c.is_ascii_alphabetic());
     if !is_name(keyword) {

@@ -1,11 +1,10 @@
-//! Volumetric meshes of tetrahedra and cubes, from files of Medit, VegaFEM, gmsh and TetGen.
+//! Readers for volumetric meshes of tetrahedra and cubes: Medit, VegaFEM, gmsh and TetGen.
 //!
-//! Every vertex of the file is kept, in the file's order, used by an element or not. Elements keep the file's
-//! order among their kind, and the order of their corners. Readers check what [`VolumeMesh`] promises: numbers,
-//! indices, corners named twice, elements listed twice. They accept elements that are inverted, flat or overlap;
-//! [`VolumeMesh::solid`] refuses those.
+//! All vertices of the file are kept in its order, even unused ones. Elements keep the file's order within their kind,
+//! and the order of their corners. Readers check the guarantees of [`VolumeMesh`]: numbers, indices, repeated corners,
+//! duplicate elements. They accept inverted, flat or overlapping elements, which [`VolumeMesh::solid`] rejects.
 //!
-//! Second-order elements, prisms and pyramids are refused, never left out: a body would have holes.
+//! Second-order elements, prisms and pyramids are errors: skipping them would leave holes in the body.
 
 mod builder;
 pub mod gmsh;
@@ -22,7 +21,7 @@ use sscc_solid::VolumeMesh;
 use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
 
-/// The endings that [`read_volume_mesh`] knows.
+/// Endings that [`read_volume_mesh`] supports.
 const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
 
 /// Reads a volumetric mesh; the format goes by the file name's ending, in any case: `.mesh` ([`medit`]), `.veg`

@@ -1,10 +1,10 @@
-//! Lines of fields between blanks or commas.
+//! Lines of fields, separated by blanks or commas.
 
 use crate::FormatError;
 use crate::error::quoted;
 use crate::text::{Lines, decoded, without_comment};
 
-/// The lines that are not blank, without comments (`#`) and outer white space, each with its number from 1.
+/// Returns the lines that are not blank, without comments (`#`) and outer white space, each with its number from 1.
 pub(super) fn statements(
     bytes: &[u8],
 ) -> Result<impl Iterator<Item = Result<(usize, &str), FormatError>>, FormatError> {
@@ -14,13 +14,13 @@ pub(super) fn statements(
         .map(|(line, text)| decoded(text, line).map(|text| (line, text))))
 }
 
-/// The fields of a line.
+/// Returns the fields of a line.
 pub(super) fn fields(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c == ',' || c.is_ascii_whitespace()).filter(|field| !field.is_empty())
 }
 
-/// The numbers of `N` corners, as the file counts them; what else follows is not looked at. The cause of the
-/// refusal when there are fewer.
+/// Returns the numbers of `N` corners, as in the file; further fields are ignored. The error is the cause, if there are
+/// fewer.
 pub(super) fn corners<'a, const N: usize>(
     fields: &mut impl Iterator<Item = &'a str>,
 ) -> Result<[u64; N], String> {
@@ -34,7 +34,7 @@ pub(super) fn corners<'a, const N: usize>(
     Ok(corners)
 }
 
-/// The three coordinates of a vertex, or the cause of the refusal.
+/// Returns the three coordinates of a vertex, or the cause of the error.
 pub(super) fn position<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Result<glam::DVec3, String> {
     let mut coordinates = [0.0; 3];
     for coordinate in &mut coordinates {
@@ -44,12 +44,12 @@ pub(super) fn position<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Result
     Ok(coordinates.into())
 }
 
-/// An integer from 0, or the cause of the refusal.
+/// Returns an integer from 0, or the cause of the error.
 pub(super) fn index(field: &str) -> Result<u64, String> {
     field.parse().map_err(|_| format!("{} is not a number of a vertex or element", quoted(field)))
 }
 
-/// A finite number, or the cause of the refusal.
+/// Returns a finite number, or the cause of the error.
 pub(super) fn value(field: &str) -> Result<f64, String> {
     crate::text::number(field, 0).map_err(|error| error.cause().to_owned())
 }

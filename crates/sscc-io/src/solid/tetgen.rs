@@ -1,4 +1,4 @@
-//! TetGen's pair of files: `.node` with the vertices, `.ele` with the tetrahedra.
+//! Reader for TetGen's pair of files: `.node` with the vertices, `.ele` with the tetrahedra.
 
 use std::path::{Path, PathBuf};
 
@@ -10,11 +10,11 @@ use super::statements::{corners, fields, index, position, statements, value};
 use crate::file::{ending, read_whole};
 use crate::{FormatError, IoError, Place};
 
-/// The vertices of a `.node` file.
+/// Vertices of a `.node` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes {
     positions: Vec<DVec3>,
-    /// The number of the first: 0 or 1.
+    /// Number of the first vertex: 0 or 1.
     first: u64,
 }
 
@@ -31,7 +31,7 @@ pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     parse(&vertices, &read_whole(&elements)?).map_err(|error| error.of(&elements))
 }
 
-/// The file of the same name with another ending, in capitals where the given one is.
+/// Returns the path of the same name with another ending, in capitals if the given one is.
 fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
     let capitals =
         path.extension().is_some_and(|e| e.to_string_lossy().bytes().all(|b| b.is_ascii_uppercase()));
@@ -80,7 +80,7 @@ pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
 /// The attribute becomes the name of the material.
 ///
 /// # Errors
-/// When elements have 10 nodes, there are more or fewer lines than the header says, an attribute that it promises
+/// When elements have 10 nodes, there are more or fewer lines than the header says, an attribute that it declares
 /// is missing, or as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut builder = Builder::new(nodes.first);
@@ -130,7 +130,7 @@ fn table(
     };
     let (top, text) = header?;
     let at_top = |cause: String| FormatError::line(top, cause);
-    // Four numbers at most mean something.
+    // At most four numbers are used.
     let header: Vec<u64> = fields(text).take(4).map(index).collect::<Result<_, _>>().map_err(at_top)?;
     let promised = header.first().copied().unwrap_or_default();
     let attributes = check(&header).map_err(at_top)?;

@@ -1,30 +1,30 @@
-//! Words between white space, of formats that do not care about lines, and bytes between them.
+//! Words and bytes of formats in which line ends have no meaning.
 
 use crate::error::quoted;
 use crate::text::{Lines, count, decoded, number};
 use crate::{FormatError, Place};
 
-/// A place in a file from which words are read, or plain bytes.
+/// Position in a file, from which words or bytes are read.
 #[derive(Clone, Copy)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Of the word read last, from 1. Bytes that are not words are not looked at for line ends.
+    /// Line of the last word, from 1. Line ends within bytes are not counted.
     line: usize,
     comments: bool,
-    /// Whether places are bytes, because there are no lines to speak of.
+    /// Whether places are byte offsets (binary files).
     pub binary: bool,
 }
 
 impl<'a> Words<'a> {
-    /// With `comments`, everything from a `#` to the end of its line is skipped.
+    /// Creates a reader. With `comments`, text from a `#` to the end of its line is skipped.
     pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
         Lines::new(bytes)?; // refuses UTF-16
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Ok(Self { bytes, at, line: 1, comments, binary: false })
     }
 
-    /// The line of the word read last, or in binary files the offset of the next byte.
+    /// Returns the line of the last word; in binary files, the offset of the next byte.
     pub fn place(&self) -> Place {
         if self.binary { Place::Byte(self.at) } else { Place::Line(self.line) }
     }
@@ -33,7 +33,7 @@ impl<'a> Words<'a> {
         Err(FormatError::new(self.place(), cause))
     }
 
-    /// The next word; none at the end of the file.
+    /// Returns the next word; None at the end of the file.
     pub fn next_word(&mut self) -> Result<Option<&'a str>, FormatError> {
         let mut comment = false;
         while let Some(byte) = self.bytes.get(self.at) {
@@ -55,13 +55,13 @@ impl<'a> Words<'a> {
         if word.is_empty() { Ok(None) } else { decoded(word, self.line).map(Some) }
     }
 
-    /// The next word, which stays the next.
+    /// Returns the next word without consuming it.
     pub fn peek(&self) -> Result<Option<&'a str>, FormatError> {
         let mut ahead = *self;
         ahead.next_word()
     }
 
-    /// The next word, which must be there.
+    /// Returns the next word, or an error at the end of the file.
     pub fn word(&mut self, what: &str) -> Result<&'a str, FormatError> {
         match self.next_word()? {
             Some(word) => Ok(word),
@@ -88,7 +88,7 @@ impl<'a> Words<'a> {
         word.parse().or_else(|_| self.refused(format!("{} is not an integer", quoted(word))))
     }
 
-    /// The next bytes, whatever they are.
+    /// Returns the next bytes.
     pub fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], FormatError> {
         let Some(bytes) = self.bytes[self.at..].first_chunk() else {
             let cause = format!("the file ends before {what}");
@@ -98,7 +98,7 @@ impl<'a> Words<'a> {
         Ok(*bytes)
     }
 
-    /// The rest of the line, without its end.
+    /// Returns the rest of the line, without its end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let line = &rest[..rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len())];
@@ -110,7 +110,7 @@ impl<'a> Words<'a> {
         line.strip_suffix(b"\r").unwrap_or(line)
     }
 
-    /// Goes behind the next line that begins with this, if there is one.
+    /// Skips to after the next line with this beginning, if there is one.
     pub fn skip_behind_line(&mut self, start: &str) -> bool {
         while self.at < self.bytes.len() {
             if self.rest_of_line().trim_ascii_start().starts_with(start.as_bytes()) {

@@ -1,4 +1,4 @@
-//! Whether all eigenvalues were found: they are counted.
+//! Check by the inertia of a shifted matrix that no eigenvalue is missing.
 
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, count_negative_eigenvalues};
@@ -9,17 +9,17 @@ const PLACES: [f64; 3] = [0.5, 0.3, 0.7];
 /// So many gaps are tried, the widest first.
 const GAPS: usize = 2;
 
-/// What was counted.
+/// Result of a count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Count {
-    /// Eigenvalues found below a bound.
+    /// Number of computed eigenvalues below a bound.
     pub found: usize,
-    /// Eigenvalues that there are below it, rigid motions included.
+    /// Number of existing eigenvalues below it, including rigid motions.
     pub counted: usize,
 }
 
 /// Counts the eigenvalues of `K x = lambda M x` up to a bound in the widest gap (relative) after the first `count` of
-/// `values`, ascending. None when rounding decides everywhere.
+/// `values`, ascending. None if rounding decides in every gap.
 pub(super) fn count_below_gap(
     stiffness: &BlockSparse,
     mass: &BlockSparse,

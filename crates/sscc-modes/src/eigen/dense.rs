@@ -1,4 +1,4 @@
-//! Small eigenproblems, solved as a whole.
+//! Dense solver for small eigenproblems.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};

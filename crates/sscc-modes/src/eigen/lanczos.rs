@@ -45,12 +45,12 @@ impl Inverse<'_> {
     }
 }
 
-/// The `wanted` largest eigenvalues (Wu and Simon 2000, with blocks). Starts from a random block, beside vectors that
-/// are already known. `shown` of them are counted to `progress`. Fewer, and rough ones, when the first is beyond the
-/// operator's ceiling.
+/// Computes the `wanted` largest eigenvalues (Wu and Simon 2000, with blocks). Starts from a random block and the known
+/// vectors. `progress` counts `shown` of them. Returns fewer, inaccurate values if the first one exceeds the ceiling of
+/// the operator.
 ///
-/// All coefficients are computed, none is taken for 0: that costs little beside the solves, keeps the basis
-/// orthonormal to rounding, and makes a restart as plain as a step.
+/// All coefficients are computed and none is assumed to be 0: the cost is small beside the solves, the basis stays
+/// orthonormal to rounding, and a restart equals a step.
 pub(super) fn largest(
     operator: &Inverse,
     known: Ritz,
@@ -87,7 +87,7 @@ pub(super) fn largest(
         if size >= wanted {
             let (values, turn) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
             let residuals = &rest * turn.as_ref().subrows(done, BLOCK);
-            // Ritz values are never too large, so this one is a proof.
+            // A Ritz value is a lower bound, so this one is a proof.
             if values[0] >= operator.ceiling {
                 return Ok(Ritz { values, vectors: Mat::zeros(space.size(), 0) });
             }
@@ -110,15 +110,15 @@ pub(super) fn largest(
     Err(unconverged(converged, wanted, span))
 }
 
-/// Why an iteration did not end. `span` is the largest of the wanted values over the least: rounding leaves up to
-/// EPSILON of the largest in each residual, which may be more than is allowed of the least. A wire of 100 cubes in a row,
-/// clamped at one end, has 220 modes that converge, and 250 (a span of 1.4e8) that do not.
+/// Returns the cause of a failed iteration. `span` is the ratio of the largest to the smallest wanted value. Rounding
+/// leaves up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
+/// `docs/notes/2026-11-23-lanczos.md`.
 fn unconverged(converged: usize, wanted: usize, span: f64) -> ModesError {
     let is_rounding = f64::EPSILON * span >= CONVERGED;
     ModesError::Unconverged { converged, wanted, ratio: span.sqrt(), is_rounding }
 }
 
-/// The largest eigenvalue, roughly (never too large), by a few steps of the block power method.
+/// Returns a lower bound of the largest eigenvalue, by a few steps of the block power method.
 pub(super) fn roughly_largest(operator: &Inverse, random: &mut Random) -> Result<f64, ModesError> {
     let space = operator.space;
     let nothing = Basis::new(space.size(), 0);

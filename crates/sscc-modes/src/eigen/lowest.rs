@@ -1,4 +1,4 @@
-//! The lowest eigenvectors, none missed.
+//! Lowest eigenvectors of a sparse problem, with a check that none is missing.
 
 use faer::{Mat, MatRef};
 use glam::DVec3;
@@ -51,12 +51,12 @@ struct Pencil<'a> {
 /// positive definite, both of one pattern; `positions` are those of their vertices; `rigid` are M-orthonormal
 /// motions without energy (3n x 0 to 6).
 ///
-/// Residuals are small for whatever was found, and cannot tell what was missed. So the eigenvalues are counted, by
-/// the inertia of `K - sigma M`.
+/// Small residuals do not show that none is missing. The eigenvalues are therefore counted, by the inertia of `K -
+/// sigma M`.
 ///
 /// # Errors
-/// When there are fewer, when motions beside `rigid` cost no energy, when it is cancelled, when memory is short, and
-/// when the iteration fails.
+/// When fewer exist, when motions beside `rigid` cost no energy, when it is cancelled, when memory is short, or when
+/// the iteration fails.
 pub(crate) fn lowest_modes(
     k: &BlockSparse,
     m: &BlockSparse,

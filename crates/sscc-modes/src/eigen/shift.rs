@@ -1,4 +1,4 @@
-//! The shift that makes the stiffness of a free body positive definite.
+//! Shift that makes the stiffness of a free body positive definite.
 
 use super::lanczos::{Inverse, roughly_largest};
 use super::space::Space;
@@ -6,9 +6,9 @@ use super::tall::Random;
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, Cholesky};
 
-/// The first shift, as a share of the mean eigenvalue. Rounding leaves about 1e-15 of the largest eigenvalue in rigid
-/// motions, so that the factor is good; and the lowest eigenvalue of a compact body of a million vertices is about
-/// 1e-5 of the mean one, so that the shift hardly changes the order of magnitude of any.
+/// First shift, relative to the mean eigenvalue. It is far above rounding, which leaves about 1e-15 of the largest
+/// eigenvalue in rigid motions, and far below the lowest eigenvalue of a compact body of a million vertices, about 1e-5
+/// of the mean one.
 const SHIFT: f64 = 1e-8;
 
 /// Slender bodies have lower eigenvalues: the shift is then this share of the lowest one.

@@ -1,10 +1,10 @@
-//! Tall matrices.
+//! Parallel products of tall matrices, with a fixed order of sums.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-/// Rows that one thread takes at once. Fixed, so that sums do not depend on the number of threads.
+/// Number of rows per task. Fixed, so that sums do not depend on the number of threads.
 const ROWS: usize = 4096;
 
 /// `a' b`, for tall matrices.

@@ -1,4 +1,4 @@
-//! The reduced forces of a body under given modes.
+//! Reduced forces of a body under given modes.
 //!
 //! Under `u = U q` Green's strain at a point is `E = sum_k L_k q_k + sum_{i<=j} Q_ij q_i q_j`, so the energy, the
 //! integral of `E : C : E / 2`, is half the square of `X (q, q q)`: `X` holds the strains of all points, each times
@@ -18,10 +18,10 @@ use crate::cancel::check_cancelled;
 /// Components of a symmetric strain, off-diagonal ones times the root of 2 (Mandel): their square sum is `E : E`.
 const COMPONENTS: usize = 6;
 
-/// Elements whose strains are multiplied at once: about 3,000 rows, which stay in the cache.
+/// Number of elements whose strains are multiplied at once: about 3,000 rows, which fit into the cache.
 const BATCH: usize = 64;
 
-/// Sums that are added up at the end. Fixed, so that the result is the same for any number of threads.
+/// Number of partial sums. Fixed, so that the result is the same for any number of threads.
 const SUMS: usize = 8;
 
 /// The reduced forces `U' f(U q)` of a solid under modes of its vertices (U: one row of modes for each).

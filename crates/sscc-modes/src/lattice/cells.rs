@@ -1,4 +1,4 @@
-//! The cells that the solid touches, and the triangles in them.
+//! Cells that the solid touches, with their triangles.
 
 use glam::DVec3;
 use sscc::Progress;
@@ -8,7 +8,7 @@ use super::grid::{Grid, cell_along};
 use super::overlap::{Block, SLACK};
 use crate::cancel::check_cancelled;
 
-/// No cell.
+/// Placeholder for no cell.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Samples of a cell.

@@ -1,4 +1,4 @@
-//! The copies of cells: one for each connected piece of the solid within a cell.
+//! Copies of cells: one for each connected piece of the solid within a cell.
 
 use glam::DVec3;
 use sscc::Progress;
@@ -13,9 +13,9 @@ use super::probe::Probe;
 use super::surface::Surface;
 use crate::cancel::check_cancelled;
 
-/// The least share of an octant that is taken to be filled. So that no cube is without mass and stiffness, and
-/// the stiffest cube is a thousand times the softest: three of sixteen digits. What it adds to the volume
-/// of a solid is a thousandth of its outermost layer, less than the lines' own error.
+/// Minimum filled share of an octant. It gives every cube mass and stiffness, and bounds the ratio of stiffness by
+/// 1000, three of sixteen digits. The added volume is a thousandth of the outermost layer, less than the error of the
+/// sample lines.
 pub(super) const MIN_FILL: f64 = 1e-3;
 
 /// The octants of a cube, in the order of its corners: 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z).

@@ -1,4 +1,4 @@
-//! Lines along an axis through the solid: where they are inside.
+//! Intervals of sample lines inside the solid.
 //!
 //! [`SAMPLES`]^2 lines go through the cross-section of each cell, and lines of different axes meet in samples, 64 in a
 //! cell. A line that would hit an edge or a vertex is moved aside by an infinitesimal (e, e^2), e > 0, the same for all

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::surface::Surface;
 use crate::ModesError;
 
-/// How many cells the solid is to touch unless a resolution is asked for: the vibrations of the lowest
-/// few dozen modes are many cells long then, and their computation takes seconds.
+/// Default number of cells that the solid touches. The wavelengths of the lowest few dozen modes are then many cells,
+/// and the computation takes seconds.
 pub(super) const DEFAULT_CELLS: f64 = 20_000.0;
 
 /// The most cells that the solid may touch: nodes and links of more need gigabytes.

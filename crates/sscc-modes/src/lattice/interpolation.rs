@@ -1,4 +1,4 @@
-//! From the nodes of a lattice to the vertices of the surface.
+//! Interpolation from the nodes of a lattice to the vertices of the surface.
 
 use glam::DVec3;
 

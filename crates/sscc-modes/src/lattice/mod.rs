@@ -1,8 +1,8 @@
-//! A closed surface in a lattice of cubes, for finite elements: no tetrahedra are needed.
+//! Embeds a closed surface in a lattice of cubes for finite elements; no tetrahedra are needed.
 //!
-//! Parts that are close in space but apart along the shape are not glued together: an ear on the back, a coil of a
-//! spring on the next one, lips with a gap of a millionth. Where a cell of the grid holds several pieces of the
-//! solid that are not connected within it, each has a copy of the cell with nodes of its own (Molino, Bao and
+//! The lattice keeps parts separate that are close in space but not along the surface, for example neighbouring coils
+//! of a spring. If a cell of the grid contains several pieces of the solid that are not connected within it, each has
+//! a copy of the cell with its own nodes (Molino, Bao and
 //! Fedkiw 2004, "A virtual node algorithm"; Nesme et al. 2009, "Preserving topology and elasticity for embedded
 //! deformable models"). What is connected is decided by
 //! - lines through the solid, 16 through each cell along each axis: an inside is one piece, however thin, and a gap
@@ -41,7 +41,7 @@ mod tests;
 /// Steps of the work, for progress.
 const STEPS: usize = 7;
 
-/// Cubes about a solid, some of them copies of the same cell.
+/// Cubes around a solid, some of them copies of the same cell.
 pub(crate) struct Lattice {
     /// Positions of the nodes (model unit).
     pub vertices: Vec<DVec3>,
@@ -52,7 +52,7 @@ pub(crate) struct Lattice {
     pub fill: Vec<[f64; 8]>,
     /// The side of a cube (model unit).
     pub spacing: f64,
-    /// How the surface moves with the nodes.
+    /// Interpolation from the nodes to the surface.
     pub interpolation: Interpolation,
     /// Whether the surface is closed only when vertices of equal position are one.
     pub is_split: bool,

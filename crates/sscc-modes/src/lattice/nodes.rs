@@ -1,4 +1,4 @@
-//! Which corners of copies are one node.
+//! Nodes of a lattice: corners of copies that coincide.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Whether each part of a surface is oriented as the border of a solid.
+//! Check that each part of a surface is oriented as the boundary of a solid.
 
 use super::crossings::Interval;
 use super::disjoint_sets::DisjointSets;

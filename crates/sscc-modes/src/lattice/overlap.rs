@@ -1,4 +1,4 @@
-//! What a triangle and a segment have in common with a box. Coordinates in units of cells.
+//! Overlap of triangles and segments with boxes, in units of cells.
 
 use glam::DVec3;
 

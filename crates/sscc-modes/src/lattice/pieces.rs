@@ -1,4 +1,4 @@
-//! The lines' insides, cut at the borders of cells.
+//! Inside intervals of sample lines, split at cell boundaries.
 
 use super::cells::{CELL_SAMPLES, Cells, NONE};
 use super::crossings::{Interval, SAMPLES, sample_at};

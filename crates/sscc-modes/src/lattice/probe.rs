@@ -1,4 +1,4 @@
-//! Pieces of a cell that the lines have not found to be connected.
+//! Additional probes for pieces of a cell that the sample lines have not connected.
 //!
 //! Where a flat side cuts the corner off a cell, or the corner of a cell cuts a little off a thin wall, no line may
 //! meet the patch there, though it belongs to the same piece as the rest of the cell. So from each patch

@@ -1,4 +1,4 @@
-//! The surface that a lattice is made for: closed, oriented outward, free of collisions with itself.
+//! Surface of a lattice: closed, oriented outward, free of self-collisions.
 
 use std::collections::HashMap;
 
@@ -102,7 +102,7 @@ fn welded(mesh: &TriMesh) -> Vec<[u32; 3]> {
 /// # Errors
 /// [`ModesError::CollidesAtRest`] if they do; when cancelled.
 pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress) -> Result<(), ModesError> {
-    // The core speaks of models, and a model has a mode: any will do, at q = 0.
+    // A model needs a mode; any mode serves at q = 0.
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
     let model = ReducedModel::new(mesh.clone(), modes)?;
     let filter = ContactFilter::new(Neighbours::Exclude, is_split);

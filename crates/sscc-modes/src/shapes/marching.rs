@@ -17,7 +17,7 @@ const TETRAHEDRA: [[usize; 4]; 6] =
 /// A lattice edge is cut at least this share of its length away from its ends, so that cuts do not coincide.
 const LEAST_SHARE: f64 = 0.1;
 
-/// No vertex yet.
+/// Placeholder for no vertex.
 const NONE: u32 = u32::MAX;
 
 /// A lattice of `size` points, `spacing` (model unit) apart, the first one at `low`.

@@ -1,4 +1,4 @@
-//! Fewer and better triangles for a surface that follows an implicit solid.
+//! Decimation and relaxation of a surface that follows an implicit solid.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
-/// A closed manifold surface. Faces that were collapsed away stay in the list, but no vertex knows them.
+/// Closed manifold surface. Collapsed faces stay in the list, but no vertex refers to them.
 pub(super) struct Surface {
     /// Positions (model unit), also of vertices that no face uses any more.
     pub points: Vec<DVec3>,

@@ -1,4 +1,4 @@
-//! Geometric nested dissection: an order of elimination with little fill.
+//! Geometric nested dissection: elimination order with little fill.
 
 use glam::DVec3;
 

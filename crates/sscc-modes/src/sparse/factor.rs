@@ -18,8 +18,7 @@ use super::BlockSparse;
 use super::dissection::nested_dissection;
 use crate::ModesError;
 
-/// Right-hand sides that one thread solves for. The factor is read once for each group: 16 in groups of 4 take twice as
-/// long as in groups of 8.
+/// Number of right-hand sides per task. The factor is read once per group: see `docs/notes/2026-11-23-lanczos.md`.
 const GROUP: usize = 8;
 
 /// The order of elimination, and where the entries of the factor are: for all matrices of one pattern.
@@ -66,7 +65,7 @@ impl Analysis {
         self.0.len_val()
     }
 
-    /// What faer found.
+    /// Symbolic factorization of faer.
     pub(super) fn symbolic(&self) -> &SymbolicCholesky<usize> {
         &self.0
     }
@@ -159,7 +158,7 @@ mod tests {
         assert_eq!(found, Some(ModesError::NotDefinite { vertex: 17 }));
     }
 
-    /// Not promised by faer, but relied on: see the crate's documentation.
+    /// faer does not guarantee this; the documentation of the crate relies on it.
     #[test]
     fn the_number_of_threads_does_not_change_a_bit() {
         let body = Lattice::clamped(12, 12, 12);

@@ -1,4 +1,4 @@
-//! The number of negative eigenvalues of an indefinite matrix.
+//! Count of the negative eigenvalues of an indefinite matrix.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;

@@ -1,8 +1,8 @@
-//! The motion of the page as a file.
+//! Motions of the page as binary glTF files.
 //!
-//! Its morph targets are the modes that move, each as far as it moves, and a first one to where these begin: so all
-//! weights lie in [0, 1]. Those who cut them off there (Blender does, but for the first key frame) show every vertex
-//! where it is; and files hold only what moves.
+//! The morph targets are the modes that move, scaled to the range of their motion. One more target, with the constant
+//! weight 1, has the lower ends of all ranges. So all weights are in [0, 1], and a program that clamps weights to this
+//! interval (Blender does, except in the first key frame) shows every vertex at its position.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -21,13 +21,13 @@ const MOST_FRAMES: usize = 100_000;
 /// Their numbers q at the most.
 const MOST_NUMBERS: usize = 8 << 20;
 
-/// Key frames.
+/// A motion as key frames.
 #[derive(Clone, Debug, Deserialize)]
 pub struct AnimationRequest {
-    /// Of each frame.
+    /// The q of each key frame.
     #[serde(deserialize_with = "frames")]
     q: Vec<Vec<f64>>,
-    /// Seconds.
+    /// The time of each key frame (s).
     #[serde(deserialize_with = "frames")]
     times: Vec<f64>,
 }
@@ -57,7 +57,7 @@ pub(super) fn glb(
     animation_to_bytes(&[NamedModel { name, model: &moved }], times, &[track]).map_err(ViewError::Request)
 }
 
-/// The same motion with weights in [0, 1], row by row, and what they belong to.
+/// Returns a model whose modes are the morph targets, and their weights in [0, 1] (frames x targets).
 fn bounded(model: &ReducedModel, q: &[Vec<f64>]) -> Result<(ReducedModel, Vec<f64>), ViewError> {
     let extreme = |k: usize, pick: fn(f64, f64) -> f64| q.iter().map(|q| q[k]).reduce(pick).unwrap_or(0.0);
     let ranges: Vec<[f64; 2]> =
@@ -78,7 +78,7 @@ fn bounded(model: &ReducedModel, q: &[Vec<f64>]) -> Result<(ReducedModel, Vec<f6
     Ok((ReducedModel::new(model.mesh().clone(), modes)?, weights))
 }
 
-/// A list with one entry for each frame, refused at the first that is too many.
+/// Reads a list with one entry for each key frame. Stops with an error at the first entry beyond the limit.
 fn frames<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec<T>, D::Error> {
     struct Frames<T>(PhantomData<T>);
 

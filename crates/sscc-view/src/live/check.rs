@@ -1,4 +1,4 @@
-//! Collisions at one q.
+//! Discrete queries of the page.
 
 use std::time::Instant;
 
@@ -14,49 +14,49 @@ pub(super) const MOST_FOUND: usize = 100_000;
 /// Pairs that are listed.
 pub(super) const MOST_LISTED: usize = 10_000;
 
-/// A q to look at.
+/// A discrete query.
 #[derive(Clone, Debug, Deserialize)]
 pub struct CheckRequest {
-    /// Where.
+    /// The q (r numbers).
     pub q: Vec<f64>,
-    /// Comes back with the answer, which may be late.
+    /// A number that the answer repeats, so that the page recognises late answers.
     #[serde(default)]
     pub serial: u64,
-    /// Whether to tell which nodes had to be opened.
+    /// Whether the answer shall name the opened nodes.
     #[serde(default)]
     pub nodes: bool,
 }
 
-/// What was found.
+/// The result of a discrete query.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CheckAnswer {
-    /// That of the request.
+    /// The serial of the request.
     pub serial: u64,
     /// `|z|`.
     pub norm: f64,
     /// Whether any pair collides.
     pub colliding: bool,
-    /// How many pairs do; a lower bound where the answer is not complete.
+    /// The number of colliding pairs; a lower bound if the answer is not complete.
     pub count: usize,
-    /// Whether everything was looked at.
+    /// Whether the search ended without reaching its limit.
     pub complete: bool,
-    /// The first of them, sorted.
+    /// The first colliding pairs, sorted.
     pub pairs: Vec<Pair>,
-    /// Every triangle of any pair found, sorted.
+    /// All triangles of the colliding pairs found, sorted.
     pub triangles: Vec<u32>,
-    /// What the query took.
+    /// Time of the query (microseconds).
     pub microseconds: f64,
-    /// Whether the root's certificate alone proved it, exceptions apart.
+    /// Whether the root's certificate alone proved the shape free, apart from exceptions.
     pub root_certified: bool,
-    /// Nodes and pairs of nodes opened.
+    /// Number of opened nodes and node pairs.
     pub opened: u64,
-    /// Boxes compared.
+    /// Number of AABB tests.
     pub box_tests: u64,
-    /// Triangles compared.
+    /// Number of triangle tests.
     pub triangle_tests: u64,
-    /// `|z|` over the root's radius; none where that is 0.
+    /// `|z|` over the root's radius; `None` if the radius is 0.
     pub root_share: Option<f64>,
-    /// Which nodes the certificates leave open.
+    /// The nodes that the certificates leave open, on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes: Option<Frontier>,
 }
@@ -92,7 +92,7 @@ pub(super) fn check(
     })
 }
 
-/// With what it took in microseconds.
+/// Returns the result of `work` and its time (microseconds).
 pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let done = work();

@@ -1,4 +1,4 @@
-//! What a live page asks for, answered by the core.
+//! Answers to the requests of a live page, by queries of the core.
 
 mod animation;
 mod check;
@@ -22,7 +22,8 @@ pub use check::{CheckAnswer, CheckRequest};
 pub use collision::{DirectionAnswer, DirectionRequest};
 pub use nodes::{BoxesAnswer, BoxesRequest, NodesAnswer};
 
-/// One model on show. Many threads may ask at once: short questions wait for short ones only, long ones for long ones.
+/// A live page of one model, for any number of threads. Short requests wait only for short ones, long requests only for
+/// long ones.
 pub struct Live<'a> {
     model: &'a ReducedModel,
     certificates: &'a Certificates,
@@ -31,24 +32,24 @@ pub struct Live<'a> {
     checks: Mutex<Query<'a>>,
     long: Mutex<Long<'a>>,
     progress: &'a dyn Progress,
-    /// The number of the search along a direction that was asked for last: only its answer is waited for.
+    /// The number of the newest search along a direction; older searches are cancelled.
     latest: AtomicU64,
 }
 
-/// For what may take seconds.
+/// Queries for requests that may take seconds.
 struct Long<'a> {
     certified: Query<'a>,
-    /// Made when it is first asked for.
+    /// Made at the first request.
     traditional: Option<Query<'a>>,
 }
 
-/// A q.
+/// A request with one q (r numbers).
 #[derive(Clone, Debug, Deserialize)]
 pub struct At {
     q: Vec<f64>,
 }
 
-/// What the traditional method took.
+/// The result of a query by the traditional method.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraditionalAnswer {
     microseconds: f64,
@@ -56,10 +57,10 @@ pub struct TraditionalAnswer {
 }
 
 impl<'a> Live<'a> {
-    /// Of a model, with the scene that describes it; queries stop when `progress` cancels.
+    /// Returns the live page of a model. `scene` and `arrays` describe the model. Queries stop if `progress` cancels.
     ///
     /// # Errors
-    /// When the certificates are of another model.
+    /// If the certificates belong to another model.
     pub fn new(
         model: &'a ReducedModel,
         certificates: &'a Certificates,
@@ -74,28 +75,28 @@ impl<'a> Live<'a> {
         Ok(Self { model, certificates, scene, arrays, checks, long, progress, latest })
     }
 
-    /// What is shown.
+    /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// An array of it.
+    /// The bytes of an array of the scene; `None` if no array has this name.
     pub fn array(&self, name: &str) -> Option<&[u8]> {
         self.arrays.get(name)
     }
 
-    /// Collisions at q.
+    /// Returns the collisions at one q.
     ///
     /// # Errors
-    /// When q is no configuration of the model.
+    /// If q is not a configuration of the model.
     pub fn check(&self, request: &CheckRequest) -> Result<CheckAnswer, ViewError> {
         check::check(&mut locked(&self.checks), self.certificates, request)
     }
 
-    /// The same number of collisions by the traditional method, to compare times.
+    /// Returns the time and the number of pairs of the same query by the traditional method.
     ///
     /// # Errors
-    /// As [`Live::check`].
+    /// The errors of [`Live::check`].
     pub fn traditional(&self, At { q }: &At) -> Result<TraditionalAnswer, ViewError> {
         let mut long = locked(&self.long);
         let query = match &mut long.traditional {
@@ -110,12 +111,12 @@ impl<'a> Live<'a> {
         Ok(TraditionalAnswer { microseconds, count: count? })
     }
 
-    /// How far the shape is free along a direction from the centre, and where it first collides, as far as that is
-    /// found within the time for it. Ends early when nobody waits for the answer any more: when another such question
-    /// has come, or `is_gone`.
+    /// Returns the safe scale of a direction from the centre, and the first collision along it. The search ends early
+    /// at the time limit, after a newer search was requested, and if `is_gone` returns true because the client has
+    /// left.
     ///
     /// # Errors
-    /// When the direction has not one finite number for each mode, or the search ended before it found anything.
+    /// If the direction has not one finite number for each mode, or the search ended before its first result.
     pub fn safe_scale(
         &self,
         request: &DirectionRequest,
@@ -131,32 +132,32 @@ impl<'a> Live<'a> {
         collision::along(query, self.model, self.certificates, request, &patience)
     }
 
-    /// The hierarchy.
+    /// Returns the hierarchy.
     pub fn nodes(&self) -> NodesAnswer {
         nodes::all(self.certificates)
     }
 
-    /// The boxes of a level at q.
+    /// Returns the AABBs of one level of the hierarchy at q.
     ///
     /// # Errors
-    /// As [`Live::check`], and where there is no such level.
+    /// The errors of [`Live::check`], and if the level does not exist.
     pub fn boxes(&self, request: &BoxesRequest) -> Result<BoxesAnswer, ViewError> {
         nodes::boxes(self.model, self.certificates, request)
     }
 
-    /// A motion as a binary glTF file.
+    /// Returns a motion as a binary glTF file.
     ///
     /// # Errors
-    /// When there are too many frames, times do not ascend, or a q has not one finite number for each mode.
+    /// If there are too many frames, times do not ascend, or a q has not one finite number for each mode.
     pub fn animation(&self, request: &AnimationRequest) -> Result<Vec<u8>, ViewError> {
-        // One at a time: it may take hundreds of megabytes.
+        // One at a time, since each may need hundreds of megabytes.
         let _turn = locked(&self.long);
         let name = self.scene.models.first().map_or("model", |model| model.name());
         animation::glb(name, self.model, request)
     }
 }
 
-/// What a thread that ended in a panic has left is only scratch: the next query begins anew.
+/// Locks a mutex, also after a panic of another thread: queries hold only scratch, which each query initialises.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! The hierarchy, and what of it the certificates leave open.
+//! The hierarchy, its AABBs, and the nodes that the certificates leave open.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -6,40 +6,40 @@ use sscc::{Certificates, ReducedModel};
 
 use crate::ViewError;
 
-/// The name of the array with the hierarchy's order of triangles.
+/// Name of the array with the hierarchy's order of triangles.
 pub const ORDER: &str = "order";
 
-/// The hierarchy, node by node.
+/// The hierarchy, with one entry for each node in every list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodesAnswer {
-    /// -1 of the root.
+    /// -1 for the root.
     parent: Vec<i64>,
     level: Vec<usize>,
     radius: Vec<f64>,
-    /// Where its triangles begin in the order.
+    /// Start of the node's triangles in the order.
     first: Vec<u32>,
     count: Vec<u32>,
-    /// Name of the array of triangles.
+    /// Name of the array with the order.
     order: &'static str,
 }
 
-/// Nodes at which Algorithm 1 looks (paper, sections 3 and 4), each against itself.
+/// The nodes that Algorithm 1 tests against themselves (paper, sections 3 and 4).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frontier {
-    /// Their certificates fail.
+    /// Nodes whose certificate fails.
     opened: Vec<u32>,
-    /// Their certificates hold: nothing below is looked at.
+    /// Nodes whose certificate holds: the traversal ends there.
     culled: Vec<u32>,
 }
 
-/// Which boxes.
+/// A request for the AABBs of one level at q.
 #[derive(Clone, Debug, Deserialize)]
 pub struct BoxesRequest {
     q: Vec<f64>,
     level: usize,
 }
 
-/// Least x, y, z and greatest x, y, z of each node of the level.
+/// Smallest x, y, z and largest x, y, z of each node of the level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BoxesAnswer {
     boxes: Vec<[f64; 6]>,
@@ -64,7 +64,7 @@ pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
     }
 }
 
-/// What queries at that `|z|` open. They do not look into small nodes.
+/// Returns the nodes that a query at this `|z|` opens. A traversal ends at buckets.
 pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
     let nodes = certificates.hierarchy().nodes();
     let (mut opened, mut culled) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! Who is answered.
+//! Access control of the server.
 
 use constant_time_eq::constant_time_eq;
 
@@ -8,13 +8,13 @@ use crate::ViewError;
 /// Bytes of randomness in a token.
 const TOKEN: usize = 32;
 
-/// The token, and the names under which the page is asked for.
+/// The token and the host names of the page.
 pub(super) struct Access {
     token: String,
     hosts: Vec<String>,
 }
 
-/// Why somebody is not answered.
+/// The reason for a refused request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
     Host,
@@ -39,7 +39,7 @@ impl Access {
         let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
         let names = ["127.0.0.1", "localhost"];
         let mut hosts: Vec<String> = names.iter().map(|name| format!("{name}:{port}")).collect();
-        // Browsers leave out the usual port.
+        // Browsers omit the default port.
         if port == 80 {
             hosts.extend(names.map(str::to_owned));
         }
@@ -50,8 +50,8 @@ impl Access {
         &self.token
     }
 
-    /// Whether the request came by a name of this machine, from the page, and knows the token. What is `open` holds no
-    /// data: there a token may be missing, but not wrong.
+    /// Refuses a request with a foreign host name or origin, or without the right token. An `open` path holds no data:
+    /// there a request may omit the token, but a wrong token is refused.
     pub(super) fn check(&self, head: &Head, open: bool) -> Result<(), Refusal> {
         let known = |host: &str| self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host));
         if !head.host.as_deref().is_some_and(known) {
@@ -65,13 +65,14 @@ impl Access {
         if may { Ok(()) } else { Err(Refusal::Token) }
     }
 
-    /// Whether the request knows the token, told in a time that does not show how much of it is right.
+    /// Whether the request has the right token. The comparison takes constant time, so its time reveals nothing about
+    /// the token.
     pub(super) fn is_known(&self, head: &Head) -> bool {
         given(head).is_some_and(|given| constant_time_eq(given.as_bytes(), self.token.as_bytes()))
     }
 }
 
-/// The token that the request names, right or wrong.
+/// The token in the request, right or wrong.
 fn given(head: &Head) -> Option<&str> {
     head.token.as_deref().or(head.parameter("token"))
 }

@@ -1,4 +1,4 @@
-//! One connection: request after request, each within its time.
+//! One connection: a sequence of requests, with a time limit on each step.
 
 use std::io::{self, ErrorKind, Read};
 use std::net::{Shutdown, TcpStream};
@@ -45,7 +45,8 @@ pub(super) fn talk(
         let (mut close, mut is_known) = (true, false);
         let response = match buffer.head(&mut within(HEAD)) {
             Ok(head) => {
-                // Connections are kept for those who know the token: others could hold all that there may be.
+                // A connection stays open only for a client with the token. Other clients could otherwise take all
+                // connections.
                 is_known = access.is_known(&head);
                 let refusal = refusal(&head, access, site);
                 close = head.close || !is_known || refusal.is_some() && head.length > 0;
@@ -89,7 +90,7 @@ impl<'a> Presence<'a> {
         Ok(Self { stream, next_look: Mutex::new(Some(Instant::now())) })
     }
 
-    /// Whoever closes even one direction has left: browsers close both.
+    /// Whether the client has left. A client that closes one direction counts as gone, since browsers close both.
     fn is_gone(&self) -> bool {
         let mut next_look = self.next_look.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
@@ -110,7 +111,7 @@ impl Drop for Presence<'_> {
     }
 }
 
-/// What is said to a request whose body is not even read.
+/// The response to a request that is refused before its body is read; `None` if it is accepted.
 fn refusal(head: &Head, access: &Access, site: &Site<'_, '_>) -> Option<Response<'static>> {
     if let Err(refusal) = access.check(head, site.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
@@ -143,7 +144,7 @@ mod tests {
         assert!(!looks(3));
         drop(presence);
         let mut read = [0; 16];
-        // Reading waits again, and finds what was only looked at.
+        // The stream blocks again, and the bytes that `peek` saw are still there.
         (&here).read_exact(&mut read).unwrap();
         assert_eq!(&read, b"the next request");
         let presence = Presence::of(&here).unwrap();

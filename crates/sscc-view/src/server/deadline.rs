@@ -1,13 +1,13 @@
-//! Reading and writing with an end.
+//! Reads and writes with a deadline.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// Between two looks at whether to stop.
+/// Interval between two checks of `is_stopped`.
 const SLICE: Duration = Duration::from_millis(100);
 
-/// A connection of which everything must be done by a time, however little by little the other side goes.
+/// A connection with one deadline for all reads and writes together, however slow the client is.
 pub(super) struct Timed<'a> {
     stream: &'a TcpStream,
     end: Instant,
@@ -23,7 +23,7 @@ impl<'a> Timed<'a> {
         Self { stream, end: Instant::now() + time, is_stopped }
     }
 
-    /// How long the system may wait now.
+    /// The timeout of the next system call.
     fn slice(&self) -> io::Result<Duration> {
         let left = self.end.saturating_duration_since(Instant::now());
         if left.is_zero() || (self.is_stopped)() {
@@ -33,7 +33,7 @@ impl<'a> Timed<'a> {
         }
     }
 
-    /// Tries again until the end.
+    /// Repeats a system call until it is done or the deadline has passed.
     fn until_done(
         &self,
         set: impl Fn(Duration) -> io::Result<()>,
@@ -85,7 +85,7 @@ mod tests {
         let (here, _) = listener.accept().unwrap();
         thread::scope(|scope| {
             scope.spawn(move || {
-                // For ever: until the other end of the connection is closed.
+                // Writes until the other end closes the connection.
                 while there.write_all(b"x").is_ok() {
                     thread::sleep(Duration::from_millis(10));
                 }

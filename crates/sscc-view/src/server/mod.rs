@@ -1,11 +1,11 @@
-//! The server of the page, for this machine alone.
+//! The server of the page, for this machine only.
 //!
-//! Anybody can knock: other programs of this machine, and any page that is open in a browser. So only those are
-//! answered who know the token of the address, came by a name of this machine (`Host`, against names that are made
-//! to point here) and from the page itself (`Origin`). Heads, bodies, times and the number of connections are bounded.
+//! Any program on this machine can connect, and so can any page in a browser. So the server answers only requests with
+//! the token of the address, a `Host` of this machine (against DNS rebinding) and, if an `Origin` is present, the
+//! page's own. Limits apply to heads, bodies, times and the number of connections.
 //!
-//! Made on `httparse` rather than taken whole: tiny_http (0.12) has no limits of time or connections, and what has them
-//! (hyper) brings an asynchronous runtime for one page.
+//! The server uses only the parser `httparse`. tiny_http 0.12 has no limits on time or connections; hyper has them, but
+//! adds an asynchronous runtime.
 
 mod access;
 mod connection;
@@ -27,14 +27,14 @@ use routes::Site;
 /// A browser opens six; nobody needs more than a few.
 const MOST_CONNECTIONS: usize = 64;
 
-/// Between two looks at whether to stop.
+/// Interval between two checks of `is_stopped`.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// One of the connections that there may be at once, however it ends.
+/// One of the simultaneous connections. Its drop frees the slot, also after a panic.
 struct Slot<'a>(&'a AtomicUsize);
 
 impl<'a> Slot<'a> {
-    /// None when all are taken.
+    /// Returns a free slot; `None` if all are taken.
     fn take(taken: &'a AtomicUsize) -> Option<Self> {
         let before = taken.fetch_add(1, Ordering::Relaxed);
         let slot = Self(taken);
@@ -48,7 +48,7 @@ impl Drop for Slot<'_> {
     }
 }
 
-/// Listens on 127.0.0.1.
+/// An HTTP server on 127.0.0.1.
 pub struct Server {
     listener: TcpListener,
     access: Access,
@@ -56,33 +56,33 @@ pub struct Server {
 }
 
 impl Server {
-    /// Takes a port; 0: any that is free.
+    /// Opens a port; 0: any free port.
     ///
     /// # Errors
-    /// When the port is taken, or the system has no random numbers.
+    /// If the port is taken, or the operating system has no random numbers.
     pub fn bind(port: u16) -> Result<Self, ViewError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let port = listener.local_addr()?.port();
         Ok(Self { listener, access: Access::new(port)?, port })
     }
 
-    /// Where the page is, with the token.
+    /// The address of the page, with the token.
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/?token={}", self.port, self.access.token())
     }
 
-    /// Answers questions about a model until it is to stop, which is looked at now and then.
+    /// Serves a live page until `is_stopped` returns true. It is called every 50 ms.
     ///
     /// # Errors
-    /// When the system refuses threads.
+    /// If the operating system refuses a thread.
     pub fn serve(&self, live: &Live<'_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         self.run(&Site::Live(live), is_stopped)
     }
 
-    /// Shows a report, in the same way.
+    /// Serves a report until `is_stopped` returns true.
     ///
     /// # Errors
-    /// As [`Server::serve`].
+    /// The errors of [`Server::serve`].
     pub fn serve_report(&self, html: &str, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         self.run(&Site::Report(html), is_stopped)
     }
@@ -95,13 +95,13 @@ impl Server {
                 while !is_stopped() {
                     thread::sleep(PAUSE);
                 }
-                // Wakes the loop below, which waits for somebody to knock.
+                // This connection ends the blocking `accept` in the loop below.
                 let here = SocketAddr::from((Ipv4Addr::LOCALHOST, self.port));
                 let _ = TcpStream::connect_timeout(&here, Duration::from_secs(1));
             })?;
             while !is_stopped() {
                 let Ok((stream, _)) = self.listener.accept() else {
-                    // Too many open files, or one who has left already.
+                    // Too many open files, or a client that has already left.
                     thread::sleep(PAUSE);
                     continue;
                 };

@@ -1,4 +1,4 @@
-//! Requests, as far as a page needs them (HTTP/1.1).
+//! The subset of HTTP/1.1 requests that the page uses.
 
 use std::io::{self, ErrorKind, Read};
 
@@ -11,30 +11,30 @@ const MOST_HEADERS: usize = 64;
 /// Bytes read at once.
 const CHUNK: usize = 16 << 10;
 
-/// The first lines of a request.
+/// The request line and the headers of a request.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Head {
     pub(super) method: String,
     pub(super) path: String,
-    /// After the `?`.
+    /// The part of the address after `?`.
     pub(super) query: String,
     pub(super) host: Option<String>,
     pub(super) origin: Option<String>,
     pub(super) token: Option<String>,
-    /// Bytes of the body.
+    /// Size of the body (bytes).
     pub(super) length: usize,
-    /// Whether no other request is to follow.
+    /// Whether the connection ends after this request.
     pub(super) close: bool,
 }
 
 impl Head {
-    /// A parameter of the query, as it stands.
+    /// A parameter of the query, without percent-decoding.
     pub(super) fn parameter(&self, name: &str) -> Option<&str> {
         self.query.split('&').find_map(|pair| pair.strip_prefix(name)?.strip_prefix('='))
     }
 }
 
-/// What came instead of a head.
+/// The reason for a missing head.
 #[derive(Debug)]
 pub(super) enum BadHead {
     /// Nothing: the other side has left, or waits too long.
@@ -43,19 +43,19 @@ pub(super) enum BadHead {
     Refused(u16, &'static str),
 }
 
-/// What was read of a connection and not yet used.
+/// Bytes that were read from a connection and not yet used.
 #[derive(Default)]
 pub(super) struct Buffer {
     bytes: Vec<u8>,
 }
 
 impl Buffer {
-    /// Whether a request has begun.
+    /// Whether no byte of the next request has been read.
     pub(super) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// Reads once; an end is an error.
+    /// Reads once. The end of the stream is an error.
     pub(super) fn read(&mut self, from: &mut impl Read) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         match from.read(&mut chunk)? {
@@ -67,7 +67,7 @@ impl Buffer {
         }
     }
 
-    /// The next head.
+    /// Returns the next head.
     pub(super) fn head(&mut self, from: &mut impl Read) -> Result<Head, BadHead> {
         loop {
             if let Some((head, used)) = parse(&self.bytes)? {
@@ -81,7 +81,7 @@ impl Buffer {
         }
     }
 
-    /// The body of that many bytes. Memory grows with what comes, not with what was announced.
+    /// Returns a body of `length` bytes. Memory grows with the bytes received, not with the announced length.
     pub(super) fn body(&mut self, length: usize, from: &mut impl Read) -> io::Result<Vec<u8>> {
         while self.bytes.len() < length {
             self.read(from)?;
@@ -91,7 +91,7 @@ impl Buffer {
     }
 }
 
-/// A head, and its bytes; none where it is not yet whole.
+/// Returns a head and its size; `None` if the head is incomplete.
 fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
@@ -115,7 +115,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
     let mut length = None;
     for header in request.headers.iter() {
         let value = || String::from_utf8_lossy(header.value).trim().to_owned();
-        // Two of one kind: each side could believe another one.
+        // A repeated header is ambiguous: client and server could use different ones.
         let once = |place: &mut Option<String>| match place.replace(value()) {
             None => Ok(()),
             Some(_) => Err(BadHead::Refused(400, "a line of the head is there twice")),
@@ -132,7 +132,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
     }
     if let Some(length) = length {
         let is_number = !length.is_empty() && length.bytes().all(|b| b.is_ascii_digit());
-        // So large that it is no number here: too large for every limit.
+        // A length beyond usize exceeds every limit.
         head.length = if is_number {
             length.parse().unwrap_or(usize::MAX)
         } else {

@@ -1,4 +1,4 @@
-//! Answers.
+//! HTTP responses.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -6,11 +6,12 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::json;
 
-/// The page runs what stands in it, asks only this server, and is shown in no other page.
+/// Content security policy: the page runs only its own scripts, connects only to this server, and no other page can
+/// embed it.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; \
      media-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// What is sent back.
+/// An HTTP response.
 pub(super) struct Response<'a> {
     pub(super) status: u16,
     kind: &'static str,
@@ -33,7 +34,7 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// One line.
+    /// An error with a message of one line.
     pub(super) fn error(status: u16, message: &str) -> Self {
         Self { status, kind: JSON, body: json!({"error": message}).to_string().into_bytes().into() }
     }
@@ -49,7 +50,7 @@ impl<'a> Response<'a> {
             self.body.len(),
             if close { "close" } else { "keep-alive" },
         );
-        // Small answers in one piece.
+        // A small response is one write.
         if self.body.len() < 1 << 16 {
             return to.write_all(&[head.as_bytes(), &self.body].concat());
         }

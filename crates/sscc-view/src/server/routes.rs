@@ -1,4 +1,4 @@
-//! What can be asked for.
+//! The addresses that the server answers.
 
 use serde::de::DeserializeOwned;
 
@@ -12,35 +12,35 @@ const MOST_BODY: usize = 1 << 20;
 /// The same for a motion to be written as a file.
 const MOST_MOTION: usize = 64 << 20;
 
-/// What is on show.
+/// The content of a server.
 pub(super) enum Site<'a, 'm> {
-    /// A model that answers.
+    /// A live page.
     Live(&'a Live<'m>),
-    /// A page that has all in it.
+    /// A report as one HTML file.
     Report(&'a str),
 }
 
-/// A way in: how it is asked for, and how long the body may be.
+/// An address: its HTTP method, the largest size of its body, and its handler.
 struct Route<'a> {
     method: &'static str,
     most: usize,
     answer: Answer<'a>,
 }
 
-/// Whether nobody waits for the answer any more.
+/// Whether the client has left.
 pub(super) type IsGone<'g> = &'g (dyn Fn() -> bool + Sync);
 
-/// From the body.
+/// Computes the response from the body.
 type Answer<'a> = Box<dyn Fn(&[u8], IsGone<'_>) -> Response<'a> + 'a>;
 
 impl<'a> Site<'a, '_> {
-    /// Whether that is for everybody on this machine: the live page itself, which holds no data, so that it can be
-    /// loaded again when it has taken the token out of its address. A report holds data.
+    /// Whether the path needs no token. This is the live page itself, which contains no data, so a browser can reload
+    /// it after the page has removed the token from the address. A report contains data.
     pub(super) fn is_open(&self, path: &str) -> bool {
         matches!((self, path), (Self::Live(_), "/"))
     }
 
-    /// Refuses what cannot be answered, before the body is read: with the status and one line.
+    /// Checks a request before its body is read. An error is a status and a message of one line.
     pub(super) fn check(&self, head: &Head) -> Result<(), (u16, &'static str)> {
         let route = self.route(&head.path).ok_or((404, "there is nothing of that name"))?;
         if route.method != head.method {
@@ -49,7 +49,7 @@ impl<'a> Site<'a, '_> {
         if head.length > route.most { Err((413, "the body is too large")) } else { Ok(()) }
     }
 
-    /// The answer to what [`Site::check`] let pass.
+    /// Returns the response to a request that [`Site::check`] has accepted.
     pub(super) fn answer(&self, head: &Head, body: &[u8], is_gone: IsGone<'_>) -> Response<'a> {
         match self.route(&head.path) {
             Some(route) => (route.answer)(body, is_gone),
@@ -92,7 +92,7 @@ fn get<'a>(answer: impl Fn() -> Response<'a> + 'a) -> Route<'a> {
     Route { method: "GET", most: 0, answer: Box::new(move |_, _| answer()) }
 }
 
-/// Asked by JSON.
+/// A route whose request is JSON.
 fn post<'a, T: DeserializeOwned>(
     most: usize,
     answer: impl Fn(T, IsGone<'_>) -> Result<Response<'a>, ViewError> + 'a,

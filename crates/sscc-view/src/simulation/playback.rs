@@ -1,4 +1,4 @@
-//! The motion of a simulation, for its report.
+//! The recorded motion of a simulation, for its report.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ const MOST_ASKED: usize = 4000;
 /// Colliding triangles of all frames at most.
 const MOST_TRIANGLES: usize = 2 << 20;
 
-/// The motion, if a page can show any of it, and notes on what was left out.
+/// Returns the motion, unless no frame is in the range of the page, and notes on omitted data.
 pub fn playback(
     run: &FinishedRun,
     progress: &dyn Progress,
@@ -39,7 +39,7 @@ pub fn playback(
         notes.push(format!("{rate:.1} frames in a second instead of {}", scene.frames_per_second));
     }
     let mut frames = key_frames(history.len(), scene.step, rate);
-    // Of a motion that diverged, what a page can show.
+    // A motion that diverges ends at the last frame in the range of the page.
     let fits = |state: &usize| {
         let mut bodies = history.bodies(*state);
         bodies.all(|body| body.q.iter().chain(&body.position.to_array()).all(|x| x.abs() < 1e30))
@@ -85,15 +85,15 @@ pub fn playback(
     Ok((Some(playback), notes))
 }
 
-/// For each frame, the most pairs in which all bodies collide with themselves in one state between the frame before and
-/// this one: contacts shorter than a frame are seen in none.
+/// For each frame the number of self-colliding pairs of all bodies, as the maximum over the states strictly between the
+/// previous frame and this one. The frames themselves miss contacts shorter than a frame.
 fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
     let most = |states: Range<usize>| states.map(|state| history.self_pairs(state) as u64).max().unwrap_or(0);
     let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
     [0].into_iter().chain(between).take(frames.len()).collect()
 }
 
-/// The colliding triangles of each frame, body by body; none of them where they are too many.
+/// The colliding triangles of each frame, body by body; `None` and a note if there are too many.
 fn colliding(
     run: &FinishedRun,
     frames: &[usize],
@@ -137,7 +137,7 @@ fn colliding(
     Ok((Some(colliding), None))
 }
 
-/// The sound as a file within, as loud as `sound.wav`.
+/// The sound as a WAV file in an array, as loud as `sound.wav`; `None` and a note if it is too long.
 fn sound(run: &FinishedRun, arrays: &mut Arrays) -> (Option<String>, Option<String>) {
     let Some(sound) = SoundTrack::of(run) else { return (None, None) };
     if 2 * sound.samples.len() > MOST_SOUND {
@@ -171,7 +171,7 @@ mod tests {
             layout.push(StepRecord::default(), bodies, &mut numbers);
         }
         let history = History::new(layout, numbers);
-        // States 1 and 2 between the first two frames; none between 3 and 4; state 4 is a frame itself.
+        // States 1 and 2 are between the first two frames, none is between 3 and 4, and state 4 is itself a frame.
         assert_eq!(pairs_since(&history, &[0, 3, 4, 6, 7]), [0, 8, 0, 2, 0]);
         assert_eq!(pairs_since(&history, &[0, 7]), [0, 8]);
         assert_eq!(pairs_since(&history, &[0]), [0]);

@@ -7,8 +7,8 @@ use crate::{Axis, Plot, Series};
 /// Points of a line at most.
 const POINTS: usize = 700;
 
-/// The cost of self-collision detection in each step, as in the paper's Figure 12: of the simulation's own method the
-/// largest of each stretch of steps, of the traditional method at some states.
+/// The cost of self-collision detection in each step, as in the paper's Figure 12. The simulation's own method shows
+/// the maximum of each run of consecutive steps, the traditional method single states.
 pub fn costs(run: &FinishedRun) -> Plot {
     let own = line(run, |state| 1e3 * run.history.step(state).self_seconds());
     let of = |(state, seconds): &(usize, f64)| [run.time(*state), 1e3 * seconds];
@@ -23,7 +23,7 @@ pub fn costs(run: &FinishedRun) -> Plot {
     }
 }
 
-/// The energy of all bodies.
+/// The total energy of all bodies.
 pub fn energy(run: &FinishedRun) -> Plot {
     let mut points = line(run, |state| run.history.step(state).energy);
     points.retain(|point| point[1].is_finite());
@@ -35,7 +35,7 @@ pub fn energy(run: &FinishedRun) -> Plot {
     }
 }
 
-/// The sound, the largest and the least sample of each stretch of steps.
+/// The sound as the largest and the smallest sample of each run of consecutive steps.
 pub fn sound(run: &FinishedRun) -> Plot {
     let points = line(run, |state| run.history.step(state).sound);
     let series = |name, pick| Series::new(name, thinned(&points, POINTS, pick));
@@ -47,7 +47,7 @@ pub fn sound(run: &FinishedRun) -> Plot {
     }
 }
 
-/// A value of each state.
+/// Returns the points (time, value) of all states.
 fn line(run: &FinishedRun, of: impl Fn(usize) -> f64) -> Vec<[f64; 2]> {
     (0..run.history.len()).map(|state| [run.time(state), of(state)]).collect()
 }

@@ -1,4 +1,4 @@
-//! The report of a simulation: the page with its motion, one HTML file that needs no other.
+//! Reports of simulations: the page with the recorded motion, as one HTML file.
 
 use sscc::Progress;
 use sscc_modes::mode_frequencies;
@@ -9,10 +9,10 @@ use super::playback::playback;
 use super::plots::{energy, sound};
 use crate::{Arrays, ModelDetails, ModelScene, Report, Scene, ViewError};
 
-/// The report of a simulation as one file of HTML. Leaves out the colliding triangles where `progress` cancels.
+/// Returns the report of a simulation as one HTML file. Without the colliding triangles if `progress` cancels.
 ///
 /// # Errors
-/// When the numbers of a model are beyond what a page can show.
+/// If a number of a model exceeds the range of the page.
 pub fn simulation_report(run: &FinishedRun, progress: &dyn Progress) -> Result<String, ViewError> {
     let mut arrays = Arrays::default();
     let mut scene = Scene::new(&run.scene.name);

@@ -1,10 +1,10 @@
-//! The header of a PLY file.
+//! Parser for the header of a PLY file.
 
 use crate::FormatError;
 use crate::error::quoted;
 use crate::text::{Lines, count, decoded};
 
-/// How the rows are written.
+/// Encoding of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -12,7 +12,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A type of numbers.
+/// Number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Number {
     I8,
@@ -25,7 +25,7 @@ pub(super) enum Number {
     F64,
 }
 
-/// What a row has for one property.
+/// Property of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Number(Number),
@@ -39,19 +39,19 @@ pub(super) struct Property {
 
 pub(super) struct Element {
     pub name: String,
-    /// Rows promised. Not yet checked against the file.
+    /// Count of rows, not yet checked against the file.
     pub count: usize,
     pub properties: Vec<Property>,
-    /// The line of the header that declares it.
+    /// Line of its declaration.
     pub line: usize,
 }
 
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Lines of the header.
+    /// Number of lines of the header.
     pub lines: usize,
-    /// The byte after the header.
+    /// Offset of the first byte after the header.
     pub body: usize,
 }
 
@@ -73,7 +73,7 @@ impl Number {
         })
     }
 
-    /// Bytes of one number.
+    /// Size of one number in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -83,7 +83,7 @@ impl Number {
         }
     }
 
-    /// The smallest and the largest integer; none for floating point.
+    /// Smallest and largest integer; none for floating point.
     pub fn range(self) -> Option<(i64, i64)> {
         Some(match self {
             Self::I8 => (i8::MIN.into(), i8::MAX.into()),

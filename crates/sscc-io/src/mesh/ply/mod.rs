@@ -1,9 +1,7 @@
-//! Polygon files (PLY): text, binary little endian and binary big endian.
+//! Reader for polygon files (PLY): text, binary little endian and binary big endian.
 //!
-//! A reader of our own. ply-rs-bw limits what it allocates ahead, but believes the header all the same: an
-//! element without properties has rows of no bytes, and it made 50 million of them (3.5 GB, 17 s) out of a
-//! binary file of 80 bytes. Here each row must be borne out by bytes, and only coordinates and corners
-//! are kept.
+//! The module has its own parser: the crate `ply-rs-bw` trusts the counts of the header. Here bytes must back each row,
+//! and only coordinates and corners are kept. See `docs/notes/2026-11-23-parsers-of-other-crates.md`.
 
 mod header;
 mod values;
@@ -23,7 +21,7 @@ use crate::FormatError;
 /// with the same declaration give the same mesh.
 ///
 /// # Errors
-/// When the header is malformed, lacks one of these, or promises more than the file holds; when bytes are
+/// When the header is malformed, lacks one of these, or declares more than the file holds; when bytes are
 /// left over; when an index names no vertex, or [`TriMesh::new`] refuses the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()

@@ -1,17 +1,17 @@
-//! The rows of a PLY file, number by number.
+//! Reader for the numbers in the rows of a PLY file.
 
 use super::header::{Element, Encoding, Header, Kind, Number};
 use crate::error::quoted;
 use crate::text::decoded;
 use crate::{FormatError, Place};
 
-/// Reads the numbers behind the header, and knows where it is.
+/// Reads the numbers after the header, with their places.
 pub(super) struct Values<'a> {
     bytes: &'a [u8],
-    /// The next byte to read.
+    /// Offset of the next byte.
     at: usize,
     encoding: Encoding,
-    /// The line of that byte, for text.
+    /// Line of that byte, for text.
     line: usize,
 }
 
@@ -20,7 +20,7 @@ impl<'a> Values<'a> {
         Self { bytes, at: header.body, encoding: header.encoding, line: header.lines + 1 }
     }
 
-    /// Where the next number is.
+    /// Returns the place of the next number.
     pub fn place(&mut self) -> Place {
         match self.encoding {
             Encoding::Text => {
@@ -31,7 +31,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Refuses an element that cannot fit into what is left of the file, before any of it is read.
+    /// Returns an error if an element cannot fit into the rest of the file, before reading it.
     pub fn check_room(&self, element: &Element) -> Result<(), FormatError> {
         let number = |n: Number| if self.encoding == Encoding::Text { 2 } else { n.size() };
         let row: usize = element
@@ -41,7 +41,7 @@ impl<'a> Values<'a> {
                 Kind::Number(n) | Kind::List { count: n, .. } => number(n),
             })
             .sum();
-        // The last number of a text has no space behind it.
+        // The last number of a text may have no space after it.
         let left = self.bytes.len() - self.at + 1;
         if element.count.checked_mul(row).is_some_and(|size| size <= left) {
             return Ok(());
@@ -51,7 +51,7 @@ impl<'a> Values<'a> {
         Err(FormatError::line(*line, cause))
     }
 
-    /// The next number. Of a text it has the value it would have in a binary file.
+    /// Reads the next number. In a text file it has the value of its declared type.
     pub fn number(&mut self, kind: Number) -> Result<f64, FormatError> {
         if self.encoding == Encoding::Text {
             return self.word(kind);
@@ -69,7 +69,7 @@ impl<'a> Values<'a> {
         })
     }
 
-    /// The next number, which must be an integer from 0.
+    /// Reads the next number, an integer from 0.
     pub fn integer(&mut self, kind: Number) -> Result<u64, FormatError> {
         let place = self.place();
         let value = self.number(kind)?;
@@ -82,7 +82,7 @@ impl<'a> Values<'a> {
         Ok(value as u64) // exact: integer types have at most 32 bits
     }
 
-    /// The length of the list that comes next; its items are still to be read.
+    /// Reads the length of the next list, without its items.
     pub fn list(&mut self, count: Number, item: Number) -> Result<usize, FormatError> {
         let place = self.place();
         let length = self.integer(count)? as usize;
@@ -94,7 +94,7 @@ impl<'a> Values<'a> {
         Ok(length)
     }
 
-    /// Reads past a list.
+    /// Skips a list.
     pub fn skip_list(&mut self, count: Number, item: Number) -> Result<(), FormatError> {
         for _ in 0..self.list(count, item)? {
             self.number(item)?;
@@ -102,7 +102,7 @@ impl<'a> Values<'a> {
         Ok(())
     }
 
-    /// Refuses anything behind the last row (of a text: but space).
+    /// Returns an error if bytes follow the last row (in text: other than white space).
     pub fn finish(mut self) -> Result<(), FormatError> {
         let place = self.place();
         match self.bytes.len() - self.at {
@@ -111,7 +111,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The next N bytes, turned to little endian.
+    /// Reads the next N bytes, in little endian order.
     fn take<const N: usize>(&mut self, little: bool) -> Result<[u8; N], FormatError> {
         let Some(bytes) = self.bytes[self.at..].first_chunk::<N>() else {
             return Err(FormatError::new(Place::Byte(self.at), "the file is cut off here"));

@@ -1,4 +1,4 @@
-//! `$Elements`.
+//! Parser for the section `$Elements`.
 
 use super::groups::Groups;
 use super::nodes::Nodes;
@@ -9,18 +9,18 @@ use crate::solid::builder::{Builder, repeated};
 
 const WHAT: &str = "the last element";
 
-/// What becomes of an element.
+/// Use of an element.
 #[derive(Clone, Copy)]
 enum Kind {
     Tet,
     Cube,
     Triangle,
     Quadrilateral,
-    /// No part of the volume; of that many nodes.
+    /// Not part of the volume; has this number of nodes.
     Skipped(u64),
 }
 
-/// The kind of an element by its number in gmsh; none for solid elements that are not read.
+/// Returns the kind of an element by its number in gmsh; None for unsupported solid elements.
 fn kind(number: i64) -> Option<Kind> {
     Some(match number {
         4 => Kind::Tet,
@@ -159,7 +159,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The vertices of an element's nodes.
+    /// Returns the vertices of an element's nodes.
     fn corners<const N: usize>(&mut self) -> Result<[u64; N], FormatError> {
         let mut corners = [0; N];
         for corner in &mut corners {

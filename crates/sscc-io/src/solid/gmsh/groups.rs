@@ -1,4 +1,4 @@
-//! `$PhysicalNames` and `$Entities`: which material a volume has.
+//! Parser for `$PhysicalNames` and `$Entities`, which give the materials of volumes.
 
 use std::collections::BTreeMap;
 
@@ -65,7 +65,7 @@ impl Groups {
         }
         let groups = numbers.size(ENTITY)?;
         if groups > 0 {
-            // Negative where the group turns the entity around.
+            // A group number is negative if the entity is reversed.
             let first = numbers.integer(ENTITY)?.unsigned_abs();
             numbers.skip_integers(groups - 1, ENTITY)?;
             if dimension == VOLUME {
@@ -79,7 +79,7 @@ impl Groups {
         Ok(())
     }
 
-    /// The material of a physical group; 0 is none.
+    /// Returns the material of a physical group; 0 is none.
     pub fn material(&self, group: u64, builder: &mut Builder) -> u32 {
         match (group, self.names.get(&group)) {
             (0, _) => builder.default_material(),
@@ -88,7 +88,7 @@ impl Groups {
         }
     }
 
-    /// The material of the elements of a volume.
+    /// Returns the material of the elements of a volume.
     pub fn material_of_volume(&self, volume: i64, builder: &mut Builder) -> u32 {
         self.material(self.of_volume.get(&volume).copied().unwrap_or_default(), builder)
     }

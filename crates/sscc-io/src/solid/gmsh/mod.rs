@@ -1,11 +1,10 @@
-//! gmsh's `.msh`, versions 2.2 and 4.1, text and binary.
+//! Reader for gmsh's `.msh` files, versions 2.2 and 4.1, text and binary.
 //!
-//! A reader of our own: the mshio crate panics when a count is 0, reads version 4.1 only, takes no parametric
-//! nodes and no names of groups, and does not say where an error is.
+//! The module has its own parser: the crate `mshio` panics on a count of 0, reads version 4.1 only, has no parametric
+//! nodes and no names of groups, and gives no places of errors.
 //!
-//! A file is a row of sections `$Name` .. `$EndName`. Read are the format, the nodes, the elements, and what gives
-//! elements a material: physical groups of volumes, with their names where there are some. Other sections are
-//! skipped.
+//! A file is a sequence of sections `$Name` .. `$EndName`. The reader uses the format, the nodes, the elements, and the
+//! physical groups of volumes, which give materials. It skips other sections.
 
 mod elements;
 mod groups;

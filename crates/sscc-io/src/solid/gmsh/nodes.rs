@@ -1,4 +1,4 @@
-//! `$Nodes`.
+//! Parser for the section `$Nodes`.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::solid::builder::Builder;
 
 const WHAT: &str = "the last node";
 
-/// The tags of nodes: any numbers, in any order.
+/// Tags of nodes: any numbers, in any order.
 pub(super) struct Nodes {
     /// Tags with the indices of their vertices, sorted.
     tags: Vec<(u64, u64)>,
@@ -48,14 +48,14 @@ impl Nodes {
         }
     }
 
-    /// The vertex of the node with this tag.
+    /// Returns the vertex of the node with this tag.
     pub fn vertex(&self, tag: u64) -> Option<u64> {
         let at = self.tags.binary_search_by_key(&tag, |(tag, _)| *tag).ok()?;
         Some(self.tags[at].1)
     }
 }
 
-/// All tags of a block, then all positions, with up to 3 parameters behind each.
+/// Reads all tags of a block, then all positions, each with up to 3 parameters.
 fn block(numbers: &mut Numbers, tags: &mut Vec<u64>, builder: &mut Builder) -> Result<(), FormatError> {
     let dimension = numbers.integer(WHAT)?;
     numbers.integer(WHAT)?; // the entity

@@ -1,18 +1,17 @@
-//! Numbers as words or as bytes.
+//! Numbers of gmsh files, as text or as bytes.
 
 use crate::error::quoted;
 use crate::solid::words::Words;
 use crate::{FormatError, Place};
 
-/// Numbers of a text or a binary file, which `words` knows. Nothing is ever allocated by a count: each item is read
-/// before the next.
+/// Reads numbers of a text or a binary file. Nothing is allocated by a count: each item is read before the next.
 pub(super) struct Numbers<'a> {
     pub words: Words<'a>,
     pub big_endian: bool,
 }
 
 impl Numbers<'_> {
-    /// Where reading is.
+    /// Returns the current place.
     pub fn place(&self) -> Place {
         self.words.place()
     }
@@ -29,7 +28,7 @@ impl Numbers<'_> {
         Ok(bytes)
     }
 
-    /// An integer of 32 bits.
+    /// Reads an integer of 32 bits.
     pub fn integer(&mut self, what: &str) -> Result<i64, FormatError> {
         if self.words.binary {
             return Ok(i32::from_le_bytes(self.bytes(what)?).into());
@@ -37,7 +36,7 @@ impl Numbers<'_> {
         self.words.integer(what)
     }
 
-    /// A count, or a tag of version 4.
+    /// Reads a count, or a tag of version 4.
     pub fn size(&mut self, what: &str) -> Result<u64, FormatError> {
         if self.words.binary {
             return Ok(u64::from_le_bytes(self.bytes(what)?));
@@ -46,13 +45,13 @@ impl Numbers<'_> {
         word.parse().or_else(|_| self.refused(format!("{} is not a count or tag", quoted(word))))
     }
 
-    /// A tag of version 2: an integer from 0.
+    /// Reads a tag of version 2: an integer from 0.
     pub fn tag(&mut self, what: &str) -> Result<u64, FormatError> {
         let tag = self.integer(what)?;
         u64::try_from(tag).or_else(|_| self.refused(format!("{tag} is not a tag")))
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub fn number(&mut self, what: &str) -> Result<f64, FormatError> {
         if !self.words.binary {
             return self.words.number(what);
@@ -61,7 +60,7 @@ impl Numbers<'_> {
         if value.is_finite() { Ok(value) } else { self.refused(format!("{value} is not a finite number")) }
     }
 
-    /// Goes over that many integers.
+    /// Skips that many integers.
     pub fn skip_integers(&mut self, count: u64, what: &str) -> Result<(), FormatError> {
         (0..count).try_for_each(|_| self.integer(what).map(drop))
     }

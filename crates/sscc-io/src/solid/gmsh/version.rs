@@ -1,4 +1,4 @@
-//! The versions of the format that are read.
+//! Supported versions of the format.
 
 /// A version: 2.2 or 4.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! The count at the head of a section, and the numbers of its items.
+//! Count at the head of a section, and the numbering of its items.
 
 use crate::Place;
 use crate::solid::statements::{fields, index};

@@ -1,4 +1,4 @@
-//! Files within files.
+//! Included files of a `.veg` file.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::file::read_whole;
 use crate::solid::statements::statements;
 use crate::{FormatError, IoError, Place};
 
-/// Files included from included files, at most this deep. Real ones include vertices and elements, no deeper.
+/// Maximum depth of included files.
 const DEEPEST: usize = 8;
 
 /// Files included in all, at most.
@@ -46,13 +46,13 @@ pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
 
 struct Reader<'a> {
     main: &'a Path,
-    /// The files included so far, as they were named.
+    /// Names of the files included so far.
     seen: Vec<PathBuf>,
     parser: Parser,
 }
 
 impl Reader<'_> {
-    /// Takes the lines of the main file, or of an included one of that name.
+    /// Parses the lines of the main file, or of an included file of that name.
     fn feed(&mut self, bytes: &[u8], name: Option<&str>, depth: usize) -> Result<(), IoError> {
         let main = self.main;
         let within = |error: FormatError| match (name, error.place()) {
@@ -75,7 +75,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The path below the main file's folder, or why it is refused.
+    /// Returns the path below the main file's folder, or the cause of the error.
     fn check(&self, file: &str, depth: usize) -> Result<PathBuf, String> {
         let path: PathBuf = Path::new(file).components().filter(|c| *c != Component::CurDir).collect();
         let below = path.components().all(|c| matches!(c, Component::Normal(_)));
@@ -96,7 +96,7 @@ fn at(name: &str, line: usize) -> String {
     format!("{}: line {line}", cut(name, 60))
 }
 
-/// The file named by an `*INCLUDE`.
+/// Returns the file named by an `*INCLUDE`.
 fn included(text: &str) -> Option<&str> {
     let name = text.strip_prefix("*INCLUDE")?;
     (name.is_empty() || name.starts_with(|c: char| c.is_ascii_whitespace())).then(|| name.trim_ascii())

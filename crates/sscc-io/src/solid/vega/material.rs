@@ -1,4 +1,4 @@
-//! The line of a material.
+//! Parser for the line of a material.
 
 use sscc_solid::{NamedMaterial, PartialMaterial};
 

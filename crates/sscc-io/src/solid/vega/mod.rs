@@ -1,8 +1,8 @@
-//! VegaFEM's `.veg`, text.
+//! Reader for VegaFEM's `.veg` files, text.
 //!
 //! Sections begin with `*`; fields are parted by commas or blanks; `#` begins a comment.
 //!
-//! | section | what follows |
+//! | section | content |
 //! | --- | --- |
 //! | `*VERTICES` | `n 3 0 0`, then n lines `number x y z` |
 //! | `*ELEMENTS` | `TET` or `CUBIC`, then `n 4 0` or `n 8 0`, then n lines `number corners` |
@@ -11,9 +11,9 @@
 //! | `*REGION` | `set, material`; the set `allElements` needs no `*SET` |
 //! | `*INCLUDE file` | the lines of a file in the same folder or below come here (also TetGen's files) |
 //!
-//! The number of the first vertex, 0 or 1, says where the corners of elements begin to count; that of the first
-//! element does for sets. As in VegaFEM, the last region that names an element decides its material, and elements
-//! in no region get the last material. Blanks in names do not count.
+//! The number of the first vertex, 0 or 1, is the base of the corners of elements; that of the first element is the
+//! base of sets. As in VegaFEM, the last region that contains an element decides its material, and elements in no
+//! region get the last material. Blanks in names are ignored.
 //!
 //! | material | density | Young's modulus, Poisson's ratio |
 //! | --- | --- | --- |

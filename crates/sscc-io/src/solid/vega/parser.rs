@@ -1,4 +1,4 @@
-//! The sections, line after line: lines may come from several files.
+//! Parser for the sections; lines may come from several files.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::solid::builder::Builder;
 use crate::solid::statements::{corners, fields, index, position};
 use crate::{FormatError, Place};
 
-/// What the next line is.
+/// Expected content of the next line.
 #[derive(Default, PartialEq)]
 enum Expected {
     #[default]
@@ -27,7 +27,7 @@ enum Expected {
     Region,
 }
 
-/// What was read so far.
+/// Content read so far.
 pub(super) struct Parser {
     expected: Expected,
     builder: Builder,
@@ -35,7 +35,7 @@ pub(super) struct Parser {
     elements: Option<Promise>,
     /// Corners of an element: 4 or 8.
     corners: u64,
-    /// The number of the first element.
+    /// Number of the first element.
     first_element: u64,
     materials: Vec<NamedMaterial>,
     /// Of the materials.
@@ -60,7 +60,7 @@ impl Default for Parser {
 }
 
 impl Parser {
-    /// Takes a line without comments, not blank.
+    /// Parses a line without comments that is not blank.
     pub fn statement(&mut self, text: &str, place: &Place) -> Result<(), FormatError> {
         let result = match text.strip_prefix('*') {
             Some(section) => self.leave().and_then(|()| self.enter(section)),
@@ -69,7 +69,7 @@ impl Parser {
         result.map_err(|cause| FormatError::new(place.clone(), cause))
     }
 
-    /// The mesh, at the end of the file.
+    /// Returns the mesh at the end of the file.
     pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
         self.leave().map_err(FormatError::whole)?;
         let promises = [
@@ -95,7 +95,7 @@ impl Parser {
         Ok(mesh.with_materials(self.materials, of_element)?)
     }
 
-    /// Ends the section so far.
+    /// Ends the current section.
     fn leave(&mut self) -> Result<(), String> {
         let missing = match std::mem::take(&mut self.expected) {
             Expected::VertexCount => "the number of vertices is missing in *VERTICES",

@@ -1,4 +1,4 @@
-//! Sets of elements, and the regions that give them a material.
+//! Sets of elements, and regions that assign materials to them.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use sscc_solid::NamedMaterial;
 use crate::error::quoted;
 use crate::{FormatError, Place};
 
-/// The set that needs no definition. One of this name in a file is not looked at, as in VegaFEM.
+/// Name of the set of all elements. A definition of this set in a file is ignored, as in VegaFEM.
 const ALL: &str = "allElements";
 
-/// Index of a material that is yet to be decided.
+/// Placeholder for an undecided material.
 const UNDECIDED: u32 = u32::MAX;
 
 #[derive(Default)]
@@ -26,7 +26,7 @@ struct Region {
     place: Place,
 }
 
-/// A name without its blanks.
+/// Removes blanks from a name.
 pub(super) fn compact(name: &str) -> String {
     name.chars().filter(|c| !c.is_ascii_whitespace()).collect()
 }
@@ -41,7 +41,7 @@ impl Regions {
         Ok(())
     }
 
-    /// Adds an element, from 0, to the set begun last.
+    /// Adds an element (from 0) to the latest set.
     pub fn add(&mut self, element: u32) {
         if let Some(set) = self.sets.last_mut() {
             set.push(element);
@@ -57,12 +57,12 @@ impl Regions {
         Ok(())
     }
 
-    /// The material of each of that many elements: that of the last region with it, else the last material.
+    /// Returns the material of each element: that of the last region that contains it, else the last material.
     pub fn materials(&self, elements: usize, materials: &[NamedMaterial]) -> Result<Vec<u32>, FormatError> {
         let by_name: BTreeMap<&str, u32> = materials.iter().map(|m| m.name.as_str()).zip(0..).collect();
         let mut of_element = vec![UNDECIDED; elements];
-        // Backwards, each set once: what an earlier region says of it is overruled anyway, and a file of many
-        // regions with one large set would take forever.
+        // The loop goes backwards and visits each set once: later regions override earlier ones, and a file with many
+        // regions of one large set would take quadratic time.
         let mut seen = vec![false; self.sets.len()];
         let mut all = false;
         for region in self.regions.iter().rev() {
