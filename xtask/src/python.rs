@@ -18,7 +18,7 @@ const OLDEST: (u32, u32) = (3, 11);
 /// Runs the tests; arguments are passed on to pytest.
 pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
-    let tally = test(&arguments, log.path());
+    let tally = test(&arguments, log.path(), false);
     log.conclude(tally)
 }
 
@@ -31,9 +31,9 @@ enum Stop {
 }
 
 /// What the tests came to.
-pub fn test(arguments: &[String], log: &Path) -> Tally {
+pub fn test(arguments: &[String], log: &Path, is_command_built: bool) -> Tally {
     println!("== Python package");
-    match build_and_test(arguments, log) {
+    match build_and_test(arguments, log, is_command_built) {
         Ok(tally) => tally,
         Err(Stop::Missing(why)) => SkipLog::skip(log, "all tests of the Python package", &why),
         Err(Stop::Broken(why)) => {
@@ -43,7 +43,7 @@ pub fn test(arguments: &[String], log: &Path) -> Tally {
     }
 }
 
-fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
+fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> Result<Tally, Stop> {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python");
     let package = package.canonicalize().map_err(|error| Stop::Broken(format!("python/: {error}")))?;
     let python = environment(&package)?;
@@ -55,10 +55,11 @@ fn build_and_test(arguments: &[String], log: &Path) -> Result<Tally, Stop> {
     maturin.arg("--out").arg(&wheels).current_dir(&package);
     succeed(&mut maturin, "the wheel cannot be built")?;
     install(&python, &wheels)?;
-    // With the features that the package was built with: nothing is compiled twice.
-    let mut build = cargo();
-    build.args(["build", "--package", "sscc-cli", "--package", "sscc-python", "--bin", "sscc"]);
-    succeed(&mut build, "the command cannot be built")?;
+    if !is_command_built {
+        let mut build = cargo();
+        build.args(["build", "--package", "sscc-cli", "--bin", "sscc"]);
+        succeed(&mut build, "the command cannot be built")?;
+    }
     let command =
         env::current_exe().ok().map(|xtask| xtask.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)));
 

@@ -16,8 +16,8 @@ pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
     let mut tally = cargo_test(&arguments, log.path());
     if arguments.is_empty() {
-        tally += python::test(&[], log.path());
-        tally += page::test(log.path());
+        tally += python::test(&[], log.path(), true);
+        tally += page::test(log.path(), true);
     }
     log.conclude(tally)
 }
