@@ -28,6 +28,14 @@ pub enum Error {
         /// Its position.
         position: [f64; 3],
     },
+    /// Positions of another mesh.
+    #[error("there are {found} positions, but the mesh has {vertices} vertices: are they of another mesh?")]
+    PositionCount {
+        /// Positions given.
+        found: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
     /// A face names a vertex that does not exist.
     #[error("triangle {face} (counted from 0) names vertex {vertex}, but there are {vertices}")]
     FaceIndex {

@@ -270,7 +270,7 @@ pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
 };
-pub use detect::Impact;
+pub use detect::{Detector, DetectorStatistics, FrameAnswer, Impact};
 pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair};
 pub use geometry::{

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
-use sscc::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
+use sscc::{Certificates, CertifyOptions, Detector, Method, Modes, Query, ReducedModel, TriMesh};
 
 /// A zigzag strip of `2 n` triangles, bent by modes that grow along it.
 fn strip(n: usize, rank: usize) -> ReducedModel {
@@ -40,4 +40,24 @@ fn queries_allocate_nothing_once_warm() {
     });
     assert!(fresh.statistics().root_certified);
     assert_eq!(counted.count_total, 0, "the first query by the root");
+}
+
+#[test]
+fn detectors_allocate_nothing_once_warm() {
+    let model = strip(200, 3);
+    let frames = [0.0, -60.0, 20.0].map(|q| model.positions(&[0.0, 0.0, q]).unwrap());
+    let mut detectors = [(); 2].map(|()| Detector::new(model.mesh()));
+    let mut answer = || {
+        let [a, b] = &mut detectors;
+        for x in &frames {
+            a.discrete(x).unwrap();
+            a.continuous(&frames[0], x).unwrap();
+            a.against(x, b, &frames[0]).unwrap();
+        }
+        a.statistics().rebuilds
+    };
+    let rebuilds = answer();
+    let mut again = 0;
+    let counted = allocation_counter::measure(|| again = answer());
+    assert_eq!((counted.count_total, again), (0, rebuilds));
 }

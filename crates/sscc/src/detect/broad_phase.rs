@@ -180,7 +180,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// A triangle of the mesh with the indices of its vertices in the layout.
     pub(crate) fn triangle(&self, context: &Context<'_>, triangle: u32) -> TriangleCorners {
-        let face = context.model.mesh().faces()[triangle as usize];
+        let face = context.filter.faces()[triangle as usize];
         TriangleCorners { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }
     }
 }

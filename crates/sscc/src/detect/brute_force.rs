@@ -8,17 +8,23 @@ use super::narrow_phase::NarrowPhase;
 use crate::geometry::Aabb;
 
 impl<const E: usize> BroadPhase<E> {
-    /// Tests all pairs of triangles, exceptions included. No hierarchy, no certificates; only boxes of single triangles,
-    /// compared exactly.
+    /// Tests all pairs of triangles, exceptions included, by the positions of vertices at each end. No hierarchy, no
+    /// certificates; only boxes of single triangles, compared exactly.
     pub(crate) fn brute_force<N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
-        q: [&[f64]; E],
+        positions: impl Fn(u32) -> [DVec3; E],
         narrow: &mut N,
     ) {
-        let faces = context.model.mesh().faces();
-        let corners: Vec<[[DVec3; 3]; E]> =
-            faces.iter().map(|face| q.map(|q| face.map(|v| context.model.position(v, q)))).collect();
+        let corners: Vec<[[DVec3; 3]; E]> = context
+            .filter
+            .faces()
+            .iter()
+            .map(|face| {
+                let corners = face.map(&positions);
+                std::array::from_fn(|end| corners.map(|x| x[end]))
+            })
+            .collect();
         let boxes: Vec<Aabb> = corners.iter().map(Aabb::of_swept_triangle).collect();
         for a in 0..corners.len() {
             self.check_cancelled(context, narrow);

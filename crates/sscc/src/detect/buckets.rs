@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use super::adjacency_masks::AdjacencyMasks;
 use super::packet::LANES;
-use crate::TriMesh;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
@@ -43,8 +42,9 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    pub(crate) fn new(mesh: &TriMesh, hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
-        let (faces, p) = (mesh.faces(), mesh.rest_positions());
+    /// `positions` of all vertices at some configuration choose the triangles of each packet.
+    pub(crate) fn new(positions: &[DVec3], hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
+        let (faces, p) = (filter.faces(), positions);
         let centroid = |t: u32| {
             let [a, b, c] = faces[t as usize].map(|v| p[v as usize] / 3.0);
             a + b + c

@@ -1,4 +1,4 @@
-//! The context of a detector: state shared by all searches on one model.
+//! The context of a detector: state shared by all searches on one mesh.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -8,10 +8,9 @@ use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Pair, Progress, ReducedModel};
 
-/// The model, its hierarchy and layout, the pairs that count, and who may cancel.
+/// The hierarchy and layout of a mesh, the pairs that count, and who may cancel.
 #[derive(Clone)]
 pub(crate) struct Context<'a> {
-    pub(crate) model: &'a ReducedModel,
     pub(crate) hierarchy: Cow<'a, Hierarchy>,
     pub(crate) filter: Arc<PairFilter>,
     /// Exceptions, sorted: pairs that are tested one by one, so that traversals leave them out.
@@ -33,7 +32,6 @@ impl<'a> Context<'a> {
         let layout =
             needs.map_or_else(Layout::default, |needs| Layout::new(model, &hierarchy, &filter, needs));
         Self {
-            model,
             hierarchy,
             filter: Arc::new(filter),
             exceptions,

@@ -1,5 +1,7 @@
 //! The model as the detector reads it: everything that does not depend on q, shared by all searches and their clones.
 
+use glam::DVec3;
+
 use super::bd_tree::BdTree;
 use super::boundary::NodeBoundaries;
 use super::buckets::Buckets;
@@ -50,7 +52,7 @@ impl Layout {
         filter: &PairFilter,
         needs: Needs,
     ) -> Self {
-        let mut buckets = Buckets::new(model.mesh(), hierarchy, filter);
+        let mut buckets = Buckets::new(model.mesh().rest_positions(), hierarchy, filter);
         let vertices = VertexStore::new(model, buckets.all_vertices());
         buckets.renumber(|v| vertices.index_of(v));
         let is_visited = |n| buckets.of_node(n).is_none_or(|bucket| buckets.node(bucket) == n);
@@ -67,5 +69,13 @@ impl Layout {
             CoarseVertices::default()
         };
         Self { vertices, quantization, coarse, buckets, bd_tree, boundaries }
+    }
+
+    /// The layout for positions that will be given, by positions at some configuration.
+    pub(crate) fn of_positions(positions: &[DVec3], hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
+        let mut buckets = Buckets::new(positions, hierarchy, filter);
+        let vertices = VertexStore::without_modes(positions.len(), buckets.all_vertices());
+        buckets.renumber(|v| vertices.index_of(v));
+        Self { vertices, buckets, ..Self::default() }
     }
 }

@@ -19,6 +19,7 @@ pub(crate) mod buckets;
 mod coarse_vertices;
 mod colliding_pairs;
 pub(crate) mod context;
+mod detector;
 mod exact_positions;
 mod frame;
 pub(crate) mod layout;
@@ -28,8 +29,10 @@ pub(crate) mod normal_cones;
 pub(crate) mod packet;
 mod quantization;
 mod traversal;
+pub(crate) mod two_meshes;
 pub(crate) mod vertex_motion;
 mod vertex_store;
 
 pub(crate) use colliding_pairs::colliding_pairs;
+pub use detector::{Detector, DetectorStatistics, FrameAnswer};
 pub use narrow_phase::Impact;

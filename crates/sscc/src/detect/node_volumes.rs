@@ -114,6 +114,22 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
+    /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
+    /// nodes relative to the root's, a bucket counting once for each of its packets. 0 where the root has no area.
+    pub(crate) fn surface_area_cost(&self, hierarchy: &Hierarchy) -> f64 {
+        let area = |n: usize| {
+            let size = self.nodes[n].upper - self.nodes[n].lower;
+            f64::from(size.x * size.y + size.y * size.z + size.z * size.x)
+        };
+        let buckets = &self.layout.buckets;
+        let cost = |n: usize| {
+            let packets = buckets.of_node(n as u32).map_or(1, |bucket| buckets.packets(bucket).len());
+            area(n) * packets as f64
+        };
+        let root = area(0);
+        if root > 0.0 { (0..hierarchy.nodes().len()).map(cost).sum::<f64>() / root } else { 0.0 }
+    }
+
     /// The box of a node that has been enclosed, or whose parent or bucket has been opened.
     #[inline]
     pub(crate) fn node(&self, n: u32) -> &AabbF32 {
@@ -265,6 +281,17 @@ impl<const E: usize> NodeVolumes<E> {
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         self.positions.corners(vertices)
     }
+}
+
+/// Whether triangles of two meshes certainly have no point in common, as far as single precision can tell. Both volumes are
+/// in the same frame.
+#[inline]
+pub(crate) fn are_slots_separated<const E: usize>(
+    (x, a): (&NodeVolumes<E>, BucketSlot),
+    (y, b): (&NodeVolumes<E>, BucketSlot),
+) -> bool {
+    let error = x.corner_error.max(y.corner_error);
+    are_separated(&x.mapped_corners(a.bucket, a.slot), &y.mapped_corners(b.bucket, b.slot), error)
 }
 
 /// A slot and the bucket that it belongs to.

@@ -38,9 +38,29 @@ impl VertexStore {
         Self { rank, indices, mesh_vertices, rest, modes }
     }
 
+    /// The same for vertices whose positions will be given: neither rest positions nor modes are stored. `all`: the number of
+    /// vertices of the mesh.
+    pub(crate) fn without_modes(all: usize, order: &[u32]) -> Self {
+        let mut indices = vec![u32::MAX; all];
+        let mut mesh_vertices = Vec::new();
+        for &v in order {
+            let index = &mut indices[v as usize];
+            if *index == u32::MAX {
+                *index = mesh_vertices.len() as u32;
+                mesh_vertices.push(v);
+            }
+        }
+        Self { rank: 0, indices, mesh_vertices, rest: Vec::new(), modes: Vec::new() }
+    }
+
     /// The number of vertices.
     pub(crate) fn count(&self) -> usize {
-        self.rest.len()
+        self.mesh_vertices.len()
+    }
+
+    /// For each index the vertex of the mesh.
+    pub(crate) fn mesh_vertices(&self) -> &[u32] {
+        &self.mesh_vertices
     }
 
     /// The index of a vertex of the mesh.

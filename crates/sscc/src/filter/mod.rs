@@ -6,4 +6,4 @@ mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair};
 pub(crate) use pair_filter::{Hulls, PairFilter, Relation};
-pub(crate) use weld::weld_classes;
+pub(crate) use weld::{weld_classes, weld_classes_of_positions};

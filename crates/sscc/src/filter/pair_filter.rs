@@ -37,14 +37,19 @@ pub(crate) struct Hulls<T> {
 
 impl PairFilter {
     pub(crate) fn new(model: &ReducedModel, filter: &ContactFilter) -> Self {
-        let faces = model.mesh().faces().to_vec();
-        let classes = if filter.weld {
-            let classes = weld_classes(model);
-            faces.iter().map(|face| face.map(|i| classes[i as usize])).collect()
-        } else {
-            faces.clone()
-        };
-        Self { faces, classes, neighbours: filter.neighbours, excluded: filter.ignored().to_vec() }
+        let classes = filter.weld.then(|| weld_classes(model));
+        Self::with_classes(model.mesh().faces(), classes.as_deref(), filter)
+    }
+
+    /// The filter on a mesh whose vertices are welded by these classes (none: by none), whatever the filter says of welds.
+    pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
+        let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
+        Self {
+            faces: faces.to_vec(),
+            classes: faces.iter().map(of_face).collect(),
+            neighbours: filter.neighbours,
+            excluded: filter.ignored().to_vec(),
+        }
     }
 
     /// The same filter, which also excludes these pairs: exceptions, which radii of certificates do not cover.
@@ -52,6 +57,12 @@ impl PairFilter {
         self.excluded.extend_from_slice(pairs);
         self.excluded.sort_unstable();
         self
+    }
+
+    /// The faces of the mesh.
+    #[inline]
+    pub(crate) fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
     }
 
     /// Vertex classes are numbers below this.

@@ -1,11 +1,12 @@
-//! The bounding volume hierarchy (BVH) over the triangles: 4-ary, by k-means on rest positions and modes (paper, section
-//! 3).
+//! The bounding volume hierarchy (BVH) over the triangles: 4-ary; for certificates by k-means on rest positions and modes
+//! (paper, section 3), for detectors by median splits.
 
 mod build;
 mod features;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod hierarchy;
 mod k_means;
+mod median_split;
 mod node;
 mod split;
 mod validate;

@@ -6,9 +6,12 @@ use glam::DVec3;
 
 use super::pose::Pose;
 use super::posed_motion::PosedMotion;
+use crate::detect::broad_phase::Counters;
 use crate::detect::context::Context;
 use crate::detect::layout::{Layout, Needs};
+use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
+use crate::detect::two_meshes::{Side, traverse_two_meshes};
 use crate::detect::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::{Certificates, Error, Pair, ReducedModel, intersect_triangle_triangle, limits};
@@ -18,12 +21,14 @@ use crate::{Certificates, Error, Pair, ReducedModel, intersect_triangle_triangle
 /// repeated calls allocate nothing; clones share what does not change.
 #[derive(Clone)]
 pub struct PosedShape<'a> {
+    model: &'a ReducedModel,
     context: Context<'a>,
     volumes: NodeVolumes<1>,
     motion: PosedMotion,
     /// Whether the volumes are those of this motion.
     is_current: bool,
     stack: Vec<Pair>,
+    hits: DiscreteHits,
 }
 
 impl<'a> PosedShape<'a> {
@@ -39,7 +44,7 @@ impl<'a> PosedShape<'a> {
         let q = vec![0.0; model.rank()];
         let reach = model.check_coordinates(&q)?;
         let motion = PosedMotion { q, pose: Pose::default(), around: Aabb::default(), reach };
-        Ok(Self { context, volumes, motion, is_current: false, stack: Vec::new() })
+        Ok(Self { model, context, volumes, motion, is_current: false, stack: Vec::new(), hits: DiscreteHits::default() })
     }
 
     /// Deforms and moves the shape, and returns a box around it in the world, at a cost of O(r).
@@ -47,7 +52,7 @@ impl<'a> PosedShape<'a> {
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
-        let reach = pose.reach(self.context.model.check_coordinates(q)?);
+        let reach = pose.reach(self.model.check_coordinates(q)?);
         // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
         let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
         if !(is_finite && reach * 1.001 <= limits::LARGEST) {
@@ -69,40 +74,12 @@ impl<'a> PosedShape<'a> {
         let first = found.len();
         self.enter(around);
         other.enter(around);
-        let mut stack = std::mem::take(&mut self.stack);
-        stack.clear();
-        if self.volumes.node(0).overlaps(other.volumes.node(0)) {
-            stack.push((0, 0));
-        }
-        while let Some((n, m)) = stack.pop() {
-            match [self.bucket(n), other.bucket(m)] {
-                [Some(a), Some(b)] => self.test_buckets(a, other, b, found),
-                // A node larger than a bucket is opened.
-                [None, Some(_)] => {
-                    self.open(n);
-                    let first_child = self.first_child(n);
-                    let open = self.volumes.children(n).overlapping(other.volumes.node(m));
-                    stack.extend(open.map(|i| (first_child + i, m)));
-                }
-                [Some(_), None] => {
-                    other.open(m);
-                    let first_child = other.first_child(m);
-                    let open = other.volumes.children(m).overlapping(self.volumes.node(n));
-                    stack.extend(open.map(|j| (n, first_child + j)));
-                }
-                [None, None] => {
-                    self.open(n);
-                    other.open(m);
-                    let [x, y] = [self.first_child(n), other.first_child(m)];
-                    for i in self.volumes.children(n).overlapping(other.volumes.node(m)) {
-                        let open =
-                            other.volumes.children(m).overlapping_lane(self.volumes.children(n), i as usize);
-                        stack.extend(open.map(|j| (x + i, y + j)));
-                    }
-                }
-            }
-        }
-        self.stack = stack;
+        self.hits.0.begin(usize::MAX);
+        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
+        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        // Nobody cancels: the contexts have no progress.
+        let _ = traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
+        found.extend_from_slice(&self.hits.0.found);
         found[first..].sort_unstable();
     }
 
@@ -145,8 +122,8 @@ impl<'a> PosedShape<'a> {
 
     /// The corners of a triangle in the world, bit for bit those of all answers.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let face = self.context.model.mesh().faces()[triangle as usize];
-        face.map(|v| self.motion.pose.apply(self.context.model.position(v, &self.motion.q)))
+        let face = self.model.mesh().faces()[triangle as usize];
+        face.map(|v| self.motion.pose.apply(self.model.position(v, &self.motion.q)))
     }
 
     /// Starts a search in the frame of this box, unless the last one was the same.
@@ -156,50 +133,6 @@ impl<'a> PosedShape<'a> {
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);
             self.volumes.enclose(0, &self.motion);
-        }
-    }
-
-    fn bucket(&self, node: u32) -> Option<u32> {
-        self.volumes.layout.buckets.of_node(node)
-    }
-
-    fn first_child(&self, node: u32) -> u32 {
-        self.context.hierarchy.nodes()[node as usize].first_child
-    }
-
-    fn open(&mut self, node: u32) {
-        self.volumes.open_node(&self.context.hierarchy, node, &self.motion);
-    }
-
-    /// Tests two buckets whose boxes overlap.
-    fn test_buckets(&mut self, a: u32, other: &mut Self, b: u32, found: &mut Vec<Pair>) {
-        self.volumes.open_bucket(a, &self.motion);
-        other.volumes.open_bucket(b, &other.motion);
-        let [buckets_x, buckets_y] = [&self.volumes.layout.buckets, &other.volumes.layout.buckets];
-        let box_y = other.volumes.node(buckets_y.node(b));
-        if !self.volumes.node(buckets_x.node(a)).overlaps(box_y) {
-            return;
-        }
-        let [packets_x, packets_y] = [self.volumes.packets(a), other.volumes.packets(b)];
-        for i in packets_x.overlapping(box_y) {
-            let packet_x = buckets_x.packets(a).start + i as usize;
-            for j in packets_y.overlapping_lane(packets_x, i as usize) {
-                let packet_y = buckets_y.packets(b).start + j as usize;
-                // Most triangles of a packet stay clear of the whole other packet.
-                let triangles_x = self.volumes.triangles(packet_x);
-                for row in triangles_x.overlapping_lane(packets_y, j as usize) {
-                    let triangles_y = other.volumes.triangles(packet_y);
-                    for column in triangles_y.overlapping_lane(triangles_x, row as usize) {
-                        let slot_x = buckets_x.slots(packet_x).start + row as usize;
-                        let slot_y = buckets_y.slots(packet_y).start + column as usize;
-                        let [x] = self.volumes.corners(buckets_x.corners()[slot_x]);
-                        let [y] = other.volumes.corners(buckets_y.corners()[slot_y]);
-                        if intersect_triangle_triangle(&x, &y) {
-                            found.push((buckets_x.triangle(slot_x), buckets_y.triangle(slot_y)));
-                        }
-                    }
-                }
-            }
         }
     }
 }
@@ -254,7 +187,7 @@ mod tests {
                 let q = [random(state), random(state)];
                 let pose = Pose { rotation, translation };
                 let Aabb { lower, upper } = shape.place(&q, &pose).unwrap();
-                for t in 0..shape.context.model.mesh().faces().len() as u32 {
+                for t in 0..shape.model.mesh().faces().len() as u32 {
                     let corners = shape.corners(t);
                     assert!(corners.iter().all(|x| x.cmpge(lower).all() && x.cmple(upper).all()));
                 }
@@ -263,9 +196,9 @@ mod tests {
                 let height = normal.dot(translation) + random(state);
                 let mut below = Vec::new();
                 shape.vertices_below(normal, height, &mut below);
-                let vertices = 0..shape.context.model.mesh().rest_positions().len() as u32;
+                let vertices = 0..shape.model.mesh().rest_positions().len() as u32;
                 let is_below =
-                    |v: &u32| normal.dot(pose.apply(shape.context.model.position(*v, &q))) < height;
+                    |v: &u32| normal.dot(pose.apply(shape.model.position(*v, &q))) < height;
                 assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());
             }
             // Any box is right, also one turned round.
@@ -278,8 +211,8 @@ mod tests {
                     let mut pairs = Vec::new();
                     x.colliding(y, around, &mut pairs);
                     let mut expected = Vec::new();
-                    for i in 0..x.context.model.mesh().faces().len() as u32 {
-                        for j in 0..y.context.model.mesh().faces().len() as u32 {
+                    for i in 0..x.model.mesh().faces().len() as u32 {
+                        for j in 0..y.model.mesh().faces().len() as u32 {
                             if intersect_triangle_triangle(&x.corners(i), &y.corners(j)) {
                                 expected.push((i, j));
                             }

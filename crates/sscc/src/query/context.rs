@@ -11,6 +11,7 @@ use crate::{CertificateParts, Certificates, PairTree, ReducedModel, Scope};
 /// The detector's context, and which certificates hold at a norm.
 #[derive(Clone)]
 pub(super) struct QueryContext<'a> {
+    pub(super) model: &'a ReducedModel,
     pub(super) detect: Context<'a>,
     pub(super) certificates: Option<&'a Certificates>,
     pub(super) scope: Cow<'a, Scope>,
@@ -28,7 +29,7 @@ impl<'a> QueryContext<'a> {
         let used = certificates.filter(|_| method == Method::Certified);
         let exceptions = used.map_or(&[][..], Certificates::exceptions);
         let detect = Context::new(model, hierarchy, &scope.filter, exceptions, method.needs());
-        Self { detect, certificates, scope, method }
+        Self { model, detect, certificates, scope, method }
     }
 
     /// The normal cones of the method, if it uses any.

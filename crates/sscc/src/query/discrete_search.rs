@@ -55,7 +55,7 @@ impl DiscreteSearch {
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
         if context.method == Method::BruteForce {
-            certified.broad.brute_force(&context.detect, [q], narrow);
+            certified.broad.brute_force(&context.detect, |v| [context.model.position(v, q)], narrow);
         } else {
             let motion = Deformed::new([q], reach);
             certified.broad.begin_volumes(&context.detect, &motion);

@@ -162,7 +162,7 @@ impl<'a> Query<'a> {
         };
         let is_within = norm < self.root_ball.radius;
         let reach =
-            if is_within { self.root_ball.reach } else { self.context.detect.model.check_coordinates(q)? };
+            if is_within { self.root_ball.reach } else { self.context.model.check_coordinates(q)? };
         Ok(Configuration { q, norm, reach })
     }
 

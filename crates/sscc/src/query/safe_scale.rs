@@ -28,14 +28,14 @@ impl Query<'_> {
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
         self.begin(usize::MAX);
         self.norm = self.measure(q)?.norm;
-        let path = Line::new(self.context.detect.model, &self.context.scope.center, q);
+        let path = Line::new(self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(path.farthest) * DOWN;
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
         let boxes =
-            PathBoxes::new(&path, &self.context.detect.hierarchy, self.context.detect.model.mesh().faces());
+            PathBoxes::new(&path, &self.context.detect.hierarchy, self.context.model.mesh().faces());
         for &(x, y) in self.context.certificates.map_or(&[][..], Certificates::exceptions) {
             if self.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);

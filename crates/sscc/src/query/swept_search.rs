@@ -38,7 +38,8 @@ impl SweptSearch {
         statistics.root_certified = context.is_root_certified(norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {
             if context.method == Method::BruteForce {
-                certified.broad.brute_force(&context.detect, [t0.q, t1.q], narrow);
+                let positions = |v| [t0.q, t1.q].map(|q| context.model.position(v, q));
+                certified.broad.brute_force(&context.detect, positions, narrow);
             } else {
                 let motion = Deformed::new([t0.q, t1.q], t0.reach.max(t1.reach));
                 certified.broad.begin_volumes(&context.detect, &motion);

@@ -9,6 +9,7 @@ mod certificates;
 mod clusters;
 mod common;
 mod continuous;
+mod detector;
 mod impact;
 mod impact_tolerance;
 mod intersect;

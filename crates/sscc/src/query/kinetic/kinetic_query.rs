@@ -181,7 +181,7 @@ impl<'a> KineticQuery<'a> {
         let norm = right_or!(up(norm + radius), KineticBallAtCentre, norm);
         let reach = 2.0 * reach;
         self.distances.begin(norm);
-        let most = MAX_PAIRS_PER_TRIANGLE * context.detect.model.mesh().faces().len();
+        let most = MAX_PAIRS_PER_TRIANGLE * context.model.mesh().faces().len();
         let worth = MAX_PLAIN_QUERIES.saturating_mul(self.control.plain_cost) / (DISTANCE_COST + FIND_COST);
         let limit = most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024);
         let motion = BallMotion::new(&self.rates, q, radius, reach);

@@ -1,0 +1,92 @@
+//! Collisions between two deforming meshes.
+
+use glam::DVec3;
+
+use super::detector::Detector;
+use super::given_motion::GivenMotion;
+use super::search::Search;
+use crate::detect::broad_phase::Counters;
+use crate::detect::context::Context;
+use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::two_meshes::{Side, traverse_two_meshes};
+use crate::{Error, Impact, Pair};
+
+impl Detector<'_> {
+    /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
+    /// common, sorted. Every pair counts: the contact filters say nothing of triangles of two meshes.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for both.
+    pub fn against(
+        &mut self,
+        positions: &[DVec3],
+        other: &mut Detector<'_>,
+        other_positions: &[DVec3],
+    ) -> Result<&[Pair], Error> {
+        let motions = [self.check([positions])?, other.check([other_positions])?];
+        let motions = in_common_frame(motions);
+        self.begin_discrete(&motions[0], positions, usize::MAX);
+        other.begin_discrete(&motions[1], other_positions, 0);
+        let contexts = [&self.context, &other.context];
+        let result = find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
+        self.statistics.set(&mut self.discrete, result.is_ok());
+        result?;
+        self.discrete.narrow.0.found.sort_unstable();
+        Ok(&self.discrete.narrow.0.found)
+    }
+
+    /// All pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a straight
+    /// line, sorted by pair, each with its time of impact: the same promise as
+    /// [`Query::continuous`](crate::Query::continuous).
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for all positions.
+    pub fn continuous_against(
+        &mut self,
+        [x_t0, x_t1]: [&[DVec3]; 2],
+        other: &mut Detector<'_>,
+        [y_t0, y_t1]: [&[DVec3]; 2],
+    ) -> Result<&[Impact], Error> {
+        let motions = in_common_frame([self.check([x_t0, x_t1])?, other.check([y_t0, y_t1])?]);
+        self.begin_swept(&motions[0], x_t0);
+        other.begin_swept(&motions[1], y_t0);
+        let contexts = [&self.context, &other.context];
+        let result = find_between(contexts, [&mut self.swept, &mut other.swept], &motions, &mut self.stack);
+        self.statistics.set(&mut self.swept, result.is_ok());
+        result?;
+        self.swept.narrow.0.found.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.found)
+    }
+}
+
+/// Two motions in the frame of the AABB of both.
+fn in_common_frame<'x, const E: usize>(motions: [GivenMotion<'x, E>; 2]) -> [GivenMotion<'x, E>; 2] {
+    let whole = motions[0].aabb().union(&motions[1].aabb());
+    motions.map(|motion| motion.in_frame_of(whole))
+}
+
+/// Finds all hits between two meshes whose searches have begun, not sorted, as hits of the first search.
+///
+/// # Errors
+/// When the progress of the first context cancels; then there are no hits.
+fn find_between<const E: usize, N: NarrowPhase<E>>(
+    contexts: [&Context<'_>; 2],
+    [x, y]: [&mut Search<E, N>; 2],
+    motions: &[GivenMotion<'_, E>; 2],
+    stack: &mut Vec<Pair>,
+) -> Result<(), Error> {
+    let mut counters = Counters::default();
+    let result = match (x.parts(), y.parts()) {
+        (Some((x_broad, hits)), Some((y_broad, _))) => {
+            let mut x = Side { context: contexts[0], volumes: &mut x_broad.volumes, motion: &motions[0] };
+            let mut y = Side { context: contexts[1], volumes: &mut y_broad.volumes, motion: &motions[1] };
+            traverse_two_meshes(&mut x, &mut y, stack, &mut counters, hits)
+        }
+        _ => Ok(()),
+    };
+    if result.is_err() {
+        x.narrow.hits().found.clear();
+    }
+    x.counters = counters;
+    result
+}

@@ -1,0 +1,45 @@
+//! Batches: many frames in parallel.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::detector::Detector;
+use super::statistics::DetectorStatistics;
+use crate::threads::on_threads;
+use crate::{Error, Pair, Progress};
+
+/// The answer for one frame of a batch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameAnswer {
+    /// All colliding pairs, sorted.
+    pub pairs: Vec<Pair>,
+    /// The cost of this frame.
+    pub statistics: DetectorStatistics,
+}
+
+impl Detector<'_> {
+    /// Answers every frame as [`Detector::discrete`] would, in the order given: the same pairs for any number of threads
+    /// (none: all cores). `progress` may cancel it; that of [`Detector::cancelled_by`] is not used.
+    ///
+    /// # Errors
+    /// That of the first frame that has one; when `progress` cancels.
+    pub fn batch<X: AsRef<[DVec3]> + Sync>(
+        &self,
+        frames: &[X],
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<FrameAnswer>, Error> {
+        let done = AtomicUsize::new(0);
+        let detector = || self.clone().cancelled_by(progress);
+        let answer = |detector: &mut Detector<'_>, positions: &X| {
+            let pairs = detector.discrete(positions.as_ref())?.to_vec();
+            progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, frames.len());
+            Ok(FrameAnswer { pairs, statistics: detector.statistics() })
+        };
+        let answers: Vec<Result<FrameAnswer, Error>> =
+            on_threads(threads, || frames.par_iter().map_init(detector, answer).collect());
+        answers.into_iter().collect()
+    }
+}

@@ -1,0 +1,228 @@
+//! The detector for given positions: exact collisions of any deforming triangle mesh, with itself or with another one.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::given_motion::GivenMotion;
+use super::search::Search;
+use super::statistics::DetectorStatistics;
+use crate::detect::context::Context;
+use crate::detect::layout::Layout;
+use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
+use crate::filter::{PairFilter, weld_classes_of_positions};
+use crate::hierarchy::Hierarchy;
+use crate::{ContactFilter, Error, Impact, Pair, Progress, TriMesh, limits};
+
+/// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
+/// for each answer; where the hierarchy has become bad, it builds it again. It owns its memory, so that repeated answers
+/// allocate nothing. One detector serves one thread; clones share what does not change.
+///
+/// Two triangles are listed exactly when they count under the contact filter (by default when they share no vertex) and have a
+/// point in common at the given f64 positions. Touching counts. See `docs/guarantees.md`.
+///
+/// ```
+/// use glam::DVec3;
+/// use sscc::{Detector, TriMesh};
+///
+/// # fn main() -> Result<(), sscc::Error> {
+/// // Two triangles one unit apart.
+/// let rest = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+/// let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]])?;
+/// let mut detector = Detector::new(&mesh);
+/// assert!(detector.discrete(&rest)?.is_empty());
+///
+/// // The second one falls through the first.
+/// let fallen: Vec<DVec3> = rest.iter().map(|x| *x - DVec3::Z * (2.0 * x.z)).collect();
+/// assert!(detector.discrete(&fallen)?.is_empty());
+/// let impacts = detector.continuous(&rest, &fallen)?;
+/// assert_eq!((impacts.len(), impacts[0].pair), (1, (0, 1)));
+/// assert!((impacts[0].time - 0.5).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct Detector<'a> {
+    pub(super) context: Context<'a>,
+    vertex_count: usize,
+    pub(super) discrete: Search<1, DiscreteHits>,
+    pub(super) swept: Search<2, SweptHits>,
+    /// Scratch of searches in two meshes.
+    pub(super) stack: Vec<Pair>,
+    pub(super) statistics: DetectorStatistics,
+}
+
+impl<'a> Detector<'a> {
+    /// A detector for a mesh, under the default contact filter: pairs count that share no vertex. The rest positions choose the
+    /// hierarchy and nothing else. About as much work as 20 answers.
+    pub fn new(mesh: &TriMesh) -> Self {
+        Self::with_filter(mesh, &ContactFilter::default())
+    }
+
+    /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position.
+    pub fn with_filter(mesh: &TriMesh, filter: &ContactFilter) -> Self {
+        let classes = filter.weld.then(|| weld_classes_of_positions(mesh.rest_positions()));
+        Self::build(mesh, classes.as_deref(), filter)
+    }
+
+    /// A detector whose vertices are welded by the given classes: vertices of the same class are one vertex for adjacency,
+    /// as in skinned meshes, where equal rest positions may move apart.
+    ///
+    /// # Errors
+    /// When there are not as many classes as vertices.
+    pub fn with_weld_classes(
+        mesh: &TriMesh,
+        classes: &[u32],
+        filter: &ContactFilter,
+    ) -> Result<Self, Error> {
+        check_count(classes.len(), mesh.rest_positions().len())?;
+        Ok(Self::build(mesh, Some(classes), filter))
+    }
+
+    fn build(mesh: &TriMesh, classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
+        let positions = mesh.rest_positions();
+        let filter = PairFilter::with_classes(mesh.faces(), classes, filter);
+        let hierarchy = Hierarchy::build_by_median(mesh.faces(), positions);
+        let layout = Arc::new(Layout::of_positions(positions, &hierarchy, &filter));
+        let context = Context {
+            hierarchy: Cow::Owned(hierarchy),
+            filter: Arc::new(filter),
+            exceptions: &[],
+            layout,
+            progress: &(),
+        };
+        Self {
+            context,
+            vertex_count: positions.len(),
+            discrete: Search::default(),
+            swept: Search::default(),
+            stack: Vec::new(),
+            statistics: DetectorStatistics::default(),
+        }
+    }
+
+    /// The same detector, which checks now and then whether `progress` cancels it. It reports nothing.
+    #[must_use]
+    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
+        self.context.progress = progress;
+        self
+    }
+
+    /// All colliding pairs at these positions (one for each vertex of the mesh, model unit): triangle indices `i < j`, sorted.
+    ///
+    /// # Errors
+    /// When there are not as many positions as vertices, or one is not finite or beyond
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when it was cancelled.
+    pub fn discrete(&mut self, positions: &[DVec3]) -> Result<&[Pair], Error> {
+        self.discrete_at_most(positions, usize::MAX)
+    }
+
+    /// At most `limit` colliding pairs, sorted; which ones is not fixed. Where the limit stopped the search,
+    /// [`DetectorStatistics::complete`] is false: there may be more.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub fn discrete_at_most(&mut self, positions: &[DVec3], limit: usize) -> Result<&[Pair], Error> {
+        let motion = self.check([positions])?;
+        self.begin_discrete(&motion, positions, limit);
+        let result = self.discrete.find(&self.context, &motion);
+        self.statistics.set(&mut self.discrete, result.is_ok());
+        result?;
+        self.discrete.narrow.0.found.sort_unstable();
+        Ok(&self.discrete.narrow.0.found)
+    }
+
+    /// One colliding pair, if there is any; which one is not fixed.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub fn first(&mut self, positions: &[DVec3]) -> Result<Option<Pair>, Error> {
+        Ok(self.discrete_at_most(positions, 1)?.first().copied())
+    }
+
+    /// The number of colliding pairs.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub fn count(&mut self, positions: &[DVec3]) -> Result<usize, Error> {
+        Ok(self.discrete(positions)?.len())
+    }
+
+    /// All pairs that collide while every vertex moves on a straight line from its position at the start to that at the end,
+    /// sorted by pair, each with its time of impact: the same promise as [`Query::continuous`](crate::Query::continuous).
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for both.
+    pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
+        let motion = self.check([x_t0, x_t1])?;
+        self.begin_swept(&motion, x_t0);
+        let result = self.swept.find(&self.context, &motion);
+        self.statistics.set(&mut self.swept, result.is_ok());
+        result?;
+        self.swept.narrow.0.found.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.found)
+    }
+
+    /// The cost of the last answer.
+    pub fn statistics(&self) -> DetectorStatistics {
+        self.statistics
+    }
+
+    /// The number of vertices of the mesh, which all positions must have.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// Forgets the last answer and checks positions.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub(super) fn check<'x, const E: usize>(
+        &mut self,
+        positions: [&'x [DVec3]; E],
+    ) -> Result<GivenMotion<'x, E>, Error> {
+        self.statistics = self.statistics.forget();
+        for x in positions {
+            check_count(x.len(), self.vertex_count)?;
+            if let Some(vertex) = x.iter().position(|x| !limits::contains(*x)) {
+                return Err(Error::Position { vertex, position: x[vertex].to_array() });
+            }
+        }
+        Ok(GivenMotion::new(positions, &self.context.layout))
+    }
+
+    /// Starts a discrete search; builds the hierarchy again, by these positions, where it has become bad.
+    pub(super) fn begin_discrete(&mut self, motion: &GivenMotion<'_, 1>, positions: &[DVec3], limit: usize) {
+        if !self.discrete.begin(&self.context, motion, limit) {
+            self.rebuild(positions);
+            self.discrete.begin(&self.context, motion, limit);
+        }
+    }
+
+    /// The same for a swept search.
+    pub(super) fn begin_swept(&mut self, motion: &GivenMotion<'_, 2>, x_t0: &[DVec3]) {
+        if !self.swept.begin(&self.context, motion, usize::MAX) {
+            self.rebuild(x_t0);
+            self.swept.begin(&self.context, motion, usize::MAX);
+        }
+    }
+
+    /// Builds the hierarchy again, by these positions.
+    fn rebuild(&mut self, positions: &[DVec3]) {
+        let filter = &self.context.filter;
+        let hierarchy = Hierarchy::build_by_median(filter.faces(), positions);
+        let layout = Arc::new(Layout::of_positions(positions, &hierarchy, filter));
+        self.context.layout = layout;
+        self.context.hierarchy = Cow::Owned(hierarchy);
+        self.discrete = Search::default();
+        self.swept = Search::default();
+        self.statistics.rebuilds += 1;
+    }
+}
+
+/// # Errors
+/// When the number of positions is not that of the vertices.
+fn check_count(found: usize, vertices: usize) -> Result<(), Error> {
+    if found == vertices { Ok(()) } else { Err(Error::PositionCount { found, vertices }) }
+}

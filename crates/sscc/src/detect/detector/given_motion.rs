@@ -1,0 +1,75 @@
+//! Given positions: the vertex motion of a [`Detector`](crate::Detector).
+//!
+//! Given positions are exact, so that the error in single precision is that of the map to the frame alone: the centre of the
+//! frame lies in the AABB of all positions, so mapped coordinates are within [-2, 2], and each is rounded by at most 2 units
+//! of 2^-24. The separating-axis test allows for more.
+
+use glam::DVec3;
+
+use crate::detect::layout::Layout;
+use crate::detect::vertex_motion::VertexMotion;
+use crate::geometry::Aabb;
+
+/// The positions of all vertices of the mesh at each of `E` configurations.
+#[derive(Clone, Copy)]
+pub(super) struct GivenMotion<'x, const E: usize> {
+    positions: [&'x [DVec3]; E],
+    whole: Aabb,
+}
+
+impl<'x, const E: usize> GivenMotion<'x, E> {
+    /// The caller has checked the number of vertices and that positions are within limits.
+    pub(super) fn new(positions: [&'x [DVec3]; E], layout: &Layout) -> Self {
+        let used = layout.vertices.mesh_vertices();
+        let of = |x: &[DVec3]| Aabb::of_points(used.iter().map(|v| x[*v as usize]));
+        let whole = positions.iter().fold(Aabb::EMPTY, |all, x| all.union(&of(x)));
+        Self { positions, whole }
+    }
+
+    /// The AABB of all positions.
+    pub(super) fn aabb(&self) -> Aabb {
+        self.whole
+    }
+
+    /// The same motion, in the frame of a larger AABB.
+    pub(super) fn in_frame_of(self, whole: Aabb) -> Self {
+        Self { whole, ..self }
+    }
+}
+
+impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
+    const HAS_ERROR_BOUND: bool = true;
+
+    /// Given positions are exact.
+    #[inline]
+    fn rounding(&self) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn whole(&self, _: &Layout) -> Aabb {
+        self.whole
+    }
+
+    #[inline]
+    fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
+        None
+    }
+
+    #[inline]
+    fn coarse_slack(&self, _: u32) -> Option<DVec3> {
+        None
+    }
+
+    #[inline]
+    fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E] {
+        let vertex = layout.vertices.mesh_vertex(vertex) as usize;
+        self.positions.map(|x| x[vertex])
+    }
+
+    /// Boxes of nodes are refitted.
+    #[inline]
+    fn node_box(&self, _: &Layout, _: u32) -> Option<Aabb> {
+        None
+    }
+}

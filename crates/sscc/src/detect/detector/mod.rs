@@ -1,0 +1,13 @@
+//! The public detector for given positions: any deforming mesh, without modes.
+
+mod against;
+mod batch;
+#[allow(clippy::module_inception)] // named after its type, as all files here
+mod detector;
+mod given_motion;
+mod search;
+mod statistics;
+
+pub use batch::FrameAnswer;
+pub use detector::Detector;
+pub use statistics::DetectorStatistics;

@@ -1,0 +1,108 @@
+//! The fast build of the hierarchy, top down by median splits: for detectors, which are often used once.
+//!
+//! Each node is split in half along the longest axis of its triangles' centroids, twice, so that it has up to four
+//! children. Sizes are multiples of a bucket's, so that all buckets but the last are full. The k-means build gives stronger
+//! certificates and takes some twenty times as long (docs/notes/2026-11-23-one-shot.md).
+
+use glam::{DVec3, Vec3};
+
+use super::hierarchy::Hierarchy;
+use super::node::{BUCKET_TRIANGLES, Node};
+use crate::geometry::Aabb;
+
+impl Hierarchy {
+    /// Builds a hierarchy whose leaves are buckets, by the positions of vertices at some configuration. The same input gives
+    /// the same tree on every machine. O(N log N) for N triangles.
+    pub(crate) fn build_by_median(faces: &[[u32; 3]], positions: &[DVec3]) -> Self {
+        let mut triangles = sort_keys(faces, positions);
+        let mut nodes = vec![Node::leaf(0, triangles.len() as u32)];
+        let mut next = 0;
+        while next < nodes.len() {
+            let Node { first_triangle, triangle_count, .. } = nodes[next];
+            if triangle_count as usize > BUCKET_TRIANGLES {
+                let own = &mut triangles[first_triangle as usize..][..triangle_count as usize];
+                let middle = split_in_half(own);
+                let (left, right) = own.split_at_mut(middle);
+                let quarters = [split_in_half(left), split_in_half(right)];
+                let ends = [quarters[0], middle, middle + quarters[1], triangle_count as usize];
+                nodes[next].first_child = nodes.len() as u32;
+                let mut start = 0;
+                for end in ends {
+                    if end > start {
+                        nodes.push(Node::leaf(first_triangle + start as u32, (end - start) as u32));
+                        nodes[next].child_count += 1;
+                    }
+                    start = end;
+                }
+            }
+            next += 1;
+        }
+        Self { nodes, order: triangles.into_iter().map(|key| key.triangle).collect() }
+    }
+}
+
+/// A triangle and its centroid.
+#[derive(Clone, Copy)]
+struct SortKey {
+    centroid: Vec3,
+    triangle: u32,
+}
+
+/// The triangles with their centroids, in single precision relative to the box of all positions: the tree need not be more
+/// precise, because boxes are computed from exact positions.
+fn sort_keys(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<SortKey> {
+    let corners = faces.iter().flatten().map(|v| positions[*v as usize]);
+    let Aabb { lower, upper } = Aabb::of_points(corners);
+    let scale = (1.0 / (upper * 0.5 - lower * 0.5).max_element()).min(f64::MAX);
+    let center = lower * 0.5 + upper * 0.5;
+    let key = |(triangle, face): (usize, &[u32; 3])| {
+        let [a, b, c] = face.map(|v| ((positions[v as usize] - center) * scale).as_vec3());
+        SortKey { centroid: a + b + c, triangle: triangle as u32 }
+    };
+    faces.iter().enumerate().map(key).collect()
+}
+
+/// Reorders triangles so that the first half, in whole buckets, lies before the second along the longest axis; returns the
+/// size of the first half, 0 for a single bucket.
+fn split_in_half(triangles: &mut [SortKey]) -> usize {
+    let buckets = triangles.len().div_ceil(BUCKET_TRIANGLES);
+    let middle = buckets / 2 * BUCKET_TRIANGLES;
+    if middle > 0 {
+        let (lower, upper) = triangles.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |all, key| {
+            (all.0.min(key.centroid), all.1.max(key.centroid))
+        });
+        let axis = (upper - lower).max_position();
+        let compare = |a: &SortKey, b: &SortKey| {
+            a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.triangle.cmp(&b.triangle))
+        };
+        triangles.select_nth_unstable_by(middle, compare);
+    }
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TriMesh;
+    use crate::test_models::Random;
+
+    /// Also where centroids coincide, are far away, or differ by less than single precision.
+    #[test]
+    fn every_triangle_is_in_one_bucket() {
+        let random = &mut Random(5);
+        for (case, count) in [1, 2, 63, 64, 65, 128, 129, 191, 257, 1000, 5000].into_iter().enumerate() {
+            let size = [0.0, 1.0, 1e-300, 1e59][case % 4];
+            let positions: Vec<DVec3> = (0..3 * count).map(|_| random.vector() * size).collect();
+            let faces: Vec<[u32; 3]> = (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+            let mesh = TriMesh::new(positions, faces).unwrap();
+            let hierarchy = Hierarchy::build_by_median(mesh.faces(), mesh.rest_positions());
+            let parts = (hierarchy.nodes().to_vec(), hierarchy.order().to_vec());
+            assert_eq!(Hierarchy::from_parts(parts.0, parts.1, count as usize).unwrap(), hierarchy);
+            let leaves = hierarchy.nodes().iter().filter(|node| node.is_leaf());
+            assert!(leaves.clone().all(|leaf| leaf.is_bucket()));
+            assert_eq!(leaves.count(), (count as usize).div_ceil(BUCKET_TRIANGLES), "{count}");
+            let again = Hierarchy::build_by_median(mesh.faces(), mesh.rest_positions());
+            assert_eq!(hierarchy, again);
+        }
+    }
+}

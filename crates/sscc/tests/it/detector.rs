@@ -1,0 +1,223 @@
+//! The detector for given positions, against brute force and against queries by modes.
+
+use glam::DVec3;
+use sscc::{
+    ContactFilter, Detector, Error, Impact, Method, Neighbours, Pair, Query, Scope, TriMesh,
+    intersect_triangle_triangle,
+};
+use sscc_testing::cases;
+
+use crate::common::{Random, random_model};
+
+/// A soup of triangles, some degenerate, some with common vertices, of a size and at a place.
+fn soup(random: &mut Random, triangles: u32, size: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let vertices = 2 * triangles + 3;
+    let x = (0..vertices).map(|_| random.vector() * size).collect();
+    let faces = (0..triangles)
+        .map(|t| {
+            let first = 2 * t;
+            if t % 11 == 5 { [first, first, first + 1] } else { [first, first + 1, first + 2] }
+        })
+        .collect();
+    (x, faces)
+}
+
+fn brute_force(x: &[DVec3], faces: &[[u32; 3]]) -> Vec<Pair> {
+    let corners: Vec<[DVec3; 3]> = faces.iter().map(|face| face.map(|v| x[v as usize])).collect();
+    let mut pairs = Vec::new();
+    for a in 0..faces.len() {
+        for b in a + 1..faces.len() {
+            let is_adjacent = faces[a].iter().any(|v| faces[b].contains(v));
+            if !is_adjacent && intersect_triangle_triangle(&corners[a], &corners[b]) {
+                pairs.push((a as u32, b as u32));
+            }
+        }
+    }
+    pairs
+}
+
+/// Moves vertices onto a coarse grid, so that many pairs touch.
+fn on_grid(x: &[DVec3], step: f64) -> Vec<DVec3> {
+    x.iter().map(|x| (x / step).round() * step).collect()
+}
+
+#[test]
+fn pairs_are_those_of_brute_force() {
+    let random = &mut Random::new(3);
+    let (mut colliding, mut rebuilds) = (0, 0);
+    for case in 0..cases(60) {
+        let triangles = [1, 2, 9, 70, 200, 350][case % 6];
+        let size = [1.0, 1e-200, 1e40][case % 3];
+        let (rest, faces) = soup(random, triangles, size);
+        let mesh = TriMesh::new(rest.clone(), faces.clone()).unwrap();
+        let mut detector = Detector::new(&mesh);
+        for frame in 0..6 {
+            let far = if frame == 3 { DVec3::new(1e5, -3.0, 7.0) * size } else { DVec3::ZERO };
+            let x: Vec<DVec3> = rest.iter().map(|_| random.vector() * size + far).collect();
+            let x = if frame % 2 == 1 { on_grid(&x, 0.25 * size) } else { x };
+            let pairs = detector.discrete(&x).unwrap().to_vec();
+            assert_eq!(pairs, brute_force(&x, &faces), "case {case} frame {frame}");
+            assert!(detector.statistics().complete);
+            assert_eq!(detector.count(&x).unwrap(), pairs.len());
+            assert_eq!(detector.first(&x).unwrap().is_some(), !pairs.is_empty());
+            let some = detector.discrete_at_most(&x, 2).unwrap().to_vec();
+            assert_eq!(some.len(), pairs.len().min(2));
+            assert!(some.iter().all(|pair| pairs.contains(pair)));
+            assert_eq!(detector.statistics().complete, pairs.len() < 2 || some.len() == pairs.len());
+            colliding += pairs.len();
+        }
+        rebuilds += detector.statistics().rebuilds;
+    }
+    assert!(colliding > 1000 && rebuilds > 0, "{colliding} {rebuilds}");
+}
+
+/// A detector at the positions of a model gives the answers of its queries, continuous ones bit for bit.
+#[test]
+fn answers_are_those_of_queries() {
+    let random = &mut Random::new(8);
+    let (mut colliding, mut impacts) = (0, 0);
+    for case in 0..cases(120) {
+        let model = random_model(random);
+        let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2];
+        let ignored = [(0, 2), (1, 3)].into_iter().filter(|_| case % 5 == 0);
+        let filter = ContactFilter::new(neighbours, false).ignoring(ignored);
+        let scope = Scope { filter: filter.clone(), ..Scope::of(&model) };
+        let mut query = Query::without_certificates(&model, scope, Method::BruteForce).unwrap();
+        let mut detector = Detector::with_filter(model.mesh(), &filter);
+        let mut q: Vec<f64> = vec![0.0; model.rank()];
+        for _ in 0..5 {
+            let next: Vec<f64> = q.iter().map(|q| q + random.signed()).collect();
+            let [x_t0, x_t1] = [&q, &next].map(|q| model.positions(q).unwrap());
+            assert_eq!(detector.discrete(&x_t0).unwrap(), query.discrete(&q).unwrap(), "case {case}");
+            colliding += detector.count(&x_t0).unwrap();
+            let expected = query.continuous(&q, &next).unwrap();
+            let found = detector.continuous(&x_t0, &x_t1).unwrap();
+            impacts += found.len();
+            assert_eq!(found, expected, "case {case}");
+            q = next;
+        }
+    }
+    assert!(colliding > 100 && impacts > 200, "{colliding} {impacts}");
+}
+
+#[test]
+fn two_meshes_collide_as_all_their_triangles_do() {
+    let random = &mut Random::new(12);
+    let (mut colliding, mut free, mut hits) = (0, 0, 0);
+    for case in 0..cases(80) {
+        let sizes = [[1, 1], [5, 200], [200, 5], [150, 300]][case % 4];
+        let meshes = sizes.map(|triangles| {
+            let (rest, faces) = soup(random, triangles, 1.0);
+            TriMesh::new(rest, faces).unwrap()
+        });
+        let [mut a, mut b] = meshes.each_ref().map(Detector::new);
+        for frame in 0..4 {
+            let offset = random.vector() * f64::from(frame);
+            let positions = meshes.each_ref().map(|mesh| {
+                [0, 1].map(|_| mesh.rest_positions().iter().map(|_| random.vector()).collect::<Vec<_>>())
+            });
+            let [x, mut y] = positions;
+            y.iter_mut().flatten().for_each(|y| *y += offset);
+            if case % 3 == 0 {
+                y = y.map(|y| on_grid(&y, 0.25));
+            }
+            let mut expected = Vec::new();
+            let corners = |mesh: &TriMesh, x: &[DVec3]| -> Vec<[DVec3; 3]> {
+                mesh.faces().iter().map(|face| face.map(|v| x[v as usize])).collect()
+            };
+            let [s, t] = [corners(&meshes[0], &x[0]), corners(&meshes[1], &y[0])];
+            for (i, s) in s.iter().enumerate() {
+                let meets = |t: &[DVec3; 3]| intersect_triangle_triangle(s, t);
+                let of_i = t.iter().enumerate().filter(|(_, t)| meets(t)).map(|(j, _)| (i as u32, j as u32));
+                expected.extend(of_i);
+            }
+            let pairs = a.against(&x[0], &mut b, &y[0]).unwrap().to_vec();
+            assert_eq!(pairs, expected, "case {case} frame {frame}");
+            let turned: Vec<Pair> = b.against(&y[0], &mut a, &x[0]).unwrap().to_vec();
+            let mut turned: Vec<Pair> = turned.into_iter().map(|(j, i)| (i, j)).collect();
+            turned.sort_unstable();
+            assert_eq!(turned, expected);
+            colliding += expected.len();
+            free += usize::from(expected.is_empty());
+            // What collides at one end does so on the way, at time 0 or before.
+            let [x0, x1, y0, y1] = [&x[0], &x[1], &y[0], &y[1]].map(|x| &x[..]);
+            let impacts = a.continuous_against([x0, x1], &mut b, [y0, y1]).unwrap();
+            let at_start: Vec<Pair> = impacts.iter().filter(|i| i.time == 0.0).map(|i| i.pair).collect();
+            assert!(expected.iter().all(|pair| at_start.contains(pair)), "case {case}");
+            hits += impacts.len();
+            // Moved together they meet when their triangles do.
+            for impact in impacts {
+                let moving = |mesh: &TriMesh, t: u32, [t0, t1]: [&[DVec3]; 2]| {
+                    let face = mesh.faces()[t as usize];
+                    sscc::MovingTriangle {
+                        t0: face.map(|v| t0[v as usize]),
+                        t1: face.map(|v| t1[v as usize]),
+                    }
+                };
+                let s = moving(&meshes[0], impact.pair.0, [x0, x1]);
+                let t = moving(&meshes[1], impact.pair.1, [y0, y1]);
+                let time = sscc::impact_triangle_triangle(&s, &t, Impact::TOLERANCE);
+                assert_eq!(time, Some(impact.time));
+            }
+        }
+    }
+    assert!(colliding > 500 && free > 10 && hits > colliding, "{colliding} {free} {hits}");
+}
+
+#[test]
+fn batches_answer_as_single_frames_do() {
+    let random = &mut Random::new(4);
+    let (rest, faces) = soup(random, 300, 1.0);
+    let mut detector = Detector::new(&TriMesh::new(rest.clone(), faces).unwrap());
+    let frames: Vec<Vec<DVec3>> =
+        (0..20).map(|_| rest.iter().map(|_| random.vector()).collect()).collect();
+    let expected: Vec<Vec<Pair>> = frames.iter().map(|x| detector.discrete(x).unwrap().to_vec()).collect();
+    for threads in [Some(1), Some(3), None] {
+        let answers = detector.batch(&frames, threads, &()).unwrap();
+        assert!(answers.iter().map(|answer| &answer.pairs).eq(&expected));
+    }
+    struct Stop;
+    impl sscc::Progress for Stop {
+        fn report(&self, _: usize, _: usize) {}
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    assert_eq!(detector.batch(&frames, None, &Stop), Err(Error::Cancelled));
+    assert_eq!(detector.clone().cancelled_by(&Stop).discrete(&frames[0]), Err(Error::Cancelled));
+}
+
+#[test]
+fn welded_vertices_are_one_for_adjacency() {
+    // Two triangles with a common edge, each with vertices of its own.
+    let [a, b, c, d] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
+    let rest = vec![a, b, c, b, d, c];
+    let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    assert_eq!(Detector::new(&mesh).discrete(&rest).unwrap(), [(0, 1)]);
+    let welded = ContactFilter::new(Neighbours::Exclude, true);
+    assert_eq!(Detector::with_filter(&mesh, &welded).discrete(&rest).unwrap(), []);
+    let classes = [0, 1, 2, 1, 4, 5];
+    let mut detector = Detector::with_weld_classes(&mesh, &classes, &ContactFilter::default()).unwrap();
+    assert_eq!(detector.discrete(&rest).unwrap(), []);
+    let wrong = Detector::with_weld_classes(&mesh, &classes[1..], &ContactFilter::default());
+    assert!(matches!(wrong, Err(Error::PositionCount { found: 5, vertices: 6 })));
+}
+
+#[test]
+fn wrong_positions_are_refused() {
+    let (rest, faces) = soup(&mut Random::new(1), 10, 1.0);
+    let mut detector = Detector::new(&TriMesh::new(rest.clone(), faces).unwrap());
+    let short = &rest[1..];
+    let count = Err(Error::PositionCount { found: rest.len() - 1, vertices: rest.len() });
+    assert_eq!(detector.discrete(short).map(<[Pair]>::len), count);
+    assert_eq!(detector.continuous(&rest, short).map(<[Impact]>::len), count);
+    assert_eq!(detector.clone().against(&rest, &mut detector.clone(), short).map(<[Pair]>::len), count);
+    for wrong in [f64::NAN, f64::INFINITY, -1e61] {
+        let mut x = rest.clone();
+        x[7].y = wrong;
+        assert!(matches!(detector.discrete(&x), Err(Error::Position { vertex: 7, .. })));
+        assert!(!detector.statistics().complete);
+        assert!(matches!(detector.continuous(&rest, &x), Err(Error::Position { vertex: 7, .. })));
+    }
+    assert!(detector.discrete(&rest).is_ok());
+}
