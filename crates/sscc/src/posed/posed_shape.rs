@@ -14,7 +14,7 @@ use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::two_meshes::{Side, traverse_two_meshes};
 use crate::detect::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
-use crate::{Certificates, Error, Pair, ReducedModel, intersect_triangle_triangle, limits};
+use crate::{Certificates, Error, Pair, ReducedModel, limits};
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
 /// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
@@ -142,7 +142,7 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::{CertifyOptions, Modes, TriMesh};
+    use crate::{CertifyOptions, Modes, TriMesh, intersect_triangle_triangle};
 
     /// Fixed pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {

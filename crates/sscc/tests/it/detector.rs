@@ -77,7 +77,7 @@ fn answers_are_those_of_queries() {
     let random = &mut Random::new(8);
     let (mut colliding, mut impacts) = (0, 0);
     for case in 0..cases(120) {
-        let model = random_model(random);
+        let model = random_model(case as u64);
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2];
         let ignored = [(0, 2), (1, 3)].into_iter().filter(|_| case % 5 == 0);
         let filter = ContactFilter::new(neighbours, false).ignoring(ignored);
