@@ -153,7 +153,7 @@ fn measurements() {
     // The simulation is taken from the cache, and the paper's rows stand beside ours.
     let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let seconds = format!("simulated in {all:.2} s of the processor, ");
+    let seconds = format!("simulated in {all:.2} s of processor time, ");
     let strata = "means are of the whole scene: the root certifies ";
     for part in [&seconds[..], strata, "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
@@ -223,9 +223,9 @@ fn refusals() {
         (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
-        (&["growth", "--steps", "2"], "--steps is for what moves"),
+        (&["growth", "--steps", "2"], "--steps is for scenes and kinetic"),
         (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
-        (&["growth", "--quick"], "--quick: growth needs its sizes"),
+        (&["growth", "--quick"], "--quick is not for growth"),
         (&[], "SCENARIO"),
     ] {
         let run = bench(folder.path(), args);

@@ -241,7 +241,7 @@ fn a_mesh_for_drawing_can_be_given_modes() {
     write_stl(folder, &model(folder));
     let run = sscc(folder, &["modes", "strips.stl", "-o", "s.model.safetensors", "--kind", "polynomial"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    assert!(run.stderr.contains("certify it with --weld"), "{}", run.stderr);
+    assert!(run.stderr.contains("certify the model with --weld"), "{}", run.stderr);
     let (read, _) = sscc_io::read_model(&folder.join("s.model.safetensors")).unwrap();
     assert_eq!(read.modes().vertices(), 60);
     let welded =
@@ -296,7 +296,7 @@ fn an_animation_becomes_a_model() {
         "{more}"
     );
     let file = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "pca"]);
-    assert!(file.contains("mesh.obj: is a file; principal components are those of a folder"), "{file}");
+    assert!(file.contains("mesh.obj: is a file; --kind pca needs a folder"), "{file}");
     let rank = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "polynomial", "--rank", "3"]);
     assert!(rank.contains("polynomial modes are always all 24"), "{rank}");
     fs::write(folder.join("frames/5.obj"), "v 0 0 0\n").unwrap();

@@ -154,7 +154,7 @@ fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
         assert_eq!(run.code, Some(0), "{run:?}");
         (frequencies(&run.json()[0]), run.stderr, provenance(folder))
     };
-    let note = |numbers: &str| format!("note: --material overrides what the file states: {numbers}\n");
+    let note = |numbers: &str| format!("note: --material overrides the file's materials: {numbers}\n");
     let (own, silent, told) = run("two.veg", None);
     assert_eq!(silent, "");
     assert!(told.ends_with(", materials of the file"), "{told}");
@@ -214,7 +214,7 @@ fn what_has_no_modes_is_told() {
             "--fix 8: there is no vertex 8 (counted from 0): the file has 8",
         ),
         (&["box.obj", "--resolution", "4", "--fix", "box:1,2"], "--fix box: six numbers were expected"),
-        (&["box.obj", "--resolution", "4", "--fix", "box:7,7,7,8,8,8"], "no vertex is there"),
+        (&["box.obj", "--resolution", "4", "--fix", "box:7,7,7,8,8,8"], "this selects no vertex"),
         (
             &["box.obj", "--resolution", "4", "--fix", "box:-9,-9,-9,9,9,9"],
             "vertices are fixed: leave some free",

@@ -82,7 +82,7 @@ fn pictures_that_cannot_be_written_are_refused_first() {
         ("x.jpg", "x.jpg: the name of the output must end in .png"),
         (".png", ".png: the name of the output must end in .png"),
         ("missing/x.png", "missing/x.png: cannot be written"),
-        ("folder.png", "folder.png: cannot be written: it is no file"),
+        ("folder.png", "folder.png: cannot be written: it is not a file"),
     ] {
         let run = sscc(folder, &["certify", MODEL, "-o", "x.sscc.safetensors", "--picture", picture]);
         assert!(run.refusal().contains(named), "{run:?}");

@@ -233,7 +233,7 @@ fn flags_must_not_contradict_certificates() {
         sscc(folder, &args)
     };
     assert!(run("--ignore-rest").refusal().contains("certified without --ignore-rest"));
-    assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions says"));
+    assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions allows"));
     assert_eq!(run("--max-exceptions=1000").code, Some(1));
 }
 
@@ -278,7 +278,7 @@ fn what_nearly_touches_is_not_called_colliding() {
         let (promise, note) = promise(folder, &model, args);
         assert!(promise.contains("0: two triangles nearly touch at the centre"), "{promise}");
         assert!(
-            note.starts_with("note: nothing else collides at the centre, but two of the triangles 0, 1 "),
+            note.starts_with("note: no other pair collides at the centre, but two of the triangles 0, 1 "),
             "{note}"
         );
         assert!(!note.contains("--ignore-rest") && !note.contains("--max-exceptions"), "{note}");
@@ -301,7 +301,7 @@ fn recommended_flags_help() {
     assert!(note.contains("than may be exceptions (1)") && note.contains("raise --max-exceptions"), "{note}");
     assert!(note.contains("--ignore-rest"), "{note}");
     let (told, note) = promise(folder, &touching, &["--max-exceptions", "1", "--ignore-rest"]);
-    assert!(told.ends_with(": below it the whole shape is free, ignored pairs apart"), "{told}");
+    assert!(told.ends_with(": below it the whole shape is free, apart from ignored pairs"), "{told}");
     assert_eq!(note, "");
     // Collides at the centre, and nothing does at rest: what collides at rest is nothing to leave out.
     for given in [&[][..], &["--ignore-rest"]] {
@@ -346,6 +346,6 @@ fn split_vertices_are_looked_for() {
         let args = ["modes", name, "-o", "x.model.safetensors", "--kind", "polynomial"];
         let run = sscc(folder, &args);
         assert_eq!(run.code, Some(0), "{run:?}");
-        assert_eq!(run.stderr.contains("certify it with --weld"), is_split, "{name}: {}", run.stderr);
+        assert_eq!(run.stderr.contains("certify the model with --weld"), is_split, "{name}: {}", run.stderr);
     }
 }

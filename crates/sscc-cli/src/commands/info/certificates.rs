@@ -1,4 +1,4 @@
-//! What is known of certificates.
+//! The contents of a certificate file.
 
 use serde::Serialize;
 use sscc::Certificates;
@@ -8,7 +8,7 @@ use super::text::{form, hexadecimal, range};
 use crate::output::{counted, grouped, length};
 
 #[derive(Serialize)]
-pub struct Certified {
+pub struct CertificatesInfo {
     digest: String,
     scheme: &'static str,
     neighbours: &'static str,
@@ -40,11 +40,11 @@ struct Level {
     min: f64,
     median: f64,
     max: f64,
-    /// Share of nodes whose radius is capped at the global radius.
+    /// Fraction of the nodes whose radius is capped at the global radius.
     capped: f64,
 }
 
-impl Certified {
+impl CertificatesInfo {
     pub fn of(certificates: &Certificates) -> Self {
         let parts = certificates.parts();
         let tree = &parts.pair_tree;
@@ -105,12 +105,12 @@ impl Certified {
                 self.ignored
             ),
             format!("root radius    {}", length(self.root_radius)),
-            format!("root's pairs   {}", if pairs.is_empty() { "none".into() } else { pairs.join(", ") }),
-            format!("resolved up to {}", length(self.global_radius)),
+            format!("root pairs     {}", if pairs.is_empty() { "none".into() } else { pairs.join(", ") }),
+            format!("global radius  {}", length(self.global_radius)),
             match self.pair_bytes {
-                _ if self.pair_limit == 0.0 => "pairs          the root's alone".to_owned(),
+                _ if self.pair_limit == 0.0 => "node pairs     those of the root's children only".to_owned(),
                 bytes => format!(
-                    "pairs          {} in all, complete up to {} ({} bytes)",
+                    "node pairs     {} in all, complete up to {} ({} bytes)",
                     grouped(self.pairs as u64),
                     length(self.pair_limit),
                     grouped(bytes as u64)
@@ -118,7 +118,7 @@ impl Certified {
             },
             format!(
                 "{:>7} {:>9} {:>11} {:>11} {:>11} {:>8}",
-                "level", "nodes", "least", "median", "largest", "capped"
+                "level", "nodes", "min", "median", "max", "capped"
             ),
         ];
         lines.extend(self.levels.iter().enumerate().map(|(i, level)| {
