@@ -1,4 +1,4 @@
-//! Bad input of every kind: one line that names file and cause, exit code 2, no output, no panic.
+//! Invalid input of every kind: one line with file and cause, exit code 2, no output, no panic.
 
 use std::fs;
 use std::path::Path;
@@ -12,13 +12,13 @@ const MESH: &str = "mesh.obj";
 const STRIPS: &str = "strips.model.safetensors";
 const CERTIFIED: &str = "strips.sscc.safetensors";
 
-/// Runs a command that must be refused with a message that names these; nothing may be left behind.
+/// Asserts that a command is refused with a message that contains `named`, and leaves no file.
 fn refused(folder: &Path, args: &[&str], named: &[&str]) {
     let before = files(folder);
     let run = sscc(folder, args);
     let message = run.refusal();
     for part in named {
-        assert!(message.contains(part), "{args:?}: {message} does not say '{part}'");
+        assert!(message.contains(part), "{args:?}: {message} does not contain '{part}'");
     }
     assert_eq!(files(folder), before, "{args:?}");
 }
@@ -28,7 +28,7 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) {
 }
 
 #[test]
-fn files_that_are_no_models() {
+fn files_that_are_not_models() {
     let directory = strips();
     let folder = directory.path();
     let good = fs::read(folder.join(STRIPS)).unwrap();
@@ -80,9 +80,9 @@ fn files_that_are_no_models() {
     }
 }
 
-/// What is not there is told before what it should be, by every command and every reader.
+/// A missing file is reported before its kind, by every command and every reader.
 #[test]
-fn files_that_are_not_there() {
+fn missing_files() {
     let directory = strips();
     let folder = directory.path();
     let modes = ["modes", "-o", "out.model.safetensors", "--kind"];
@@ -118,7 +118,7 @@ fn files_that_are_not_there() {
 }
 
 #[test]
-fn meshes_that_are_not_there() {
+fn missing_meshes() {
     let directory = strips();
     let folder = directory.path();
     write(folder, "still.gltf", r#"{"asset":{"version":"2.0"},"meshes":[{"name":"a","primitives":[]}]}"#);
@@ -208,7 +208,7 @@ fn coordinates_that_do_not_fit() {
         ("cube.npy", "cube.npy: shape [1, 1, 2]"),
         ("q.csv", "q.csv: unknown kind of trajectory file; supported: .npy"),
     ] {
-        // Rows before the bad one are not answered either: standard output stays empty.
+        // Rows before the invalid one have no answers: standard output stays empty.
         refused(folder, &[&check[..], &["--trajectory", trajectory]].concat(), &[named]);
         refused(folder, &[&check[..], &["--trajectory", trajectory, "--json"]].concat(), &[named]);
     }
@@ -279,7 +279,7 @@ fn certificates_that_do_not_fit() {
     refused(folder, &["check", "newer.model.safetensors", "--q=0"], &named);
 }
 
-/// A forged file: the digest is of this model, the tree of another.
+/// A forged file: the digest is that of this model, and the hierarchy that of another.
 #[test]
 fn forged_certificates() {
     let directory = strips();
@@ -298,7 +298,7 @@ fn forged_certificates() {
 }
 
 #[test]
-fn outputs_that_cannot_be() {
+fn outputs_that_cannot_be_written() {
     let directory = strips();
     let folder = directory.path();
     fs::create_dir(folder.join("taken.sscc.safetensors")).unwrap();
