@@ -1,4 +1,4 @@
-//! The order declared in `layers.toml`: of the crates, and of the modules of each crate or folder, lowest first.
+//! The order of crates and of modules that `layers.toml` declares, lowest first.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ pub const FILE: &str = "layers.toml";
 
 pub struct Order {
     pub crates: Levels,
-    /// For a crate, such as `sscc`, or a folder of modules in it, such as `sscc/query`.
+    /// The levels of each crate, such as `sscc`, and folder of modules, such as `sscc/query`.
     pub folders: BTreeMap<String, Levels>,
 }
 
@@ -25,7 +25,7 @@ pub struct Levels {
 
 #[derive(Clone, Copy)]
 pub struct Place {
-    /// Counted from the lowest, 0.
+    /// The level; 0 is the lowest.
     pub level: usize,
     /// The line in the file.
     pub line: usize,
@@ -36,7 +36,7 @@ impl Levels {
         self.places.get(name).copied()
     }
 
-    /// All names with the lines on which they are declared.
+    /// Returns all names with the lines of their declarations.
     pub fn entries(&self) -> impl Iterator<Item = (&str, usize)> {
         self.places.iter().map(|(name, place)| (name.as_str(), place.line))
     }

@@ -1,4 +1,4 @@
-//! The whole workspace as the rules need it: crates, their modules and imports.
+//! Reads the workspace: its crates, their modules and imports.
 
 use std::path::Path;
 
@@ -39,18 +39,18 @@ impl Workspace {
 }
 
 impl ReadCrate {
-    /// The path of a file, relative to the root of the workspace.
+    /// Returns the path of a file, relative to the root of the workspace.
     pub fn path(&self, file: usize) -> String {
         self.modules.files[file].path.display().to_string()
     }
 
-    /// The name by which `layers.toml` knows a folder of modules, such as `sscc/query`; the crate's own for no modules.
+    /// Returns the name of a folder of modules in `layers.toml`, such as `sscc/query`; without modules, the crate's name.
     pub fn folder(&self, modules: &[String]) -> String {
         let name = std::slice::from_ref(&self.manifest.name);
         [name, modules].concat().join("/")
     }
 
-    /// `file:line: imports path (file)`.
+    /// Returns `file:line: imports path (file)`.
     pub fn describe(&self, import: &Import) -> String {
         let at = format!("{}:{}", self.path(import.from), import.line);
         match import.to {
