@@ -21,6 +21,7 @@ fn checked_in() -> PathBuf {
     root().join("crates/sscc-view/page/index.html")
 }
 
+/// Runs the task, and returns its exit code.
 pub fn run(arguments: &[String]) -> ExitCode {
     let write = match arguments {
         [] => false,

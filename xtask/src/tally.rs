@@ -56,6 +56,7 @@ fn count(line: &str, what: &str) -> u64 {
 pub struct SkipLog(PathBuf);
 
 impl SkipLog {
+    /// Creates an empty log in the system's temporary folder.
     pub fn new() -> Self {
         let path = env::temp_dir().join(format!("sscc-skipped-{}.txt", process::id()));
         let _ = fs::remove_file(&path);

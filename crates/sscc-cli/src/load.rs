@@ -218,7 +218,7 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
     );
     let exceptions = certificates.exceptions().len();
     ensure!(
-        options.max_exceptions.is_none_or(|most| exceptions <= most),
+        options.max_exceptions.is_none_or(|max| exceptions <= max),
         "{}: certified with {exceptions} exceptions, more than --max-exceptions allows; leave the flag out, or \
          certify anew",
         name()

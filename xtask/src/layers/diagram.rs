@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::order::{Levels, Order};
-use super::read::{ReadCrate, Workspace};
+use super::read::{CrateSource, Workspace};
 use super::resolve::Target;
 
 type Arrows = BTreeMap<String, BTreeSet<String>>;
@@ -18,8 +18,8 @@ pub fn diagram(workspace: &Workspace, order: &Order, names: &[String]) -> String
         });
         parts.push(format!("crates\n{}", draw(&order.crates, &arrows.collect())));
     }
-    let place = |krate: &&ReadCrate| order.crates.place(&krate.manifest.name).map(|place| place.level);
-    let mut crates: Vec<&ReadCrate> = workspace.crates.iter().collect();
+    let place = |krate: &&CrateSource| order.crates.place(&krate.manifest.name).map(|place| place.level);
+    let mut crates: Vec<&CrateSource> = workspace.crates.iter().collect();
     crates.sort_by_key(|krate| std::cmp::Reverse(place(krate)));
     for krate in crates {
         let name = &krate.manifest.name;
@@ -37,7 +37,7 @@ pub fn diagram(workspace: &Workspace, order: &Order, names: &[String]) -> String
 }
 
 /// Returns the imports between the modules of a folder.
-fn arrows(krate: &ReadCrate, folder: &[&str]) -> Arrows {
+fn arrows(krate: &CrateSource, folder: &[&str]) -> Arrows {
     let mut arrows = Arrows::new();
     let entry = |file: usize| {
         let path = &krate.modules.modules[krate.modules.files[file].module].path;

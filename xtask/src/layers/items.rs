@@ -27,6 +27,7 @@ fn needs_test(condition: &Meta) -> bool {
     }
 }
 
+/// Returns the attributes of an item.
 pub fn attributes(item: &Item) -> &[Attribute] {
     match item {
         Item::Const(item) => &item.attrs,
@@ -69,14 +70,15 @@ pub fn attributes_in_trait(item: &TraitItem) -> &[Attribute] {
 }
 
 /// An item that a path can name, other than modules and macros.
-pub struct Named<'a> {
+pub struct NamedItem<'a> {
     pub ident: &'a Ident,
     pub visibility: &'a Visibility,
     /// Whether a path can continue after it, as in `Type::function`.
     pub is_type: bool,
 }
 
-pub fn named(item: &Item) -> Option<Named<'_>> {
+/// Returns the name of an item that a path can name; none for other items.
+pub fn named_item(item: &Item) -> Option<NamedItem<'_>> {
     let (ident, visibility, is_type) = match item {
         Item::Const(item) => (&item.ident, &item.vis, false),
         Item::Enum(item) => (&item.ident, &item.vis, true),
@@ -89,7 +91,7 @@ pub fn named(item: &Item) -> Option<Named<'_>> {
         Item::Union(item) => (&item.ident, &item.vis, true),
         _ => return None,
     };
-    Some(Named { ident, visibility, is_type })
+    Some(NamedItem { ident, visibility, is_type })
 }
 
 /// Returns the path of the type of an `impl` block; none if the block is of a trait or the type is not a path.

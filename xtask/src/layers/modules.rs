@@ -30,6 +30,7 @@ pub struct Impl {
     pub names: Vec<String>,
 }
 
+/// A parsed file of the crate.
 pub struct SourceFile {
     /// Relative to the root of the workspace.
     pub path: PathBuf,
@@ -37,6 +38,7 @@ pub struct SourceFile {
     pub syntax: Rc<syn::File>,
 }
 
+/// A module, in a file of its own or inline.
 pub struct Module {
     /// The names of its parents and its own name, the outermost first; empty for the first module of a library or program.
     pub path: Vec<String>,
@@ -54,6 +56,7 @@ pub struct Name {
     pub visible: Visible,
 }
 
+/// The item that a name stands for.
 pub enum Meaning {
     Module(usize),
     /// A type or trait: a path can continue after it.

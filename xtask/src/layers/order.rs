@@ -10,6 +10,7 @@ use super::toml_file::TomlFile;
 /// The file that declares the order, at the root of the workspace.
 pub const FILE: &str = "layers.toml";
 
+/// The declared order of crates and modules.
 pub struct Order {
     pub crates: Levels,
     /// The levels of each crate, such as `sscc`, and folder of modules, such as `sscc/query`.
@@ -32,6 +33,7 @@ pub struct Place {
 }
 
 impl Levels {
+    /// Returns the place of a name; none if the order does not have it.
     pub fn place(&self, name: &str) -> Option<Place> {
         self.places.get(name).copied()
     }

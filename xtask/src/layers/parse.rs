@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use syn::{Item, ItemMacro, ItemMod, Visibility};
 
-use super::items::{attributes, is_for_tests, name, named, names_in_impl, type_of_impl, use_leaves};
+use super::items::{attributes, is_for_tests, name, named_item, names_in_impl, type_of_impl, use_leaves};
 use super::modules::{Glob, Impl, Meaning, Module, Modules, Name, SourceFile, Visible};
 use super::workspace::{Crate, Dependency};
 
@@ -78,7 +78,7 @@ impl Modules {
                     self.impls.push(Impl { module, path, names: names_in_impl(item) });
                 }
                 item => {
-                    let Some(named) = named(item) else { continue };
+                    let Some(named) = named_item(item) else { continue };
                     let meaning = if named.is_type { Meaning::Type } else { Meaning::Value };
                     let visible = self.visible(module, named.visibility);
                     self.add_name(module, name(named.ident), meaning, visible);

@@ -8,11 +8,13 @@ use super::parse;
 use super::resolve::Target;
 use super::workspace::{self, Crate};
 
+/// All crates of the workspace.
 pub struct Workspace {
-    pub crates: Vec<ReadCrate>,
+    pub crates: Vec<CrateSource>,
 }
 
-pub struct ReadCrate {
+/// A crate with its modules and imports.
+pub struct CrateSource {
     pub manifest: Crate,
     pub modules: Modules,
     pub imports: Vec<Import>,
@@ -32,13 +34,13 @@ impl Workspace {
         let crates = manifests.into_iter().zip(read);
         Ok(Self {
             crates: crates
-                .map(|(manifest, (modules, imports))| ReadCrate { manifest, modules, imports })
+                .map(|(manifest, (modules, imports))| CrateSource { manifest, modules, imports })
                 .collect(),
         })
     }
 }
 
-impl ReadCrate {
+impl CrateSource {
     /// Returns the path of a file, relative to the root of the workspace.
     pub fn path(&self, file: usize) -> String {
         self.modules.files[file].path.display().to_string()

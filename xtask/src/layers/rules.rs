@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::graph::FileGraph;
 use super::imports::Import;
 use super::order::{FILE, Levels, Order};
-use super::read::{ReadCrate, Workspace};
+use super::read::{CrateSource, Workspace};
 use super::resolve::Target;
 use super::workspace::Dependency;
 
@@ -66,7 +66,7 @@ fn check_places_of_crates(workspace: &Workspace, order: &Order) -> Vec<Violation
     violations
 }
 
-fn check_dependencies(krate: &ReadCrate, order: &Order) -> Vec<String> {
+fn check_dependencies(krate: &CrateSource, order: &Order) -> Vec<String> {
     let message = |dependency: &Dependency| {
         let why = reason_against(&order.crates, &krate.manifest.name, &dependency.name)?;
         Some(format!(
@@ -78,7 +78,7 @@ fn check_dependencies(krate: &ReadCrate, order: &Order) -> Vec<String> {
 }
 
 /// Returns the modules without a place, and the places without a module.
-fn check_places_of_modules(krate: &ReadCrate, order: &Order) -> Vec<String> {
+fn check_places_of_modules(krate: &CrateSource, order: &Order) -> Vec<String> {
     let mut messages = Vec::new();
     let name = &krate.manifest.name;
     let files = krate.modules.files.iter().map(|file| &krate.modules.modules[file.module]);
@@ -111,7 +111,7 @@ fn check_places_of_modules(krate: &ReadCrate, order: &Order) -> Vec<String> {
     messages
 }
 
-fn check_imports(krate: &ReadCrate, order: &Order) -> Vec<String> {
+fn check_imports(krate: &CrateSource, order: &Order) -> Vec<String> {
     let mut messages = Vec::new();
     for import in FileGraph::new(krate.modules.files.len(), &krate.imports).steps() {
         if let Target::File(to) = import.to
@@ -134,7 +134,7 @@ fn check_imports(krate: &ReadCrate, order: &Order) -> Vec<String> {
 
 /// Returns the reason why one file must not import another of its crate. The file of a folder, and the first file of a
 /// crate, is above all modules in it.
-fn reason_against_import(krate: &ReadCrate, order: &Order, from: usize, to: usize) -> Option<String> {
+fn reason_against_import(krate: &CrateSource, order: &Order, from: usize, to: usize) -> Option<String> {
     let [from, to] = [from, to].map(|file| &krate.modules.modules[krate.modules.files[file].module].path);
     let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
     let folder = krate.folder(&from[..common]);
@@ -148,7 +148,7 @@ fn reason_against_import(krate: &ReadCrate, order: &Order, from: usize, to: usiz
     }
 }
 
-fn check_circles(krate: &ReadCrate) -> Vec<String> {
+fn check_circles(krate: &CrateSource) -> Vec<String> {
     let describe = |circle: &Vec<&Import>| {
         let first = circle[0];
         let mut text =

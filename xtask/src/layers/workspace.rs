@@ -21,12 +21,14 @@ pub struct Crate {
     pub dependencies: Vec<Dependency>,
 }
 
+/// The library of a crate.
 pub struct Library {
     /// The name in paths, such as `sscc_io`.
     pub ident: String,
     pub root: PathBuf,
 }
 
+/// A dependency on a crate.
 pub struct Dependency {
     /// The name in paths.
     pub ident: String,

@@ -177,7 +177,7 @@ fn refusals() {
     refused(&["."], &["report.html: it is no report of sscc: "]);
     // A sparse file, which takes no disk space.
     fs::File::create(folder.join("report.html")).unwrap().set_len((256 << 20) + 1).unwrap();
-    refused(&["."], &["report.html: larger than a report may be (256 MiB)"]);
+    refused(&["."], &["report.html: file is larger than 256 MiB, the maximum for a report"]);
     // Options that have no meaning for a folder.
     for option in
         ["--certificates=a", "--modes=a", "--compare-metrics", "--epsilon=0.5", "--weld=on", "--threads=1"]

@@ -77,7 +77,7 @@ fn show_report(args: &View, report: &Path) -> Result<Outcome> {
     }
     ensure!(
         fs::metadata(report).map_or(0, |file| file.len()) <= MAX_REPORT_BYTES,
-        "{}: larger than a report may be ({} MiB)",
+        "{}: file is larger than {} MiB, the maximum for a report",
         report.display(),
         MAX_REPORT_BYTES >> 20
     );
