@@ -1,7 +1,7 @@
 //! Queries self-collisions in every step of a simulation loop, until the first contact.
 //!
-//! The shape is the embedded spring, and each of its modes is a damped oscillator. A force of growing amplitude shakes all
-//! of them at the frequency of one, until coils of the spring touch.
+//! The shape is the embedded spring, and each of its modes is a damped oscillator. A force of growing amplitude shakes
+//! all of them at the frequency of one, until coils of the spring touch.
 //!
 //! `cargo run --release -p sscc-examples --example simulation_loop`
 #![allow(clippy::print_stdout)]

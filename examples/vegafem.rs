@@ -1,5 +1,5 @@
-//! Measures queries of a VegaFEM model along a trajectory, and shows how a centre helps if the shape moves about another
-//! pose than rest.
+//! Measures queries of a VegaFEM model along a trajectory, and shows how a centre helps if the shape moves about
+//! another pose than rest.
 //!
 //! `cargo run --release -p sscc-examples --example vegafem [MESH.obj MODES.U]`
 #![allow(clippy::print_stdout)]
@@ -40,8 +40,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut query = Query::new(&model, &certificates)?;
     check("growing", &mut query, growing)?;
 
-    // The shape may have settled in another pose, for example under its weight. Here that pose is half of the safe scale
-    // of mode 0 in the negative direction. The shape swings about it with a small amplitude.
+    // The shape may have settled in another pose, for example under its weight. Here that pose is half of the safe
+    // scale of mode 0 in the negative direction. The shape swings about it with a small amplitude.
     let mut settled = rest.clone();
     settled[0] = -1.0;
     let safe = query.safe_scale(&settled)?;
@@ -62,8 +62,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns frame i of an oscillation about a pose, at the distance `size` from it in the model's metric. Every mode has its
-/// own frequency.
+/// Returns frame i of an oscillation about a pose, at the distance `size` from it in the model's metric. Every mode has
+/// its own frequency.
 fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
     let time = i as f64 / FRAMES as f64;
     let turns = |k: usize| (3.0 + 0.7 * k as f64) * time + 0.13 * (1 + k) as f64;

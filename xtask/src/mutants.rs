@@ -1,8 +1,8 @@
-//! `cargo xtask mutants`: checks that the tests catch each wrong variant in `crates/sscc/src/mutants/list.rs`. Arguments
-//! select mutations by name.
+//! `cargo xtask mutants`: checks that the tests catch each wrong variant in `crates/sscc/src/mutants/list.rs`.
+//! Arguments select mutations by name.
 //!
-//! The task builds the core once with all mutations. The tests must pass without any mutation. With a mutation, the test
-//! in the list must reach the wrong code and fail.
+//! The task builds the core once with all mutations. The tests must pass without any mutation. With a mutation, the
+//! test in the list must reach the wrong code and fail.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -142,7 +142,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns `cargo test` for the core with all mutations and with all random cases, since few cases catch some mutations.
+/// Returns `cargo test` for the core with all mutations and with all random cases, since few cases catch some
+/// mutations.
 fn cargo_test(targets: impl IntoIterator<Item = &'static str>) -> Command {
     let mut command = cargo();
     command.args(["test", "--quiet", "--package", "sscc", "--features", "mutants"]);

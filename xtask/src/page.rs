@@ -1,5 +1,5 @@
-//! `cargo xtask page`: builds the page from `viewer/`, and compares it with the one that is checked in. With `--test` it
-//! also runs the page's tests in a browser.
+//! `cargo xtask page`: builds the page from `viewer/`, and compares it with the one that is checked in. With `--test`
+//! it also runs the page's tests in a browser.
 
 use std::env;
 use std::fs;

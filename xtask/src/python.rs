@@ -2,8 +2,8 @@
 //! tests there.
 //!
 //! The environment is `python/.venv`. The task makes it anew when the requirements or the interpreter change.
-//! `SSCC_PYTHON` names the interpreter; the default is `python3`. The tests are skipped without an interpreter of version
-//! 3.11 or later, or without the packages, which are downloaded once.
+//! `SSCC_PYTHON` names the interpreter; the default is `python3`. The tests are skipped without an interpreter of
+//! version 3.11 or later, or without the packages, which are downloaded once.
 
 use std::env;
 use std::fs;

@@ -25,8 +25,8 @@ impl Tally {
         self.failed += count(result, "failed");
     }
 
-    /// Adds a line `3 passed, 1 skipped in 0.12s` of pytest, and ignores all other lines. Skipped tests count as passed,
-    /// as in Rust's harness; the log lists them.
+    /// Adds a line `3 passed, 1 skipped in 0.12s` of pytest, and ignores all other lines. Skipped tests count as
+    /// passed, as in Rust's harness; the log lists them.
     pub fn add_pytest(&mut self, line: &str) {
         let line = line.trim_matches(['=', ' ']);
         let ends_in_time =

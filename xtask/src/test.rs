@@ -1,8 +1,8 @@
 //! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
 //! package and of the page. With arguments for `cargo test` it runs the tests of the crates only.
 //!
-//! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the last
-//! line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
+//! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
+//! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -116,7 +116,8 @@ pub struct Modes {
     /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,
-    /// Cubes along the longest side of the lattice around a surface [default: as many as make about 20,000 cubes in all]
+    /// Cubes along the longest side of the lattice around a surface [default: as many as make about 20,000 cubes in
+    /// all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub resolution: Option<u32>,
     #[command(flatten)]
@@ -165,7 +166,8 @@ pub struct Model {
     pub mesh_name: Option<String>,
 }
 
-/// How to compute certificates. Each option may be absent, so a flag that contradicts given certificates can be refused.
+/// How to compute certificates. Each option may be absent, so a flag that contradicts given certificates can be
+/// refused.
 #[derive(Debug, Args)]
 pub struct Options {
     /// Relative error of the root's radius, and of other radii that are not much larger; between 0 and 1 [default: 0.1]
@@ -287,8 +289,8 @@ pub struct Check {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
-    /// Answer continuous queries (CCD) from each q of the trajectory to the next, every vertex on a straight line, with a
-    /// time of impact from 0 to 1 for each pair; for the tolerance see docs/guarantees.md in the repository
+    /// Answer continuous queries (CCD) from each q of the trajectory to the next, every vertex on a straight line, with
+    /// a time of impact from 0 to 1 for each pair; for the tolerance see docs/guarantees.md in the repository
     #[arg(long, conflicts_with_all = ["q", "pose"])]
     pub continuous: bool,
     /// The method of the search; all methods give the same answer

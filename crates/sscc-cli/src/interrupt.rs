@@ -20,8 +20,8 @@ static INTERRUPTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 /// Installs the signal handlers.
 pub fn install_handlers() {
     for signal in [SIGINT, SIGTERM] {
-        // In this order, only the second interrupt finds the flag set. If a handler cannot be installed, the signal ends
-        // the program at once. That is safe, too, because files appear whole or not at all.
+        // In this order, only the second interrupt finds the flag set. If a handler cannot be installed, the signal
+        // ends the program at once. That is safe, too, because files appear whole or not at all.
         let _ =
             flag::register_conditional_shutdown(signal, EXIT_INTERRUPTED.into(), Arc::clone(&INTERRUPTED));
         let _ = flag::register(signal, Arc::clone(&INTERRUPTED));

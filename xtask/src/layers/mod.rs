@@ -2,11 +2,11 @@
 //! of a crate, and that no files form a circle. `--graph` prints the layers as a diagram, `--graph sscc` those of one
 //! crate.
 //!
-//! An import is any path to an item of another file: in a `use`, in code, in the arguments of a macro or an attribute, in
-//! the body of a `macro_rules!`. It imports the file that defines the item. The tool follows re-exports to that file, and
-//! counts a re-export as an import by the file that contains it. `Type::function` also imports the file of the `impl`
-//! block. A glob imports all that it makes visible. `mod x;` is not an import, nor is `use` of a module; a path to an item
-//! of the module is.
+//! An import is any path to an item of another file: in a `use`, in code, in the arguments of a macro or an attribute,
+//! in the body of a `macro_rules!`. It imports the file that defines the item. The tool follows re-exports to that
+//! file, and counts a re-export as an import by the file that contains it. `Type::function` also imports the file of
+//! the `impl` block. A glob imports all that it makes visible. `mod x;` is not an import, nor is `use` of a module; a
+//! path to an item of the module is.
 //!
 //! The tool ignores items for tests (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/` and
 //! `build.rs`.

@@ -40,7 +40,8 @@ pub struct SourceFile {
 
 /// A module, in a file of its own or inline.
 pub struct Module {
-    /// The names of its parents and its own name, the outermost first; empty for the first module of a library or program.
+    /// The names of its parents and its own name, the outermost first; empty for the first module of a library or
+    /// program.
     pub path: Vec<String>,
     pub parent: Option<usize>,
     pub file: usize,

@@ -131,8 +131,8 @@ impl Modules {
         Ok(())
     }
 
-    /// Adds a `macro_rules!` to its module and, if it is exported, to the first module of the crate. Calls by name alone
-    /// use `macros`.
+    /// Adds a `macro_rules!` to its module and, if it is exported, to the first module of the crate. Calls by name
+    /// alone use `macros`.
     fn add_macro(&mut self, module: usize, item: &ItemMacro) {
         let Some(ident) = &item.ident else { return };
         let at = &self.modules[module];

@@ -46,7 +46,8 @@ impl CrateSource {
         self.modules.files[file].path.display().to_string()
     }
 
-    /// Returns the name of a folder of modules in `layers.toml`, such as `sscc/query`; without modules, the crate's name.
+    /// Returns the name of a folder of modules in `layers.toml`, such as `sscc/query`; without modules, the crate's
+    /// name.
     pub fn folder(&self, modules: &[String]) -> String {
         let name = std::slice::from_ref(&self.manifest.name);
         [name, modules].concat().join("/")

@@ -28,8 +28,8 @@ fn at_end(targets: Targets) -> Targets {
 }
 
 impl Modules {
-    /// Returns the targets of a path in a module: several if a name has several meanings, none outside of the workspace.
-    /// A name that a module lacks counts as an item of its file, because a macro made it.
+    /// Returns the targets of a path in a module: several if a name has several meanings, none outside of the
+    /// workspace. A name that a module lacks counts as an item of its file, because a macro made it.
     pub fn resolve(&self, module: usize, path: &[String]) -> Targets {
         at_end(Resolver::new(self).path(module, path, false).unwrap_or_default())
     }
@@ -111,8 +111,8 @@ impl<'a> Resolver<'a> {
         Self { modules, open: BTreeSet::new() }
     }
 
-    /// Returns the targets of a path; none if the first name is unknown, and so outside of the workspace. With `goes_on`
-    /// only modules and types count, because a path cannot continue after a function.
+    /// Returns the targets of a path; none if the first name is unknown, and so outside of the workspace. With
+    /// `goes_on` only modules and types count, because a path cannot continue after a function.
     fn path(&mut self, module: usize, path: &[String], goes_on: bool) -> Option<Targets> {
         let (first, mut rest) = path.split_first()?;
         let mut reached = match first.as_str() {

@@ -7,8 +7,8 @@ use super::order::FILE;
 use super::read::Workspace;
 use super::rules::Violation;
 
-/// Returns the numbers of crates, files and imports (pairs of a file and a file or crate that it imports), and the longest
-/// chain of files that import each other.
+/// Returns the numbers of crates, files and imports (pairs of a file and a file or crate that it imports), and the
+/// longest chain of files that import each other.
 pub fn summary(workspace: &Workspace) -> String {
     let files: usize = workspace.crates.iter().map(|krate| krate.modules.files.len()).sum();
     let imports = workspace.crates.iter().map(|krate| {

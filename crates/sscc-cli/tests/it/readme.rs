@@ -14,8 +14,8 @@ fn block<'a>(text: &'a str, language: &str) -> &'a str {
     rest.split_once("```").unwrap().0
 }
 
-/// The example is a project beside a copy of this one. It gets paths of the crates and the lock file, so that nothing is
-/// downloaded, and nothing else of the workspace.
+/// The example is a project beside a copy of this one. It gets paths of the crates and the lock file, so that nothing
+/// is downloaded, and nothing else of the workspace.
 #[test]
 fn the_rust_example_is_a_project_of_its_own() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
