@@ -114,7 +114,7 @@ class Certificates:
     """Certificates of a model, and queries. Any number of threads may use them at once.
 
     ``docs/guarantees.md`` states what each answer proves, and its error. Each call copies its arrays first, so later
-    writes to them change nothing. All radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
+    writes to them change nothing. Radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
     """
 
     @classmethod

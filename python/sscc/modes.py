@@ -12,7 +12,7 @@ Common arguments:
 - ``resolution``: number of cubes along the longest side of the lattice; None: about 20,000 cubes in all.
 - ``threads``, ``progress``: as in ``Model.certify``.
 
-All functions raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
+All raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
 """
 
 from __future__ import annotations

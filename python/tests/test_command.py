@@ -76,8 +76,9 @@ def test_modes_in_files_and_in_memory_are_the_same(tmp_path: Path, command: Path
     for number, shape in enumerate((modes, modes.reshape(-1, 3), np.moveaxis(modes, 2, 0))):
         path = tmp_path / f"{number}.npy"
         np.save(path, shape)
-        (result,) = lines(command, "certify", tmp_path / "a.obj", "--modes", path, "-o", tmp_path / "a.sscc.safetensors")
+        output = tmp_path / "a.sscc.safetensors"
+        (result,) = lines(command, "certify", tmp_path / "a.obj", "--modes", path, "-o", output)
         certs = sscc.Model(vertices, faces, shape).certify()
         assert result["root_radius"] == certs.root_radius
-        read = sscc.Certificates.load(tmp_path / "a.sscc.safetensors", sscc.Model.load(tmp_path / "a.obj", path))
+        read = sscc.Certificates.load(output, sscc.Model.load(tmp_path / "a.obj", path))
         assert read.digest == certs.digest

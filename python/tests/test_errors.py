@@ -127,7 +127,7 @@ QS: list[tuple[Any, type[Exception], str]] = [
 
 
 @pytest.mark.parametrize(("q", "error", "message"), QS, ids=[m for _, _, m in QS])
-def test_invalid_configurations_are_refused(certs: sscc.Certificates, q: Any, error: type[Exception], message: str) -> None:
+def test_invalid_q_are_refused(certs: sscc.Certificates, q: Any, error: type[Exception], message: str) -> None:
     good = np.zeros(6)
     calls: dict[str, list[Callable[[], object]]] = {
         "q": [
