@@ -33,8 +33,9 @@ impl KineticQuery {
                 Ok(Answer::of(pairs, query.norm(), query.statistics()))
             })
         })?;
-        let found = found
-            .ok_or_else(|| PyRuntimeError::new_err("this thread uses the KineticQuery already: use another one"))?;
+        let found = found.ok_or_else(|| {
+            PyRuntimeError::new_err("this thread uses the KineticQuery already: use another one")
+        })?;
         found.map_err(|error: Error| refused(&error, "q"))
     }
 }

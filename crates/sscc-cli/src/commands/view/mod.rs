@@ -83,7 +83,7 @@ fn show_report(args: &View, report: &Path) -> Result<Outcome> {
     );
     let bytes = sscc_io::read_whole(report)
         .context("a folder is shown by the report in it, as sscc simulate writes it")?;
-    let html = Report::shown_anew(&String::from_utf8_lossy(&bytes));
+    let html = Report::rebuild(&String::from_utf8_lossy(&bytes));
     let html = html.with_context(|| report.display().to_string())?;
     let server = bind(args)?;
     announce(args, &server)?;
