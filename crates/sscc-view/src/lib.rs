@@ -1,8 +1,8 @@
 //! The page of sscc: its data ([`Scene`], [`Arrays`]), reports in one file ([`Report`], [`simulation_report`],
 //! [`Animation`]), and the answers of a live page by native queries ([`Live`]).
 //!
-//! The page is one HTML file that loads no other file, built from the folder `viewer/` and kept in `page/`. A report has
-//! its data in the file; a live page requests them. Both use the same JSON and the same arrays. The cargo feature
+//! The page is one HTML file that loads no other file, built from the folder `viewer/` and kept in `page/`. A report
+//! has its data in the file; a live page requests them. Both use the same JSON and the same arrays. The cargo feature
 //! `server` adds the server of live pages: programs that only write reports link no HTTP parser. The feature `picture`
 //! adds pictures of certified deformations (`Picture`).
 

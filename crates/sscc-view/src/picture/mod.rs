@@ -29,8 +29,8 @@ pub struct Picture {
 
 impl Picture {
     /// Draws the shape at the centre (left), and at `|z|` equal to the root's radius along the first modes: one column
-    /// for each, with `+` above `-`. All views have the same direction and scale. The colour shows the displacement from
-    /// the shape at the centre. If the radius is 0 or infinite, the picture shows only that shape.
+    /// for each, with `+` above `-`. All views have the same direction and scale. The colour shows the displacement
+    /// from the shape at the centre. If the radius is 0 or infinite, the picture shows only that shape.
     ///
     /// # Errors
     /// If the certificates belong to another model, or the picture cannot be encoded.

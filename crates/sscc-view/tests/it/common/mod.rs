@@ -14,8 +14,8 @@ use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
 /// Number of vertices of a strip.
 const STRIP: usize = 40;
 
-/// Two strips of triangles at distance 1, one above the other. Mode 0 lowers the upper strip, mode 1 shifts it along its
-/// length, mode 2 bends its end down.
+/// Two strips of triangles at distance 1, one above the other. Mode 0 lowers the upper strip, mode 1 shifts it
+/// lengthwise, mode 2 bends its end down.
 pub fn strips() -> (ReducedModel, Certificates) {
     let vertex = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
     let positions = [0.0, 1.0].map(|z| (0..STRIP).map(|i| vertex(i, z)).collect::<Vec<_>>()).concat();
