@@ -15,7 +15,7 @@ export class Checker {
     /** Whether answers list the opened and culled nodes. */
     nodes = false;
     /** The serial of the last request. */
-    asked = -1;
+    lastSerial = -1;
     private isInFlight = false;
     private waiting: CheckRequest | null = null;
     private readonly listeners: (() => void)[] = [];
@@ -29,7 +29,7 @@ export class Checker {
     /** The answer; null if a later q replaced this one, or there was no answer. */
     check(q: Float64Array, serial: number): Promise<Answer | null> {
         this.waiting?.settle(null);
-        this.asked = serial;
+        this.lastSerial = serial;
         return new Promise((settle) => {
             this.waiting = { q, serial, settle };
             void this.send();

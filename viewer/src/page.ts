@@ -74,7 +74,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         stage?.draw();
     };
     pose.onChange(() => {
-        if (checker && checker.asked < pose.serial) void checker.check(pose.q, pose.serial);
+        if (checker && checker.lastSerial < pose.serial) void checker.check(pose.q, pose.serial);
         player.explore();
         shared.body?.setQ(0, pose.q);
         marks(shared);

@@ -190,9 +190,9 @@ describe("live", () => {
             const held = new Promise((done) => {
                 release = done;
             });
-            const asked = [];
+            const serials = [];
             await page.route("**/api/check", async (route) => {
-                asked.push(route.request().postDataJSON().serial);
+                serials.push(route.request().postDataJSON().serial);
                 await held;
                 await route.continue();
             });
@@ -205,12 +205,12 @@ describe("live", () => {
             await show(page, fewPairs().q);
             await settled(page);
             assert.equal(await verdict(page), "checking…");
-            assert.equal(asked.length, 1);
+            assert.equal(serials.length, 1);
             release();
             await answered(page);
             assert.match(await verdict(page), /^COLLIDING/);
-            assert.equal(asked.length, 2);
-            assert.equal(asked[1], await page.evaluate(() => globalThis.sscc.pose.serial));
+            assert.equal(serials.length, 2);
+            assert.equal(serials[1], await page.evaluate(() => globalThis.sscc.pose.serial));
         }));
 
     test("there are answers while the mouse drags a slider", () =>

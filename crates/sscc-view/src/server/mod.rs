@@ -4,8 +4,7 @@
 //! the token of the address, a `Host` of this machine (against DNS rebinding) and, if an `Origin` is present, the
 //! page's own. Limits apply to heads, bodies, times and the number of connections.
 //!
-//! The server uses only the parser `httparse`. tiny_http 0.12 has no limits on time or connections; hyper has them, but
-//! adds an asynchronous runtime.
+//! The server uses only the parser `httparse` (`docs/notes/2026-11-22-page-server.md`).
 
 mod access;
 mod connection;
