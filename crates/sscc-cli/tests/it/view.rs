@@ -171,10 +171,10 @@ fn refusals() {
     refused(&["mesh.obj"], &["a mesh has no modes"]);
     refused(&["."], &["report.html: not found"]);
     fs::write(folder.join("report.html"), "<html></html>").unwrap();
-    refused(&["."], &["report.html: it is no report of sscc: it has no data"]);
+    refused(&["."], &["report.html: not a report of sscc: it has no data"]);
     fs::write(folder.join("report.html"), "<script type=\"application/json\" id=\"sscc-report\">1</script>")
         .unwrap();
-    refused(&["."], &["report.html: it is no report of sscc: "]);
+    refused(&["."], &["report.html: not a report of sscc: "]);
     // A sparse file, which takes no disk space.
     fs::File::create(folder.join("report.html")).unwrap().set_len((256 << 20) + 1).unwrap();
     refused(&["."], &["report.html: file is larger than 256 MiB, the maximum for a report"]);

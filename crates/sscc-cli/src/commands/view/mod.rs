@@ -83,7 +83,7 @@ fn show_report(args: &View, report: &Path) -> Result<Outcome> {
     );
     let bytes = sscc_io::read_whole(report)
         .context("sscc view shows the report in a folder, as written by sscc simulate or sscc demo --out")?;
-    let html = Report::shown_anew(&String::from_utf8_lossy(&bytes));
+    let html = Report::rebuild(&String::from_utf8_lossy(&bytes));
     let html = html.with_context(|| report.display().to_string())?;
     let server = bind(args)?;
     announce(args, &server)?;
