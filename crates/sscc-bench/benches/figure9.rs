@@ -1,8 +1,8 @@
 //! Draws the paper's Figure 9: the root's radius of the spring over the number of modes, under two metrics.
 //! `cargo bench -p sscc-bench --bench figure9` prints a table and draws `docs/figure9.svg`.
 //!
-//! Both metrics are scaled so that the first mode's weight is 1. The root's radius is then the largest deformation along
-//! the first mode alone that is proven free.
+//! Both metrics are scaled so that the first mode's weight is 1. The root's radius is then the largest deformation
+//! along the first mode alone that is proven free.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;

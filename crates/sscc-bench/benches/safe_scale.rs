@@ -1,8 +1,8 @@
 //! Measures the safe scale relative to the scale at the root's radius: `cargo bench -p sscc-bench --bench safe_scale`.
 //!
-//! For each model the bench takes 1,000 random directions (`z_i = N(0,1) / i`, or `z_i = N(0,1)`), and prints this ratio
-//! and its time. Traditional queries just below the safe scale and at random smaller scales must list no pairs. Real
-//! models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! For each model the bench takes 1,000 random directions (`z_i = N(0,1) / i`, or `z_i = N(0,1)`), and prints this
+//! ratio and its time. Traditional queries just below the safe scale and at random smaller scales must list no pairs.
+//! Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 mod models;

@@ -1,9 +1,9 @@
 //! Measures the computation of modes of solids: `cargo bench -p sscc-bench --bench solids`.
 //!
-//! The bench runs itself once for each row, so that the peak memory is that of one model. It prints time and peak memory
-//! from a surface to 30 nonlinear modes, at the default resolution and over degrees of freedom. It compares the bunny's
-//! first ten frequencies in the default lattice with those in a lattice twice as fine (20 GB of memory; `--quick` omits
-//! this part). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! The bench runs itself once for each row, so that the peak memory is that of one model. It prints time and peak
+//! memory from a surface to 30 nonlinear modes, at the default resolution and over degrees of freedom. It compares the
+//! bunny's first ten frequencies in the default lattice with those in a lattice twice as fine (20 GB of memory;
+//! `--quick` omits this part). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;

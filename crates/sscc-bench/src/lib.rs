@@ -2,8 +2,8 @@
 //!
 //! All methods run in one process and on one thread, interleaved, for the same q in the same order. The time of each
 //! method includes its own moving of vertices and refitting. All exact methods must list the same pairs.
-//! `docs/benchmarks.md` explains the measurement. A scenario measures one model after the other, and returns a record of
-//! each, which is one line of JSON.
+//! `docs/benchmarks.md` explains the measurement. A scenario measures one model after the other, and returns a record
+//! of each, which is one line of JSON.
 //!
 //! A [`sscc_sim::Watch`] follows and cancels long work. The crate prints nothing.
 

@@ -1,4 +1,5 @@
-//! Tables 1 to 3 of the paper beside our results. The paper's times are those of a machine of 2009; ratios can be compared.
+//! Tables 1 to 3 of the paper beside our results. The paper's times are those of a machine of 2009; ratios can be
+//! compared.
 
 use sscc_sim::text::grouped;
 

@@ -1,4 +1,4 @@
-//! State, integrators and collision detection of one body.
+//! Body: state, integrators and self-collision detection.
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
@@ -204,43 +204,43 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// The shape, shared by all bodies that use it.
+    /// Returns the shape, shared by all bodies that use it.
     pub fn shape(&self) -> &'a Shape {
         self.shape
     }
 
-    /// Whether the body has rigid motion (false: it is held).
+    /// Returns whether the body has rigid motion (false: it is held).
     pub fn is_free(&self) -> bool {
         self.is_free
     }
 
-    /// Modal coordinates q (r numbers).
+    /// Returns the modal coordinates q (r numbers).
     pub fn q(&self) -> &[f64] {
         &self.q
     }
 
-    /// Rate of q (r numbers, 1/s).
+    /// Returns the rate of q (r numbers, 1/s).
     pub fn v(&self) -> &[f64] {
         &self.v
     }
 
-    /// Rigid motion of the body.
+    /// Returns the rigid motion of the body.
     pub fn rigid(&self) -> &RigidMotion {
         &self.rigid
     }
 
-    /// Pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
+    /// Returns the pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
     pub fn pose(&self) -> Pose {
         let rotation = self.rotation();
         Pose { rotation, translation: self.rigid.position - rotation * self.shape.mass().center }
     }
 
-    /// Pairs of the body's triangles that collided at the start of the last step.
+    /// Returns the pairs of the body's triangles that collided at the start of the last step.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// Kinetic and elastic energy, without the potential energy of gravity.
+    /// Returns kinetic and elastic energy, without the potential energy of gravity.
     pub fn energy(&self) -> f64 {
         let elastic = match &self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.energy(&self.q, &self.v),
@@ -249,24 +249,24 @@ impl<'a> Body<'a> {
         elastic + self.rigid.energy()
     }
 
-    /// Kinetic energy of rigid motion and vibration.
+    /// Returns the kinetic energy of rigid motion and vibration.
     pub fn kinetic_energy(&self) -> f64 {
         self.v.iter().map(|v| v * v / 2.0).sum::<f64>() + self.rigid.energy()
     }
 
-    /// Potential energy of the weight, and of the load on a held body.
+    /// Returns the potential energy of the weight, and of the load on a held body.
     pub fn potential(&self, gravity: DVec3) -> f64 {
         let load: f64 = self.load.iter().zip(&self.q).map(|(f, q)| f * q).sum();
         -self.shape.mass().mass * gravity.dot(self.rigid.position) - load
     }
 
-    /// Positions of the corners of a triangle, in axes of the rest pose.
+    /// Returns the positions of the corners of a triangle, in axes of the rest pose.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let model = self.shape.model();
         model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.q))
     }
 
-    /// Rotation from axes of the rest pose to axes of the world.
+    /// Returns the rotation from axes of the rest pose to axes of the world.
     pub(crate) fn rotation(&self) -> DMat3 {
         DMat3::from_quat(self.rigid.orientation)
     }

@@ -109,9 +109,9 @@ impl Contact {
         (self.bodies, (self.anchors[0].triangle, self.anchors[1].triangle))
     }
 
-    /// Computes the geometry of a new contact, in memory that another contact may have used. `corners` are the positions
-    /// of the triangles' corners: in axes of the body for a contact within one body, else of the world. Returns false if
-    /// the triangles make no contact: see [`ContactGeometry::of`].
+    /// Computes the geometry of a new contact, in memory that another contact may have used. `corners` are the
+    /// positions of the triangles' corners: in axes of the body for a contact within one body, else of the world.
+    /// Returns false if the triangles make no contact: see [`ContactGeometry::of`].
     pub fn begin(
         &mut self,
         indices: [u32; 2],

@@ -16,7 +16,7 @@ pub struct ContactOptions {
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// Distance at which bodies in contact are held apart (model unit). None: a thousandth of the smallest body's
+    /// Distance that contacts keep between bodies (model unit). None: a thousandth of the smallest body's
     /// radius. A spring holds a resting body within this distance, so it stays free of collisions if the spring can
     /// bear the weight: `(2 pi frequency)^2 skin` must be well above the acceleration of gravity.
     pub skin: Option<f64>,
@@ -31,13 +31,13 @@ impl Default for ContactOptions {
 }
 
 impl ContactOptions {
-    /// Angular frequency (rad/s).
+    /// Returns the angular frequency (rad/s).
     pub fn rate(&self) -> f64 {
         std::f64::consts::TAU * self.frequency
     }
 
-    /// Coefficient of restitution for short steps: `exp(-zeta t)`, where t is the time, times the angular frequency, at
-    /// which the force of spring and damper ends.
+    /// Returns the coefficient of restitution for short steps: `exp(-zeta t)`, where t is the time, times the angular
+    /// frequency, at which the force of spring and damper ends.
     pub fn restitution(&self) -> f64 {
         let zeta = self.damping;
         // x'' + 2 zeta x' + x = 0 from x = 0, x' = 1; the contact ends when 2 zeta x' + x = 0.

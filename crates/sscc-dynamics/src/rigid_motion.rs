@@ -23,8 +23,8 @@ pub struct RigidMotion {
     pub angular_momentum: DVec3,
 }
 
-/// Maximum number of iterations for the angular velocity at the middle of a step. Each iteration multiplies the error by
-/// about the angle of the step.
+/// Maximum number of iterations for the angular velocity at the middle of a step. Each iteration multiplies the error
+/// by about the angle of the step.
 const MAX_ITERATIONS: usize = 20;
 
 impl RigidMotion {
@@ -108,16 +108,16 @@ mod tests {
         body.momentum = DVec3::new(1.0, -2.0, 0.5);
         body.angular_momentum = DVec3::new(2.3, 4.5, -1.9); // near the middle axis: it tumbles
         let (momentum, angular, energy) = (body.momentum, body.angular_momentum, body.energy());
-        let mut turned = 0.0_f64;
+        let mut max_change = 0.0_f64;
         for _ in 0..10_000 {
             body.advance(1e-2);
-            turned = turned.max((body.orientation * DVec3::Y - DVec3::Y).length());
+            max_change = max_change.max((body.orientation * DVec3::Y - DVec3::Y).length());
             assert!((body.energy() / energy - 1.0).abs() < 1e-3);
         }
         assert_eq!((body.momentum, body.angular_momentum), (momentum, angular));
         let expected = DVec3::new(1.0, 2.0, 3.0) + momentum / 3.0 * 100.0;
         assert!((body.position - expected).length() < 1e-9);
-        assert!(turned > 1.5, "{turned}");
+        assert!(max_change > 1.5, "{max_change}");
     }
 
     #[test]

@@ -31,8 +31,9 @@ pub struct Request {
     pub threads: Option<usize>,
 }
 
-/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the files
-/// of the result. A motion that diverges and a cancellation are no errors but the result's failure: its states are kept.
+/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the
+/// files of the result. Divergence and cancellation are not errors: [`FinishedRun::failure`] holds them, and the states
+/// are kept.
 ///
 /// # Errors
 /// When the scene or a model cannot be read, the folder cannot be written to, or no step was made.

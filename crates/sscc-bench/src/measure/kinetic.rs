@@ -1,5 +1,5 @@
-//! Times kinetic queries over the steps of a scene. Each query depends on earlier steps, so no step can be measured alone
-//! or repeated.
+//! Times kinetic queries over the steps of a scene. Each query depends on earlier steps, so no step can be measured
+//! alone or repeated.
 
 use sscc::{KineticQuery, Progress, Query};
 use sscc_sim::CertifiedModel;

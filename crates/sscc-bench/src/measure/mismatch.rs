@@ -6,9 +6,9 @@ use sscc_testing::first_contact;
 
 use super::distance::distance_triangle_triangle;
 
-/// Returns whether a pair that some methods list for a motion and others do not proves one of them wrong. It does if the
-/// two triangles have a common point during the motion (exact arithmetic on the positions at both ends), or if their
-/// distance exceeds [`Impact::TOLERANCE`] at the listed time. Every other pair may be listed or not.
+/// Returns whether a pair that some methods list for a motion and others do not proves one of them wrong. It does if
+/// the two triangles have a common point during the motion (exact arithmetic on the positions at both ends), or if
+/// their distance exceeds [`Impact::TOLERANCE`] at the listed time. Every other pair may be listed or not.
 pub fn is_mismatch(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Impact) -> bool {
     let faces = model.mesh().faces();
     let moving = |t: u32| {

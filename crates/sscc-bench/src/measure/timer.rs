@@ -1,7 +1,8 @@
 //! Times all methods, interleaved.
 //!
-//! The methods run one after the other on blocks of steps. Other load of the machine then affects all of them alike. Each
-//! method finds the data of its own last query in the processor's caches, as in a program that uses one method only.
+//! The methods run one after the other on blocks of steps. Other load of the machine then affects all of them alike.
+//! Each method finds the data of its own last query in the processor's caches, as in a program that uses one method
+//! only.
 
 use super::clock::{median, milliseconds};
 use super::step::Step;

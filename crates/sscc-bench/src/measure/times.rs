@@ -19,7 +19,8 @@ pub struct Times {
 }
 
 impl Times {
-    /// Returns the milliseconds of one method on the steps on which it ran; with several engines, those of the faster one.
+    /// Returns the milliseconds of one method on the steps on which it ran; with several engines, those of the faster
+    /// one.
     pub fn of(&self, key: &str) -> Vec<(usize, f64)> {
         if key == KINETIC {
             return self.kinetic.iter().copied().enumerate().collect();

@@ -102,8 +102,8 @@ pub struct SceneTotals {
 }
 
 impl Record {
-    /// Creates the record of `objects` bodies of one model. `scene` has the totals of the whole scene; None if the measured
-    /// steps are the whole scene.
+    /// Creates the record of `objects` bodies of one model. `scene` has the totals of the whole scene; None if the
+    /// measured steps are the whole scene.
     pub fn new(
         scenario: String,
         share: f64,

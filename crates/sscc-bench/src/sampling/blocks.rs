@@ -8,13 +8,13 @@ use super::strata::{Counts, Stratum};
 /// Number of blocks, one in each of as many equal parts of the scene.
 const BLOCKS: usize = 10;
 
-/// Chooses `wanted` steps of a scene, in blocks of consecutive steps, one in each of ten equal parts of the scene. Returns
-/// their numbers, ascending.
+/// Chooses `wanted` steps of a scene, in blocks of consecutive steps, one in each of ten equal parts of the scene.
+/// Returns their numbers, ascending.
 ///
-/// All blocks begin equally far into their parts. The shift is the one with the most strata in the blocks, then with the
-/// most steps of rare strata (one landing may have all steps that are not certified), then with shares of the strata
-/// nearest to those of the scene. If a stratum is still missing, one block is shifted to it within its part. Only strata
-/// decide, never costs. Weights correct the shares of rare strata.
+/// All blocks begin equally far into their parts. The shift is the one with the most strata in the blocks, then with
+/// the most steps of rare strata (one landing may have all steps that are not certified), then with shares of the
+/// strata nearest to those of the scene. If a stratum is still missing, one block is shifted to it within its part.
+/// Only strata decide, never costs. Weights correct the shares of rare strata.
 pub fn blocks(of: &[Stratum], wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(of.len());
     let layout = Layout::new(of, BLOCKS.min(wanted), wanted);
@@ -86,8 +86,8 @@ impl Layout {
         })
     }
 
-    /// Rates shifts: the number of strata in the blocks; the number of steps of each stratum, up to half of an even share;
-    /// the difference of the shares from those of the scene; the sum of the shifts (smaller is better).
+    /// Rates shifts: the number of strata in the blocks; the number of steps of each stratum, up to half of an even
+    /// share; the difference of the shares from those of the scene; the sum of the shifts (smaller is better).
     fn fitness(&self, shifts: &[usize]) -> (usize, usize, Reverse<usize>, Reverse<usize>) {
         let mut counts = [0; 3];
         for steps in self.steps(shifts) {

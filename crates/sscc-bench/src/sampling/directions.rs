@@ -16,8 +16,8 @@ pub fn directions(model: &ReducedModel, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|_| direction()).collect()
 }
 
-/// Returns for each direction the q along it at which the largest displacement of a vertex is half the diagonal of the rest
-/// AABB.
+/// Returns for each direction the q along it at which the largest displacement of a vertex is half the diagonal of the
+/// rest AABB.
 pub fn unit_displacements(model: &ReducedModel, directions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let half = half_diagonal(model);
     directions.iter().map(|dir| scaled(dir, half / largest_displacement(model, dir))).collect()

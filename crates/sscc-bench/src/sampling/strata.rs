@@ -1,10 +1,11 @@
 //! Strata of the steps of a scene: the choice of compared steps, and their weights.
 //!
-//! A query costs nanoseconds where the root's certificate holds and milliseconds where bodies nearly touch. In most scenes
-//! the first case is by far the most frequent. Steps are therefore divided into three strata, and means are those of
-//! stratified sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted by the
-//! stratum's share of the whole scene, for any number of drawn steps. Such a mean is an unbiased estimate of the mean over
-//! the whole scene if the measured steps of a stratum represent the others. Experiment: docs/notes/2026-11-23-strata.md.
+//! A query costs nanoseconds where the root's certificate holds and milliseconds where bodies nearly touch. In most
+//! scenes the first case is by far the most frequent. Steps are therefore divided into three strata, and means are
+//! those of stratified sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted
+//! by the stratum's share of the whole scene, for any number of drawn steps. Such a mean is an unbiased estimate of the
+//! mean over the whole scene if the measured steps of a stratum represent the others. Experiment:
+//! docs/notes/2026-11-23-strata.md.
 
 use crate::random::Random;
 
@@ -52,7 +53,8 @@ pub struct Strata {
 }
 
 impl Strata {
-    /// Creates the strata of some steps. `scene` counts all steps of the scene; None if the given steps are the whole scene.
+    /// Creates the strata of some steps. `scene` counts all steps of the scene; None if the given steps are the whole
+    /// scene.
     pub fn new(of: Vec<Stratum>, scene: Option<Counts>) -> Self {
         let scene = scene.unwrap_or_else(|| Stratum::counts(of.iter().copied()));
         Self { of, scene }
@@ -68,15 +70,16 @@ impl Strata {
         Stratum::counts(steps.iter().map(|step| self.of[*step]))
     }
 
-    /// Draws at most `count` of the steps. Returns them ascending: equally many of each stratum that occurs, if it has as
-    /// many, and at least one. In most scenes the root certifies nearly all steps, which cost nearly the same. A draw in
-    /// proportion would have only one or two of the other steps, whose costs differ.
+    /// Draws at most `count` of the steps. Returns them ascending: equally many of each stratum that occurs, if it has
+    /// as many, and at least one. In most scenes the root certifies nearly all steps, which cost nearly the same. A
+    /// draw in proportion would have only one or two of the other steps, whose costs differ.
     pub fn draw(&self, count: usize) -> Vec<usize> {
         self.draw_by(count, &mut Random(SEED))
     }
 
-    /// Draws with this generator. Each stratum is divided into stretches of equal length, and one step is drawn in each, at
-    /// a random place that is the same in all stretches. Every step of a stratum thus has the same probability.
+    /// Draws with this generator. Each stratum is divided into stretches of equal length, and one step is drawn in
+    /// each, at a random place that is the same in all stretches. Every step of a stratum thus has the same
+    /// probability.
     fn draw_by(&self, count: usize, random: &mut Random) -> Vec<usize> {
         let own = |stratum: usize| -> Vec<usize> {
             (0..self.of.len()).filter(|step| self.of[*step] as usize == stratum).collect()
@@ -96,8 +99,8 @@ impl Strata {
         drawn
     }
 
-    /// Returns the weight of each of some steps in a mean over the scene. Each stratum among them is weighted by its number
-    /// of steps in the scene.
+    /// Returns the weight of each of some steps in a mean over the scene. Each stratum among them is weighted by its
+    /// number of steps in the scene.
     pub fn weights(&self, steps: &[usize]) -> Vec<f64> {
         let counts = self.counts(steps);
         let weight = |step: &usize| {

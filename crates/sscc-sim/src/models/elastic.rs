@@ -74,8 +74,8 @@ impl ElasticModes {
     }
 }
 
-/// Computes a model of a solid with fixed vertices (numbers of the solid, ascending). Without a rank it has 20 linear or
-/// 30 nonlinear modes. `name` is that of the source, for the provenance.
+/// Computes a model of a solid with fixed vertices (numbers of the solid, ascending). Without a rank it has 20 linear
+/// or 30 nonlinear modes. `name` is that of the source, for the provenance.
 ///
 /// # Errors
 /// When polynomial modes are requested with a rank or fixed vertices, the material is out of range, the solid has fewer

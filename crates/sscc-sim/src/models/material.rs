@@ -12,8 +12,8 @@ pub struct MaterialOrigin {
 }
 
 impl MaterialOrigin {
-    /// Describes a material: `stated` are the numbers of a file for the materials of the body's elements, and the numbers
-    /// of `given` replace them.
+    /// Describes a material: `stated` are the numbers of a file for the materials of the body's elements, and the
+    /// numbers of `given` replace them.
     pub fn new(given: &PartialMaterial, stated: &[PartialMaterial]) -> Self {
         let known = stated.iter().fold(PartialMaterial::default(), |known, stated| known.or(stated));
         let replaced = PartialMaterial {

@@ -8,8 +8,8 @@ use sscc_modes::pca_modes;
 use super::new_model::{Components, NewModel};
 use crate::SimError;
 
-/// Computes a model from the mean and the principal components of frames with the faces of `mesh`. Without a rank it has
-/// as many components as explain 99.9% of the variance. `name` describes the frames, for the provenance.
+/// Computes a model from the mean and the principal components of frames with the faces of `mesh`. Without a rank it
+/// has as many components as explain 99.9% of the variance. `name` describes the frames, for the provenance.
 ///
 /// # Errors
 /// When there are too few frames, all frames are equal, or `progress` cancels.

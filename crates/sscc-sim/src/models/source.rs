@@ -54,8 +54,8 @@ impl SolidSource {
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 
-    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side. Numbers
-    /// of `material` override those of the file.
+    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
+    /// Numbers of `material` override those of the file.
     ///
     /// # Errors
     /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
@@ -71,10 +71,7 @@ impl SolidSource {
         }
         let file = read_volume_mesh(path)?;
         if resolution.is_some() {
-            return Err(SimError::refused(
-                "--resolution is for surfaces",
-                "this file brings its own elements",
-            ));
+            return Err(SimError::refused("--resolution is for surfaces", "this file has its own elements"));
         }
         let meshed = file.solid(material)?;
         let material = MaterialOrigin::new(material, &meshed.stated);

@@ -12,8 +12,8 @@ use crate::error::{Result, SimError};
 use crate::files::OUTPUT_FILES;
 use crate::run::FinishedRun;
 
-/// Files in the folder of a simulation, and errors of those that were not written. Numbers of a motion that diverges may
-/// not fit a file format.
+/// Files in the folder of a simulation, and errors of those that were not written. Numbers of a motion that diverges
+/// may not fit a file format.
 pub struct Outputs {
     folder: PathBuf,
     /// Indices in [`OUTPUT_FILES`] of the files that were written.

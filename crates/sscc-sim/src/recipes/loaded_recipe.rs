@@ -23,7 +23,7 @@ pub struct LoadedRecipe<'a> {
     matter: Matter,
     /// Where the shape comes from.
     pub source: String,
-    /// A note for people: the file that an embedded shape stands in for, or the numbers of a file that the material
+    /// A note for people: the file that an embedded shape replaces, or the numbers of a file that the material
     /// overrides.
     pub note: Option<String>,
     /// Rotation from the axes of the file to those of an upright shape, z up.
@@ -33,7 +33,8 @@ pub struct LoadedRecipe<'a> {
 }
 
 impl<'a> LoadedRecipe<'a> {
-    /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes stand in for them.
+    /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes replace
+    /// them.
     ///
     /// # Errors
     /// When a file cannot be read, a size or resolution is given for a solid, the material is out of range, or `watch`

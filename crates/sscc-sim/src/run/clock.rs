@@ -2,9 +2,10 @@
 //!
 //! Reading the processor clock takes a system call, which is too slow for the parts of short steps. One reading of the
 //! processor clock therefore serves a block of steps, and the parts of these steps share it in proportion to the wall
-//! clock (docs/notes/2026-11-23-processor-time.md). The mean of each part is unbiased: let a part work `c` of the block's
-//! `C` seconds, and let another program take `g` seconds at a uniformly distributed moment of the work. The part gets `(c + g) C / (C + g)` with probability `c / C`, else `c C / (C + g)`; the mean is `c`. The error of
-//! a single step is at most one block.
+//! clock (docs/notes/2026-11-23-processor-time.md). The mean of each part is unbiased: let a part work `c` of the
+//! block's `C` seconds, and let another program take `g` seconds at a uniformly distributed moment of the work. The
+//! part gets `(c + g) C / (C + g)` with probability `c / C`, else `c C / (C + g)`; the mean is `c`. The error of a
+//! single step is at most one block.
 
 use std::time::Instant;
 
@@ -96,7 +97,8 @@ impl<C: Clocks> StepClock<C> {
 
     /// Begins a part, or none.
     pub fn enter(&mut self, part: Option<usize>) {
-        // With several threads, some parts run on one thread: wall-clock time is then not proportional to processor time.
+        // With several threads, some parts run on one thread: wall-clock time is then not proportional to processor
+        // time.
         let now = if self.clocks.is_one_thread() { self.clocks.wall() } else { self.clocks.processor() };
         if let Some(part) = self.part {
             self.parts[part] += now - self.since;

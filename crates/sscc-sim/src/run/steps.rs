@@ -30,7 +30,7 @@ const MAX_LOG_BYTES: f64 = 4e9;
 pub struct RunOutcome {
     /// All states.
     pub history: History,
-    /// Processor time of this thread for all steps; none where some were made by another process.
+    /// Processor time of this thread for all steps; None if another process made some of them.
     pub processor_seconds: Option<f64>,
     /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,
@@ -39,8 +39,8 @@ pub struct RunOutcome {
 /// Simulates a scene up to a number of steps. Continues from the checkpoint in the folder, unless `again` is set.
 ///
 /// # Errors
-/// When bodies penetrate each other, themselves or the ground at the start, or the folder cannot be written to. Divergence
-/// and cancellation are not errors: [`RunOutcome::failure`] holds them, and the states are kept.
+/// When bodies penetrate each other, themselves or the ground at the start, or the folder cannot be written to.
+/// Divergence and cancellation are not errors: [`RunOutcome::failure`] holds them, and the states are kept.
 pub fn run(
     scene: &Scene,
     prepared: &PreparedScene,

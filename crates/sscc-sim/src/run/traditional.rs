@@ -15,8 +15,8 @@ const MAX_STATES: usize = 100;
 /// Maximum number of bodies in all of these states.
 const MAX_BODY_STATES: usize = 2000;
 
-/// Returns some states, evenly spread, each with the processor time (s) of the traditional method for all bodies on this
-/// thread.
+/// Returns some states, evenly spread, each with the processor time (s) of the traditional method for all bodies on
+/// this thread.
 pub fn traditional_costs(
     scene: &Scene,
     prepared: &PreparedScene,

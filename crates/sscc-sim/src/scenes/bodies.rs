@@ -47,7 +47,7 @@ pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> 
 
 /// Appends the bodies of one section.
 fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>) -> Result<()> {
-    let name = section.wanted("model", section.text("model")?)?;
+    let name = section.require("model", section.text("model")?)?;
     let Some(model) = models.iter().position(|model| model.recipe.name == name) else {
         let meant = nearest(name, models.iter().map(|model| model.recipe.name.as_str()));
         let cause = match meant {
@@ -85,13 +85,14 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         let cause = format!("three whole numbers were expected, whose product is at most {MAX_BODIES}");
         return Err(section.refused("grid", cause));
     }
-    let spacing = section.wanted("spacing", spacing)?;
+    let spacing = section.require("spacing", spacing)?;
     let [nx, ny, nz] = grid.to_array().map(|x| x as usize);
     for (k, j, i) in (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i)))) {
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
             position: first.position + spacing * DVec3::new(i as f64, j as f64, k as f64),
-            // Rotates about the body's own upright axis. After a rotation about the vertical, all bodies would fall alike.
+            // Rotates about the body's own upright axis. After a rotation about the vertical, all bodies would fall
+            // alike.
             orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),
             ..first.clone()
         });
@@ -103,8 +104,8 @@ fn rotation(section: &Section<'_>) -> Result<DQuat> {
     let Some(rotation) = section.section("rotation", &["axis", "degrees"])? else {
         return Ok(DQuat::IDENTITY);
     };
-    let axis = rotation.wanted("axis", rotation.vector("axis")?)?;
-    let degrees = rotation.wanted("degrees", rotation.number("degrees")?)?;
+    let axis = rotation.require("axis", rotation.vector("axis")?)?;
+    let degrees = rotation.require("degrees", rotation.number("degrees")?)?;
     match axis.try_normalize() {
         Some(axis) => Ok(DQuat::from_axis_angle(axis, degrees.to_radians())),
         None => Err(rotation.refused("axis", "it has no direction")),

@@ -82,7 +82,7 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
     };
     let rank = model.count("rank", MAX_RANK)?;
     let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
-    let (modes, is_linear) = match model.wanted("kind", word)? {
+    let (modes, is_linear) = match model.require("kind", word)? {
         "linear" => (ModesSpec::Linear(rank.unwrap_or(20)), true),
         "nonlinear" => (ModesSpec::Nonlinear(rank.unwrap_or(30)), false),
         _ if rank.is_some_and(|rank| rank != 24) => {
@@ -129,11 +129,12 @@ pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
     }))
 }
 
-/// Reads a material: by its name, with the damping of that name, or by its numbers. Missing numbers are those of the file.
+/// Reads a material: by its name, with the damping of that name, or by its numbers. Missing numbers are those of the
+/// file.
 fn material(model: &Section<'_>) -> Result<(PartialMaterial, Damping)> {
     if model.is_text("material") {
         let known = MATERIALS.map(|material| (material.name, material));
-        let found = model.wanted("material", model.word("material", &known)?)?;
+        let found = model.require("material", model.word("material", &known)?)?;
         return Ok((found.elastic.into(), found.damping));
     }
     let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {

@@ -99,8 +99,8 @@ impl Scene {
         WorldOptions { step, gravity, ground, contact, response }
     }
 
-    /// Shortens the scene for a quick run: half a second, with the small spring in place of each model, shaken harder so
-    /// that it collides with itself.
+    /// Shortens the scene for a quick run: half a second, with the small spring in place of each model, shaken harder
+    /// so that it collides with itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();
@@ -135,16 +135,16 @@ impl Scene {
     /// # Errors
     /// Those of [`Scene::read`], except of reading the file.
     pub fn parse(path: &Path, text: &str) -> Result<Self, SimError> {
-        let whole = Text { path, text };
+        let source = Text { path, text };
         let table = DeTable::parse(text).map_err(|error| {
-            whole.refused(
+            source.refused(
                 &error.span().unwrap_or_default(),
                 error.message().lines().next().unwrap_or_default(),
             )
         })?;
-        let scene = Section::new(whole, &table, &KEYS)?;
-        let rate = scene.wanted("steps_per_second", scene.positive("steps_per_second")?)?;
-        let duration = scene.wanted("duration", scene.positive("duration")?)?;
+        let scene = Section::new(source, &table, &KEYS)?;
+        let rate = scene.require("steps_per_second", scene.positive("steps_per_second")?)?;
+        let duration = scene.require("duration", scene.positive("duration")?)?;
         let steps = (duration * rate).round();
         if !(1.0..=MAX_STEPS).contains(&steps) {
             return Err(scene

@@ -77,7 +77,7 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     /// When the key is missing.
-    pub fn wanted<T>(&self, key: &str, found: Option<T>) -> Result<T> {
+    pub fn require<T>(&self, key: &str, found: Option<T>) -> Result<T> {
         found.ok_or_else(|| self.refused(key, "it is missing"))
     }
 

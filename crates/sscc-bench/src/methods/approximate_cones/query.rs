@@ -82,8 +82,8 @@ impl<'a> ApproximateCones<'a> {
         }
     }
 
-    /// Appends all colliding pairs. On the stack, `(n, n)` is a volume against itself, `(n, m)` two volumes without common
-    /// triangles whose AABBs overlap.
+    /// Appends all colliding pairs. On the stack, `(n, n)` is a volume against itself, `(n, m)` two volumes without
+    /// common triangles whose AABBs overlap.
     fn traverse(&mut self) {
         self.stack.clear();
         self.stack.push((0, 0));

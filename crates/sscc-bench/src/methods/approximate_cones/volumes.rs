@@ -26,8 +26,8 @@ pub struct Volume {
 }
 
 /// Returns the volumes of a hierarchy: the root first, children after their parents. Nodes of at most 64 triangles are
-/// buckets, divided into full packets along the hierarchy's order. Its own leaves have four triangles in the mean, half of
-/// a packet.
+/// buckets, divided into full packets along the hierarchy's order. Its own leaves have four triangles in the mean, half
+/// of a packet.
 pub fn volumes(hierarchy: &Hierarchy) -> Vec<Volume> {
     let nodes = hierarchy.nodes();
     // Siblings stay adjacent: they are dropped together or not at all.

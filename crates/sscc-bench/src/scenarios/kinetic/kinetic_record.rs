@@ -34,8 +34,8 @@ pub struct KineticRecord {
     pub mismatches: usize,
     /// Mean microseconds of kinetic queries over the steps that collide.
     pub kinetic_us_colliding: Option<f64>,
-    /// Mean microseconds by method. Those of comparators are over `compared_steps`, each weighted by its stratum's share of
-    /// all steps.
+    /// Mean microseconds by method. Those of comparators are over `compared_steps`, each weighted by its stratum's
+    /// share of all steps.
     pub microseconds: Means,
     /// Description of the machine.
     pub machine: String,

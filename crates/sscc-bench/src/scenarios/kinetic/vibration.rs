@@ -28,8 +28,8 @@ const BISECTIONS: usize = 10;
 pub struct Vibration {
     amplitudes: Vec<f64>,
     oscillators: Oscillators,
-    /// Largest displacement of a vertex in percent of half the diagonal of the AABB, in the states for the choice of the
-    /// amplitude.
+    /// Largest displacement of a vertex in percent of half the diagonal of the AABB, in the states for the choice of
+    /// the amplitude.
     pub share: f64,
 }
 
