@@ -1,4 +1,4 @@
-//! The methods that are compared: ours, and peers.
+//! The compared methods: ours and peers.
 
 mod approximate_cones;
 mod columns;

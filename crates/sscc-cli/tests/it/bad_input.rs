@@ -317,5 +317,5 @@ fn outputs_that_cannot_be_written() {
     modes(MESH, "out.sscc.safetensors", "must end in .model.safetensors");
     modes(STRIPS, STRIPS, "the output is an input; choose another name");
     write(folder, "demo", "a file");
-    refused(folder, &["demo", "--out", "demo"], &["demo: no folder that can be written to"]);
+    refused(folder, &["demo", "--out", "demo"], &["demo: cannot write to this folder"]);
 }

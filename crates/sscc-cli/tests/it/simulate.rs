@@ -292,7 +292,7 @@ fn a_diverging_motion_is_named_and_kept() {
     for part in [
         "the motion of body 0 (counted from 0) diverges (energy ",
         " J)",
-        "what was simulated until then is in scene",
+        "the states until then are in scene",
     ] {
         assert!(message.contains(part) && !message.contains('\n'), "{message}");
     }
@@ -323,7 +323,7 @@ fn refusals() {
         (
             "[sound]\nmodes = 30",
             "grid = [16, 16, 16]\nspacing = [1, 1, 1]",
-            "bodies: about 8192 MB for all 4096 (limit 8000 MB); take fewer, or of fewer triangles",
+            "bodies: all 4096 need about 8192 MB (limit 8000 MB); use fewer bodies, or models of fewer triangles",
         ),
     ] {
         let to = if to == PAIR { to.replace("0.4, 0", "0.01, 0") } else { to.into() };
@@ -338,7 +338,7 @@ fn refusals() {
         (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["scene.toml", "--steps", "0"], "--steps"),
         (&["scene.toml", "--models", "nowhere"], "nowhere: no folder of models"),
-        (&["scene.toml", "--out", "scene.toml"], "scene.toml: no folder that can be written to"),
+        (&["scene.toml", "--out", "scene.toml"], "scene.toml: cannot write to this folder"),
         (&[], "SCENE"),
     ] {
         let run = simulate(folder.path(), args);
@@ -348,7 +348,7 @@ fn refusals() {
     assert_eq!(simulate(folder.path(), &["scene.toml", "--steps", "3", "--out", "a"]).code, Some(0));
     fs::write(folder.path().join("other.toml"), SCENE.replace("-9.81", "-1.62")).unwrap();
     let run = simulate(folder.path(), &["other.toml", "--steps", "3", "--out", "a"]);
-    assert!(run.refusal().contains("states.log: it is of another scene"), "{run:?}");
+    assert!(run.refusal().contains("states.log: this file belongs to another scene"), "{run:?}");
     // --restart removes all files of the other simulation.
     let (mute, _) = SCENE.split_once("[sound]").unwrap();
     fs::write(folder.path().join("other.toml"), mute).unwrap();

@@ -1,25 +1,25 @@
-//! Eight AABBs side by side in single precision, so that one AABB is compared with all of them at once.
+//! Packets of eight AABBs in single precision, all compared with one AABB at once.
 
 use glam::{DVec3, Vec4};
 
-/// AABBs in one [`Aabb8`].
+/// Number of AABBs in an [`Aabb8`].
 pub const LANES: usize = 8;
 
-/// An AABB in the coordinates of a [`Frame`]. The fourth components mean nothing.
+/// An AABB in the coordinates of a [`Frame`]. The fourth components have no meaning.
 #[derive(Clone, Copy)]
 pub struct Aabb {
     lower: Vec4,
     upper: Vec4,
 }
 
-/// A map of coordinates to single precision: a shift, a scale and a conversion, each of them monotone. So where two
-/// mapped AABBs are disjoint, the exact ones are.
+/// A map of coordinates to single precision: a shift, a scale and a conversion, each monotone. If two mapped AABBs are
+/// disjoint, the exact AABBs are disjoint.
 pub struct Frame {
     center: DVec3,
     scale: f64,
 }
 
-/// Eight AABBs: of each axis the lower and the upper ends of all.
+/// Eight AABBs: for each axis the lower ends of all, and the upper ends of all.
 #[derive(Clone)]
 pub struct Aabb8 {
     lower: [[Vec4; 2]; 3],
@@ -31,7 +31,7 @@ pub struct Aabb8 {
 pub struct Lanes(u32);
 
 impl Frame {
-    /// The frame in which the AABB of some points becomes about [-1, 1] along its longest side.
+    /// Returns the frame that maps the AABB of some points to about [-1, 1] along its longest side.
     pub fn around(points: &[DVec3]) -> Self {
         let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (lower, upper) = points.iter().fold(empty, |(lower, upper), p| (lower.min(*p), upper.max(*p)));
@@ -39,7 +39,7 @@ impl Frame {
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).clamp(0.0, f64::MAX) }
     }
 
-    /// A mapped point. All of its coordinates are finite; the fourth one means nothing.
+    /// Maps a point. All coordinates are finite; the fourth one has no meaning.
     #[inline]
     pub fn map(&self, x: DVec3) -> Vec4 {
         ((x - self.center) * self.scale).as_vec3().extend(0.0).clamp(Vec4::MIN, Vec4::MAX)
@@ -47,16 +47,16 @@ impl Frame {
 }
 
 impl Aabb {
-    /// Contains nothing.
+    /// The empty AABB.
     pub const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
-    /// The AABB of mapped points.
+    /// Returns the AABB of mapped points.
     #[inline]
     pub fn around([a, b, c]: [Vec4; 3]) -> Self {
         Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
     }
 
-    /// The smallest AABB that contains both.
+    /// Returns the smallest AABB that contains both.
     #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
@@ -67,7 +67,7 @@ impl Aabb8 {
     /// Eight empty AABBs.
     pub const EMPTY: Self = Self { lower: [[Vec4::INFINITY; 2]; 3], upper: [[Vec4::NEG_INFINITY; 2]; 3] };
 
-    /// Puts an AABB into a lane.
+    /// Sets the AABB of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, aabb: &Aabb) {
         for axis in 0..3 {
@@ -76,14 +76,14 @@ impl Aabb8 {
         }
     }
 
-    /// The lanes that overlap an AABB.
+    /// Returns the lanes that overlap an AABB.
     #[inline]
     pub fn overlapping(&self, other: &Aabb) -> Lanes {
         let ends = |x: Vec4| [x.x, x.y, x.z];
         self.compare(ends(other.lower), ends(other.upper))
     }
 
-    /// The lanes that overlap a lane of another one.
+    /// Returns the lanes that overlap a lane of another packet.
     #[inline]
     pub fn overlapping_lane(&self, other: &Self, lane: usize) -> Lanes {
         let at = |ends: &[[Vec4; 2]; 3]| std::array::from_fn(|axis| ends[axis][lane / 4][lane % 4]);
@@ -104,13 +104,13 @@ impl Aabb8 {
 }
 
 impl Lanes {
-    /// Those beyond a lane.
+    /// Returns the lanes after a lane.
     #[inline]
     pub fn beyond(self, lane: usize) -> Self {
         Self(self.0 & !0 << (lane + 1))
     }
 
-    /// Those that are in both.
+    /// Returns the lanes in both sets.
     #[inline]
     pub fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)

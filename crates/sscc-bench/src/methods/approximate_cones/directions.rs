@@ -1,9 +1,9 @@
-//! The 14 directions of the normal cones, and on which side of them the normal of a triangle is.
+//! The 14 directions of the normal cones, and the signs of a triangle's normal along them.
 
 use glam::DVec3;
 
-/// Rounding of a normal's component along a direction, as a share of the sum of the magnitudes of its products: each
-/// difference and product is rounded once, and they are added up.
+/// Rounding bound of a normal's component along a direction, as a share of the sum of the magnitudes of its products.
+/// Each difference, product and sum is rounded once.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Centres of the faces, and corners, of a cube (Volino and Magnenat-Thalmann 1994).
@@ -24,7 +24,7 @@ const DIRECTIONS: [DVec3; 14] = [
     DVec3::new(-1.0, -1.0, -1.0),
 ];
 
-/// The directions with which the normal of a triangle certainly has a positive product, one bit each.
+/// Returns the directions, one bit each, with which the normal of a triangle certainly has a positive product.
 #[inline]
 pub fn positive_sides([a, b, c]: [DVec3; 3]) -> u16 {
     let (e, f) = (b - a, c - a);
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn normals_are_sorted_by_side() {
+    fn signs_of_normals_are_certain() {
         let up = positive_sides([DVec3::ZERO, DVec3::X, DVec3::Y]);
         for (k, direction) in DIRECTIONS.iter().enumerate() {
             assert_eq!(up >> k & 1 == 1, direction.z > 0.0);

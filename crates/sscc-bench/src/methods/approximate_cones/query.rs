@@ -1,4 +1,4 @@
-//! Queries by normal cones: refit, then a traversal that the cones cull.
+//! Queries by normal cones: refit, then a traversal that normal cones cull.
 
 use glam::{DVec3, Vec4};
 use sscc::{Certificates, Error, Impact, Method, Pair, Query, ReducedModel, intersect_triangle_triangle};
@@ -12,28 +12,31 @@ use crate::methods::engine::Engine;
 pub struct ApproximateCones<'a> {
     model: &'a ReducedModel,
     volumes: Vec<Volume>,
-    /// The triangle at each place of the hierarchy's order, and its vertices.
+    /// Triangle in each slot of the hierarchy's order, with its vertices.
     triangles: Vec<(u32, [u32; 3])>,
     frame: Frame,
-    /// Of each vertex, exact and in the frame.
+    /// Exact position of each vertex.
     positions: Vec<DVec3>,
+    /// Position of each vertex in the frame.
     mapped: Vec<Vec4>,
-    /// Of each volume its AABB, those of its children, and the directions on whose positive side all of its normals are.
+    /// AABB of each volume.
     aabbs: Vec<Aabb>,
+    /// AABBs of the children of each volume.
     children: Vec<Aabb8>,
+    /// Directions (one bit each) on whose positive side all normals of a volume are.
     positive: Vec<u16>,
     stack: Vec<(usize, usize)>,
     pairs: Vec<Pair>,
-    /// For continuous queries.
+    /// Query for continuous queries.
     traditional: Query<'a>,
 }
 
 impl<'a> ApproximateCones<'a> {
-    /// On the hierarchy of the certificates. Triangles that share a vertex never count, whatever the contact filter of
-    /// the certificates says.
+    /// Creates queries on the hierarchy of the certificates. Triangles that share a vertex never count, for any contact
+    /// filter of the certificates.
     ///
     /// # Errors
-    /// When the certificates are of another model.
+    /// When the certificates belong to another model.
     pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
         let traditional = Query::with_method(model, certificates, Method::Traditional)?;
         let (hierarchy, faces) = (certificates.hierarchy(), model.mesh().faces());
@@ -55,16 +58,16 @@ impl<'a> ApproximateCones<'a> {
         })
     }
 
-    /// Moves all vertices, and makes AABBs and normals of all volumes current.
+    /// Moves all vertices, and updates AABBs and normals of all volumes.
     fn refit(&mut self, q: &[f64]) {
         for (v, (x, mapped)) in self.positions.iter_mut().zip(&mut self.mapped).enumerate() {
             *x = self.model.position(v as u32, q);
             *mapped = self.frame.map(*x);
         }
         for (n, volume) in self.volumes.iter().enumerate().rev() {
-            let (mut whole, mut positive) = (Aabb::EMPTY, !0);
+            let (mut bounds, mut positive) = (Aabb::EMPTY, !0);
             for (lane, child) in volume.children.clone().enumerate() {
-                let (aabb, sides) = if volume.kind == Kind::Block {
+                let (aabb, sides) = if volume.kind == Kind::Packet {
                     let corners = self.triangles[child].1.map(|v| v as usize);
                     let sides = positive_sides(corners.map(|v| self.positions[v]));
                     (Aabb::around(corners.map(|v| self.mapped[v])), sides)
@@ -72,15 +75,15 @@ impl<'a> ApproximateCones<'a> {
                     (self.aabbs[child], self.positive[child])
                 };
                 self.children[n].set(lane, &aabb);
-                whole = whole.union(&aabb);
+                bounds = bounds.union(&aabb);
                 positive &= sides;
             }
-            (self.aabbs[n], self.positive[n]) = (whole, positive);
+            (self.aabbs[n], self.positive[n]) = (bounds, positive);
         }
     }
 
-    /// Adds the pairs of the root. On the stack, `(n, n)` is a volume against itself, `(n, m)` two volumes without common
-    /// triangles whose AABBs overlap.
+    /// Appends all colliding pairs. On the stack, `(n, n)` is a volume against itself, `(n, m)` two volumes without
+    /// common triangles whose AABBs overlap.
     fn traverse(&mut self) {
         self.stack.clear();
         self.stack.push((0, 0));
@@ -95,15 +98,15 @@ impl<'a> ApproximateCones<'a> {
         }
     }
 
-    /// A volume against itself, if its normals do not cull it.
+    /// Tests a volume against itself unless its normals cull it.
     fn within(&mut self, n: usize) {
         let Volume { kind, children } = self.volumes[n].clone();
-        if kind != Kind::Block && self.positive[n] != 0 {
+        if kind != Kind::Packet && self.positive[n] != 0 {
             return;
         }
         for (lane, child) in children.clone().enumerate() {
             let later = self.children[n].overlapping_lane(&self.children[n], lane).beyond(lane);
-            if kind == Kind::Block {
+            if kind == Kind::Packet {
                 later.for_each(|other| self.test(child, children.start + other));
             } else {
                 self.stack.push((child, child));
@@ -112,7 +115,7 @@ impl<'a> ApproximateCones<'a> {
         }
     }
 
-    /// Two volumes, the first no finer than the second. Volumes of the same kind are opened both at once.
+    /// Tests two volumes, the first no finer than the second. Volumes of the same kind are both opened.
     fn between(&mut self, n: usize, m: usize) {
         let [x, y] = [n, m].map(|n| self.volumes[n].clone());
         let rows = self.children[n].overlapping(&self.aabbs[m]);
@@ -122,9 +125,9 @@ impl<'a> ApproximateCones<'a> {
         }
         let columns = self.children[m].overlapping(&self.aabbs[n]);
         for row in rows {
-            let met = self.children[m].overlapping_lane(&self.children[n], row).and(columns);
-            let pairs = met.map(|column| (x.children.start + row, y.children.start + column));
-            if x.kind == Kind::Block {
+            let overlapping = self.children[m].overlapping_lane(&self.children[n], row).and(columns);
+            let pairs = overlapping.map(|column| (x.children.start + row, y.children.start + column));
+            if x.kind == Kind::Packet {
                 pairs.for_each(|(a, b)| self.test(a, b));
             } else {
                 self.stack.extend(pairs);
@@ -132,10 +135,10 @@ impl<'a> ApproximateCones<'a> {
         }
     }
 
-    /// Two triangles by their places, whose AABBs overlap.
+    /// Tests two triangles, given by their slots, whose AABBs overlap.
     #[inline]
     fn test(&mut self, a: usize, b: usize) {
-        let [(i, x), (j, y)] = [a, b].map(|place| self.triangles[place]);
+        let [(i, x), (j, y)] = [a, b].map(|slot| self.triangles[slot]);
         if x.iter().any(|v| y.contains(v)) {
             return;
         }
@@ -147,7 +150,7 @@ impl<'a> ApproximateCones<'a> {
 }
 
 impl Engine for ApproximateCones<'_> {
-    /// Some pairs may be missing.
+    /// May miss pairs.
     fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
         self.model.check_coordinates(q)?;
         self.refit(q);

@@ -1,4 +1,4 @@
-//! Normal cones against exact methods.
+//! Tests of the approximate normal cones against exact methods.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use super::query::ApproximateCones;
 use crate::methods::engine::Engine;
 use crate::random::Random;
 
-/// A grid of so many squares, at the places that `at` gives for (u, v) in the unit square.
+/// A grid of squares; `at` maps (u, v) in the unit square to positions.
 fn sheet((m, n): (u32, u32), at: impl Fn(f64, f64) -> DVec3) -> TriMesh {
     let place = |i: u32, j: u32| at(f64::from(i) / f64::from(m), f64::from(j) / f64::from(n));
     let positions = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j))).map(|(i, j)| place(i, j)).collect();
@@ -82,7 +82,7 @@ fn a_ramp_through_itself_is_missed() {
     let mut exact = Query::with_method(&model, &certificates, Method::NormalCones).unwrap();
     assert!(exact.discrete(&[0.7]).unwrap().len() > 10);
     assert_eq!(cones.discrete(&[0.7]).unwrap(), []);
-    // Normals at the ends say nothing about the motion between them.
+    // Continuous queries are exact.
     let expected = exact.continuous(&[0.0], &[0.7]).unwrap();
     assert!(expected.len() > 10);
     assert_eq!(cones.continuous(&[0.0], &[0.7]).unwrap(), expected);

@@ -1,4 +1,4 @@
-//! The hierarchy as the traversal of the normal cones wants it: nodes, below them buckets, below these blocks.
+//! Hierarchy of the normal cones: nodes, below them buckets, below these packets of triangles.
 
 use std::ops::Range;
 
@@ -6,14 +6,14 @@ use sscc::hierarchy::Hierarchy;
 
 use super::aabb8::LANES;
 
-/// What the children of a volume are. From fine to coarse.
+/// Kind of a volume, from fine to coarse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// Up to eight triangles.
-    Block,
-    /// Up to eight blocks.
+    /// A packet of up to eight triangles.
+    Packet,
+    /// A bucket of up to eight packets.
     Bucket,
-    /// Nodes or buckets.
+    /// A node with nodes or buckets as children.
     Node,
 }
 
@@ -21,16 +21,16 @@ pub enum Kind {
 #[derive(Clone, Debug)]
 pub struct Volume {
     pub kind: Kind,
-    /// Volumes; of a block, places in the hierarchy's order of triangles.
+    /// Indices of volumes; of a packet, slots in the hierarchy's order of triangles.
     pub children: Range<usize>,
 }
 
-/// The volumes of a hierarchy: the root first, children beyond their parents. Nodes of at most 64 triangles are buckets,
-/// cut into full blocks along the hierarchy's order: its own leaves hold four triangles in the mean, half of what one
-/// comparison takes.
+/// Returns the volumes of a hierarchy: the root first, children after their parents. Nodes of at most 64 triangles are
+/// buckets, divided into full packets along the hierarchy's order. Its own leaves have four triangles in the mean, half
+/// of a packet.
 pub fn volumes(hierarchy: &Hierarchy) -> Vec<Volume> {
     let nodes = hierarchy.nodes();
-    // Siblings stay side by side, as none is left out without the others.
+    // Siblings stay adjacent: they are dropped together or not at all.
     let mut number = vec![None; nodes.len()];
     number[0] = Some(0);
     let mut count = 1;
@@ -43,24 +43,22 @@ pub fn volumes(hierarchy: &Hierarchy) -> Vec<Volume> {
         }
     }
     let mut volumes = Vec::with_capacity(count);
-    let mut blocks = Vec::new();
+    let mut packets = Vec::new();
     for (node, _) in nodes.iter().zip(&number).filter(|(_, number)| number.is_some()) {
         let start = node.first_triangle as usize;
         let triangles = start..start + node.triangle_count as usize;
         volumes.push(if node.is_bucket() {
-            let first = count + blocks.len();
-            blocks.extend(
-                triangles.clone().step_by(LANES).map(|from| Volume {
-                    kind: Kind::Block,
-                    children: from..(from + LANES).min(triangles.end),
-                }),
-            );
-            Volume { kind: Kind::Bucket, children: first..count + blocks.len() }
+            let first = count + packets.len();
+            packets.extend(triangles.clone().step_by(LANES).map(|from| Volume {
+                kind: Kind::Packet,
+                children: from..(from + LANES).min(triangles.end),
+            }));
+            Volume { kind: Kind::Bucket, children: first..count + packets.len() }
         } else {
             let first = number[node.first_child as usize].unwrap_or(count);
             Volume { kind: Kind::Node, children: first..first + node.child_count as usize }
         });
     }
-    volumes.extend(blocks);
+    volumes.extend(packets);
     volumes
 }

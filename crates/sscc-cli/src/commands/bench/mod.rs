@@ -20,7 +20,7 @@ use printer::Printer;
 
 pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     let (name, scenario) = match &args.scenario {
-        Some(name) if !args.list => (name, Scenario::named(name)?),
+        Some(name) if !args.list => (name, Scenario::from_name(name)?),
         _ => return list(),
     };
     check_options(args, scenario)?;

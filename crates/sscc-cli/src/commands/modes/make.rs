@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::{read_frames, read_mesh};
 use sscc_sim::{
-    ModesKind, NewModel, POLYNOMIALS_ARE_FREE, SolidSource, elastic_model, is_solid, pca_model,
+    ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
     polynomial_model,
 };
 
@@ -58,7 +58,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
 
 fn refuse_rank_and_fix(args: &args::Modes) -> Result<()> {
     if args.rank.is_some() || args.fix.is_some() {
-        bail!("--rank and --fix: {POLYNOMIALS_ARE_FREE}");
+        bail!("--rank and --fix: {POLYNOMIAL_MODES_ERROR}");
     }
     Ok(())
 }

@@ -9,8 +9,6 @@ use crate::DynamicsError;
 /// little.
 ///
 /// Forces act as impulses between steps. During a step the body moves freely and both momenta are constant.
-///
-/// Forces are given as impulses; between them the body moves freely, and both momenta stay exactly what they are.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidMotion {
     properties: MassProperties,
@@ -25,8 +23,9 @@ pub struct RigidMotion {
     pub angular_momentum: DVec3,
 }
 
-/// Iterations for the middle of a step: each gains about as many digits as the angle of a step has.
-const ITERATIONS: usize = 20;
+/// Maximum number of iterations for the angular velocity at the middle of a step. Each iteration multiplies the error
+/// by about the angle of the step.
+const MAX_ITERATIONS: usize = 20;
 
 impl RigidMotion {
     /// Creates the motion of a body at rest in its rest pose.
@@ -39,10 +38,11 @@ impl RigidMotion {
         // The inertia is positive definite if its leading minors are positive (Sylvester).
         let [x, y, _] = [inertia.x_axis, inertia.y_axis, inertia.z_axis];
         let minors = [x.x, x.x * y.y - x.y * y.x, inertia.determinant()];
-        let least = minors.into_iter().fold(f64::INFINITY, f64::min);
-        let sound = |x: f64| x.is_finite() && x > 0.0;
-        if !sound(mass) || !minors.into_iter().all(sound) || !inverse.is_finite() || !center.is_finite() {
-            return Err(DynamicsError::Mass { mass, inertia: least });
+        let min_minor = minors.into_iter().fold(f64::INFINITY, f64::min);
+        let is_valid = |x: f64| x.is_finite() && x > 0.0;
+        if !is_valid(mass) || !minors.into_iter().all(is_valid) || !inverse.is_finite() || !center.is_finite()
+        {
+            return Err(DynamicsError::Mass { mass, inertia: min_minor });
         }
         Ok(Self {
             properties,
@@ -64,6 +64,7 @@ impl RigidMotion {
         self.inverse
     }
 
+    /// Returns the angular velocity (rad/s, axes of the world) at an orientation.
     fn spin(&self, orientation: DQuat) -> DVec3 {
         orientation * (self.inverse * (orientation.inverse() * self.angular_momentum))
     }
@@ -73,7 +74,7 @@ impl RigidMotion {
     pub fn advance(&mut self, h: f64) {
         self.position += self.momentum * (h / self.properties.mass);
         let mut spin = self.angular_velocity();
-        for _ in 0..ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let middle = DQuat::from_scaled_axis(spin * (h / 2.0)) * self.orientation;
             let next = self.spin(middle);
             if (next - spin).length() <= 1e-15 * next.length() {
@@ -107,16 +108,16 @@ mod tests {
         body.momentum = DVec3::new(1.0, -2.0, 0.5);
         body.angular_momentum = DVec3::new(2.3, 4.5, -1.9); // near the middle axis: it tumbles
         let (momentum, angular, energy) = (body.momentum, body.angular_momentum, body.energy());
-        let mut turned = 0.0_f64;
+        let mut max_change = 0.0_f64;
         for _ in 0..10_000 {
             body.advance(1e-2);
-            turned = turned.max((body.orientation * DVec3::Y - DVec3::Y).length());
+            max_change = max_change.max((body.orientation * DVec3::Y - DVec3::Y).length());
             assert!((body.energy() / energy - 1.0).abs() < 1e-3);
         }
         assert_eq!((body.momentum, body.angular_momentum), (momentum, angular));
         let expected = DVec3::new(1.0, 2.0, 3.0) + momentum / 3.0 * 100.0;
         assert!((body.position - expected).length() < 1e-9);
-        assert!(turned > 1.5, "{turned}");
+        assert!(max_change > 1.5, "{max_change}");
     }
 
     #[test]
@@ -134,14 +135,14 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_mass_is_refused() {
-        let sound = top().properties;
+    fn invalid_mass_properties_are_refused() {
+        let valid = top().properties;
         let flat = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0));
         for wrong in [
-            MassProperties { mass: 0.0, ..sound },
-            MassProperties { mass: f64::NAN, ..sound },
-            MassProperties { inertia: flat, ..sound },
-            MassProperties { inertia: -sound.inertia, ..sound },
+            MassProperties { mass: 0.0, ..valid },
+            MassProperties { mass: f64::NAN, ..valid },
+            MassProperties { inertia: flat, ..valid },
+            MassProperties { inertia: -valid.inertia, ..valid },
         ] {
             assert!(matches!(RigidMotion::new(wrong), Err(DynamicsError::Mass { .. })));
         }

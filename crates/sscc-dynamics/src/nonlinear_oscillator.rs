@@ -6,29 +6,31 @@ use sscc_solid::ReducedForces;
 
 use crate::{Damping, DynamicsError};
 
-/// Newton's iterations at most in one step.
-const ITERATIONS: usize = 60;
+/// Maximum number of Newton iterations in one step.
+const MAX_ITERATIONS: usize = 60;
 
-/// A derivative serves as long as iterations leave less than this share of the residual: a stiffness costs several
-/// times what forces cost, and changes little within a step.
-const SLOW: f64 = 0.2;
+/// An iteration that leaves a larger share of the residual converges slowly; the next one computes a new derivative.
+/// Iterations otherwise reuse the derivative: a stiffness costs several times as much as forces, and changes little
+/// within a step.
+const SLOW_CONVERGENCE: f64 = 0.2;
 
-/// The least part of an iteration's step that is tried.
-const LEAST_SHARE: f64 = 1e-6;
+/// Minimum share of a Newton step in the line search.
+const MIN_STEP_SHARE: f64 = 1e-6;
 
-/// A step is solved when the residual is this share of what adds up to it. Near the limit of rounding.
-const SOLVED: f64 = 1e-11;
+/// A step is solved when the residual is at most this share of the sum of its terms; this is close to the rounding
+/// error.
+const RELATIVE_TOLERANCE: f64 = 1e-11;
 
-/// Trial acceleration of Newton's method, and the state that it leads to.
+/// Trial acceleration of Newton's method, and the state at the end of the step with this acceleration.
 struct Trial {
-    b: Vec<f64>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    /// The residual.
-    rest: Vec<f64>,
-    /// Its sum, and that of all that adds up to it.
-    left: f64,
-    size: f64,
+    acceleration: Vec<f64>,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    residual: Vec<f64>,
+    /// Sum of the absolute values of the residual; infinite where it is not a number.
+    residual_sum: f64,
+    /// Sum of the absolute values of all terms of the residual.
+    term_sum: f64,
 }
 
 /// Integrator for reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`. It uses the implicit Newmark method of
@@ -60,8 +62,8 @@ impl<'a> NonlinearOscillator<'a> {
 
     /// Returns the acceleration at (q, v) under the forces g (r numbers each); the first step needs it.
     pub fn acceleration(&self, q: &[f64], v: &[f64], g: &[f64]) -> Vec<f64> {
-        let (inner, damped) = (self.forces.at(q), self.damped(v));
-        g.iter().zip(inner).zip(damped).map(|((g, f), c)| g - f - c).collect()
+        let (inner, damping_forces) = (self.forces.at(q), self.damping_forces(v));
+        g.iter().zip(inner).zip(damping_forces).map(|((g, f), c)| g - f - c).collect()
     }
 
     /// Advances q, v and the acceleration `a` by one step under the forces g (r numbers each).
@@ -76,47 +78,48 @@ impl<'a> NonlinearOscillator<'a> {
         g: &[f64],
     ) -> Result<(), DynamicsError> {
         let (r, h) = (self.forces.rank(), self.step);
-        let residual = |b: Vec<f64>| {
+        let trial_with = |b: Vec<f64>| {
             let x: Vec<f64> = (0..r).map(|k| q[k] + h * v[k] + h * h / 4.0 * (a[k] + b[k])).collect();
             let y: Vec<f64> = (0..r).map(|k| v[k] + h / 2.0 * (a[k] + b[k])).collect();
-            let (inner, damped) = (self.forces.at(&x), self.damped(&y));
-            let rest: Vec<f64> = (0..r).map(|k| b[k] + damped[k] + inner[k] - g[k]).collect();
-            let parts = |k: usize| b[k].abs() + damped[k].abs() + inner[k].abs() + g[k].abs();
-            let size = (0..r).map(parts).sum();
-            let left: f64 = rest.iter().map(|x| x.abs()).sum();
-            let left = if left.is_nan() { f64::INFINITY } else { left };
-            Trial { b, x, y, rest, left, size }
+            let (inner, damping_forces) = (self.forces.at(&x), self.damping_forces(&y));
+            let residual: Vec<f64> = (0..r).map(|k| b[k] + damping_forces[k] + inner[k] - g[k]).collect();
+            let terms = |k: usize| b[k].abs() + damping_forces[k].abs() + inner[k].abs() + g[k].abs();
+            let term_sum = (0..r).map(terms).sum();
+            let residual_sum: f64 = residual.iter().map(|x| x.abs()).sum();
+            let residual_sum = if residual_sum.is_nan() { f64::INFINITY } else { residual_sum };
+            Trial { acceleration: b, q: x, v: y, residual, residual_sum, term_sum }
         };
-        // It begins with the last acceleration, or where the body is: modes much faster than the step throw the first
-        // guess far off.
-        let [on, stay] = [a.to_vec(), (0..r).map(|k| -a[k] - 4.0 * v[k] / h).collect()].map(residual);
-        let mut trial = if on.left <= stay.left { on } else { stay };
+        // The first trial has the last acceleration, or it keeps q: with modes much faster than the step, the last
+        // acceleration is a bad guess.
+        let [last, still] = [a.to_vec(), (0..r).map(|k| -a[k] - 4.0 * v[k] / h).collect()].map(trial_with);
+        let mut trial = if last.residual_sum <= still.residual_sum { last } else { still };
         let mut factor = None;
-        for _ in 0..ITERATIONS {
-            if !trial.size.is_finite() {
+        for _ in 0..MAX_ITERATIONS {
+            if !trial.term_sum.is_finite() {
                 break;
             }
-            if trial.left <= SOLVED * trial.size {
-                let Trial { b, x, y, .. } = trial;
-                q.copy_from_slice(&x);
-                v.copy_from_slice(&y);
-                a.copy_from_slice(&b);
+            if trial.residual_sum <= RELATIVE_TOLERANCE * trial.term_sum {
+                q.copy_from_slice(&trial.q);
+                v.copy_from_slice(&trial.v);
+                a.copy_from_slice(&trial.acceleration);
                 return Ok(());
             }
             let is_fresh = factor.is_none();
             let change = factor
-                .get_or_insert_with(|| self.derivative(&trial.x).partial_piv_lu())
-                .solve(Mat::from_fn(r, 1, |i, _| trial.rest[i]));
-            let step = |share: f64| residual((0..r).map(|k| trial.b[k] - share * change[(k, 0)]).collect());
+                .get_or_insert_with(|| self.derivative(&trial.q).partial_piv_lu())
+                .solve(Mat::from_fn(r, 1, |i, _| trial.residual[i]));
+            let step = |share: f64| {
+                trial_with((0..r).map(|k| trial.acceleration[k] - share * change[(k, 0)]).collect())
+            };
             let mut next = step(1.0);
             // A shorter step in Newton's direction may lower the residual where the full step does not.
             let mut share = 1.0;
-            while is_fresh && next.left >= trial.left && share > LEAST_SHARE {
+            while is_fresh && next.residual_sum >= trial.residual_sum && share > MIN_STEP_SHARE {
                 share /= 2.0;
                 next = step(share);
             }
-            let is_slow = next.left >= SLOW * trial.left;
-            if next.left < trial.left {
+            let is_slow = next.residual_sum >= SLOW_CONVERGENCE * trial.residual_sum;
+            if next.residual_sum < trial.residual_sum {
                 trial = next;
             } else if is_fresh {
                 break;
@@ -128,7 +131,7 @@ impl<'a> NonlinearOscillator<'a> {
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
 
-    /// Of the residual by the new acceleration, at the position x.
+    /// Returns the derivative of the residual with respect to the acceleration, at q = x (r x r).
     fn derivative(&self, x: &[f64]) -> Mat<f64> {
         let (r, h, stiffness) = (self.forces.rank(), self.step, self.forces.stiffness(x));
         Mat::from_fn(r, r, |i, j| {
@@ -143,7 +146,8 @@ impl<'a> NonlinearOscillator<'a> {
         self.forces.energy(q) + v.iter().map(|v| v * v / 2.0).sum::<f64>()
     }
 
-    fn damped(&self, v: &[f64]) -> Vec<f64> {
+    /// Returns `C v`.
+    fn damping_forces(&self, v: &[f64]) -> Vec<f64> {
         let row = |row: &[f64]| row.iter().zip(v).map(|(c, v)| c * v).sum();
         self.damping.chunks_exact(v.len()).map(row).collect()
     }
@@ -165,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn free_vibration_has_the_frequency() {
+    fn free_vibration_has_the_exact_frequency() {
         let lambda = 40.0_f64;
         // 200 steps a period; the method lengthens the period by (omega h)^2 / 12.
         let period = std::f64::consts::TAU / lambda.sqrt();
@@ -206,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_force_is_held_in_the_end() {
+    fn a_constant_force_leads_to_its_static_solution() {
         let forces = forces(40.0, 90.0, 3e4);
         let goal = [0.05, -0.02];
         let force = forces.at(&goal);
@@ -236,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn invalid_arguments_and_steps_are_refused() {
         let forces = forces(1.0, 1.0, 1.0);
         let new = |damping, step| NonlinearOscillator::new(&forces, damping, step);
         assert!(matches!(new(NONE, 0.0), Err(DynamicsError::Step { .. })));

@@ -1,4 +1,4 @@
-//! Response to self-collisions without contacts: q stays in the ellipsoid that the certificate of the root proves free
+//! Response to self-collisions without contacts: q stays in the ellipsoid that the root's certificate proves free
 //! (paper, section 7).
 
 use sscc::Certificates;
@@ -11,21 +11,21 @@ use crate::body::Body;
 ///
 /// # Errors
 /// When q has a wrong length or a number that is not finite.
-pub(crate) fn constrain(body: &mut Body<'_>) -> Result<(), DynamicsError> {
+pub(crate) fn constrain_to_root(body: &mut Body<'_>) -> Result<(), DynamicsError> {
     let certificates = body.shape().certificates();
     if certificates.norm(&body.q) < certificates.root_radius() {
         return Ok(());
     }
     let Some(clamped) = certificates.clamp(&body.q)? else { return Ok(()) };
     body.q.copy_from_slice(&clamped);
-    // Outwards is where the norm grows: the gradient of |S (q - c)|^2 / 2.
+    // The outward direction is the gradient of |S (q - c)|^2 / 2.
     let outwards = gradient(certificates, &body.q);
     let square: f64 = outwards.iter().map(|x| x * x).sum();
     let along: f64 = outwards.iter().zip(&body.v).map(|(x, v)| x * v).sum();
     if along > 0.0 && square > 0.0 {
         body.v.iter_mut().zip(&outwards).for_each(|(v, x)| *v -= x * (along / square));
     }
-    body.was_pushed();
+    body.mark_impulse();
     Ok(())
 }
 

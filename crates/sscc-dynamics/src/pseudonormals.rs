@@ -9,8 +9,9 @@ use crate::nearest_point::Feature;
 
 /// Pseudonormals of faces, edges and vertices. That of an edge is the sum over its faces; that of a vertex is the sum
 /// over its faces weighted by angle.
-pub(crate) struct Normals {
+pub(crate) struct Pseudonormals {
     faces: Vec<DVec3>,
+    /// Welded vertices of each face.
     classes: Vec<[u32; 3]>,
     edges: BTreeMap<(u32, u32), DVec3>,
     vertices: Vec<DVec3>,
@@ -18,10 +19,10 @@ pub(crate) struct Normals {
     pub is_closed: bool,
 }
 
-impl Normals {
+impl Pseudonormals {
+    /// Computes the pseudonormals of a mesh. Vertices of equal position are welded.
     pub fn new(mesh: &TriMesh) -> Self {
         let p = mesh.rest_positions();
-        // Vertices of equal position are welded.
         let mut order: Vec<u32> = (0..p.len() as u32).collect();
         let key = |v: u32| p[v as usize].to_array().map(|x| x + 0.0);
         let compare = |a: &u32, b: &u32| {
@@ -39,7 +40,7 @@ impl Normals {
             mesh.faces().iter().map(|face| face.map(|v| class[v as usize])).collect();
         let mut faces = Vec::with_capacity(classes.len());
         let (mut edges, mut vertices) = (BTreeMap::new(), vec![DVec3::ZERO; p.len()]);
-        let mut rims = BTreeSet::new();
+        let mut odd_edges = BTreeSet::new();
         for face in &classes {
             let x = face.map(|v| p[v as usize]);
             let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize_or_zero();
@@ -49,13 +50,13 @@ impl Normals {
                 vertices[face[n] as usize] += normal * libm::atan2(u.cross(v).length(), u.dot(v));
                 let edge = edge(face[n], face[(n + 1) % 3]);
                 *edges.entry(edge).or_insert(DVec3::ZERO) += normal;
-                if !rims.remove(&edge) {
-                    rims.insert(edge);
+                if !odd_edges.remove(&edge) {
+                    odd_edges.insert(edge);
                 }
             }
             faces.push(normal);
         }
-        Self { faces, classes, edges, vertices, is_closed: rims.is_empty() }
+        Self { faces, classes, edges, vertices, is_closed: odd_edges.is_empty() }
     }
 
     /// Returns the pseudonormal (not normalized) of a feature of a triangle.
@@ -69,6 +70,7 @@ impl Normals {
     }
 }
 
+/// Key of an edge: its vertices, ascending.
 fn edge(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }

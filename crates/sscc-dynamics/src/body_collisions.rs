@@ -17,7 +17,7 @@ pub struct BodyPairs<'a> {
 
 /// Two colliding bodies, and the range of their triangle pairs in [`BodyCollisions::pairs`].
 #[derive(Clone, Copy, Debug)]
-struct Meeting {
+struct CollidingBodies {
     bodies: [usize; 2],
     first: usize,
     end: usize,
@@ -25,20 +25,20 @@ struct Meeting {
 
 /// Collisions between bodies in the current step, and the buffers to find them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Neighbours {
+pub(crate) struct BodyCollisions {
     boxes: Vec<Aabb>,
     /// Bodies ordered by the lower end of their AABBs along x.
     order: Vec<usize>,
     candidates: Vec<[usize; 2]>,
-    meetings: Vec<Meeting>,
+    colliding_bodies: Vec<CollidingBodies>,
     pairs: Vec<Pair>,
 }
 
-impl Neighbours {
+impl BodyCollisions {
     /// Finds all pairs of triangles of different bodies that have a point in common: exactly those of the positions
     /// [`Body::pose`] of `p + U q`.
     pub fn update(&mut self, bodies: &mut [Body<'_>]) -> Result<(), DynamicsError> {
-        self.meetings.clear();
+        self.colliding_bodies.clear();
         self.pairs.clear();
         if bodies.len() < 2 {
             return Ok(());
@@ -56,13 +56,13 @@ impl Neighbours {
             let (left, right) = bodies.split_at_mut(b);
             left[a].posed.colliding(&mut right[0].posed, around, &mut self.pairs);
             if self.pairs.len() > first {
-                self.meetings.push(Meeting { bodies: [a, b], first, end: self.pairs.len() });
+                self.colliding_bodies.push(CollidingBodies { bodies: [a, b], first, end: self.pairs.len() });
             }
         }
         Ok(())
     }
 
-    /// Finds the pairs of bodies whose AABBs overlap, sorted.
+    /// Finds the pairs of bodies whose AABBs overlap, sorted (sweep and prune along x).
     fn sweep(&mut self) {
         let boxes = &self.boxes;
         // New bodies come last. The order of the last step is nearly sorted.
@@ -85,7 +85,7 @@ impl Neighbours {
 
     /// Returns the colliding bodies, sorted, with their triangle pairs.
     pub fn colliding(&self) -> impl Iterator<Item = BodyPairs<'_>> {
-        let pairs = |meeting: &Meeting| &self.pairs[meeting.first..meeting.end];
-        self.meetings.iter().map(move |meeting| BodyPairs { bodies: meeting.bodies, pairs: pairs(meeting) })
+        let pairs = |found: &CollidingBodies| &self.pairs[found.first..found.end];
+        self.colliding_bodies.iter().map(move |found| BodyPairs { bodies: found.bodies, pairs: pairs(found) })
     }
 }

@@ -15,8 +15,8 @@ impl Damping {
     /// # Errors
     /// When a coefficient is negative or not finite.
     pub(crate) fn check(self) -> Result<Self, DynamicsError> {
-        let sound = |x: f64| x.is_finite() && x >= 0.0;
-        if sound(self.mass) && sound(self.stiffness) {
+        let is_valid = |x: f64| x.is_finite() && x >= 0.0;
+        if is_valid(self.mass) && is_valid(self.stiffness) {
             Ok(self)
         } else {
             Err(DynamicsError::Damping { mass: self.mass, stiffness: self.stiffness })
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn one_step_is_as_many_small_ones() {
+    fn one_step_equals_many_small_steps() {
         let h = 1e-3;
         for lambda in [0.0, 1e-6, 1.0, 1e3, 1e5, 1e8] {
             for c in [0.0, 10.0, 2.1e3, 1e4, 1e5, 1e6] {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn invalid_arguments_are_refused() {
         let of = |eigenvalue, mass, step| {
             LinearOscillator::new(&[1.0, eigenvalue], Damping { mass, stiffness: 0.0 }, step).err()
         };

@@ -11,19 +11,19 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use crate::nearest_point::nearest_point_triangle;
-use crate::normals::Normals;
+use crate::pseudonormals::Pseudonormals;
 
-/// Grid points at most: 8 MB. Memory does not grow with the mesh.
-const MOST_POINTS: f64 = (1 << 21) as f64;
+/// Maximum number of grid points (8 MB). Memory does not grow with the mesh.
+const MAX_POINTS: f64 = (1 << 21) as f64;
 
-/// Cells along the longest side at most.
-const LONGEST: f64 = 192.0;
+/// Maximum number of cells along the longest side.
+const MAX_CELLS_PER_SIDE: f64 = 192.0;
 
-/// Distances are measured to all triangles within so many cells.
+/// Width of the band on each side of the surface, in cells. Distances in it are exact.
 const BAND: f64 = 2.0;
 
-/// Triangles of more cells than this are cut.
-const LARGE: f64 = 8.0;
+/// Maximum extent of a triangle along an axis, in cells. Larger triangles are split.
+const MAX_TRIANGLE_CELLS: f64 = 8.0;
 
 /// Grid of signed distances from a surface.
 #[derive(Clone, Debug)]
@@ -54,17 +54,17 @@ impl DepthField {
         let corners = || mesh.faces().as_flattened().iter().map(|v| p[*v as usize]);
         let low = corners().fold(DVec3::INFINITY, DVec3::min);
         let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let sides = high - low;
-        // Two cells more on each side; flat shapes have a few cells across, too.
-        let points = |spacing: f64| (sides / spacing).ceil() + 2.0 * BAND + 1.0;
-        let mut spacing = (sides.max_element() / LONGEST).max(f64::MIN_POSITIVE);
-        while points(spacing).element_product() > MOST_POINTS {
+        let extent = high - low;
+        // The band adds two cells on each side, so flat shapes have a few cells across, too.
+        let points = |spacing: f64| (extent / spacing).ceil() + 2.0 * BAND + 1.0;
+        let mut spacing = (extent.max_element() / MAX_CELLS_PER_SIDE).max(f64::MIN_POSITIVE);
+        while points(spacing).element_product() > MAX_POINTS {
             spacing *= 1.05;
         }
         let size = points(spacing).to_array().map(|n| n as usize);
         let origin = low - spacing * BAND;
         let mut field = Self { origin, spacing, size, distances: Vec::new() };
-        field.measure(mesh);
+        field.compute_distances(mesh);
         field
     }
 
@@ -77,7 +77,7 @@ impl DepthField {
             return None;
         }
         let ([i, j, k], t) = (base.to_array().map(|x| x as usize), cell - base);
-        let at = |a: usize, b: usize, c: usize| f64::from(self.distances[self.place([i + a, j + b, k + c])]);
+        let at = |a: usize, b: usize, c: usize| f64::from(self.distances[self.index([i + a, j + b, k + c])]);
         let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
         // Interpolates along x, then y, then z, with derivatives.
         let x0 = [at(0, 0, 0), at(0, 1, 0), at(0, 0, 1), at(0, 1, 1)];
@@ -94,28 +94,31 @@ impl DepthField {
         distance.is_finite().then_some(SignedDistance { distance, gradient: gradient / self.spacing })
     }
 
-    fn place(&self, [i, j, k]: [usize; 3]) -> usize {
+    /// Index of a grid point in `distances`.
+    fn index(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.size[1] + j) * self.size[0] + i
     }
 
+    /// Position of a grid point.
     fn point(&self, [i, j, k]: [usize; 3]) -> DVec3 {
         self.origin + DVec3::new(i as f64, j as f64, k as f64) * self.spacing
     }
 
-    fn measure(&mut self, mesh: &TriMesh) {
+    /// Computes the distances of all grid points: first in the band, then inwards.
+    fn compute_distances(&mut self, mesh: &TriMesh) {
         let (p, faces) = (mesh.rest_positions(), mesh.faces());
         let corners = |t: u32| faces[t as usize].map(|v| p[v as usize]);
-        let normals = Normals::new(mesh);
+        let normals = Pseudonormals::new(mesh);
         let count = self.size.iter().product();
         let mut nearest = vec![(f32::INFINITY, u32::MAX); count];
         let mut parts = Vec::new();
         for t in 0..faces.len() as u32 {
-            let whole = corners(t);
-            parts.push(whole);
+            let triangle = corners(t);
+            parts.push(triangle);
             while let Some([a, b, c]) = parts.pop() {
                 let [low, high] = [a.min(b).min(c), a.max(b).max(c)];
-                // The box of a large triangle is mostly empty: halves have smaller ones.
-                if (high - low).max_element() > LARGE * self.spacing {
+                // The AABB of a large triangle is mostly empty; those of its halves are smaller.
+                if (high - low).max_element() > MAX_TRIANGLE_CELLS * self.spacing {
                     parts.extend(halves([a, b, c]));
                     continue;
                 }
@@ -127,9 +130,9 @@ impl DepthField {
                     for j in from[1]..=to[1] {
                         for i in from[0]..=to[0] {
                             let x = self.point([i, j, k]);
-                            let distance = nearest_point_triangle(x, whole).0.distance(x) as f32;
-                            let best = &mut nearest[self.place([i, j, k])];
-                            // What is further away might not be the nearest triangle of all.
+                            let distance = nearest_point_triangle(x, triangle).0.distance(x) as f32;
+                            let best = &mut nearest[self.index([i, j, k])];
+                            // A triangle beyond the band might not be the nearest one.
                             if distance < best.0 && f64::from(distance) <= BAND * self.spacing {
                                 *best = (distance, t);
                             }
@@ -148,11 +151,11 @@ impl DepthField {
         for k in 0..self.size[2] {
             for j in 0..self.size[1] {
                 for i in 0..self.size[0] {
-                    let place = self.place([i, j, k]);
-                    let t = nearest[place].1;
+                    let index = self.index([i, j, k]);
+                    let t = nearest[index].1;
                     if t != u32::MAX {
-                        self.distances[place] = signed(self.point([i, j, k]), t);
-                        if self.distances[place] < 0.0 {
+                        self.distances[index] = signed(self.point([i, j, k]), t);
+                        if self.distances[index] < 0.0 {
                             queue.push_back([i, j, k]);
                         }
                     }
@@ -164,7 +167,7 @@ impl DepthField {
         }
         // Propagates inwards: the triangle nearest to a point is nearly the nearest one of its neighbours.
         while let Some(at) = queue.pop_front() {
-            let t = nearest[self.place(at)].1;
+            let t = nearest[self.index(at)].1;
             for axis in 0..3 {
                 for step in [usize::MAX, 1] {
                     let mut next = at;
@@ -172,19 +175,19 @@ impl DepthField {
                     if next[axis] >= self.size[axis] {
                         continue;
                     }
-                    let place = self.place(next);
+                    let index = self.index(next);
                     let x = self.point(next);
-                    if nearest[place].0.is_infinite() && nearest[place].1 == u32::MAX {
-                        nearest[place].1 = t;
+                    if nearest[index].0.is_infinite() && nearest[index].1 == u32::MAX {
+                        nearest[index].1 = t;
                         queue.push_back(next);
-                    } else if nearest[place].0.is_finite() {
+                    } else if nearest[index].0.is_finite() {
                         continue;
                     }
                     // A point that is reached from several neighbours keeps the minimum distance.
                     let distance = nearest_point_triangle(x, corners(t)).0.distance(x) as f32;
-                    if distance < self.distances[place].abs() {
-                        self.distances[place] = -distance;
-                        nearest[place].1 = t;
+                    if distance < self.distances[index].abs() {
+                        self.distances[index] = -distance;
+                        nearest[index].1 = t;
                     }
                 }
             }
@@ -212,7 +215,7 @@ mod tests {
     use sscc_modes::shapes;
 
     #[test]
-    fn a_box_has_its_distances() {
+    fn distances_of_a_box_are_exact_up_to_the_spacing() {
         let corner =
             |n: u32| DVec3::new(f64::from(n & 1), f64::from(n >> 1 & 1) * 2.0, f64::from(n >> 2) * 3.0) + 5.0;
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -247,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn an_open_surface_has_no_depths_but_close_to_it() {
+    fn an_open_surface_has_depths_only_in_the_band() {
         let spring = shapes::spring();
         let (p, faces) = (spring.rest_positions(), spring.faces());
         let field = DepthField::new(&TriMesh::new(p.to_vec(), faces[1..].to_vec()).unwrap());
