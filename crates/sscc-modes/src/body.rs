@@ -7,12 +7,12 @@ use sscc_solid::Solid;
 
 use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
-use crate::eigen::tall::{add_product, inner, product};
-use crate::eigen::{Lowest, lowest_modes};
+use crate::eigen::tall_matrix::{add_product, inner, product};
+use crate::eigen::{LowestModes, lowest_modes};
 use crate::sparse::{BlockSparse, FIXED};
 
 /// Directions in which fixed vertices hold less than this share of the others are free: rounding.
-const HELD: f64 = 1e-10;
+const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Solid with optional fixed vertices, and its matrices at rest.
 pub(crate) struct Body<'a> {
@@ -57,7 +57,7 @@ impl<'a> Body<'a> {
     }
 
     /// Computes the `count` lowest vibrations, without rigid motions.
-    pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<Lowest, ModesError> {
+    pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<LowestModes, ModesError> {
         lowest_modes(&self.stiffness, &self.mass, &self.free, self.rigid.as_ref(), count, progress)
     }
 
@@ -111,7 +111,7 @@ impl<'a> Body<'a> {
         let held =
             Mat::from_fn(6, 6, |i, j| fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>());
         let (values, vectors) = symmetric_eigen(held.as_ref())?;
-        let allowed: Vec<usize> = (0..6).filter(|k| values[*k] <= HELD).collect();
+        let allowed: Vec<usize> = (0..6).filter(|k| values[*k] <= RANK_TOLERANCE).collect();
         let motions = Mat::from_fn(3 * self.free.len(), allowed.len(), |row, column| {
             (0..6).map(|k| motion(self.free[row / 3], k)[row % 3] * vectors[(k, allowed[column])]).sum()
         });
@@ -131,8 +131,8 @@ pub(crate) fn m_orthonormal(
         if x.ncols() == 0 {
             break; // faer decomposes no empty matrix
         }
-        let turn = whitening(mass, &x, least, most)?;
-        x = product(x.as_ref(), turn.as_ref());
+        let transform = whitening(mass, &x, least, most)?;
+        x = product(x.as_ref(), transform.as_ref());
     }
     Ok(x)
 }

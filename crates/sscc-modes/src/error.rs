@@ -11,7 +11,7 @@ pub enum ModesError {
     #[error(
         "the surface (radius {radius:e}) is too small beside its distance {distance:e} from the origin: move it closer"
     )]
-    Lost {
+    TooFarFromOrigin {
         /// Root mean square distance of the surface from its centroid (model unit).
         radius: f64,
         /// Root mean square distance of the surface from the origin (model unit).

@@ -10,10 +10,10 @@ use crate::cancel::check_cancelled;
 use crate::diagonalize::eigen;
 
 /// Without a rank, as many components as explain this share of the variance.
-const EXPLAINED: f64 = 0.999;
+const EXPLAINED_SHARE: f64 = 0.999;
 
 /// Minimum variance of a component, relative to the largest: products of frames leave about 1e-15 for each frame.
-const ZERO_SHARE: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Number of rows of frames, or vertices, per task.
 const CHUNK: usize = 1 << 12;
@@ -64,13 +64,13 @@ pub fn pca_modes(
     let (mut variances, vectors, noise) = components(&mesh.used_vertices(), frames, &mean, progress)?;
     variances.reverse();
     let total: f64 = variances.iter().map(|x| x.max(0.0)).sum();
-    let least = (ZERO_SHARE * variances[0]).max(noise);
+    let least = (ZERO_TOLERANCE * variances[0]).max(noise);
     let available = variances.iter().take(frames.len() - 1).take_while(|x| **x > least).count();
     let rank = match rank {
         _ if available == 0 => return Err(ModesError::StillFrames { frames: frames.len() }),
         Some(asked) if asked > available => return Err(ModesError::TooManyComponents { asked, available }),
         Some(asked) => asked,
-        None => explaining(EXPLAINED * total, &variances[..available]),
+        None => explaining(EXPLAINED_SHARE * total, &variances[..available]),
     };
     variances.truncate(rank);
 

@@ -4,10 +4,10 @@ use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, count_negative_eigenvalues};
 
 /// Where in a gap between two eigenvalues they are counted, one place after the other.
-const PLACES: [f64; 3] = [0.5, 0.3, 0.7];
+const GAP_POSITIONS: [f64; 3] = [0.5, 0.3, 0.7];
 
 /// So many gaps are tried, the widest first.
-const GAPS: usize = 2;
+const MAX_GAPS: usize = 2;
 
 /// Result of a count.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +30,8 @@ pub(super) fn count_below_gap(
     let width = |k: usize| 1.0 - values[k - 1] / values[k];
     let mut gaps: Vec<usize> = (count.max(1)..values.len()).collect();
     gaps.sort_by(|a, b| width(*b).total_cmp(&width(*a)).then(a.cmp(b)));
-    for gap in gaps.into_iter().take(GAPS) {
-        for place in PLACES {
+    for gap in gaps.into_iter().take(MAX_GAPS) {
+        for place in GAP_POSITIONS {
             let sigma = values[gap - 1] + place * (values[gap] - values[gap - 1]);
             let shifted = stiffness.combined(1.0, mass, -sigma);
             if let Some(counted) = count_negative_eigenvalues(&shifted, analysis)? {

@@ -7,7 +7,7 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatRef, Par};
 
-use super::tall::inner;
+use super::tall_matrix::inner;
 use crate::ModesError;
 use crate::sparse::BlockSparse;
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::basis::Basis;
 use super::space::Space;
-use super::tall::Random;
+use super::tall_matrix::Random;
 use crate::sparse::BlockSparse;
 
 /// Poisson's number and Young's modulus.

@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::{Mat, Side};
 use sscc::{Error, Progress};
 
-use super::lanczos::{Inverse, Ritz, largest};
+use super::lanczos::{RitzPairs, ShiftInvert, largest};
 use super::lattice::{Lattice, dense};
 use super::space::Space;
-use super::tall::Random;
-use super::{Lowest, lowest_modes};
+use super::tall_matrix::Random;
+use super::{LowestModes, lowest_modes};
 use crate::ModesError;
 use crate::sparse::Analysis;
 
@@ -23,7 +23,7 @@ pub(crate) fn dense_eigenvalues(body: &Lattice) -> Vec<f64> {
     whole.self_adjoint_eigenvalues(Side::Lower).unwrap()
 }
 
-fn lowest(body: &Lattice, count: usize) -> Result<Lowest, ModesError> {
+fn lowest(body: &Lattice, count: usize) -> Result<LowestModes, ModesError> {
     lowest_modes(&body.stiffness, &body.mass, &body.positions, body.rigid.as_ref(), count, &())
 }
 
@@ -43,17 +43,17 @@ fn check(body: &Lattice, count: usize) {
 }
 
 /// Vectors by their equation and their products.
-fn check_vectors(body: &Lattice, found: &Lowest, count: usize) {
+fn check_vectors(body: &Lattice, found: &LowestModes, count: usize) {
     let rigid = body.rigid.ncols();
     let x = &found.vectors;
     assert_eq!((x.nrows(), x.ncols()), (3 * body.positions.len(), count));
-    let heavy = body.mass.multiply(x.as_ref());
-    let products = x.transpose() * &heavy;
+    let m_x = body.mass.multiply(x.as_ref());
+    let products = x.transpose() * &m_x;
     assert!((products - Mat::<f64>::identity(count, count)).norm_max() < 1e-12);
-    assert!((body.rigid.transpose() * &heavy).norm_max() < 1e-12);
+    assert!((body.rigid.transpose() * &m_x).norm_max() < 1e-12);
     let force = body.stiffness.multiply(x.as_ref());
     for k in 0..count {
-        let residual = force.col(k) - faer::Scale(found.eigenvalues[k]) * heavy.col(k);
+        let residual = force.col(k) - faer::Scale(found.eigenvalues[k]) * m_x.col(k);
         // Beside rounding of the largest eigenvalue, which is about 10.
         assert!(residual.norm_l2() < 1e-8 * force.col(k).norm_l2() + 1e-13, "{k}: {}", residual.norm_l2());
         let largest = x.col(k).norm_max();
@@ -62,7 +62,7 @@ fn check_vectors(body: &Lattice, found: &Lowest, count: usize) {
     }
     assert_eq!(found.shift == 0.0, rigid == 0);
     assert!(found.shift >= 0.0 && found.shift < found.eigenvalues[0]);
-    let mut back = &force + faer::Scale(found.shift) * &heavy;
+    let mut back = &force + faer::Scale(found.shift) * &m_x;
     found.factor.solve(&mut back).unwrap();
     assert!((back - x).norm_max() < 1e-6);
 }
@@ -180,9 +180,9 @@ fn missed_modes_are_found_beside_known_ones() {
     let space = Space::new(&body.mass, body.rigid.as_ref());
     let analysis = Analysis::new(&body.stiffness, &body.positions).unwrap();
     let factor = analysis.factor(&body.stiffness.combined(1.0, &body.mass, wanted.shift)).unwrap();
-    let operator = Inverse { space: &space, factor: &factor, ceiling: f64::INFINITY };
+    let operator = ShiftInvert { space: &space, factor: &factor, ceiling: f64::INFINITY };
     let known: Vec<usize> = (0..68).filter(|k| ![0, 5, 30, 31, 59].contains(k)).collect();
-    let known = Ritz {
+    let known = RitzPairs {
         values: known.iter().map(|k| 1.0 / (wanted.eigenvalues[*k] + wanted.shift)).collect(),
         vectors: Mat::from_fn(space.size(), known.len(), |i, j| wanted.vectors[(i, known[j])]),
     };

@@ -10,10 +10,10 @@ use crate::ModesError;
 pub(super) const DEFAULT_CELLS: f64 = 20_000.0;
 
 /// The most cells that the solid may touch: nodes and links of more need gigabytes.
-const MOST_CELLS: f64 = 5e6;
+const MAX_CELLS: f64 = 5e6;
 
 /// The most cells that the surface may touch. Each has 64 samples and up to 48 pieces of lines.
-const MOST_SURFACE_CELLS: f64 = 1e6;
+const MAX_SURFACE_CELLS: f64 = 1e6;
 
 /// The grid is longer than the longest side of the surface by this share of a cell.
 const MARGIN: f64 = 0.3;
@@ -41,7 +41,7 @@ impl Grid {
     /// When that is none, or too many.
     pub fn around(surface: &Surface, cells: Option<usize>) -> Result<Self, ModesError> {
         let longest = surface.extent.max_element();
-        let most = finest(|n| touched(surface, n) <= MOST_CELLS && touched_by_surface(surface, n));
+        let most = finest(|n| touched(surface, n) <= MAX_CELLS && touched_by_surface(surface, n));
         let along = match cells {
             None => finest(|n| touched(surface, n) <= DEFAULT_CELLS),
             Some(n) if n >= 1 && n as f64 - MARGIN <= most => n as f64 - MARGIN,
@@ -101,12 +101,12 @@ fn touched(surface: &Surface, n: f64) -> f64 {
 
 /// Whether the surface touches few enough cells.
 fn touched_by_surface(surface: &Surface, n: f64) -> bool {
-    1.5 * surface.area * n * n <= MOST_SURFACE_CELLS
+    1.5 * surface.area * n * n <= MAX_SURFACE_CELLS
 }
 
 /// The largest number for which the (monotone) condition holds.
 fn finest(holds: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (0.5, MOST_CELLS);
+    let (mut low, mut high) = (0.5, MAX_CELLS);
     // Enough for a ratio of 1 + 1e-15.
     for _ in 0..100 {
         let middle = 0.5 * (low + high);

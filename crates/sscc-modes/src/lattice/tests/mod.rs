@@ -1,9 +1,9 @@
 //! Lattices of bodies whose volume and topology are known.
 
 mod bodies;
-mod gluing;
 mod models;
 mod refusals;
+mod separation;
 mod volumes;
 
 use std::collections::VecDeque;

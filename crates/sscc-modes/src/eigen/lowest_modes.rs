@@ -6,28 +6,28 @@ use sscc::Progress;
 
 use super::count::{Count, count_below_gap};
 use super::dense::all_modes;
-use super::lanczos::{BLOCK, Inverse, Ritz, largest};
-use super::shift::{Shifted, factor_below, factor_shifted, negligible};
+use super::lanczos::{BLOCK, RitzPairs, ShiftInvert, largest};
+use super::shift::{ShiftedFactor, factor_below, factor_shifted, negligible};
 use super::space::Space;
-use super::tall::Random;
+use super::tall_matrix::Random;
 use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 
 /// Problems of at most so many rows are solved as a whole.
-const SMALL: usize = 300;
+const MAX_DENSE_ROWS: usize = 300;
 
 /// So are those of which more than one in so many eigenvectors is asked for.
-const LARGE_SHARE: usize = 4;
+const DENSE_DIVISOR: usize = 4;
 
 /// How often new random vectors look for what was missed.
-const ROUNDS: usize = 2;
+const MAX_RETRIES: usize = 2;
 
 /// Components count as equal when they differ by less than this share: rounding must not decide the sign.
-const TIE_SHARE: f64 = 1e-8;
+const TIE_TOLERANCE: f64 = 1e-8;
 
 /// The lowest eigenvectors.
-pub(crate) struct Lowest {
+pub(crate) struct LowestModes {
     /// Ascending.
     pub eigenvalues: Vec<f64>,
     /// M-orthonormal, and M-orthogonal to the rigid motions (3n x count).
@@ -64,7 +64,7 @@ pub(crate) fn lowest_modes(
     rigid: MatRef<f64>,
     count: usize,
     progress: &dyn Progress,
-) -> Result<Lowest, ModesError> {
+) -> Result<LowestModes, ModesError> {
     let size = 3 * k.rows();
     let available = size - rigid.ncols();
     if count > available {
@@ -73,52 +73,52 @@ pub(crate) fn lowest_modes(
     check_cancelled(progress)?;
     progress.report(0, count);
     let pencil = Pencil { stiffness: k, mass: m, rigid, analysis: Analysis::new(k, positions)? };
-    let small = size <= SMALL || LARGE_SHARE * count > size;
+    let small = size <= MAX_DENSE_ROWS || DENSE_DIVISOR * count > size;
     let (values, mut vectors, shifted) =
-        if small { pencil.as_a_whole()? } else { pencil.by_iteration(count, progress)? };
+        if small { pencil.solve_dense()? } else { pencil.solve_lanczos(count, progress)? };
     vectors.resize_with(size, count, |_, _| 0.0);
     fix_signs(&mut vectors);
     progress.report(count, count);
-    let Shifted { factor, shift } = shifted;
-    Ok(Lowest { eigenvalues: values[..count].to_vec(), vectors, factor, shift })
+    let ShiftedFactor { factor, shift } = shifted;
+    Ok(LowestModes { eigenvalues: values[..count].to_vec(), vectors, factor, shift })
 }
 
 impl Pencil<'_> {
     /// All of them.
-    fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+    fn solve_dense(&self) -> Result<(Vec<f64>, Mat<f64>, ShiftedFactor), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
-        self.refuse_mechanisms(&values)?;
+        self.check_mechanisms(&values)?;
         let Some(lowest) = values.first() else { return Err(sscc::Error::RankZero.into()) };
         let shifted = factor_below(self.stiffness, self.mass, &self.analysis, self.rigid.ncols(), *lowest)?;
         Ok((values, vectors, shifted))
     }
 
     /// The factor of the shifted stiffness.
-    fn shifted(&self) -> Result<Shifted, ModesError> {
+    fn shifted(&self) -> Result<ShiftedFactor, ModesError> {
         let space = Space::new(self.mass, self.rigid);
         factor_shifted(self.stiffness, &space, &self.analysis, self.rigid.ncols(), &mut Random(0))
     }
 
     /// At least the `count` lowest.
-    fn by_iteration(
+    fn solve_lanczos(
         &self,
         count: usize,
         progress: &dyn Progress,
-    ) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+    ) -> Result<(Vec<f64>, Mat<f64>, ShiftedFactor), ModesError> {
         let space = Space::new(self.mass, self.rigid);
         let shifted = self.shifted()?;
         let zero = negligible(self.stiffness, self.mass);
         let ceiling = 1.0 / (shifted.shift + zero);
-        let operator = Inverse { space: &space, factor: &shifted.factor, ceiling };
+        let operator = ShiftInvert { space: &space, factor: &shifted.factor, ceiling };
         // A few more, so that there is a wide gap among them.
         let wanted = count + BLOCK / 2;
         let mut random = Random(1);
-        let mut ritz = Ritz { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
+        let mut ritz = RitzPairs { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
         let mut missed = Count { found: 0, counted: 0 };
-        for _ in 0..=ROUNDS {
+        for _ in 0..=MAX_RETRIES {
             ritz = largest(&operator, ritz, wanted, &mut random, progress, count)?;
             let values: Vec<f64> = ritz.values.iter().map(|theta| 1.0 / theta - shifted.shift).collect();
-            self.refuse_mechanisms(&values)?;
+            self.check_mechanisms(&values)?;
             check_cancelled(progress)?;
             let counted = count_below_gap(self.stiffness, self.mass, &self.analysis, &values, count)?;
             let Some(Count { found, counted }) = counted else { return Err(self.uncounted(values[0])) };
@@ -139,7 +139,7 @@ impl Pencil<'_> {
     }
 
     /// An error where eigenvalues (ascending) are 0.
-    fn refuse_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
+    fn check_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
         let zero = negligible(self.stiffness, self.mass);
         let expected = self.rigid.ncols();
         let mut found = expected + values.iter().filter(|x| **x <= zero).count();
@@ -158,7 +158,7 @@ impl Pencil<'_> {
 pub(crate) fn fix_signs(vectors: &mut Mat<f64>) {
     for column in vectors.col_iter_mut() {
         let largest = column.norm_max();
-        let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_SHARE) * largest).copied();
+        let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_TOLERANCE) * largest).copied();
         if first.is_some_and(|x| x < 0.0) {
             column.iter_mut().for_each(|x| *x = -*x);
         }

@@ -5,7 +5,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 /// Number of rows per task. Fixed, so that sums do not depend on the number of threads.
-const ROWS: usize = 4096;
+const ROWS_PER_TASK: usize = 4096;
 
 /// `a' b`, for tall matrices.
 pub(crate) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
@@ -13,8 +13,8 @@ pub(crate) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
         return Mat::zeros(a.ncols(), b.ncols());
     }
     let parts: Vec<Mat<f64>> = a
-        .par_row_chunks(ROWS)
-        .zip(b.par_row_chunks(ROWS))
+        .par_row_chunks(ROWS_PER_TASK)
+        .zip(b.par_row_chunks(ROWS_PER_TASK))
         .map(|(a, b)| {
             let mut part = Mat::zeros(a.ncols(), b.ncols());
             matmul(&mut part, Accum::Replace, a.transpose(), b, 1.0, Par::Seq);
@@ -36,8 +36,8 @@ pub(crate) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, facto
     if to.nrows() == 0 || to.ncols() == 0 || a.ncols() == 0 {
         return;
     }
-    to.par_row_chunks_mut(ROWS)
-        .zip(a.par_row_chunks(ROWS))
+    to.par_row_chunks_mut(ROWS_PER_TASK)
+        .zip(a.par_row_chunks(ROWS_PER_TASK))
         .for_each(|(to, a)| matmul(to, Accum::Add, a, b, factor, Par::Seq));
 }
 
