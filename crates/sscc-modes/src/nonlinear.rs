@@ -36,7 +36,7 @@ const MAX_REFINEMENTS: usize = 30;
 pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let available = 3 * body.stiffness.rows() - body.rigid.ncols();
     if rank > available {
-        return Err(ModesError::TooManyModes { asked: rank, available });
+        return Err(ModesError::TooManyModes { requested: rank, available });
     }
     let linear = linear_count(rank).min(available);
     let lowest = body.lowest(linear, progress)?;
@@ -126,7 +126,7 @@ fn solve(body: &Body, lowest: &LowestModes, mut right: Mat<f64>) -> Result<Mat<f
 fn principal(body: &Body, all: Mat<f64>, rank: usize) -> Result<Mat<f64>, ModesError> {
     let basis = m_orthonormal(&body.mass, all, 1e-15, rank)?;
     match basis.ncols() {
-        found if found < rank => Err(ModesError::TooManyModes { asked: rank, available: found }),
+        found if found < rank => Err(ModesError::TooManyModes { requested: rank, available: found }),
         _ => Ok(basis),
     }
 }

@@ -85,14 +85,14 @@ pub fn nonlinear_modes(
         return Err(sscc::Error::RankZero.into());
     }
     if rank > MAX_NONLINEAR_RANK {
-        return Err(ModesError::NonlinearRank { asked: rank, most: MAX_NONLINEAR_RANK });
+        return Err(ModesError::NonlinearRank { requested: rank, max: MAX_NONLINEAR_RANK });
     }
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
     // The basis has no rigid motions, so low eigenvalues are those of soft directions.
     let (transform, eigenvalues) = rotation(&body, &basis, 0.0)?;
     if eigenvalues.len() < rank {
-        return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });
+        return Err(ModesError::TooManyModes { requested: rank, available: eigenvalues.len() });
     }
     let vectors = product(basis.as_ref(), transform.as_ref());
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();

@@ -66,7 +66,9 @@ pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
     match names.len() {
         0 => return request(format!("there is no {what} mesh in this folder")),
         count if count > MAX_MESHES => {
-            return request(format!("the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"));
+            return request(format!(
+                "the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"
+            ));
         }
         _ => names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes())),
     }

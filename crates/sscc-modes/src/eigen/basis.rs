@@ -29,17 +29,17 @@ impl Basis {
         self.size += columns.ncols();
     }
 
-    /// Removes the basis from all columns, twice; returns the removed coefficients.
+    /// Projects the basis out of all columns, twice; returns the removed coefficients.
     pub fn project_out(&self, x: &mut Mat<f64>) -> Mat<f64> {
         let columns = self.columns.as_ref().subcols(0, self.size);
         let m_columns = self.m_columns.as_ref().subcols(0, self.size);
-        let mut taken = Mat::zeros(self.size, x.ncols());
+        let mut removed = Mat::zeros(self.size, x.ncols());
         for _ in 0..2 {
             let along = inner(m_columns, x.as_ref());
             add_product(x.as_mut(), columns, along.as_ref(), -1.0);
-            taken += along;
+            removed += along;
         }
-        taken
+        removed
     }
 
     /// Returns the largest product of its columns with these.

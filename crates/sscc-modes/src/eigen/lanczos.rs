@@ -11,22 +11,22 @@ use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::sparse::Cholesky;
 
-/// Columns of a block. An eigenvalue that is repeated as often, or less, is found at once; cubes have threefold ones,
-/// and a wide block makes more of each pass over the factor.
+/// Number of columns of a block. A block finds all copies of an eigenvalue of at most this multiplicity; cubes have
+/// threefold ones. A wide block also reads the factor less often.
 pub(super) const BLOCK: usize = 16;
 
-/// A Ritz value has converged when its residual is at most this share of it. The eigenvalue's own error is about the square.
+/// Maximum residual of a converged Ritz value, relative to the value. The eigenvalue's own error is about the square.
 const RESIDUAL_TOLERANCE: f64 = 1e-10;
 
-/// Steps for each block of wanted values, before giving up. About 6 are usual.
+/// Maximum number of steps per block of wanted values. About 6 are usual.
 const MAX_STEPS_PER_BLOCK: usize = 60;
 
-/// `(K + s M)^-1 M` beside the rigid motions: its eigenvalues are `1 / (lambda + s)`.
+/// The operator `(K + s M)^-1 M` without rigid motions; its eigenvalues are `1 / (lambda + s)`.
 pub(super) struct ShiftInvert<'a> {
     pub space: &'a Space<'a>,
     pub factor: &'a Cholesky,
-    /// An eigenvalue beyond this one ends the search: the body is a mechanism. Rounding in its direction, made large,
-    /// would keep the others from converging.
+    /// An eigenvalue above this bound ends the search, because the body is a mechanism. The operator would amplify
+    /// rounding in its direction, and the others would not converge.
     pub ceiling: f64,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct RitzPairs {
 }
 
 impl ShiftInvert<'_> {
-    /// The operator applied to columns of which M times them is given.
+    /// Returns the operator applied to columns x, given `M x`.
     pub fn apply(&self, mut m_x: Mat<f64>) -> Result<Mat<f64>, ModesError> {
         self.factor.solve(&mut m_x)?;
         self.space.deflate(&mut m_x);
@@ -91,8 +91,8 @@ pub(super) fn largest(
             if values[0] >= operator.ceiling {
                 return Ok(RitzPairs { values, vectors: Mat::zeros(space.size(), 0) });
             }
-            let good = |k: &usize| residuals.col(*k).norm_l2() <= RESIDUAL_TOLERANCE * values[*k];
-            let found = (0..wanted).take_while(good).count();
+            let has_converged = |k: &usize| residuals.col(*k).norm_l2() <= RESIDUAL_TOLERANCE * values[*k];
+            let found = (0..wanted).take_while(has_converged).count();
             (converged, span) = (found, values[0] / values[wanted - 1]);
             progress.report(found.min(shown), shown);
             if found == wanted {
@@ -121,12 +121,12 @@ fn unconverged(converged: usize, wanted: usize, span: f64) -> ModesError {
 /// Returns a lower bound of the largest eigenvalue, by a few steps of the block power method.
 pub(super) fn estimate_largest(operator: &ShiftInvert, random: &mut Random) -> Result<f64, ModesError> {
     let space = operator.space;
-    let nothing = Basis::new(space.size(), 0);
+    let empty = Basis::new(space.size(), 0);
     let mut block = random.matrix(space.size(), BLOCK);
     let mut value = 0.0;
     for _ in 0..3 {
         space.deflate(&mut block);
-        let (m_x, _) = space.orthonormalise(&mut block, &nothing, random).ok_or(ModesError::OutOfRange)?;
+        let (m_x, _) = space.orthonormalise(&mut block, &empty, random).ok_or(ModesError::OutOfRange)?;
         let next = operator.apply(m_x.clone())?;
         let projected = inner(m_x.as_ref(), next.as_ref());
         value = descending(projected.as_ref())?.0[0];
@@ -149,7 +149,7 @@ fn extend(projected: &mut Mat<f64>, coupling: &Mat<f64>, done: usize) {
     }
 }
 
-/// Eigenvalues, descending, and their vectors.
+/// Returns the eigenvalues, descending, and their vectors.
 fn descending(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
     let (mut values, vectors) = symmetric_eigen(matrix)?;
     values.reverse();
@@ -161,13 +161,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounding_is_told_only_where_it_can_be_the_cause() {
-        let hidden = unconverged(175, 258, 1.4e8).to_string();
-        let cause = "175 of 258 vibrations converged: the highest is about 11832 times as fast as the lowest";
-        assert!(hidden.starts_with(cause) && hidden.ends_with("ask for fewer modes"), "{hidden}");
+    fn the_message_names_rounding_only_if_it_can_be_the_cause() {
+        let rounded = unconverged(175, 258, 1.4e8).to_string();
+        let cause = "175 of 258 vibrations converged: the highest frequency is about 11832 times the lowest";
+        assert!(rounded.starts_with(cause) && rounded.ends_with("request fewer modes"), "{rounded}");
         let unknown = unconverged(3, 28, 1e3).to_string();
         assert!(
-            unknown.starts_with("3 of 28 vibrations converged in") && !unknown.contains("round"),
+            unknown.starts_with("3 of 28 vibrations converged within") && !unknown.contains("round"),
             "{unknown}"
         );
     }

@@ -14,32 +14,32 @@ use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 
-/// Problems of at most so many rows are solved as a whole.
+/// Maximum number of rows for the dense solver.
 const MAX_DENSE_ROWS: usize = 300;
 
-/// So are those of which more than one in so many eigenvectors is asked for.
+/// Larger problems use the dense solver, too, if more than one in this number of eigenvectors is requested.
 const DENSE_DIVISOR: usize = 4;
 
-/// How often new random vectors look for what was missed.
+/// Maximum number of searches for missed eigenvectors, each from a new random block.
 const MAX_RETRIES: usize = 2;
 
-/// Components count as equal when they differ by less than this share: rounding must not decide the sign.
+/// Relative difference up to which components count as equal, so that rounding does not decide the sign.
 const TIE_TOLERANCE: f64 = 1e-8;
 
 /// The lowest eigenvectors.
 pub(crate) struct LowestModes {
-    /// Ascending.
+    /// Eigenvalues, ascending.
     pub eigenvalues: Vec<f64>,
-    /// M-orthonormal, and M-orthogonal to the rigid motions (3n x count).
+    /// M-orthonormal vectors, M-orthogonal to the rigid motions (3n x count).
     pub vectors: Mat<f64>,
     /// The factor of `K + shift M`.
     pub factor: Cholesky,
-    /// 0 for a body without rigid motions.
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests look at it"))]
+    /// The shift; 0 for a body without rigid motions.
+    #[cfg_attr(not(test), expect(dead_code, reason = "used by tests"))]
     pub shift: f64,
 }
 
-/// A stiffness and a mass.
+/// Eigenproblem of a stiffness and a mass.
 struct Pencil<'a> {
     stiffness: &'a BlockSparse,
     mass: &'a BlockSparse,
@@ -47,16 +47,15 @@ struct Pencil<'a> {
     analysis: Analysis,
 }
 
-/// The `count` lowest eigenvectors of `K x = lambda M x` beside the rigid motions. `k` is positive semidefinite, `m`
-/// positive definite, both of one pattern; `positions` are those of their vertices; `rigid` are M-orthonormal
+/// Computes the `count` lowest eigenvectors of `K x = lambda M x` without rigid motions. `k` is positive semidefinite,
+/// `m` positive definite, both with the same pattern. `positions` are the vertices (n), and `rigid` are M-orthonormal
 /// motions without energy (3n x 0 to 6).
 ///
-/// Small residuals do not show that none is missing. The eigenvalues are therefore counted, by the inertia of `K -
-/// sigma M`.
+/// Small residuals do not prove that none is missing, so the inertia of `K - sigma M` counts the eigenvalues.
 ///
 /// # Errors
-/// When fewer exist, when motions beside `rigid` cost no energy, when it is cancelled, when memory is short, or when
-/// the iteration fails.
+/// When fewer exist, when other motions than `rigid` have no energy, when cancelled, when memory is short, or when the
+/// iteration fails.
 pub(crate) fn lowest_modes(
     k: &BlockSparse,
     m: &BlockSparse,
@@ -68,7 +67,7 @@ pub(crate) fn lowest_modes(
     let size = 3 * k.rows();
     let available = size - rigid.ncols();
     if count > available {
-        return Err(ModesError::TooManyModes { asked: count, available });
+        return Err(ModesError::TooManyModes { requested: count, available });
     }
     check_cancelled(progress)?;
     progress.report(0, count);
@@ -84,7 +83,7 @@ pub(crate) fn lowest_modes(
 }
 
 impl Pencil<'_> {
-    /// All of them.
+    /// Computes all eigenvectors with the dense solver.
     fn solve_dense(&self) -> Result<(Vec<f64>, Mat<f64>, ShiftedFactor), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
         self.check_mechanisms(&values)?;
@@ -93,13 +92,13 @@ impl Pencil<'_> {
         Ok((values, vectors, shifted))
     }
 
-    /// The factor of the shifted stiffness.
+    /// Factors the shifted stiffness.
     fn shifted(&self) -> Result<ShiftedFactor, ModesError> {
         let space = Space::new(self.mass, self.rigid);
         factor_shifted(self.stiffness, &space, &self.analysis, self.rigid.ncols(), &mut Random(0))
     }
 
-    /// At least the `count` lowest.
+    /// Computes at least the `count` lowest eigenvectors with the Lanczos iteration.
     fn solve_lanczos(
         &self,
         count: usize,
@@ -110,7 +109,7 @@ impl Pencil<'_> {
         let zero = negligible(self.stiffness, self.mass);
         let ceiling = 1.0 / (shifted.shift + zero);
         let operator = ShiftInvert { space: &space, factor: &shifted.factor, ceiling };
-        // A few more, so that there is a wide gap among them.
+        // A few more eigenvalues are likely to contain a wide gap.
         let wanted = count + BLOCK / 2;
         let mut random = Random(1);
         let mut ritz = RitzPairs { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
@@ -131,14 +130,14 @@ impl Pencil<'_> {
         Err(ModesError::MissedModes { found: missed.found, counted: missed.counted })
     }
 
-    /// An error that tells what makes the count hard.
+    /// Returns the error for an uncertain count, with its likely causes.
     fn uncounted(&self, lowest: f64) -> ModesError {
         let mean = self.stiffness.trace() / self.mass.trace();
-        let (least, most) = self.stiffness.diagonal_range();
-        ModesError::Uncounted { contrast: most / least, lowest: lowest / mean }
+        let (smallest, largest) = self.stiffness.diagonal_range();
+        ModesError::Uncounted { contrast: largest / smallest, lowest: lowest / mean }
     }
 
-    /// An error where eigenvalues (ascending) are 0.
+    /// Returns an error if eigenvalues (ascending) are 0.
     fn check_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
         let zero = negligible(self.stiffness, self.mass);
         let expected = self.rigid.ncols();
@@ -146,7 +145,7 @@ impl Pencil<'_> {
         if found == expected {
             return Ok(());
         }
-        // Maybe there are more than were looked for.
+        // More may exist than the search returned.
         let sigma = values.get(found - expected).map_or(zero, |next| (zero * next).sqrt());
         let shifted = self.stiffness.combined(1.0, self.mass, -sigma);
         found = found.max(count_negative_eigenvalues(&shifted, &self.analysis)?.unwrap_or(0));
@@ -154,7 +153,7 @@ impl Pencil<'_> {
     }
 }
 
-/// Turns each column so that its largest component is positive, the first one of equals.
+/// Chooses the sign of each column so that its largest component is positive, the first one of equals.
 pub(crate) fn fix_signs(vectors: &mut Mat<f64>) {
     for column in vectors.col_iter_mut() {
         let largest = column.norm_max();

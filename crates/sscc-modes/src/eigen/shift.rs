@@ -11,30 +11,30 @@ use crate::sparse::{Analysis, BlockSparse, Cholesky};
 /// of the mean one.
 const FIRST_SHIFT: f64 = 1e-8;
 
-/// Slender bodies have lower eigenvalues: the shift is then this share of the lowest one.
+/// Shift for slender bodies, whose eigenvalues are lower, relative to the lowest eigenvalue.
 const SHIFT_SHARE: f64 = 0.1;
 
-/// Lower shifts, as a share of the mean eigenvalue, come near to rounding.
+/// Minimum shift, relative to the mean eigenvalue; lower shifts are close to rounding.
 const MIN_SHIFT: f64 = 1e-12;
 
-/// An eigenvalue of at most this share of the mean one belongs to a motion without energy. Rounding leaves about
-/// 1e-14; the lowest of slender springs are about 1e-9.
+/// Maximum eigenvalue of a motion without energy, relative to the mean eigenvalue. Rounding leaves about 1e-14; the
+/// lowest eigenvalues of slender springs are about 1e-9.
 const ZERO_TOLERANCE: f64 = 1e-12;
 
-/// A stiffness made definite.
+/// Factor of a shifted stiffness.
 pub(super) struct ShiftedFactor {
     /// The factor of `K + s M`.
     pub factor: Cholesky,
-    /// s.
+    /// The shift s.
     pub shift: f64,
 }
 
-/// Eigenvalues up to here are 0 but for rounding.
+/// Returns the eigenvalue up to which eigenvalues are 0 up to rounding.
 pub(super) fn negligible(stiffness: &BlockSparse, mass: &BlockSparse) -> f64 {
     ZERO_TOLERANCE * stiffness.trace() / mass.trace()
 }
 
-/// Factors `K + s M` where the lowest eigenvalue beside the rigid motions is known.
+/// Factors `K + s M` if the lowest eigenvalue without rigid motions is known.
 pub(super) fn factor_below(
     stiffness: &BlockSparse,
     mass: &BlockSparse,
@@ -49,7 +49,7 @@ pub(super) fn factor_below(
     Ok(ShiftedFactor { factor, shift })
 }
 
-/// Factors `K + s M`. Without rigid motions s is 0, unless the body can move all the same.
+/// Factors `K + s M`. Without rigid motions s is 0, unless K is not positive definite.
 pub(super) fn factor_shifted(
     stiffness: &BlockSparse,
     space: &Space,
@@ -72,7 +72,7 @@ pub(super) fn factor_shifted(
     let operator = ShiftInvert { space, factor: &first.factor, ceiling: f64::INFINITY };
     let largest = estimate_largest(&operator, random)?;
     let lowest = 1.0 / largest - first.shift;
-    // Where there is a mechanism, all that remains to do is to count it.
+    // A mechanism is only counted, so the first shift is sufficient.
     if first.shift <= lowest || lowest <= negligible(stiffness, space.mass) {
         return Ok(first);
     }
