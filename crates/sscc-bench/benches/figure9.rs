@@ -9,7 +9,7 @@ use std::error::Error;
 use std::fmt::Write;
 
 use sscc::{Certificates, CertifyOptions, Metric, Modes, ReducedModel};
-use sscc_modes::{Embedded, energy_metric, linear_modes, shapes::spring};
+use sscc_modes::{EmbeddedSurface, energy_metric, linear_modes, shapes::spring};
 use sscc_solid::Material;
 
 /// Any error ends the bench.
@@ -26,7 +26,7 @@ struct Row {
 
 fn main() -> Result<()> {
     let mesh = spring();
-    let body = Embedded::new(&mesh, None, Material::default(), &())?;
+    let body = EmbeddedSurface::new(&mesh, None, Material::default(), &())?;
     let found = linear_modes(body.solid(), &[], *RANKS.last().ok_or("ranks")?, &())?;
     let (all, eigenvalues) = (body.on_surface(&found.modes)?, found.eigenvalues());
     let first = all.displacements().iter().step_by(all.rank()).map(|u| u.length()).fold(0.0, f64::max);

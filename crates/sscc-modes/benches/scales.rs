@@ -9,14 +9,14 @@ use std::error::Error;
 
 use cpu_time::ProcessTime;
 use sscc::TriMesh;
-use sscc_modes::{Embedded, linear_modes, shapes::spring_of};
+use sscc_modes::{EmbeddedSurface, linear_modes, shapes::spring_of};
 use sscc_solid::{Material, PartialMaterial};
 
 /// Powers of ten by which stiffness, density and size are multiplied.
 const POWERS: [i32; 6] = [-6, -4, -2, 2, 4, 6];
 
 /// The error allowed for a frequency, as a share of it.
-const ERROR: f64 = 1e-8;
+const MAX_ERROR: f64 = 1e-8;
 
 /// Each is measured so often, and the fastest counts.
 const REPETITIONS: usize = 3;
@@ -72,7 +72,7 @@ fn compare(spring: &Spring, rank: usize, changed: &str, power: i32) -> Result<()
         _ => (factor, 1.0 / factor),
     };
     let material = Material::new(&known)?;
-    let (mut default, mut found) = (Measured::default(), Measured::default());
+    let (mut default, mut found) = (Measurement::default(), Measurement::default());
     for _ in 0..REPETITIONS {
         default.repeat(spring, rank, usual, 1.0)?;
         found.repeat(spring, rank, material, size)?;
@@ -86,26 +86,26 @@ fn compare(spring: &Spring, rank: usize, changed: &str, power: i32) -> Result<()
         found.seconds,
         found.seconds / default.seconds
     );
-    if worst > ERROR {
+    if worst > MAX_ERROR {
         return Err(format!("a frequency is off by {worst:e} of itself").into());
     }
     Ok(())
 }
 
 /// What was found, and how long it took in the fastest repetition (s of processor time).
-struct Measured {
+struct Measurement {
     freedom: usize,
     frequencies: Vec<f64>,
     seconds: f64,
 }
 
-impl Default for Measured {
+impl Default for Measurement {
     fn default() -> Self {
         Self { freedom: 0, frequencies: Vec::new(), seconds: f64::INFINITY }
     }
 }
 
-impl Measured {
+impl Measurement {
     /// Once more.
     fn repeat(
         &mut self,
@@ -118,7 +118,7 @@ impl Measured {
         let positions = mesh.rest_positions().iter().map(|p| *p * size).collect();
         let mesh = TriMesh::new(positions, mesh.faces().to_vec())?;
         let start = ProcessTime::now();
-        let body = Embedded::new(&mesh, Some(spring.cells), material, &())?;
+        let body = EmbeddedSurface::new(&mesh, Some(spring.cells), material, &())?;
         let found = linear_modes(body.solid(), &[], rank, &())?;
         self.seconds = self.seconds.min(start.elapsed().as_secs_f64());
         self.freedom = 3 * body.solid().vertices().len();

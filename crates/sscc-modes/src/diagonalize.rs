@@ -11,11 +11,11 @@ use crate::eigen::fix_signs;
 
 /// Maximum eigenvalue, relative to the largest, that counts as 0. Rounding leaves about 1e-14 of a rigid motion, of
 /// either sign, which must not become the smallest positive weight.
-const ZERO_SHARE: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Modes with a diagonal stiffness: see [`diagonalize`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Diagonalized {
+pub struct DiagonalModes {
     /// `U' = U Q` (3V x r).
     pub modes: Modes,
     /// The diagonal of `Lambda`, one for each mode (energy per q squared), ascending, none negative.
@@ -72,7 +72,7 @@ pub struct Diagonalized {
 /// # Errors
 /// When the stiffness has another rank or an eigenvalue below -1e-12 of the largest, or an entry of the new modes is
 /// out of range.
-pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized, ModesError> {
+pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<DiagonalModes, ModesError> {
     let rank = modes.rank();
     if stiffness.rank() != rank {
         return Err(ModesError::StiffnessRank { found: stiffness.rank(), rank });
@@ -80,10 +80,10 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized,
     let (mut eigenvalues, rotation) = eigen(rank, &stiffness.symmetrised())?;
     let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for x in &mut eigenvalues {
-        if *x < -ZERO_SHARE * largest {
+        if *x < -ZERO_TOLERANCE * largest {
             return Err(ModesError::StiffnessIndefinite { eigenvalue: *x, largest });
         }
-        if *x <= ZERO_SHARE * largest {
+        if *x <= ZERO_TOLERANCE * largest {
             *x = 0.0;
         }
     }
@@ -93,7 +93,7 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized,
             new.iter_mut().zip(row).for_each(|(sum, x)| *sum += *u * *x);
         }
     }
-    Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
+    Ok(DiagonalModes { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
 }
 
 /// Returns the eigenvalues of a stiffness, ascending. For mass-orthonormal modes they are squared natural angular

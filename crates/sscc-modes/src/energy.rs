@@ -32,7 +32,7 @@ pub fn filter_eigenvalues(eigenvalues: &[f64], ell: f64) -> Result<Vec<f64>, Mod
 
 /// The diagonal metric `M = Lambda / 2` for modes in which the stiffness is diagonal: `|z|^2 = q'Mq` is
 /// the linear elastic strain energy at q, if q is in the coordinates of
-/// [`Diagonalized::modes`](crate::Diagonalized). With filtered eigenvalues it is less for stiff modes.
+/// [`DiagonalModes::modes`](crate::DiagonalModes). With filtered eigenvalues it is less for stiff modes.
 ///
 /// A metric needs positive weights, so a mode without energy (eigenvalue 0: a rigid motion) gets the smallest
 /// weight of the others, or 1 if no mode has energy. `|z|^2` is then more than the energy where such a mode

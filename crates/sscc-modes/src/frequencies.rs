@@ -7,7 +7,7 @@ use sscc_solid::Stiffness;
 use crate::{ModesError, stiffness_eigenvalues};
 
 /// Maximum eigenvalue, relative to the largest entry, that counts as 0; rounding leaves that much.
-const ROUNDING: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Returns the natural frequencies (Hz) of mass-orthonormal modes: in the order of the modes if the stiffness is
 /// diagonal, else ascending.
@@ -36,7 +36,7 @@ pub fn mode_frequencies(stiffness: &Stiffness) -> Option<Vec<f64>> {
 }
 
 fn roots(eigenvalues: &[f64], stiffness: &Stiffness) -> Option<Vec<f64>> {
-    let noise = ROUNDING * stiffness.largest();
+    let noise = ZERO_TOLERANCE * stiffness.largest();
     eigenvalues.iter().map(|x| (*x >= -noise).then(|| x.max(0.0).sqrt() / TAU)).collect()
 }
 

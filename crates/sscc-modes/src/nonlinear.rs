@@ -12,8 +12,8 @@ use sscc::Progress;
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
 use crate::cancel::check_cancelled;
-use crate::eigen::Lowest;
-use crate::eigen::tall::{inner, product};
+use crate::eigen::LowestModes;
+use crate::eigen::tall_matrix::{inner, product};
 use crate::elasticity::second_derivatives;
 
 /// Linear modes per mode of the basis: 20 for r = 30, as in the paper's models.
@@ -27,16 +27,16 @@ const BATCH: usize = 32;
 
 /// The residual of a derivative, as a share of its right-hand side. A derivative is only a direction that a basis
 /// should have: the principal components that are left out are larger by far.
-const SOLVED: f64 = 1e-4;
+const RESIDUAL_TOLERANCE: f64 = 1e-4;
 
 /// Refinements at most. One is usual: each gains a factor of 1,000 and more.
-const REFINEMENTS: usize = 30;
+const MAX_REFINEMENTS: usize = 30;
 
 /// The columns that span the basis (free vertices), M-orthonormal.
 pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let available = 3 * body.stiffness.rows() - body.rigid.ncols();
     if rank > available {
-        return Err(ModesError::TooManyModes { asked: rank, available });
+        return Err(ModesError::TooManyModes { requested: rank, available });
     }
     let linear = linear_count(rank).min(available);
     let lowest = body.lowest(linear, progress)?;
@@ -69,7 +69,7 @@ fn linear_count(rank: usize) -> usize {
 }
 
 /// The modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
-fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
+fn derivatives(body: &Body, lowest: &LowestModes, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let count = lowest.eigenvalues.len();
     let fields: Vec<_> = (0..count).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i..count).map(move |j| (i, j))).collect();
@@ -90,7 +90,7 @@ fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<
 
 /// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest
 /// by refinement, which gains a factor of `s / (lambda + s)` each time.
-fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
+fn solve(body: &Body, lowest: &LowestModes, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
     // Rigid motions carry no elastic force: f - M R R'f.
     if body.rigid.ncols() > 0 {
         let along = inner(body.rigid.as_ref(), right.as_ref());
@@ -101,7 +101,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
     let mut x = Mat::zeros(right.nrows(), right.ncols());
     let mut residual = right.clone();
     let mut worst = f64::INFINITY;
-    for _ in 0..REFINEMENTS {
+    for _ in 0..MAX_REFINEMENTS {
         let mut coefficients = inner(lowest.vectors.as_ref(), residual.as_ref());
         for k in 0..coefficients.ncols() {
             for (c, lambda) in coefficients.col_as_slice_mut(k).iter_mut().zip(&lowest.eigenvalues) {
@@ -114,7 +114,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
         x += low + high;
         body.without_rigid(&mut x);
         residual = &right - body.stiffness.multiply(x.as_ref());
-        if (0..right.ncols()).all(|k| norm(&residual, k) <= SOLVED * norm(&right, k)) {
+        if (0..right.ncols()).all(|k| norm(&residual, k) <= RESIDUAL_TOLERANCE * norm(&right, k)) {
             return Ok(x);
         }
         worst = (0..right.ncols()).map(|k| norm(&residual, k) / norm(&right, k)).fold(0.0, f64::max);
@@ -126,7 +126,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
 fn principal(body: &Body, all: Mat<f64>, rank: usize) -> Result<Mat<f64>, ModesError> {
     let basis = m_orthonormal(&body.mass, all, 1e-15, rank)?;
     match basis.ncols() {
-        found if found < rank => Err(ModesError::TooManyModes { asked: rank, available: found }),
+        found if found < rank => Err(ModesError::TooManyModes { requested: rank, available: found }),
         _ => Ok(basis),
     }
 }

@@ -12,7 +12,7 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh, vertex_areas};
 
 use crate::ModesError;
-use crate::orthonormal::OrthonormalBasis;
+use crate::orthonormal_basis::OrthonormalBasis;
 
 /// The constant and the linear monomials.
 const LINEAR: [fn(DVec3) -> f64; 4] = [|_| 1.0, |p| p.x, |p| p.y, |p| p.z];
@@ -124,7 +124,7 @@ impl Surface {
         let distance = mean_square(&weights, rest).sqrt();
         let noise = POSITION_NOISE * distance / radius;
         if noise.is_nan() || noise >= 0.25 {
-            return Err(ModesError::Lost { radius, distance });
+            return Err(ModesError::TooFarFromOrigin { radius, distance });
         }
         points.iter_mut().for_each(|p| *p /= radius);
         Ok(Self { weights, area, points, noise })

@@ -8,7 +8,7 @@ use sscc_solid::{Elasticity, ReducedForces, Solid, Stiffness};
 use crate::body::{Body, whitening};
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
-use crate::eigen::tall::{inner, product};
+use crate::eigen::tall_matrix::{inner, product};
 use crate::elasticity::reduced_forces;
 use crate::{DEFAULT_ELL, ModesError, energy_metric, filter_eigenvalues, nonlinear};
 
@@ -84,17 +84,17 @@ pub fn nonlinear_modes(
     if rank == 0 {
         return Err(sscc::Error::RankZero.into());
     }
-    if rank > MOST_NONLINEAR {
-        return Err(ModesError::NonlinearRank { asked: rank, most: MOST_NONLINEAR });
+    if rank > MAX_NONLINEAR_RANK {
+        return Err(ModesError::NonlinearRank { requested: rank, max: MAX_NONLINEAR_RANK });
     }
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
     // The basis has no rigid motions, so low eigenvalues are those of soft directions.
-    let (turn, eigenvalues) = rotation(&body, &basis, 0.0)?;
+    let (transform, eigenvalues) = rotation(&body, &basis, 0.0)?;
     if eigenvalues.len() < rank {
-        return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });
+        return Err(ModesError::TooManyModes { requested: rank, available: eigenvalues.len() });
     }
-    let vectors = product(basis.as_ref(), turn.as_ref());
+    let vectors = product(basis.as_ref(), transform.as_ref());
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
     let modes = from_columns(&columns)?;
     let forces = reduced_forces(solid, &modes, progress)?;
@@ -126,18 +126,18 @@ pub fn polynomial_solid_modes(
     let high = vertices.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
     let (centre, size) = ((low + high) * 0.5, (high - low).max_element());
     let fields = |points: &[DVec3]| {
-        Mat::from_fn(3 * points.len(), 3 * POLYNOMIALS, |row, k| {
+        Mat::from_fn(3 * points.len(), 3 * MONOMIALS, |row, k| {
             let p = (points[row / 3] - centre) / size;
             let scalars =
                 [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y];
             if k % 3 == row % 3 { scalars[k / 3] } else { 0.0 }
         })
     };
-    let (turn, eigenvalues) = rotation(&body, &fields(vertices), RIGID)?;
+    let (transform, eigenvalues) = rotation(&body, &fields(vertices), RIGID_TOLERANCE)?;
     let on = |points: &[DVec3]| {
-        let fields = product(fields(points).as_ref(), turn.as_ref());
+        let fields = product(fields(points).as_ref(), transform.as_ref());
         let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
-        from_columns(&(0..turn.ncols()).map(column).collect::<Vec<_>>())
+        from_columns(&(0..transform.ncols()).map(column).collect::<Vec<_>>())
     };
     let (modes, surface) = (on(vertices)?, on(surface.rest_positions())?);
     let forces = reduced_forces(solid, &modes, progress)?;
@@ -152,13 +152,13 @@ fn nonlinear_elasticity(forces: ReducedForces, eigenvalues: &[f64]) -> Result<El
 
 /// The most modes for large deformations: memory grows with the fourth power (the cubic terms) and with the number of
 /// pairs of modes (their derivatives); by count, about 4 GB at the default resolution.
-const MOST_NONLINEAR: usize = 100;
+const MAX_NONLINEAR_RANK: usize = 100;
 
 /// Monomials of degree 2 or less in three variables.
-const POLYNOMIALS: usize = 10;
+const MONOMIALS: usize = 10;
 
 /// Eigenvalues of at most this share of the largest belong to rigid motions.
-const RIGID: f64 = 1e-11;
+const RIGID_TOLERANCE: f64 = 1e-11;
 
 /// The matrix T for which the columns of `X T` are M-orthonormal and their stiffness is diagonal, and that diagonal.
 /// Dependent columns fall away, and motions whose stiffness is at most the share `rigid` of the largest.
@@ -170,9 +170,9 @@ fn rotation(body: &Body, basis: &Mat<f64>, rigid: f64) -> Result<(Mat<f64>, Vec<
     let size = values.len();
     let kept: Vec<usize> = (0..size).filter(|k| values[*k] > rigid * values[size - 1]).collect();
     let vectors = Mat::from_fn(size, kept.len(), |i, j| vectors[(i, kept[j])]);
-    let mut turn = product(orthonormal.as_ref(), vectors.as_ref());
-    fix_signs(&mut turn);
-    Ok((turn, kept.into_iter().map(|k| values[k]).collect()))
+    let mut transform = product(orthonormal.as_ref(), vectors.as_ref());
+    fix_signs(&mut transform);
+    Ok((transform, kept.into_iter().map(|k| values[k]).collect()))
 }
 
 /// Modes from one field for each.

@@ -1,4 +1,4 @@
-//! Diagonalized modes: accurate, complete, and the same shapes.
+//! DiagonalModes modes: accurate, complete, and the same shapes.
 
 #[allow(dead_code)] // other tests use the rest
 mod common;
@@ -10,10 +10,10 @@ use matrix::{
     diagonal, difference, numbers, product, random_modes, stiffness, times, transpose, with_spectrum,
 };
 use sscc::{Metric, Modes, ReducedModel};
-use sscc_modes::{Diagonalized, diagonalize, stiffness_eigenvalues};
+use sscc_modes::{DiagonalModes, diagonalize, stiffness_eigenvalues};
 
 /// Diagonalizes random modes and checks what holds for every stiffness with these eigenvalues.
-fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagonalized {
+fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> DiagonalModes {
     let n = modes.rank();
     let stiffness = stiffness(n, entries);
     let found = diagonalize(modes, &stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -115,7 +115,7 @@ fn rank_1_and_diagonal_matrices_are_exact() {
     let mut random = Random(4);
     let modes = random_modes(&mut random, 5, 1);
     let found = diagonalize(&modes, &stiffness(1, &[7.3])).unwrap();
-    assert_eq!(found, Diagonalized { modes, eigenvalues: vec![7.3], rotation: vec![1.0] });
+    assert_eq!(found, DiagonalModes { modes, eigenvalues: vec![7.3], rotation: vec![1.0] });
 
     let modes = random_modes(&mut random, 5, 3);
     let found = diagonalize(&modes, &stiffness(3, &diagonal(&[3.0, 7.0, 1.0]))).unwrap();

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc_modes::shapes::spring_of;
-use sscc_modes::{Embedded, SolidModes, linear_modes, nonlinear_modes};
+use sscc_modes::{EmbeddedSurface, SolidModes, linear_modes, nonlinear_modes};
 use sscc_solid::{Material, PartialMaterial, Solid};
 
 /// What Young's modulus, density and size are multiplied by.
@@ -29,7 +29,7 @@ fn spring(factors: Factors, rank: usize) -> Vec<f64> {
     let mesh = spring_of(120, 6);
     let positions = mesh.rest_positions().iter().map(|p| *p * factors[2]).collect();
     let mesh = TriMesh::new(positions, mesh.faces().to_vec()).unwrap();
-    let body = Embedded::new(&mesh, Some(10), scaled(factors), &()).unwrap();
+    let body = EmbeddedSurface::new(&mesh, Some(10), scaled(factors), &()).unwrap();
     linear_modes(body.solid(), &[], rank, &()).unwrap().frequencies()
 }
 

@@ -144,12 +144,12 @@ fn bodies_without_a_spectrum_are_refused() {
     );
     assert_eq!(
         linear_modes(&cube, &[], 19, &()).unwrap_err(),
-        ModesError::TooManyModes { asked: 19, available: 18 }
+        ModesError::TooManyModes { requested: 19, available: 18 }
     );
     assert_eq!(linear_modes(&cube, &[], 18, &()).unwrap().eigenvalues().len(), 18);
     assert!(matches!(nonlinear_modes(&cube, &[], 19, &()), Err(ModesError::TooManyModes { .. })));
     assert_eq!(nonlinear_modes(&cube, &[], 0, &()), Err(ModesError::Core(sscc::Error::RankZero)));
-    let many = ModesError::NonlinearRank { asked: 101, most: 100 };
+    let many = ModesError::NonlinearRank { requested: 101, max: 100 };
     assert_eq!(nonlinear_modes(&cube, &[], 101, &()), Err(many));
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use sscc_io::container::{CERTIFICATES, Kind, MODEL, SealedWriter};
+use sscc_io::container::{CERTIFICATES, ContainerWriter, Kind, MODEL};
 use sscc_io::write_npy;
 
 use crate::common::{files, sscc, strips};
@@ -66,7 +66,7 @@ fn files_that_are_not_models() {
         ("none.npz", "none.npz: "),
         ("none.stl", "none.stl: "),
         (CERTIFIED, "this is a certificate file, a model file was expected"),
-        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE, or make some first: sscc modes"),
+        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes"),
     ] {
         refused(folder, &["certify", model, "-o", "out.sscc.safetensors"], &[named]);
         refused(folder, &["check", model, "--q=0,0"], &[named]);
@@ -123,7 +123,7 @@ fn missing_meshes() {
     let folder = directory.path();
     write(folder, "still.gltf", r#"{"asset":{"version":"2.0"},"meshes":[{"name":"a","primitives":[]}]}"#);
     for (args, named) in [
-        (&["still.gltf"][..], "still.gltf: no mesh in it has morph targets"),
+        (&["still.gltf"][..], "still.gltf: no mesh of the file has morph targets"),
         (&["still.gltf", "--mesh-name", "a"], "still.gltf: the mesh 'a' has no morph targets"),
         (&["still.gltf", "--mesh-name", "b"], "still.gltf: there is no mesh 'b'"),
         (&["still.gltf", "--modes", "modes.npy"], "a model file has its own modes: leave out --modes"),
@@ -167,7 +167,7 @@ fn modes_that_do_not_fit() {
         ("nan.npy", "nan.npy: mode 0 of vertex 13 "),
         ("inf.npy", "inf.npy: mode 0 of vertex 13 "),
         ("far.npy", "far.npy: mode 0 of vertex 13 "),
-        ("huge.U", "huge.U: byte 8: the header says 2147483647 rows"),
+        ("huge.U", "huge.U: byte 8: the header declares 2147483647 rows"),
         ("negative.U", "negative.U: byte 0: a negative number of rows"),
         ("empty.npy", "empty.npy: the file is empty"),
         ("text.npy", "text.npy: "),
@@ -269,7 +269,8 @@ fn certificates_that_do_not_fit() {
     check("missing.sscc.safetensors", &["missing.sscc.safetensors: not found"]);
     check(STRIPS, &["strips.model.safetensors: this is a model file, a certificate file was expected"]);
     check(MESH, &["mesh.obj: not a file written by sscc"]);
-    let newer = |kind: Kind| SealedWriter::new(Kind { version: kind.version + 1, ..kind }).finish().unwrap();
+    let newer =
+        |kind: Kind| ContainerWriter::new(Kind { version: kind.version + 1, ..kind }).finish().unwrap();
     write(folder, "newer.sscc.safetensors", newer(CERTIFICATES));
     write(folder, "newer.model.safetensors", newer(MODEL));
     let named = ["written by a newer sscc (format version ", "): update sscc"];

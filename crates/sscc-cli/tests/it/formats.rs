@@ -291,10 +291,7 @@ fn an_animation_becomes_a_model() {
 
     let refusal = |args: &[&str]| sscc(folder, args).refusal().to_owned();
     let more = refusal(&[&args[..], &["--rank", "3"]].concat());
-    assert!(
-        more.starts_with("error: frames: 3 components were asked for, but the frames differ in 2 "),
-        "{more}"
-    );
+    assert!(more.starts_with("error: frames: 3 components were requested, but the frames have 2 "), "{more}");
     let file = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "pca"]);
     assert!(file.contains("mesh.obj: is a file; --kind pca needs a folder"), "{file}");
     let rank = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "polynomial", "--rank", "3"]);

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use sscc_solid::{IntegrationPoint, Material, Solid};
 
 /// Pairs for which one thread walks over the elements.
-const PAIRS: usize = 8;
+const PAIRS_PER_TASK: usize = 8;
 
 /// The stress of a symmetric strain.
 pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
@@ -68,7 +68,7 @@ pub(crate) fn second_derivatives(
         let mut at_point = vec![(DMat3::ZERO, DMat3::ZERO); fields.len()];
         for index in 0..solid.element_count() {
             let element = solid.element(index);
-            let mut own = [[DVec3::ZERO; 8]; PAIRS];
+            let mut own = [[DVec3::ZERO; 8]; PAIRS_PER_TASK];
             for k in &used {
                 let corners = at_corners[*k].iter_mut().zip(element.vertices);
                 corners.for_each(|(u, v)| *u = fields[*k][*v as usize]);
@@ -91,7 +91,7 @@ pub(crate) fn second_derivatives(
         forces
     };
     // Each pair's sums are in the order of the elements, whatever the number of threads.
-    pairs.par_chunks(PAIRS).flat_map_iter(some).collect()
+    pairs.par_chunks(PAIRS_PER_TASK).flat_map_iter(some).collect()
 }
 
 /// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's corners.

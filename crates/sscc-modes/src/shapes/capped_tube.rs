@@ -9,7 +9,7 @@ use super::tube::{band, frame, unit_circle};
 const LENGTH_STEPS: usize = 16;
 
 /// Where the tube is thinner than this share of its thickest place, at the ends, one ring is enough.
-const THIN: f64 = 0.03;
+const THIN_SHARE: f64 = 0.03;
 
 /// How a capped tube is cut into triangles.
 #[derive(Clone, Copy)]
@@ -67,7 +67,7 @@ impl CappedTube {
         let length = lengths[steps];
         let radius = |share: f64| 0.5 * section(share).iter().sum::<f64>();
         let radii: Vec<f64> = lengths.iter().map(|l| radius(l / length)).collect();
-        let thin = THIN * radii.iter().copied().fold(0.0, f64::max);
+        let thin = THIN_SHARE * radii.iter().copied().fold(0.0, f64::max);
 
         let mut rings = vec![0.0]; // the number of rings up to each step, times a constant
         for i in 0..steps {

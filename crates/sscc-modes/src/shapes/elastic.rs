@@ -5,7 +5,7 @@ use sscc::{Progress, ReducedModel, TriMesh};
 use sscc_solid::{Elasticity, Material};
 
 use super::{hare, spring};
-use crate::{Embedded, ModesError, SolidModes, linear_modes, nonlinear_modes};
+use crate::{EmbeddedSurface, ModesError, SolidModes, linear_modes, nonlinear_modes};
 
 /// Cubes along the spring. A wire is about two thick, which makes it a little stiff: in a lattice more than twice as
 /// fine its lowest frequency is 8% lower.
@@ -25,7 +25,7 @@ pub struct ElasticShape {
 /// When memory is short or the work is cancelled.
 pub fn elastic_spring(progress: &dyn Progress) -> Result<ElasticShape, ModesError> {
     let spring = spring();
-    let body = Embedded::new(&spring, Some(SPRING_CELLS), Material::default(), progress)?;
+    let body = EmbeddedSurface::new(&spring, Some(SPRING_CELLS), Material::default(), progress)?;
     let found = linear_modes(body.solid(), &[], 20, progress)?;
     shape(spring, &body, found)
 }
@@ -36,12 +36,12 @@ pub fn elastic_spring(progress: &dyn Progress) -> Result<ElasticShape, ModesErro
 /// As [`elastic_spring`].
 pub fn elastic_hare(progress: &dyn Progress) -> Result<ElasticShape, ModesError> {
     let hare = hare();
-    let body = Embedded::new(&hare, None, Material::default(), progress)?;
+    let body = EmbeddedSurface::new(&hare, None, Material::default(), progress)?;
     let found = nonlinear_modes(body.solid(), &[], 30, progress)?;
     shape(hare, &body, found)
 }
 
-fn shape(surface: TriMesh, body: &Embedded, found: SolidModes) -> Result<ElasticShape, ModesError> {
+fn shape(surface: TriMesh, body: &EmbeddedSurface, found: SolidModes) -> Result<ElasticShape, ModesError> {
     let modes = body.on_surface(&found.modes)?;
     let model = ReducedModel::with_metric(surface, modes, found.energy_metric()?)?;
     Ok(ElasticShape { model, elasticity: found.elasticity })

@@ -18,16 +18,16 @@ const FACES: usize = 14_964;
 const SPACING: f64 = 0.0095;
 
 /// Radius of bends (metre) from which on triangles become smaller: about that of the feet and of the ears' edges.
-const BEND: f64 = 0.015;
+const BEND_RADIUS: f64 = 0.015;
 
 /// How many times higher than thick the ears are.
-const FLAT: f64 = 1.65;
+const EAR_FLATTENING: f64 = 1.65;
 
 /// Width of the soft seam between an ear and the rest (metre): narrower than the gaps.
 const EAR_BLEND: f64 = 0.025;
 
 /// Rounds of flips and smoothing.
-const ROUNDS: usize = 6;
+const RELAXATIONS: usize = 6;
 
 /// The embedded hare: 14,964 triangles, 7,484 vertices, metres. One closed component (a sphere), oriented outward,
 /// free of self-intersections. It looks along x, z is up, its feet stand near z = 0. About 0.64 long.
@@ -40,8 +40,8 @@ pub fn hare() -> TriMesh {
     let lattice =
         Lattice { low: DVec3::new(-0.3371, -0.1713, -0.0167), spacing: SPACING, size: [72, 36, 40] };
     let mut surface = lattice.extract(&solid);
-    decimate(&mut surface, &solid, FACES, BEND);
-    relax(&mut surface, &solid, ROUNDS);
+    decimate(&mut surface, &solid, FACES, BEND_RADIUS);
+    relax(&mut surface, &solid, RELAXATIONS);
     surface.into_mesh().expect("the hare is a valid mesh")
 }
 
@@ -102,7 +102,7 @@ fn ear(side: f64) -> Vec<Part> {
     let piece = |piece| {
         let [t0, t1] = [piece, piece + 1].map(|k| k as f64 / PIECES as f64);
         let (ends, radii) = ([at(t0), at(t1)], [half_height(t0), half_height(t1)]);
-        Part { primitive: Primitive::Limb { ends, radii, thin, flat: FLAT }, blend: 0.002 }
+        Part { primitive: Primitive::Limb { ends, radii, thin, flat: EAR_FLATTENING }, blend: 0.002 }
     };
     (0..PIECES).map(piece).collect()
 }
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn ears_come_close_to_each_other_and_to_the_back() {
-        let thickness = 2.0 * 0.035 / FLAT;
+        let thickness = 2.0 * 0.035 / EAR_FLATTENING;
         let (between, above) = (gap(ear(-1.0), 0.1), gap(body(), 0.1));
         assert!((0.5..1.0).contains(&(between / thickness)), "{between} of {thickness}");
         assert!((0.5..1.0).contains(&(above / thickness)), "{above} of {thickness}");

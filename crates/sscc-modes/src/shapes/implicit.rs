@@ -4,11 +4,11 @@ use glam::DVec3;
 
 /// Newton steps of a projection at most, and the distance (model unit) that is near enough. From within a lattice
 /// cell of the surface about four steps are needed.
-const NEWTON_STEPS: usize = 8;
-const NEAR_ENOUGH: f64 = 1e-12;
+const MAX_NEWTON_STEPS: usize = 8;
+const PROJECTION_TOLERANCE: f64 = 1e-12;
 
 /// The function of the empty union, and its gradient.
-const NOTHING: (f64, DVec3) = (f64::INFINITY, DVec3::ZERO);
+const EMPTY: (f64, DVec3) = (f64::INFINITY, DVec3::ZERO);
 
 /// A simple solid. Its function is about the distance to it (negative inside), exact enough to blend with
 /// others, and zero exactly on its surface.
@@ -102,9 +102,9 @@ impl Implicit {
 
     /// The function at p (model unit, about the distance near the surface; negative inside), and its gradient.
     pub fn sample(&self, p: DVec3) -> (f64, DVec3) {
-        let mut all = NOTHING;
+        let mut all = EMPTY;
         for group in &self.groups {
-            let mut own = NOTHING;
+            let mut own = EMPTY;
             for (part, (centre, radius)) in group.parts.iter().zip(&group.balls) {
                 // Most parts are too far away to change anything.
                 let reach = radius + part.blend + own.0.min(all.0 + group.blend);
@@ -120,8 +120,8 @@ impl Implicit {
     /// The nearby point of the surface that Newton steps along the gradient lead to, and the outward unit normal.
     pub fn project(&self, mut p: DVec3) -> (DVec3, DVec3) {
         let (mut value, mut gradient) = self.sample(p);
-        for _ in 0..NEWTON_STEPS {
-            if value.abs() < NEAR_ENOUGH {
+        for _ in 0..MAX_NEWTON_STEPS {
+            if value.abs() < PROJECTION_TOLERANCE {
                 break;
             }
             p -= gradient * (value / gradient.length_squared().max(0.01));

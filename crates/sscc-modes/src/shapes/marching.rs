@@ -15,7 +15,7 @@ const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 2, 3, 7], [0, 4, 6, 7], [0, 1, 5, 7]];
 
 /// A lattice edge is cut at least this share of its length away from its ends, so that cuts do not coincide.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 
 /// Placeholder for no vertex.
 const NONE: u32 = u32::MAX;
@@ -66,7 +66,7 @@ impl Lattice {
                     if *entry == NONE {
                         *entry = points.len() as u32;
                         let share = values[a] / (values[a] - values[b]);
-                        let cut = point(a).lerp(point(b), share.clamp(LEAST_SHARE, 1.0 - LEAST_SHARE));
+                        let cut = point(a).lerp(point(b), share.clamp(MIN_SHARE, 1.0 - MIN_SHARE));
                         let (on_surface, normal) = solid.project(cut);
                         points.push(on_surface);
                         normals.push(normal);

@@ -9,10 +9,10 @@ use super::implicit::Implicit;
 use super::surface::Surface;
 
 /// A face must look outward: the cosine between its normal and those of the solid at its corners is at least this.
-const LEAST_COSINE: f64 = 0.5;
+const MIN_COSINE: f64 = 0.5;
 
 /// Vertices of more neighbours than this have narrow triangles.
-const LARGEST_VALENCE: usize = 8;
+const MAX_VALENCE: usize = 8;
 
 /// Collapses the shortest edges first, to points of the solid's surface, down to `faces` faces (or a little above,
 /// when no edge is left that may be collapsed). Where the surface bends more than with radius `bend` (model unit),
@@ -30,13 +30,13 @@ pub(super) fn decimate(surface: &mut Surface, solid: &Implicit, faces: usize, be
         let Some(next) = queue.pop() else { return };
         let Reverse((_, a, b)) = next;
         let current = surface.opposite(a, b).is_some() && entry(surface, [a, b]) == next;
-        let narrow = surface.valence(a) + surface.valence(b) > LARGEST_VALENCE + 4;
+        let narrow = surface.valence(a) + surface.valence(b) > MAX_VALENCE + 4;
         if !current || narrow || !surface.may_collapse(a, b) {
             continue;
         }
         let middle = solid.project(0.5 * (surface.points[a as usize] + surface.points[b as usize]));
         let cosine = outwardness(surface, [a, b], middle).min(outwardness(surface, [b, a], middle));
-        if cosine > LEAST_COSINE {
+        if cosine > MIN_COSINE {
             surface.collapse(a, b);
             (surface.points[a as usize], surface.normals[a as usize]) = middle;
             let changed: Vec<u32> = surface.neighbours(a).collect();
@@ -62,7 +62,7 @@ pub(super) fn relax(surface: &mut Surface, solid: &Implicit, rounds: usize) {
             let normal = surface.normals[v as usize];
             let moved = solid.project(here + 0.5 * (step - normal * normal.dot(step)));
             let before = outwardness(surface, [v, v], (here, normal));
-            if outwardness(surface, [v, v], moved) > before.min(LEAST_COSINE) {
+            if outwardness(surface, [v, v], moved) > before.min(MIN_COSINE) {
                 (surface.points[v as usize], surface.normals[v as usize]) = moved;
             }
         }
@@ -87,7 +87,7 @@ fn outwardness(surface: &Surface, [moved, other]: [u32; 2], (point, normal): (DV
 fn flip_if_better(surface: &mut Surface, [a, b]: [u32; 2]) {
     let (Some(c), Some(d)) = (surface.opposite(a, b), surface.opposite(b, a)) else { return };
     let valences = [a, b, c, d].map(|v| surface.valence(v));
-    let full = valences[2].max(valences[3]) >= LARGEST_VALENCE;
+    let full = valences[2].max(valences[3]) >= MAX_VALENCE;
     if full || valences[0].min(valences[1]) <= 4 || surface.opposite(c, d).is_some() {
         return;
     }
@@ -97,7 +97,7 @@ fn flip_if_better(surface: &mut Surface, [a, b]: [u32; 2]) {
     let sine_of_sum = at_c.0 * at_d.1 + at_c.1 * at_d.0;
     let old = (pb - pa).cross(pc - pa).normalize() + (pa - pb).cross(pd - pb).normalize();
     let new = [(pd - pa).cross(pc - pa), (pc - pb).cross(pd - pb)];
-    let flat = new.iter().all(|n| n.dot(old) > LEAST_COSINE * n.length() * old.length());
+    let flat = new.iter().all(|n| n.dot(old) > MIN_COSINE * n.length() * old.length());
     if sine_of_sum < -1e-9 * (at_c.0 * at_d.0) && flat {
         surface.flip([a, b], [c, d]);
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub(crate) const FIXED: u32 = u32::MAX;
 
 /// Rows that one thread copies at once.
-const ROWS: usize = 1024;
+const ROWS_PER_TASK: usize = 1024;
 
 /// Both triangles, row after row of blocks.
 #[derive(Clone, Debug)]
@@ -110,11 +110,13 @@ impl BlockSparse {
         }
         // Row-major copies, because a block takes three whole rows of x.
         let mut packed = vec![0.0; x.nrows() * width];
-        packed.par_chunks_mut(ROWS * width).zip(x.par_row_chunks(ROWS)).for_each(|(packed, x)| {
-            for (j, column) in x.col_iter().enumerate() {
-                packed[j..].iter_mut().step_by(width).zip(column.iter()).for_each(|(to, x)| *to = *x);
-            }
-        });
+        packed.par_chunks_mut(ROWS_PER_TASK * width).zip(x.par_row_chunks(ROWS_PER_TASK)).for_each(
+            |(packed, x)| {
+                for (j, column) in x.col_iter().enumerate() {
+                    packed[j..].iter_mut().step_by(width).zip(column.iter()).for_each(|(to, x)| *to = *x);
+                }
+            },
+        );
         let mut product = vec![0.0; packed.len()];
         product.par_chunks_mut(3 * width).enumerate().for_each(|(row, sums)| {
             for (column, block) in self.columns(row).iter().zip(self.blocks(row)) {
@@ -129,11 +131,13 @@ impl BlockSparse {
             }
         });
         let mut unpacked = Mat::zeros(x.nrows(), width);
-        unpacked.par_row_chunks_mut(ROWS).zip(product.par_chunks(ROWS * width)).for_each(|(to, from)| {
-            for (j, column) in to.col_iter_mut().enumerate() {
-                column.iter_mut().zip(from[j..].iter().step_by(width)).for_each(|(to, x)| *to = *x);
-            }
-        });
+        unpacked.par_row_chunks_mut(ROWS_PER_TASK).zip(product.par_chunks(ROWS_PER_TASK * width)).for_each(
+            |(to, from)| {
+                for (j, column) in to.col_iter_mut().enumerate() {
+                    column.iter_mut().zip(from[j..].iter().step_by(width)).for_each(|(to, x)| *to = *x);
+                }
+            },
+        );
         unpacked
     }
 

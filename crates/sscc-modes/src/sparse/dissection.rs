@@ -5,11 +5,11 @@ use glam::DVec3;
 use super::BlockSparse;
 
 /// Sets of at most so many vertices are not split: within a dense block the order does not matter.
-const LEAF: usize = 64;
+const MAX_LEAF_VERTICES: usize = 64;
 
 /// A cut leaves at least this share of the vertices on either side. A plane of a lattice is moved to one side as a
 /// whole, so that the separator is flat, as long as that holds.
-const LEAST_SHARE: f64 = 0.25;
+const MIN_SHARE: f64 = 0.25;
 
 /// The vertices in order of elimination: halves first, then what separates them (George 1973). The cut is across
 /// the longest axis, next to the median; the separator is the side's vertices that touch the other side, of the side
@@ -22,7 +22,7 @@ pub(crate) fn nested_dissection(matrix: &BlockSparse, positions: &[DVec3]) -> Ve
     // What is still to be ordered, last first. Separators wait below their halves, and are not cut again.
     let mut waiting = vec![((0..positions.len()).collect::<Vec<usize>>(), true)];
     while let Some((mut set, divisible)) = waiting.pop() {
-        if !divisible || set.len() <= LEAF {
+        if !divisible || set.len() <= MAX_LEAF_VERTICES {
             order.extend(set);
             continue;
         }
@@ -62,7 +62,7 @@ fn sort_and_cut(set: &mut [usize], positions: &[DVec3]) -> usize {
     let after = set.partition_point(|v| positions[*v][axis] <= middle + slack);
     let balance = |at: usize| at.min(set.len() - at);
     let best = if balance(before) >= balance(after) { before } else { after };
-    if balance(best) as f64 >= LEAST_SHARE * set.len() as f64 { best } else { set.len() / 2 }
+    if balance(best) as f64 >= MIN_SHARE * set.len() as f64 { best } else { set.len() / 2 }
 }
 
 #[cfg(test)]

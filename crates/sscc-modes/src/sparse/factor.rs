@@ -19,7 +19,7 @@ use super::dissection::nested_dissection;
 use crate::ModesError;
 
 /// Number of right-hand sides per task. The factor is read once per group: see `docs/notes/2026-11-23-lanczos.md`.
-const GROUP: usize = 8;
+const COLUMNS_PER_TASK: usize = 8;
 
 /// The order of elimination, and where the entries of the factor are: for all matrices of one pattern.
 #[derive(Clone)]
@@ -116,7 +116,7 @@ impl Cholesky {
         let symbolic = self.analysis.symbolic();
         let factor = LltRef::new(symbolic, &self.values);
         // Each column is the same whichever thread solves it.
-        x.par_col_chunks_mut(GROUP).try_for_each(|group| {
+        x.par_col_chunks_mut(COLUMNS_PER_TASK).try_for_each(|group| {
             let scratch = symbolic.solve_in_place_scratch::<f64>(group.ncols(), Par::Seq);
             let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
             factor.solve_in_place_with_conj(Conj::No, group, Par::Seq, MemStack::new(&mut memory));

@@ -11,11 +11,11 @@ use super::factor::{Analysis, threads};
 use crate::ModesError;
 
 /// A pivot of at most this share of the largest entry may have either sign.
-const NO_PIVOT: f64 = 1e-14;
+const MIN_PIVOT: f64 = 1e-14;
 
 /// The factor is that of a matrix which differs by about this share of the largest row sum, at most. Pivots are
 /// chosen within a supernode only, so larger errors are possible; 1e-16 is usual.
-const BACKWARD_ERROR: f64 = 1e-13;
+const MAX_BACKWARD_ERROR: f64 = 1e-13;
 
 /// How many eigenvalues are negative: as many as there are negative pivots (Sylvester's law of inertia). The pivots
 /// have one or two rows (Bunch and Kaufman 1977), within each supernode. None where the matrix is so close to a
@@ -49,7 +49,7 @@ pub(crate) fn count_negative_eigenvalues(
         Default::default(),
     );
     drop(memory);
-    let least = NO_PIVOT * entries.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let least = MIN_PIVOT * entries.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let mut negative = 0;
     for node in 0..nodes.n_supernodes() {
         let (first, end) = (nodes.supernode_begin()[node], nodes.supernode_end()[node]);
@@ -69,7 +69,7 @@ pub(crate) fn count_negative_eigenvalues(
     let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
     factor.solve_in_place_with_conj(Conj::No, solution.as_mut(), Par::Seq, MemStack::new(&mut memory));
     let residual = (matrix.multiply(solution.as_ref()) - wanted).norm_max();
-    let good = residual <= BACKWARD_ERROR * largest_row_sum(matrix) * solution.norm_max();
+    let good = residual <= MAX_BACKWARD_ERROR * largest_row_sum(matrix) * solution.norm_max();
     Ok(good.then_some(negative))
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_io::{read_mesh, read_volume_mesh};
-use sscc_modes::Embedded;
+use sscc_modes::EmbeddedSurface;
 use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid};
 
 use super::material::MaterialOrigin;
@@ -18,7 +18,7 @@ pub enum SolidSource {
         /// The surface.
         mesh: TriMesh,
         /// The lattice, and how it moves the surface.
-        embedded: Embedded,
+        embedded: EmbeddedSurface,
         /// Where its material comes from.
         material: MaterialOrigin,
     },
@@ -50,7 +50,7 @@ impl SolidSource {
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
-        let embedded = Embedded::new(&mesh, cells, Material::new(material)?, progress)?;
+        let embedded = EmbeddedSurface::new(&mesh, cells, Material::new(material)?, progress)?;
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 

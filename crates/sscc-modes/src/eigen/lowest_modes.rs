@@ -6,40 +6,40 @@ use sscc::Progress;
 
 use super::count::{Count, count_below_gap};
 use super::dense::all_modes;
-use super::lanczos::{BLOCK, Inverse, Ritz, largest};
-use super::shift::{Shifted, factor_below, factor_shifted, negligible};
+use super::lanczos::{BLOCK, RitzPairs, ShiftInvert, largest};
+use super::shift::{ShiftedFactor, factor_below, factor_shifted, negligible};
 use super::space::Space;
-use super::tall::Random;
+use super::tall_matrix::Random;
 use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::sparse::{Analysis, BlockSparse, Cholesky, count_negative_eigenvalues};
 
-/// Problems of at most so many rows are solved as a whole.
-const SMALL: usize = 300;
+/// Maximum number of rows for the dense solver.
+const MAX_DENSE_ROWS: usize = 300;
 
-/// So are those of which more than one in so many eigenvectors is asked for.
-const LARGE_SHARE: usize = 4;
+/// Larger problems use the dense solver, too, if more than one in this number of eigenvectors is requested.
+const DENSE_DIVISOR: usize = 4;
 
-/// How often new random vectors look for what was missed.
-const ROUNDS: usize = 2;
+/// Maximum number of searches for missed eigenvectors, each from a new random block.
+const MAX_RETRIES: usize = 2;
 
-/// Components count as equal when they differ by less than this share: rounding must not decide the sign.
-const TIE_SHARE: f64 = 1e-8;
+/// Relative difference up to which components count as equal, so that rounding does not decide the sign.
+const TIE_TOLERANCE: f64 = 1e-8;
 
 /// The lowest eigenvectors.
-pub(crate) struct Lowest {
-    /// Ascending.
+pub(crate) struct LowestModes {
+    /// Eigenvalues, ascending.
     pub eigenvalues: Vec<f64>,
-    /// M-orthonormal, and M-orthogonal to the rigid motions (3n x count).
+    /// M-orthonormal vectors, M-orthogonal to the rigid motions (3n x count).
     pub vectors: Mat<f64>,
     /// The factor of `K + shift M`.
     pub factor: Cholesky,
-    /// 0 for a body without rigid motions.
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests look at it"))]
+    /// The shift; 0 for a body without rigid motions.
+    #[cfg_attr(not(test), expect(dead_code, reason = "used by tests"))]
     pub shift: f64,
 }
 
-/// A stiffness and a mass.
+/// Eigenproblem of a stiffness and a mass.
 struct Pencil<'a> {
     stiffness: &'a BlockSparse,
     mass: &'a BlockSparse,
@@ -47,16 +47,15 @@ struct Pencil<'a> {
     analysis: Analysis,
 }
 
-/// The `count` lowest eigenvectors of `K x = lambda M x` beside the rigid motions. `k` is positive semidefinite, `m`
-/// positive definite, both of one pattern; `positions` are those of their vertices; `rigid` are M-orthonormal
+/// Computes the `count` lowest eigenvectors of `K x = lambda M x` without rigid motions. `k` is positive semidefinite,
+/// `m` positive definite, both with the same pattern. `positions` are the vertices (n), and `rigid` are M-orthonormal
 /// motions without energy (3n x 0 to 6).
 ///
-/// Small residuals do not show that none is missing. The eigenvalues are therefore counted, by the inertia of `K -
-/// sigma M`.
+/// Small residuals do not prove that none is missing, so the inertia of `K - sigma M` counts the eigenvalues.
 ///
 /// # Errors
-/// When fewer exist, when motions beside `rigid` cost no energy, when it is cancelled, when memory is short, or when
-/// the iteration fails.
+/// When fewer exist, when other motions than `rigid` have no energy, when cancelled, when memory is short, or when the
+/// iteration fails.
 pub(crate) fn lowest_modes(
     k: &BlockSparse,
     m: &BlockSparse,
@@ -64,61 +63,61 @@ pub(crate) fn lowest_modes(
     rigid: MatRef<f64>,
     count: usize,
     progress: &dyn Progress,
-) -> Result<Lowest, ModesError> {
+) -> Result<LowestModes, ModesError> {
     let size = 3 * k.rows();
     let available = size - rigid.ncols();
     if count > available {
-        return Err(ModesError::TooManyModes { asked: count, available });
+        return Err(ModesError::TooManyModes { requested: count, available });
     }
     check_cancelled(progress)?;
     progress.report(0, count);
     let pencil = Pencil { stiffness: k, mass: m, rigid, analysis: Analysis::new(k, positions)? };
-    let small = size <= SMALL || LARGE_SHARE * count > size;
+    let small = size <= MAX_DENSE_ROWS || DENSE_DIVISOR * count > size;
     let (values, mut vectors, shifted) =
-        if small { pencil.as_a_whole()? } else { pencil.by_iteration(count, progress)? };
+        if small { pencil.solve_dense()? } else { pencil.solve_lanczos(count, progress)? };
     vectors.resize_with(size, count, |_, _| 0.0);
     fix_signs(&mut vectors);
     progress.report(count, count);
-    let Shifted { factor, shift } = shifted;
-    Ok(Lowest { eigenvalues: values[..count].to_vec(), vectors, factor, shift })
+    let ShiftedFactor { factor, shift } = shifted;
+    Ok(LowestModes { eigenvalues: values[..count].to_vec(), vectors, factor, shift })
 }
 
 impl Pencil<'_> {
-    /// All of them.
-    fn as_a_whole(&self) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+    /// Computes all eigenvectors with the dense solver.
+    fn solve_dense(&self) -> Result<(Vec<f64>, Mat<f64>, ShiftedFactor), ModesError> {
         let (values, vectors) = all_modes(self.stiffness, self.mass, self.rigid)?;
-        self.refuse_mechanisms(&values)?;
+        self.check_mechanisms(&values)?;
         let Some(lowest) = values.first() else { return Err(sscc::Error::RankZero.into()) };
         let shifted = factor_below(self.stiffness, self.mass, &self.analysis, self.rigid.ncols(), *lowest)?;
         Ok((values, vectors, shifted))
     }
 
-    /// The factor of the shifted stiffness.
-    fn shifted(&self) -> Result<Shifted, ModesError> {
+    /// Factors the shifted stiffness.
+    fn shifted(&self) -> Result<ShiftedFactor, ModesError> {
         let space = Space::new(self.mass, self.rigid);
         factor_shifted(self.stiffness, &space, &self.analysis, self.rigid.ncols(), &mut Random(0))
     }
 
-    /// At least the `count` lowest.
-    fn by_iteration(
+    /// Computes at least the `count` lowest eigenvectors with the Lanczos iteration.
+    fn solve_lanczos(
         &self,
         count: usize,
         progress: &dyn Progress,
-    ) -> Result<(Vec<f64>, Mat<f64>, Shifted), ModesError> {
+    ) -> Result<(Vec<f64>, Mat<f64>, ShiftedFactor), ModesError> {
         let space = Space::new(self.mass, self.rigid);
         let shifted = self.shifted()?;
         let zero = negligible(self.stiffness, self.mass);
         let ceiling = 1.0 / (shifted.shift + zero);
-        let operator = Inverse { space: &space, factor: &shifted.factor, ceiling };
-        // A few more, so that there is a wide gap among them.
+        let operator = ShiftInvert { space: &space, factor: &shifted.factor, ceiling };
+        // A few more eigenvalues are likely to contain a wide gap.
         let wanted = count + BLOCK / 2;
         let mut random = Random(1);
-        let mut ritz = Ritz { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
+        let mut ritz = RitzPairs { values: Vec::new(), vectors: Mat::zeros(space.size(), 0) };
         let mut missed = Count { found: 0, counted: 0 };
-        for _ in 0..=ROUNDS {
+        for _ in 0..=MAX_RETRIES {
             ritz = largest(&operator, ritz, wanted, &mut random, progress, count)?;
             let values: Vec<f64> = ritz.values.iter().map(|theta| 1.0 / theta - shifted.shift).collect();
-            self.refuse_mechanisms(&values)?;
+            self.check_mechanisms(&values)?;
             check_cancelled(progress)?;
             let counted = count_below_gap(self.stiffness, self.mass, &self.analysis, &values, count)?;
             let Some(Count { found, counted }) = counted else { return Err(self.uncounted(values[0])) };
@@ -131,22 +130,22 @@ impl Pencil<'_> {
         Err(ModesError::MissedModes { found: missed.found, counted: missed.counted })
     }
 
-    /// An error that tells what makes the count hard.
+    /// Returns the error for an uncertain count, with its likely causes.
     fn uncounted(&self, lowest: f64) -> ModesError {
         let mean = self.stiffness.trace() / self.mass.trace();
-        let (least, most) = self.stiffness.diagonal_range();
-        ModesError::Uncounted { contrast: most / least, lowest: lowest / mean }
+        let (smallest, largest) = self.stiffness.diagonal_range();
+        ModesError::Uncounted { contrast: largest / smallest, lowest: lowest / mean }
     }
 
-    /// An error where eigenvalues (ascending) are 0.
-    fn refuse_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
+    /// Returns an error if eigenvalues (ascending) are 0.
+    fn check_mechanisms(&self, values: &[f64]) -> Result<(), ModesError> {
         let zero = negligible(self.stiffness, self.mass);
         let expected = self.rigid.ncols();
         let mut found = expected + values.iter().filter(|x| **x <= zero).count();
         if found == expected {
             return Ok(());
         }
-        // Maybe there are more than were looked for.
+        // More may exist than the search returned.
         let sigma = values.get(found - expected).map_or(zero, |next| (zero * next).sqrt());
         let shifted = self.stiffness.combined(1.0, self.mass, -sigma);
         found = found.max(count_negative_eigenvalues(&shifted, &self.analysis)?.unwrap_or(0));
@@ -154,11 +153,11 @@ impl Pencil<'_> {
     }
 }
 
-/// Turns each column so that its largest component is positive, the first one of equals.
+/// Chooses the sign of each column so that its largest component is positive, the first one of equals.
 pub(crate) fn fix_signs(vectors: &mut Mat<f64>) {
     for column in vectors.col_iter_mut() {
         let largest = column.norm_max();
-        let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_SHARE) * largest).copied();
+        let first = column.as_ref().iter().find(|x| x.abs() >= (1.0 - TIE_TOLERANCE) * largest).copied();
         if first.is_some_and(|x| x < 0.0) {
             column.iter_mut().for_each(|x| *x = -*x);
         }

@@ -4,23 +4,23 @@ use std::collections::BTreeMap;
 
 use safetensors::tensor::Metadata;
 
-use super::header::{self, DIGEST, DIGEST_KEY, Entry, Item, LARGEST_HEADER, LENGTH, PREFIX};
+use super::header::{self, DIGEST, DIGEST_KEY, Entry, Item, LENGTH, MAX_HEADER_BYTES, PREFIX};
 use super::{Kind, Tensor};
 use crate::error::cut;
 use crate::{FormatError, Place};
 
-/// Container whose seal, kind and version are valid.
+/// Container with a valid digest, kind and version.
 #[derive(Debug)]
-pub struct Sealed<'a> {
+pub struct Container<'a> {
     version: u32,
     texts: BTreeMap<String, String>,
     metadata: Metadata,
     data: &'a [u8],
 }
 
-impl<'a> Sealed<'a> {
-    /// Checks a file of the given kind. The seal is checked first, so that a damaged file is always reported as
-    /// damaged. Later versions must keep the seal, so that this version recognises them.
+impl<'a> Container<'a> {
+    /// Parses a file of the given kind. The digest is checked first, so that a damaged file is always reported as
+    /// damaged. Later versions must keep the digest, so that this version recognises them.
     ///
     /// # Errors
     /// When the file is not a container of sscc, a byte of it has changed, it is of another kind or a newer version, or
@@ -44,7 +44,9 @@ impl<'a> Sealed<'a> {
         // The header has one canonical form. A header with the same content in another form may hide data: the parser
         // keeps only one of two equal names.
         if header::to_text(&digest, &texts, &entries(&metadata)?)? != header {
-            return Err(at_header("not as sscc writes it: a name twice, or another order".into()));
+            return Err(at_header(
+                "the header is not in canonical form: a name is repeated, or the order differs".into(),
+            ));
         }
         let mut file = Self { version: 0, texts, metadata, data };
         file.version = kind.check(file.text("format")?, file.text("version")?)?;
@@ -96,7 +98,7 @@ impl<'a> Sealed<'a> {
     /// Returns an array of u64.
     ///
     /// # Errors
-    /// As [`Sealed::f64`].
+    /// As [`Container::f64`].
     pub fn u64(&self, name: &str) -> Result<Tensor<u64>, FormatError> {
         self.tensor(name, Item::U64, u64::from_le_bytes)
     }
@@ -104,7 +106,7 @@ impl<'a> Sealed<'a> {
     /// Returns an array of f32.
     ///
     /// # Errors
-    /// As [`Sealed::f64`].
+    /// As [`Container::f64`].
     pub fn f32(&self, name: &str) -> Result<Tensor<f32>, FormatError> {
         self.tensor(name, Item::F32, f32::from_le_bytes)
     }
@@ -112,7 +114,7 @@ impl<'a> Sealed<'a> {
     /// Returns an array of u32.
     ///
     /// # Errors
-    /// As [`Sealed::f64`].
+    /// As [`Container::f64`].
     pub fn u32(&self, name: &str) -> Result<Tensor<u32>, FormatError> {
         self.tensor(name, Item::U32, u32::from_le_bytes)
     }
@@ -120,7 +122,7 @@ impl<'a> Sealed<'a> {
     /// Returns an array of u8.
     ///
     /// # Errors
-    /// As [`Sealed::f64`].
+    /// As [`Container::f64`].
     pub fn u8(&self, name: &str) -> Result<Tensor<u8>, FormatError> {
         self.tensor(name, Item::U8, u8::from_le_bytes)
     }
@@ -143,7 +145,7 @@ impl<'a> Sealed<'a> {
     }
 }
 
-/// Checks the seal, and returns the text of the header.
+/// Checks the digest, and returns the text of the header.
 fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
     let no_container = || FormatError::whole("not a file written by sscc, or its beginning is damaged");
     let (length, rest) = bytes.split_first_chunk::<LENGTH>().ok_or_else(no_container)?;
@@ -155,10 +157,12 @@ fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
             "the file is damaged: its content does not match its BLAKE3 digest; copy or create it anew",
         ));
     }
-    // A valid seal does not make the content trustworthy: the steps below check it.
+    // A valid digest does not make the content trustworthy, so the steps below check it.
     let length = u64::from_le_bytes(*length);
     let cause = match usize::try_from(length).ok().filter(|n| *n <= rest.len()) {
-        Some(n) if n > LARGEST_HEADER => format!("a header of {n} bytes is too long"),
+        Some(n) if n > MAX_HEADER_BYTES => {
+            format!("the header has {n} bytes: at most {MAX_HEADER_BYTES} are allowed")
+        }
         Some(n) => match std::str::from_utf8(&rest[..n]) {
             Ok(text) => return Ok(text),
             Err(_) => "the header is not UTF-8 text".into(),

@@ -3,7 +3,7 @@
 use crate::FormatError;
 
 /// Returns the error for modes with `rows` rows (3 per vertex).
-pub(super) fn other_mesh(rows: usize, vertices: usize) -> FormatError {
+pub(super) fn mesh_mismatch(rows: usize, vertices: usize) -> FormatError {
     let of = match rows % 3 {
         0 => format!("{} vertices", rows / 3),
         _ => format!("{rows} rows (no multiple of 3)"),

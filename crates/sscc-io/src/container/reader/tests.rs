@@ -1,8 +1,8 @@
-use super::super::{CERTIFICATES, MODEL, SealedWriter};
+use super::super::{CERTIFICATES, ContainerWriter, MODEL};
 use super::*;
 
-fn writer() -> SealedWriter {
-    let mut writer = SealedWriter::new(MODEL);
+fn writer() -> ContainerWriter {
+    let mut writer = ContainerWriter::new(MODEL);
     writer
         .text("units", "metres \"\u{e9}\"\n")
         .u8("bytes", &[3], &[1, 2, 255])
@@ -17,31 +17,31 @@ fn sample() -> Vec<u8> {
     writer().finish().unwrap()
 }
 
-/// A container with any header, under a valid seal.
-fn sealed(header: &str, data: &[u8]) -> Vec<u8> {
+/// Returns a container with any header and a valid digest.
+fn with_header(header: &str, data: &[u8]) -> Vec<u8> {
     let length = (header.len() as u64).to_le_bytes();
-    reseal([&length[..], header.as_bytes(), data].concat())
+    with_new_digest([&length[..], header.as_bytes(), data].concat())
 }
 
-fn reseal(mut bytes: Vec<u8>) -> Vec<u8> {
+fn with_new_digest(mut bytes: Vec<u8>) -> Vec<u8> {
     let digest = header::digest(&bytes);
     bytes[DIGEST].copy_from_slice(digest.as_bytes());
     bytes
 }
 
-/// A header with that text and those tensors.
+/// Returns a header with these text entries and tensors.
 fn header_of(texts: &str, tensors: &str) -> String {
     format!("{PREFIX}{}\"{texts}}}{tensors}}}", "0".repeat(64))
 }
 
-/// With the spaces that fill up the header.
+/// Pads a header with spaces to a multiple of 8.
 fn pad(header: String) -> String {
     let padding = header.len().next_multiple_of(8) - header.len();
     header + &" ".repeat(padding)
 }
 
 fn message(bytes: &[u8]) -> String {
-    Sealed::parse(bytes, MODEL).unwrap_err().to_string()
+    Container::parse(bytes, MODEL).unwrap_err().to_string()
 }
 
 const TEXTS: &str = r#","format":"sscc.model","version":"1""#;
@@ -49,7 +49,7 @@ const TEXTS: &str = r#","format":"sscc.model","version":"1""#;
 #[test]
 fn round_trip() {
     let bytes = sample();
-    let file = Sealed::parse(&bytes, MODEL).unwrap();
+    let file = Container::parse(&bytes, MODEL).unwrap();
     assert_eq!(file.version(), 1);
     assert_eq!(file.text("units").unwrap(), "metres \"\u{e9}\"\n");
     assert_eq!(file.names(), ["big", "bytes", "faces", "none", "points"]);
@@ -74,9 +74,9 @@ fn the_file_is_a_plain_safetensors_file() {
 }
 
 #[test]
-fn getters_name_what_is_missing_or_odd() {
+fn errors_name_missing_entries_and_wrong_types() {
     let bytes = sample();
-    let file = Sealed::parse(&bytes, MODEL).unwrap();
+    let file = Container::parse(&bytes, MODEL).unwrap();
     assert_eq!(file.f64("x").unwrap_err().to_string(), "tensor 'x': missing");
     assert_eq!(
         file.f64("faces").unwrap_err().to_string(),
@@ -97,40 +97,40 @@ fn getters_name_what_is_missing_or_odd() {
 }
 
 #[test]
-fn every_flipped_byte_is_refused() {
+fn every_flipped_byte_is_rejected() {
     let bytes = sample();
     for at in 0..bytes.len() {
         for flip in [0x01, 0x20, 0x80, 0xff] {
             let mut flipped = bytes.clone();
             flipped[at] ^= flip;
-            assert!(Sealed::parse(&flipped, MODEL).is_err(), "byte {at} ^ {flip}");
+            assert!(Container::parse(&flipped, MODEL).is_err(), "byte {at} ^ {flip}");
         }
     }
 }
 
 #[test]
-fn every_truncation_and_any_extra_is_refused() {
+fn truncations_and_extra_bytes_are_rejected() {
     let bytes = sample();
     for len in 0..bytes.len() {
-        assert!(Sealed::parse(&bytes[..len], MODEL).is_err(), "{len}");
+        assert!(Container::parse(&bytes[..len], MODEL).is_err(), "{len}");
     }
     let extra = [&bytes[..], b"\0"].concat();
     assert!(message(&extra).starts_with("the file is damaged"));
-    // Sealed anew, the damage is still seen.
+    // A new digest does not hide the damage.
     for len in DIGEST.end..bytes.len() {
-        assert!(Sealed::parse(&reseal(bytes[..len].to_vec()), MODEL).is_err(), "{len}");
+        assert!(Container::parse(&with_new_digest(bytes[..len].to_vec()), MODEL).is_err(), "{len}");
     }
-    assert!(message(&reseal(extra)).contains("the tensors take 55 bytes, the file has 56"));
+    assert!(message(&with_new_digest(extra)).contains("the tensors take 55 bytes, the file has 56"));
 }
 
 #[test]
-fn no_flip_under_a_new_seal_panics() {
+fn flipped_bytes_with_a_new_digest_do_not_panic() {
     let bytes = sample();
     for at in 0..bytes.len() {
         for flip in [0x01, 0x04, 0x10, 0x80] {
             let mut flipped = bytes.clone();
             flipped[at] ^= flip;
-            if let Ok(file) = Sealed::parse(&reseal(flipped), MODEL) {
+            if let Ok(file) = Container::parse(&with_new_digest(flipped), MODEL) {
                 for name in file.names() {
                     let _ = (file.f64(&name), file.u64(&name), file.u32(&name), file.u8(&name));
                 }
@@ -140,11 +140,11 @@ fn no_flip_under_a_new_seal_panics() {
 }
 
 #[test]
-fn kinds_and_versions_are_told_apart() {
+fn other_kinds_and_versions_are_rejected() {
     let bytes = sample();
-    let other = Sealed::parse(&bytes, CERTIFICATES).unwrap_err().to_string();
+    let other = Container::parse(&bytes, CERTIFICATES).unwrap_err().to_string();
     assert_eq!(other, "this is a model file, a certificate file was expected");
-    let newer = SealedWriter::new(Kind { version: 7, ..MODEL }).finish().unwrap();
+    let newer = ContainerWriter::new(Kind { version: 7, ..MODEL }).finish().unwrap();
     assert_eq!(
         message(&newer),
         "written by a newer sscc (format version 7, this build reads up to 1): update sscc"
@@ -152,15 +152,15 @@ fn kinds_and_versions_are_told_apart() {
     for version in ["0", "01", "+1", "-1", "x", ""] {
         let header = header_of(&TEXTS.replace(r#"n":"1""#, &format!(r#"n":"{version}""#)), "");
         let expected = format!("metadata 'version': '{version}' is no version number");
-        assert_eq!(message(&sealed(&pad(header), b"")), expected);
+        assert_eq!(message(&with_header(&pad(header), b"")), expected);
     }
     assert_eq!(message(b"hello"), "not a file written by sscc, or its beginning is damaged");
 }
 
 #[test]
-fn forms_that_are_never_written_are_refused() {
+fn headers_in_other_than_canonical_form_are_rejected() {
     let one = r#","a":{"dtype":"U8","shape":[1],"data_offsets":[0,1]}"#;
-    assert!(Sealed::parse(&sealed(&pad(header_of(TEXTS, one)), b"x"), MODEL).is_ok());
+    assert!(Container::parse(&with_header(&pad(header_of(TEXTS, one)), b"x"), MODEL).is_ok());
     let twice = format!("{one}{one}");
     let blake3 = format!(r#","blake3":"{}"{TEXTS}"#, "0".repeat(64));
     for header in [
@@ -175,17 +175,17 @@ fn forms_that_are_never_written_are_refused() {
         pad(header_of(TEXTS, &one.replace("[0,1]", "[0,2]"))),
         pad(header_of(TEXTS, &format!("{one},{}", "[".repeat(100_000)))),
     ] {
-        assert!(Sealed::parse(&sealed(&header, b"x"), MODEL).is_err(), "{header}");
+        assert!(Container::parse(&with_header(&header, b"x"), MODEL).is_err(), "{header}");
     }
-    let long = pad(header_of(&format!(r#"{TEXTS},"x":"{}""#, "x".repeat(LARGEST_HEADER)), ""));
-    assert!(message(&sealed(&long, b"")).contains("is too long"));
+    let long = pad(header_of(&format!(r#"{TEXTS},"x":"{}""#, "x".repeat(MAX_HEADER_BYTES)), ""));
+    assert!(message(&with_header(&long, b"")).contains("at most 1048576 are allowed"));
     let mut length = sample();
     length[..8].copy_from_slice(&u64::MAX.to_le_bytes());
-    assert!(message(&reseal(length)).contains("does not fit into the file"));
+    assert!(message(&with_new_digest(length)).contains("does not fit into the file"));
 }
 
 #[test]
-fn sizes_that_overflow_are_refused() {
+fn sizes_that_overflow_are_rejected() {
     // Eight tensors of nearly 2^61 bytes and one of 56: together 2^64 - 8.
     let big = (1_u64 << 61) - 8;
     let mut tensors = String::new();
@@ -197,29 +197,34 @@ fn sizes_that_overflow_are_refused() {
     let (begin, end) = (8 * big, 8 * big + 56);
     tensors += &format!(r#","b":{{"dtype":"F64","shape":[7],"data_offsets":[{begin},{end}]}}"#);
     let header = header_of(TEXTS, &tensors);
-    assert!(message(&sealed(&pad(header), &[0; 56])).contains("the tensors take 18446744073709551608 bytes"));
+    assert!(
+        message(&with_header(&pad(header), &[0; 56])).contains("the tensors take 18446744073709551608 bytes")
+    );
 }
 
 #[test]
-fn what_no_file_can_hold_is_refused() {
-    let refused = |change: &dyn Fn(&mut SealedWriter) -> &mut SealedWriter| {
+fn the_writer_rejects_invalid_content() {
+    let rejected = |change: &dyn Fn(&mut ContainerWriter) -> &mut ContainerWriter| {
         let mut writer = writer();
         change(&mut writer);
         writer.finish().unwrap_err().to_string()
     };
-    assert_eq!(refused(&|w| w.text("units", "")), "metadata 'units': there already is such an entry");
-    assert_eq!(refused(&|w| w.text("blake3", "")), "metadata 'blake3': there already is such an entry");
-    assert_eq!(refused(&|w| w.u8("big", &[0], &[])), "tensor 'big': the name is taken");
-    assert_eq!(refused(&|w| w.u8("__metadata__", &[0], &[])), "tensor '__metadata__': the name is taken");
-    assert_eq!(refused(&|w| w.f64("x", &[2], &[1.0])), "tensor 'x': 1 values do not fill the shape [2]");
-    assert!(refused(&|w| w.text("x", &"x".repeat(1 << 20))).contains("is too long"));
+    assert_eq!(rejected(&|w| w.text("units", "")), "metadata 'units': the entry already exists");
+    assert_eq!(rejected(&|w| w.text("blake3", "")), "metadata 'blake3': the entry already exists");
+    assert_eq!(rejected(&|w| w.u8("big", &[0], &[])), "tensor 'big': the name is already in use");
+    assert_eq!(
+        rejected(&|w| w.u8("__metadata__", &[0], &[])),
+        "tensor '__metadata__': the name is already in use"
+    );
+    assert_eq!(rejected(&|w| w.f64("x", &[2], &[1.0])), "tensor 'x': 1 values do not fill the shape [2]");
+    assert!(rejected(&|w| w.text("x", &"x".repeat(1 << 20))).contains("at most 1048576 are allowed"));
 }
 
 #[test]
 fn messages_of_the_json_parser_are_cut_to_one_line() {
     let odd = format!(r#","a\n{}":{{"dtype":"U8","shape":[1],"data_offsets":[0,2]}}"#, "x".repeat(500));
     for tensors in [odd.replace("U8", &format!("U\\n{}", "x".repeat(500))), odd] {
-        let message = message(&sealed(&pad(header_of(TEXTS, &tensors)), b"xx"));
+        let message = message(&with_header(&pad(header_of(TEXTS, &tensors)), b"xx"));
         assert!(message.starts_with("byte 8: not a safetensors header: "), "{message}");
         assert!(!message.contains('\n') && message.len() < 400, "{message}");
     }

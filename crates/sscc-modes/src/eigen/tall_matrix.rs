@@ -5,16 +5,16 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 /// Number of rows per task. Fixed, so that sums do not depend on the number of threads.
-const ROWS: usize = 4096;
+const ROWS_PER_TASK: usize = 4096;
 
-/// `a' b`, for tall matrices.
+/// Returns `a' b` for tall matrices.
 pub(crate) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
     if a.nrows() == 0 || a.ncols() == 0 || b.ncols() == 0 {
         return Mat::zeros(a.ncols(), b.ncols());
     }
     let parts: Vec<Mat<f64>> = a
-        .par_row_chunks(ROWS)
-        .zip(b.par_row_chunks(ROWS))
+        .par_row_chunks(ROWS_PER_TASK)
+        .zip(b.par_row_chunks(ROWS_PER_TASK))
         .map(|(a, b)| {
             let mut part = Mat::zeros(a.ncols(), b.ncols());
             matmul(&mut part, Accum::Replace, a.transpose(), b, 1.0, Par::Seq);
@@ -24,7 +24,7 @@ pub(crate) fn inner(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
     parts.iter().fold(Mat::zeros(a.ncols(), b.ncols()), |sum, part| sum + part)
 }
 
-/// `a b`, for tall `a`.
+/// Returns `a b` for tall `a`.
 pub(crate) fn product(a: MatRef<f64>, b: MatRef<f64>) -> Mat<f64> {
     let mut product = Mat::zeros(a.nrows(), b.ncols());
     add_product(product.as_mut(), a, b, 1.0);
@@ -36,8 +36,8 @@ pub(crate) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, facto
     if to.nrows() == 0 || to.ncols() == 0 || a.ncols() == 0 {
         return;
     }
-    to.par_row_chunks_mut(ROWS)
-        .zip(a.par_row_chunks(ROWS))
+    to.par_row_chunks_mut(ROWS_PER_TASK)
+        .zip(a.par_row_chunks(ROWS_PER_TASK))
         .for_each(|(to, a)| matmul(to, Accum::Add, a, b, factor, Par::Seq));
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, facto
 pub(super) struct Random(pub u64);
 
 impl Random {
-    /// The next number.
+    /// Returns the next number.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -53,7 +53,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// A matrix of them.
+    /// Returns a matrix of random numbers.
     pub fn matrix(&mut self, rows: usize, columns: usize) -> Mat<f64> {
         Mat::from_fn(rows, columns, |_, _| self.next())
     }

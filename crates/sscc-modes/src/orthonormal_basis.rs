@@ -2,7 +2,7 @@
 
 /// Maximum new share of a dependent vector. Rounding leaves about 1e-16; a second projection repairs the loss at a
 /// share of 1e-10.
-const NEW_SHARE: f64 = 1e-10;
+const MIN_NEW_SHARE: f64 = 1e-10;
 
 /// Orthonormal vectors under the inner product `<x, y> = sum_i weights[i] x[i] y[i]`.
 ///
@@ -36,7 +36,7 @@ impl OrthonormalBasis {
     /// Adds what is new in `x`, scaled to length 1. Gives false, and adds nothing, when `x` depends on
     /// the vectors before it.
     pub fn add(&mut self, mut x: Vec<f64>) -> bool {
-        let least = (NEW_SHARE * self.dot(&x, &x).sqrt()).max(self.noise);
+        let least = (MIN_NEW_SHARE * self.dot(&x, &x).sqrt()).max(self.noise);
         for _ in 0..2 {
             for e in &self.vectors {
                 let along = self.dot(e, &x);

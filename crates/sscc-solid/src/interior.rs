@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_outside_a_surface_is_told() {
+    fn tetrahedra_outside_the_surface_are_found() {
         // Two tetrahedra on either side of a face; the surface is that of the first.
         let tets = [[0, 1, 2, 3], [0, 2, 1, 4]];
         let first = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];

@@ -45,7 +45,7 @@ impl VolumeMesh {
         let of_tets = kept.iter().map(|t| self.element_material()[*t]);
         let of_cubes = self.element_material()[within.len()..].iter().copied();
         let element_material: Vec<u32> = of_tets.chain(of_cubes).collect();
-        // A file may list materials without elements.
+        // A file may define materials without elements.
         let mut is_used = vec![false; self.materials().len()];
         element_material.iter().for_each(|at| is_used[*at as usize] = true);
         let named = self.materials().iter().zip(is_used);
@@ -75,7 +75,7 @@ mod tests {
         }
     }
 
-    /// Two tetrahedra on either side of a face, of two materials; a third one has no element.
+    /// Two tetrahedra on either side of a face, of two materials; a third material has no element.
     fn mesh(surface: &[[u32; 3]]) -> VolumeMesh {
         let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, -1]];
         let parts = VolumeMeshParts {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_outside_of_the_listed_surface_are_left_out() {
+    fn elements_outside_of_the_listed_surface_are_removed() {
         // The surface of the second tetrahedron.
         let surface = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
         let found = mesh(&surface).solid(&PartialMaterial::default()).unwrap();
@@ -114,9 +114,9 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_all_named_materials_are_checked() {
+    fn properties_of_all_materials_are_checked() {
         let given = PartialMaterial { poisson_ratio: Some(0.5), ..PartialMaterial::default() };
-        let refused = mesh(&[]).solid(&given).unwrap_err();
-        assert!(matches!(refused, SolidError::Material(MaterialError { what: "Poisson's ratio", .. })));
+        let rejected = mesh(&[]).solid(&given).unwrap_err();
+        assert!(matches!(rejected, SolidError::Material(MaterialError { what: "Poisson's ratio", .. })));
     }
 }

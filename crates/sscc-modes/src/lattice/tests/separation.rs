@@ -1,4 +1,4 @@
-//! What is apart stays apart, what is one piece stays one piece.
+//! Lattices keep separate parts apart and connected parts together.
 
 use glam::{DQuat, DVec3};
 use sscc::TriMesh;
@@ -8,30 +8,33 @@ use super::bodies::{cuboid, cut_ring, folded_plate, mesh, moved, sphere};
 use super::{distances, duplicates, lattice, mesh_volume, volume};
 use crate::shapes::spring;
 
-/// Cubes to pass from a surface vertex to others.
+/// Returns the number of cubes on the shortest path from a surface vertex to each other one.
 fn surface_distances(lattice: &Lattice, from: usize) -> Vec<u32> {
     let of_node = distances(lattice, lattice.interpolation.vertices[from][0].0);
     lattice.interpolation.vertices.iter().map(|of| of_node[of[0].0 as usize]).collect()
 }
 
-fn turned(of: &TriMesh) -> TriMesh {
-    let turn = DQuat::from_axis_angle(DVec3::new(0.3, -1.0, 0.4).normalize(), 1.1);
-    moved(of, |p| turn * p)
+fn rotated(of: &TriMesh) -> TriMesh {
+    let rotation = DQuat::from_axis_angle(DVec3::new(0.3, -1.0, 0.4).normalize(), 1.1);
+    moved(of, |p| rotation * p)
 }
 
-/// The ends of a ring, a hair apart, are as far from each other as the ring is long.
+/// The path through cubes between the ends of a nearly closed ring is as long as the ring.
 #[test]
 fn ends_of_a_ring() {
     for gap in [1e-3, 1e-6, 1e-9, 1e-14] {
-        for ring in [cut_ring(gap), turned(&cut_ring(gap))] {
+        for ring in [cut_ring(gap), rotated(&cut_ring(gap))] {
             for cells in [Some(12), Some(40), None] {
                 let lattice = lattice(&ring, cells);
                 let last = ring.rest_positions().len() - 1;
                 for start in 0..4 {
                     let steps = surface_distances(&lattice, start)[last];
-                    // Round the inside of the ring, in diagonal steps.
-                    let least = std::f64::consts::TAU * 0.7 / (lattice.spacing * 3_f64.sqrt());
-                    assert!(f64::from(steps) >= 0.9 * least - 2.0, "{gap} {cells:?}: {steps} < {least}");
+                    // The shortest path follows the inside of the ring in diagonal steps.
+                    let shortest = std::f64::consts::TAU * 0.7 / (lattice.spacing * 3_f64.sqrt());
+                    assert!(
+                        f64::from(steps) >= 0.9 * shortest - 2.0,
+                        "{gap} {cells:?}: {steps} < {shortest}"
+                    );
                 }
                 let error = volume(&lattice) / mesh_volume(&ring) - 1.0;
                 assert!(error.abs() < 0.03, "{gap} {cells:?}: {error}");
@@ -42,28 +45,28 @@ fn ends_of_a_ring() {
     }
 }
 
-/// All layers of a folded plate lie in the same cells, and the way through cubes is as long as the plate.
+/// All layers of a folded plate lie in the same cells, but the path through cubes is as long as the plate.
 #[test]
 fn layers_of_a_folded_plate() {
     for height in [0.02, 1e-3, 1e-7] {
         let plate = folded_plate(12, height);
-        for plate in [plate.clone(), turned(&plate)] {
+        for plate in [plate.clone(), rotated(&plate)] {
             let lattice = lattice(&plate, Some(9));
             let last = plate.rest_positions().len() - 4;
             let steps = surface_distances(&lattice, 0)[last];
-            // Diagonal steps; both cubes at a turn may belong to both layers.
-            let least = 12.0 * (1.0 / (lattice.spacing * 3_f64.sqrt()) - 2.0);
-            assert!(f64::from(steps) >= least && least > 20.0, "{height}: {steps} < {least}");
+            // Diagonal steps; both cubes at a fold may belong to both layers.
+            let shortest = 12.0 * (1.0 / (lattice.spacing * 3_f64.sqrt()) - 2.0);
+            assert!(f64::from(steps) >= shortest && shortest > 20.0, "{height}: {steps} < {shortest}");
             let copies = duplicates(&lattice) as f64 / lattice.cubes.len() as f64;
             assert!(copies > 0.9, "{height}: {copies}");
             let error = volume(&lattice) / mesh_volume(&plate).abs() - 1.0;
-            // Its outline is counted in lines, a quarter of a cell apart; thinner plates are as thick as MIN_FILL says.
+            // Lines a quarter of a cell apart sample the outline; MIN_FILL gives the thickness of thinner plates.
             assert!(height < 0.01 || error.abs() < 0.1, "{height}: {error}");
         }
     }
 }
 
-/// Without a gap there is a ring, and nothing to double.
+/// A closed ring has no duplicate cells.
 #[test]
 fn a_closed_ring() {
     let cut = cut_ring(0.0);
@@ -75,7 +78,7 @@ fn a_closed_ring() {
     assert!(surface_distances(&lattice, 0)[count as usize - 4] <= 1);
 }
 
-/// Coils of the spring are a tube radius (0.03) apart, less than a cell.
+/// Coils of the spring are a tube radius (0.03) apart, less than a cell, and stay separate.
 #[test]
 fn coils_of_a_spring() {
     let spring = spring();
@@ -89,42 +92,42 @@ fn coils_of_a_spring() {
         let mut along: f64 = 0.0;
         let distances = surface_distances(&lattice, 0);
         for (ring, step) in steps.iter().enumerate() {
-            let way = along.min(whole - along);
-            // A cube is passed diagonally, and the tube is bent: its inside is shorter than its middle.
+            let distance = along.min(whole - along);
+            // Paths pass cubes diagonally, and the inside of the bent tube is shorter than its centreline.
             let passed = f64::from(distances[16 * ring] + 2) * lattice.spacing * 3_f64.sqrt();
             assert!(
-                passed > 0.7 * way,
-                "{cells}: ring {ring} is {way} away, but only {passed} through cubes"
+                passed > 0.7 * distance,
+                "{cells}: ring {ring} is {distance} away, but only {passed} through cubes"
             );
             along += step;
         }
     }
 }
 
-/// Plates far thinner than cells are one piece each, and cubes on both sides are the same.
+/// Plates much thinner than cells are one piece, and both sides share cubes.
 #[test]
 fn thin_plates() {
     for thickness in [0.1, 1e-3, 1e-8] {
         let slab = cuboid(DVec3::ZERO, DVec3::new(2.0, 1.5, thickness));
-        for (plate, cells) in [(slab.clone(), Some(20)), (turned(&slab), Some(20)), (turned(&slab), None)] {
+        for (plate, cells) in [(slab.clone(), Some(20)), (rotated(&slab), Some(20)), (rotated(&slab), None)] {
             let lattice = lattice(&plate, cells);
             assert_eq!(duplicates(&lattice), 0, "{thickness} {cells:?}");
         }
     }
 }
 
-/// A rod thinner than the lines are apart is held together by its surface.
+/// The surface connects a rod that is thinner than the distance of the lines.
 #[test]
 fn a_needle() {
     for width in [0.05, 1e-3, 1e-6] {
         let needle = cuboid(DVec3::ZERO, DVec3::new(2.0, width, 0.7 * width));
-        for (needle, cells) in [(needle.clone(), 20), (turned(&needle), 20), (turned(&needle), 7)] {
+        for (needle, cells) in [(needle.clone(), 20), (rotated(&needle), 20), (rotated(&needle), 7)] {
             assert_eq!(duplicates(&lattice(&needle, Some(cells))), 0);
         }
     }
 }
 
-/// A vertex that no triangle uses changes nothing and does not move.
+/// An unused vertex does not change the lattice and does not move.
 #[test]
 fn unused_vertices() {
     let ball = sphere(3);

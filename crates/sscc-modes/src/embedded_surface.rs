@@ -11,14 +11,14 @@ use crate::lattice::{Interpolation, Lattice};
 ///
 /// The lattice keeps parts separate that are close in space but not along the surface, however narrow the gap. The
 /// filled share of each octant scales mass and stiffness of cubes at the surface.
-pub struct Embedded {
+pub struct EmbeddedSurface {
     solid: Solid,
     interpolation: Interpolation,
     spacing: f64,
     is_split: bool,
 }
 
-impl Embedded {
+impl EmbeddedSurface {
     /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all. A surface that is
     /// open is tried again with vertices of equal position as one.
     ///
