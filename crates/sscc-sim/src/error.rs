@@ -68,7 +68,7 @@ pub enum SimError {
     /// A motion diverged.
     #[error(
         "step {step} ({time:.4} s): the motion of body {body} (counted from 0) diverges (energy {energy:.3e} J){cause}; \
-         take more steps in a second, or more damping"
+         use more steps per second, or more damping"
     )]
     Diverged {
         /// The step.
