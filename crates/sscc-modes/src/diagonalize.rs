@@ -29,9 +29,9 @@ pub struct DiagonalModes {
 /// shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding. Certificates of a model with the new modes hold
 /// exactly for its own positions.
 ///
-/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), say from
-/// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
-/// single modes, so that a diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
+/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), for example from
+/// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over single modes, so a
+/// diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
 ///
 /// The signs are unique: the largest component of each column of `Q` is positive, the first one of equals. Equal
 /// eigenvalues permit any orthonormal basis of their space. The same input gives the same bits on one processor; other

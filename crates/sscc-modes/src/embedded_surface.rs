@@ -19,12 +19,12 @@ pub struct EmbeddedSurface {
 }
 
 impl EmbeddedSurface {
-    /// `cells` cubes along the longest side of the surface; if not given, about 20,000 cubes in all. A surface that is
-    /// open is tried again with vertices of equal position as one.
+    /// Creates the lattice with `cells` cubes along the longest side of the surface; None gives about 20,000 cubes in
+    /// all. If the surface is open, vertices of equal position are welded.
     ///
     /// # Errors
-    /// When the surface is open, not oriented alike, meets itself, encloses no volume or is in several pieces, or there
-    /// would be too many cubes.
+    /// When the surface is open, not consistently oriented, collides with itself, encloses no volume or has several
+    /// pieces, or the number of cubes is too large.
     pub fn new(
         surface: &TriMesh,
         cells: Option<usize>,
@@ -37,27 +37,27 @@ impl EmbeddedSurface {
         Ok(Self { solid, interpolation, spacing, is_split })
     }
 
-    /// The lattice.
+    /// Returns the lattice as a solid.
     pub fn solid(&self) -> &Solid {
         &self.solid
     }
 
-    /// Length of an edge of a cube (model unit).
+    /// Returns the length of an edge of a cube (model unit).
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// Whether the surface is closed only when vertices of equal position count as one (a file split them along seams).
-    /// Then certificates need the same: [`ContactFilter::weld`](sscc::ContactFilter::weld).
+    /// Whether the surface is closed only with vertices of equal position welded (a file split them along seams).
+    /// Certificates then need the same: [`ContactFilter::weld`](sscc::ContactFilter::weld).
     pub fn is_split(&self) -> bool {
         self.is_split
     }
 
-    /// Modes of the solid's vertices as modes of the surface: a vertex moves with its cube (trilinear). Vertices that
-    /// no triangle uses do not move.
+    /// Interpolates modes of the solid to the surface: a vertex moves with its cube (trilinear). Unused vertices do not
+    /// move.
     ///
     /// # Errors
-    /// When the modes are of another number of vertices.
+    /// When the modes have another number of vertices.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, ModesError> {
         let r = modes.rank();
         let (found, vertices) = (modes.vertices(), self.solid.vertices().len());
@@ -72,7 +72,7 @@ impl EmbeddedSurface {
         Ok(Modes::new(r, displacements)?)
     }
 
-    /// The vertices of the solid that hold a vertex of the surface: fix them, and it is fixed.
+    /// Returns the vertices of the solid that move a vertex of the surface; fixing them fixes it.
     pub fn holding(&self, vertex: usize) -> impl Iterator<Item = u32> {
         self.interpolation.vertices[vertex].iter().filter(|(_, share)| *share > 0.0).map(|(v, _)| *v)
     }

@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(mode_frequencies(&stiffness(&[2.0, -1.0, -1.0, 2.0])), None);
         let dense = of(&[2.0, -1.0, -1.0, 2.0]).unwrap();
         assert!((dense[0] * TAU - 1.0).abs() < 1e-12 && (dense[1] * TAU - 3.0_f64.sqrt()).abs() < 1e-12);
-        // A rigid motion's 0 is rounded to either side; a buckled body is something else.
+        // Rounding gives the 0 of a rigid motion either sign; the eigenvalues of a buckled body are far below 0.
         assert_eq!(of(&[-1e-14, 0.0, 0.0, 1.0]).unwrap()[0], 0.0);
         let buckled = of(&[1.0, 2.0, 2.0, 1.0]).unwrap_err();
         assert!(matches!(buckled, ModesError::StiffnessIndefinite { .. }), "{buckled}");

@@ -1,28 +1,27 @@
-//! Orthonormal basis that grows vector by vector.
+//! Orthonormal basis to which vectors are added one by one.
 
-/// Maximum new share of a dependent vector. Rounding leaves about 1e-16; a second projection repairs the loss at a
-/// share of 1e-10.
+/// Minimum new share of an independent vector. Rounding leaves about 1e-16 of a dependent one; a second projection
+/// restores the precision that is lost at a share of 1e-10.
 const MIN_NEW_SHARE: f64 = 1e-10;
 
 /// Orthonormal vectors under the inner product `<x, y> = sum_i weights[i] x[i] y[i]`.
 ///
-/// Modified Gram-Schmidt, run twice for each vector (Giraud, Langou and Rozloznik 2005: twice is enough
-/// for full precision). Vectors come out in the order in which they went in, each pointing along
-/// what was new in its original.
+/// Modified Gram-Schmidt, applied twice to each vector, which gives full precision (Giraud, Langou and Rozloznik 2005).
+/// Vectors keep the order of insertion; each points along the new part of its original.
 pub(crate) struct OrthonormalBasis {
     weights: Vec<f64>,
-    /// A remainder of this length or less is taken for noise.
+    /// Maximum length of a remainder that counts as noise.
     noise: f64,
     vectors: Vec<Vec<f64>>,
 }
 
 impl OrthonormalBasis {
-    /// An empty basis for vectors of `weights.len()` entries.
+    /// Creates an empty basis for vectors of `weights.len()` entries.
     pub fn new(weights: Vec<f64>, noise: f64) -> Self {
         Self { weights, noise, vectors: Vec::new() }
     }
 
-    /// The inner product. Entries of weight 0 do not count, even when they are infinite.
+    /// Returns the inner product. Entries of weight 0 do not count, even if they are infinite.
     pub fn dot(&self, x: &[f64], y: &[f64]) -> f64 {
         let mut sum = 0.0;
         for ((w, a), b) in self.weights.iter().zip(x).zip(y) {
@@ -33,10 +32,10 @@ impl OrthonormalBasis {
         sum
     }
 
-    /// Adds what is new in `x`, scaled to length 1. Gives false, and adds nothing, when `x` depends on
-    /// the vectors before it.
+    /// Adds the new part of `x`, scaled to length 1. Returns false, and adds nothing, if `x` depends on the vectors
+    /// before it.
     pub fn add(&mut self, mut x: Vec<f64>) -> bool {
-        let least = (MIN_NEW_SHARE * self.dot(&x, &x).sqrt()).max(self.noise);
+        let threshold = (MIN_NEW_SHARE * self.dot(&x, &x).sqrt()).max(self.noise);
         for _ in 0..2 {
             for e in &self.vectors {
                 let along = self.dot(e, &x);
@@ -46,7 +45,7 @@ impl OrthonormalBasis {
             }
         }
         let new = self.dot(&x, &x).sqrt();
-        if new <= least || !new.is_finite() {
+        if new <= threshold || !new.is_finite() {
             return false;
         }
         for x in &mut x {
@@ -56,7 +55,7 @@ impl OrthonormalBasis {
         true
     }
 
-    /// The vectors so far.
+    /// Returns the vectors.
     pub fn vectors(&self) -> &[Vec<f64>] {
         &self.vectors
     }
@@ -84,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn dependent_and_vanishing_vectors_are_left_out() {
+    fn dependent_and_vanishing_vectors_are_not_added() {
         let mut basis = OrthonormalBasis::new(vec![1.0, 2.0, 0.0], 1e-12);
         assert!(basis.add(vec![1.0, 1.0, 1.0]));
         assert!(!basis.add(vec![3.0, 3.0, 5.0]), "differs only where the weight is 0");

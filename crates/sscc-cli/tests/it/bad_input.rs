@@ -127,7 +127,7 @@ fn missing_meshes() {
         (&["still.gltf", "--mesh-name", "a"], "still.gltf: the mesh 'a' has no morph targets"),
         (&["still.gltf", "--mesh-name", "b"], "still.gltf: there is no mesh 'b'"),
         (&["still.gltf", "--modes", "modes.npy"], "a model file has its own modes: leave out --modes"),
-        (&[MESH, "--modes", "modes.npy", "--mesh-name", "a"], "only a glTF file has meshes to choose from"),
+        (&[MESH, "--modes", "modes.npy", "--mesh-name", "a"], "only a glTF file can have several meshes"),
         (&[MESH, "--modes", "."], ": "),
     ] {
         refused(folder, &[&["certify"], args, &["-o", "out.sscc.safetensors"]].concat(), &[named]);

@@ -251,7 +251,7 @@ fn refusals() {
     }
     let run =
         sscc(folder, &["modes", "-o", "x.model.safetensors", "two.veg", "--kind", "linear", "--rank", "10"]);
-    assert!(run.refusal().contains("two.veg: 10 modes were asked for, but the body has 9"), "{run:?}");
+    assert!(run.refusal().contains("two.veg: 10 modes were requested, but the body has 9"), "{run:?}");
     let run = sscc(
         folder,
         &["modes", "-o", "x.model.safetensors", "box.obj", "--kind", "polynomial", "--rank", "9"],

@@ -141,7 +141,7 @@ fn errors_name_the_array() {
     assert!(message(&with("modes", faces("<i4", &[0; 12]))).contains("save the array as float64"));
     assert!(
         message(&with("faces", numbers(&[2, 3])))
-            .contains("array 'faces': byte 10: header: numbers of type '<f8'")
+            .contains("array 'faces': byte 10: header: the array has numbers of type '<f8'")
     );
     assert_eq!(
         message(&with("faces", faces("<i4", &[0, 1, 2, 0, 4, 1]))),
