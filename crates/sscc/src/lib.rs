@@ -239,10 +239,10 @@
 //! | --- | --- |
 //! | 3, hierarchy | [`hierarchy`] |
 //! | 3 and 4, Algorithm 1 | `query/certified_traversal.rs`, for the pair tree `query/pair_tree_traversal.rs`; BD-tree AABBs in `detect/bd_tree.rs` |
-//! | 5.1, two triangles | `bounds/triangle_pair.rs`, `bounds/separating_direction.rs`, `bounds/affine.rs` |
+//! | 5.1, two triangles | `bounds/pair_refiner.rs`, `bounds/separating_direction.rs`, `bounds/affine_bound.rs` |
 //! | 5.2, nodes and precomputation | `bounds/node_pair.rs`, `certificates/build/` |
 //! | 6, scaling | [`Metric`] |
-//! | 7, continuous queries | `query/swept.rs`, `geometry/ccd/` |
+//! | 7, continuous queries | `query/continuous.rs`, `geometry/ccd/` |
 //! | 7, collisions between objects | [`PosedShape`] |
 
 #[macro_use]
@@ -255,16 +255,16 @@ mod detect;
 mod error;
 mod filter;
 mod geometry;
-mod heap;
 pub mod hierarchy;
 pub mod limits;
+mod min_heap;
 mod model;
 mod posed;
 mod progress;
 mod query;
 #[cfg(test)]
 mod test_models;
-mod threads;
+mod thread_pool;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{

@@ -165,7 +165,7 @@ fn smallest_unresolved(certificates: &Certificates) -> Vec<u32> {
     let nodes = hierarchy.nodes();
     let mut is_own = vec![true; nodes.len()];
     for (n, node) in nodes.iter().enumerate() {
-        let is_searched_whole = n != 0 && node.is_bucket();
+        let is_searched_whole = n != 0 && node.fits_in_bucket();
         let of_children = is_own[n] && !is_searched_whole;
         node.children().for_each(|child| is_own[child as usize] = of_children);
     }

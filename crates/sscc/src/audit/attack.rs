@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::claims::{Claim, Claims};
-use super::minimum::{Collision, MinimumSearch};
+use super::minimum_search::{Collision, MinimumSearch};
 use super::options::AuditOptions;
 use super::random::Random;
 use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};

@@ -2,7 +2,7 @@
 //! against brute force; discrete queries at single q, and continuous ones between two.
 
 use super::claims::Claims;
-use super::minimum::MinimumSearch;
+use super::minimum_search::MinimumSearch;
 use super::options::AuditOptions;
 use super::random::Random;
 use crate::{Certificates, Error, Impact, Method, Pair, PairTree, Progress, Query, ReducedModel};

@@ -8,26 +8,26 @@
 //!
 //! `sufficient` is always a lower bound from which on the caller needs no larger one: computations end there.
 
-mod affine;
+mod affine_bound;
 mod affine_fit;
-mod cone;
+mod cone_rate;
+mod configuration_line;
 mod contact_estimate;
 mod leaf_pair;
-mod line;
 mod node_modes;
 mod node_pair;
 mod pair_corners;
+mod pair_refiner;
 mod separating_direction;
 mod strain;
 mod sub_triangle;
 #[cfg(test)]
 mod tests;
-mod triangle_pair;
 mod upper_bound;
 
+pub(crate) use configuration_line::{ConfigurationLine, MovingAabb};
 pub(crate) use leaf_pair::LeafPair;
-pub(crate) use line::{Line, MovingAabb};
 pub(crate) use node_pair::{NodePairBounds, NodePairScratch};
 pub(crate) use pair_corners::PairCorners;
+pub(crate) use pair_refiner::{PairRefiner, RefinementTarget};
 pub(crate) use separating_direction::bound_along;
-pub(crate) use triangle_pair::{PairRefiner, RefinementTarget};

@@ -13,8 +13,8 @@
 use glam::DVec3;
 
 use super::pair_corners::PairCorners;
+use crate::model::mode_rows::{project, squared_distance};
 use crate::model::rounding::{ROUND_UP, norm_up, radius_down};
-use crate::model::rows::{project, squared_distance};
 use crate::model::{RoundingAlong, RoundingBound};
 
 /// The bound along a direction (from [`scale_direction`](crate::model::scale_direction)). `projections` is scratch of six
@@ -31,14 +31,15 @@ pub(crate) fn bound_along(
     if smallest.is_nan() || smallest <= at_rest {
         return 0.0;
     }
-    let row = projections.len() / 6;
+    let row_len = projections.len() / 6;
     for (i, modes) in pair.modes_a.iter().chain(&pair.modes_b).enumerate() {
-        project(modes, dir, &mut projections[i * row..][..row]);
+        project(modes, dir, &mut projections[i * row_len..][..row_len]);
     }
     let rounding = RoundingAlong { at_rest, per_norm: rounding.per_norm(dir) };
     let mut bound = f64::INFINITY;
     for (ij, d) in differences.iter().enumerate() {
-        let [modes_i, modes_j] = [ij / 3, 3 + ij % 3].map(|corner| &projections[corner * row..][..row]);
+        let [modes_i, modes_j] =
+            [ij / 3, 3 + ij % 3].map(|corner| &projections[corner * row_len..][..row_len]);
         bound = bound.min(bound_points_along(dir.dot(*d), modes_i, modes_j, rounding));
     }
     bound

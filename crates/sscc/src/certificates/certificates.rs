@@ -32,7 +32,7 @@ pub struct CertificateParts {
     /// `R_global`: radii are capped here (paper, section 5.2); infinite if no mode moves anything.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
-    /// bucket ([`Node::is_bucket`](crate::hierarchy::Node::is_bucket)) has the bucket's radius.
+    /// bucket ([`Node::fits_in_bucket`](crate::hierarchy::Node::fits_in_bucket)) has the bucket's radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,

@@ -7,8 +7,7 @@
 //! that is missing is certified; at the limit and beyond, absence means nothing. The tree says nothing of the pairs
 //! within a bucket.
 
-use crate::Pair;
-use crate::hierarchy::{Hierarchy, Node};
+use crate::hierarchy::{Hierarchy, Node, NodePair};
 
 /// A link's flag: no sibling follows.
 const LAST: u32 = 1 << 31;
@@ -26,7 +25,7 @@ pub(crate) const MAX_ENTRIES: usize = START as usize;
 /// A node pair that may collide below the limit, in 8 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairEntry {
-    /// The radius, rounded down ([`round_down`]).
+    /// The radius, rounded down ([`to_f32_down`](crate::model::rounding::to_f32_down)).
     pub(crate) radius: f32,
     /// Where its children start, its index among its siblings, and whether it is the last of them.
     link: u32,
@@ -57,20 +56,12 @@ impl PairEntry {
 /// An entry and its place in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoredPair {
-    pub(crate) place: u32,
+    pub(crate) index: u32,
     pub(crate) entry: PairEntry,
 }
 
-/// A radius in single precision, rounded down.
-pub(crate) fn round_down(radius: f64) -> f32 {
-    let rounded = radius as f32;
-    let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
-    let rounded = if is_above { rounded.next_down() } else { rounded };
-    rounded.clamp(0.0, f32::MAX)
-}
-
 /// The pairs of a node's children with which the tree begins: none within a bucket, where traversals end.
-pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
+pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = NodePair> {
     let node = (!hierarchy.is_bucket_below_root(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(Node::child_pairs)
 }
@@ -118,8 +109,8 @@ impl PairTree {
     }
 
     /// The entry at a place.
-    pub(crate) fn entry(&self, place: usize) -> PairEntry {
-        self.entries[place]
+    pub(crate) fn entry(&self, index: usize) -> PairEntry {
+        self.entries[index]
     }
 
     pub(crate) fn new(limit: f64, starts: Vec<u32>, entries: Vec<PairEntry>) -> Self {
@@ -138,10 +129,10 @@ impl PairTree {
     fn siblings(&self, start: u32) -> impl Iterator<Item = StoredPair> {
         let mut next = if start == NO_PAIRS { None } else { Some(start) };
         std::iter::from_fn(move || {
-            let place = next?;
-            let entry = self.entries[place as usize];
-            next = if entry.is_last() { None } else { Some(place + 1) };
-            Some(StoredPair { place, entry })
+            let index = next?;
+            let entry = self.entries[index as usize];
+            next = if entry.is_last() { None } else { Some(index + 1) };
+            Some(StoredPair { index, entry })
         })
     }
 
@@ -153,7 +144,7 @@ impl PairTree {
 
     /// The stored children of a pair that has some.
     #[inline]
-    pub(crate) fn below(&self, place: u32) -> impl Iterator<Item = StoredPair> {
-        self.siblings(self.entries[place as usize].start())
+    pub(crate) fn below(&self, index: u32) -> impl Iterator<Item = StoredPair> {
+        self.siblings(self.entries[index as usize].start())
     }
 }

@@ -1,6 +1,6 @@
 //! Bit masks of the triangle pairs of two packets that never count, because the triangles are adjacent.
 
-use super::packet::LANES;
+use super::aabb8::LANES;
 use crate::filter::{PairFilter, Relation};
 
 /// Vertices with more triangles than this get no masks, since pairs grow with the square of the number of triangles. The

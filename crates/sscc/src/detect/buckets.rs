@@ -5,15 +5,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::aabb8::LANES;
 use super::adjacency_masks::AdjacencyMasks;
-use super::packet::LANES;
 use crate::TriMesh;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
-
-/// Nodes of at most this many triangles that are in no other such node are buckets.
-pub(crate) const BUCKET: usize = BUCKET_TRIANGLES;
 
 const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
 
@@ -53,7 +50,7 @@ impl Buckets {
         let (mut nodes, mut packets, mut slots, mut triangles) = (vec![], vec![0], vec![0], vec![]);
         let (mut vertex_starts, mut vertices) = (vec![0], vec![]);
         for (n, node) in hierarchy.nodes().iter().enumerate() {
-            if of_node[n].is_none() && node.triangle_count as usize <= BUCKET {
+            if of_node[n].is_none() && node.triangle_count as usize <= BUCKET_TRIANGLES {
                 of_node[n] = Some(nodes.len() as u32);
                 nodes.push(n as u32);
                 let mut own = hierarchy.triangles(node).to_vec();

@@ -112,7 +112,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::detect::frame::Frame;
+    use crate::detect::f32_frame::F32Frame;
     use crate::detect::layout::{Layout, Needs};
     use crate::detect::vertex_motion::rounding_bound;
     use crate::filter::PairFilter;
@@ -157,7 +157,7 @@ mod tests {
             let later: Vec<f64> = q.iter().map(|q| q * 1.5).collect();
             let ends = [&q[..], &later[..]];
             let rounding = rounding_bound(model.check_coordinates(&later).unwrap(), rank);
-            let frame = Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
+            let frame = F32Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
             let (mut motion, mut positions) = (CoarseMotion::default(), layout.coarse.new_positions());
             if !layout.quantization.begin(&mut motion, ends, &frame, rounding) {
                 unused += 1;

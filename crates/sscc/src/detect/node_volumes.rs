@@ -1,6 +1,6 @@
 //! Bounding volumes of nodes, buckets, packets and triangles in one search, each computed at most once.
 //!
-//! All are AABBs in the single precision of a [`Frame`](super::frame::Frame). Where a search has two ends, a box contains
+//! All are AABBs in the single precision of a [`F32Frame`](super::f32_frame::F32Frame). Where a search has two ends, a box contains
 //! both, hence the straight lines between them. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
 //! 2004), computed where the traversal visits them. A bucket gets tight boxes, from its vertices, when it is opened: BD-tree AABBs
 //! of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel or not. The
@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 
+use super::aabb8::{Aabb8, AabbF32};
 use super::exact_positions::ExactPositions;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
-use super::packet::{Aabb8, AabbF32};
 use super::quantization::CoarseMotion;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
@@ -79,7 +79,7 @@ impl<const E: usize> NodeVolumes<E> {
                 .for_each(|searches| searches.fill(0));
             self.search = 1;
         }
-        self.positions.begin(self.search, motion.whole(&layout));
+        self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
         let coarse_motion = &mut self.motion;
         self.is_coarse = !layout.coarse.is_empty()
@@ -143,7 +143,7 @@ impl<const E: usize> NodeVolumes<E> {
     pub(crate) fn open_node<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, n: u32, motion: &M) {
         if self.children_searches[n as usize] != self.search {
             let children = hierarchy.nodes()[n as usize].children();
-            children.for_each(|child| self.enclose(child, motion));
+            children.for_each(|child| self.update_node(child, motion));
             self.gather_children(hierarchy, n);
         }
     }
@@ -163,7 +163,7 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// Makes the box of a node current that is a bucket or larger.
     #[inline]
-    pub(crate) fn enclose<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
+    pub(crate) fn update_node<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
         if self.node_searches[n as usize] != self.search {
             if self.is_coarse
                 && let Some(aabb) = self.layout.bd_tree.coarse(n, &self.motion)
@@ -173,7 +173,7 @@ impl<const E: usize> NodeVolumes<E> {
             }
             let frame = self.positions.frame();
             // A node without a box of its own overlaps everything.
-            let aabb = motion.node_box(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
+            let aabb = motion.node_aabb(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
                 AabbF32 { lower: frame.map(lower), upper: frame.map(upper) }
             });
             self.set_node(n, aabb);

@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use super::boundary::{ROUNDING, is_simple};
+use super::contour_test::{ROUNDING, is_simple};
 use super::node_volumes::NodeVolumes;
 use crate::hierarchy::Hierarchy;
 

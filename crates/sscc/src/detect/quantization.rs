@@ -4,7 +4,7 @@
 
 use glam::{DVec3, Vec4};
 
-use super::frame::Frame;
+use super::f32_frame::F32Frame;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
@@ -93,7 +93,7 @@ impl Quantization {
         &self,
         motion: &mut CoarseMotion<E>,
         q: [&[f64]; E],
-        frame: &Frame,
+        frame: &F32Frame,
         rounding: f64,
     ) -> bool {
         let unit = f64::from(f32::EPSILON) / 2.0;
@@ -116,7 +116,7 @@ impl Quantization {
         } else {
             f64::INFINITY
         };
-        let quantized = right_or!(most / (2.0 * WHOLE), CoarseSharesExact, 0.0);
+        let quantized = right_or!(most / (2.0 * WHOLE), QuantizationExact, 0.0);
         let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + quantized;
         let error = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];

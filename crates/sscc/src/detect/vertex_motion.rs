@@ -1,7 +1,7 @@
 //! Where vertices come from in one search: the sources of positions and boxes that the detector is generic over.
 //!
 //! A search has `E` ends: one configuration (1), or the start and the end of a motion (2). Sources are dispatched
-//! statically: positions deformed by modes ([`Deformed`]), all positions in a ball of configurations
+//! statically: positions deformed by modes ([`DeformedMotion`]), all positions in a ball of configurations
 //! ([`BallMotion`](super::ball_motion::BallMotion)), and deformed positions in the world
 //! ([`PosedMotion`](crate::posed)).
 
@@ -19,8 +19,8 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// An upper bound, along each axis, of the rounding error of positions and of boxes in double precision.
     fn rounding(&self) -> f64;
 
-    /// A box around about all positions, which chooses the [`Frame`](super::frame::Frame). Any box is right.
-    fn whole(&self, layout: &Layout) -> Aabb;
+    /// A box around about all positions, which chooses the [`F32Frame`](super::f32_frame::F32Frame). Any box is right.
+    fn overall_aabb(&self, layout: &Layout) -> Aabb;
 
     /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
@@ -32,24 +32,24 @@ pub(crate) trait VertexMotion<const E: usize> {
     fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E];
 
     /// A box around all positions of a node's vertices, computed without them; none for a node that has no such box.
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb>;
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb>;
 }
 
 /// Positions deformed by the modes: at q, or on straight lines from one q to another.
 #[derive(Clone, Copy)]
-pub(crate) struct Deformed<'q, const E: usize> {
+pub(crate) struct DeformedMotion<'q, const E: usize> {
     q: [&'q [f64]; E],
     rounding: f64,
 }
 
-impl<'q, const E: usize> Deformed<'q, E> {
+impl<'q, const E: usize> DeformedMotion<'q, E> {
     /// `reach`: an upper bound of the magnitude of every term of every position, at each end.
     pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
         Self { q, rounding: rounding_bound(reach, q[0].len()) }
     }
 }
 
-impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
+impl<const E: usize> VertexMotion<E> for DeformedMotion<'_, E> {
     const HAS_ERROR_BOUND: bool = true;
 
     #[inline]
@@ -58,7 +58,7 @@ impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
     }
 
     #[inline]
-    fn whole(&self, layout: &Layout) -> Aabb {
+    fn overall_aabb(&self, layout: &Layout) -> Aabb {
         layout.bd_tree.root(self.q, DVec3::splat(self.rounding))
     }
 
@@ -78,7 +78,7 @@ impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
     }
 
     #[inline]
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
         layout.bd_tree.at(node, self.q, DVec3::splat(self.rounding))
     }
 }

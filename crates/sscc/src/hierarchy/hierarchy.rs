@@ -52,7 +52,7 @@ impl Hierarchy {
     /// Whether a node is a bucket and not the root. Nothing is known of pairs within such a node; of the root's children
     /// there are radii in any case.
     pub(crate) fn is_bucket_below_root(&self, n: u32) -> bool {
-        n != 0 && self.nodes[n as usize].is_bucket()
+        n != 0 && self.nodes[n as usize].fits_in_bucket()
     }
 
     /// For each node whether it lies below a bucket that is not the root.

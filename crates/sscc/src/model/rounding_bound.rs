@@ -52,7 +52,7 @@ impl RoundingBound {
     /// The rounding bound for gaps measured from one z instead of from rest, where both z have at most the given norm: the
     /// gap is rounded at both. Twice that again covers the evaluation of bounds about z.
     pub(crate) fn between_configurations(&self, norm: f64) -> Self {
-        let moved = right_or!(self.per_norm * norm, MarginErrorAtRest, DVec3::ZERO);
+        let moved = right_or!(self.per_norm * norm, SafeDistanceErrorAtRest, DVec3::ZERO);
         Self { at_rest: (self.at_rest + moved) * (4.0 * ROUND_UP), per_norm: self.per_norm }
     }
 

@@ -6,14 +6,14 @@
 
 use std::ops::Range;
 
-use crate::Pair;
-use crate::certificates::pair_tree::{round_down, sibling_pairs};
-use crate::hierarchy::Hierarchy;
+use crate::certificates::pair_tree::sibling_pairs;
+use crate::hierarchy::{Hierarchy, NodePair};
+use crate::model::rounding::to_f32_down;
 
 /// A node pair, in 16 bytes: a large model has millions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BvttPair {
-    pub(crate) nodes: Pair,
+    pub(crate) nodes: NodePair,
     /// A lower bound of its radius, at least its parent's.
     pub(crate) lower: f32,
     /// [`OPEN`], [`BOUNDED`], or where its children start.
@@ -35,7 +35,7 @@ pub(crate) enum PairState {
 }
 
 impl BvttPair {
-    pub(crate) fn open(nodes: Pair, lower: f32) -> Self {
+    pub(crate) fn open(nodes: NodePair, lower: f32) -> Self {
         Self { nodes, lower, link: OPEN }
     }
 
@@ -98,7 +98,7 @@ impl Bvtt {
     }
 
     /// Replaces an open pair by what it has become: the first of `subtree`, with the others behind all pairs.
-    pub(super) fn replace(&mut self, place: u32, subtree: Vec<BvttPair>) {
+    pub(super) fn replace(&mut self, index: u32, subtree: Vec<BvttPair>) {
         // The pair stays in its place; the others, numbered from 1 in the subtree, follow.
         let offset = self.pairs.len() as u32 - 1;
         let mut moved = subtree.into_iter().map(|mut pair| {
@@ -108,18 +108,18 @@ impl Bvtt {
             pair
         });
         if let Some(pair) = moved.next() {
-            self.pairs[place as usize] = pair;
+            self.pairs[index as usize] = pair;
         }
         self.pairs.extend(moved);
     }
 
     /// Gives each pair that is split the smallest lower bound of its children.
     pub(super) fn pull_up(&mut self, hierarchy: &Hierarchy) {
-        for place in (0..self.pairs.len()).rev() {
-            let pair = self.pairs[place];
+        for index in (0..self.pairs.len()).rev() {
+            let pair = self.pairs[index];
             if let PairState::Split(_) = pair.state() {
                 let children = &self.pairs[self.children(hierarchy, &pair)];
-                self.pairs[place].lower =
+                self.pairs[index].lower =
                     children.iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
             }
         }
@@ -128,14 +128,14 @@ impl Bvtt {
     /// Gives each pair at least the radius of the node that contains it, and at least the lower bound of its parent.
     pub(super) fn push_down(&mut self, hierarchy: &Hierarchy, node_radii: &[f64]) {
         for (n, radius) in node_radii.iter().enumerate() {
-            let radius = round_down(*radius);
-            let places = self.of_node(n).unwrap_or_default();
-            for pair in &mut self.pairs[places] {
+            let radius = to_f32_down(*radius);
+            let indices = self.of_node(n).unwrap_or_default();
+            for pair in &mut self.pairs[indices] {
                 pair.lower = pair.lower.max(radius);
             }
         }
-        for place in 0..self.pairs.len() {
-            let parent = self.pairs[place];
+        for index in 0..self.pairs.len() {
+            let parent = self.pairs[index];
             let children = self.children(hierarchy, &parent);
             for child in &mut self.pairs[children] {
                 child.lower = child.lower.max(parent.lower);

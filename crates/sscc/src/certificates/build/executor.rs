@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::prepare::Prepared;
-use super::search::RadiusSearch;
+use super::preparation::Preparation;
+use super::radius_search::RadiusSearch;
 use super::task::{Task, TaskResult, run_task};
 use crate::{Error, Progress};
 
@@ -18,7 +18,7 @@ pub(crate) struct Stage<'a> {
     /// Most tasks that a thread takes at once. Tasks are unequal, and those taken cannot be shared any more.
     pub(crate) grain: usize,
     /// Most node pairs that all results together may add to the BVTT.
-    pub(crate) room: usize,
+    pub(crate) max_added_pairs: usize,
     /// Receives numbers of tasks that have finished.
     pub(crate) on_finished: &'a (dyn Fn(usize) + Sync),
 }
@@ -33,14 +33,14 @@ pub(crate) trait Executor {
 }
 
 /// Counts the node pairs that results add, and stops work for which there is no room.
-pub(crate) struct Room {
-    room: usize,
+pub(crate) struct AddedPairLimit {
+    max_added_pairs: usize,
     added: AtomicUsize,
 }
 
-impl Room {
-    pub(crate) fn new(room: usize) -> Self {
-        Self { room, added: AtomicUsize::new(0) }
+impl AddedPairLimit {
+    pub(crate) fn new(max_added_pairs: usize) -> Self {
+        Self { max_added_pairs, added: AtomicUsize::new(0) }
     }
 
     pub(crate) fn add(&self, result: &TaskResult) {
@@ -48,32 +48,32 @@ impl Room {
     }
 
     pub(crate) fn is_exceeded(&self) -> bool {
-        self.added.load(Ordering::Relaxed) > self.room
+        self.added.load(Ordering::Relaxed) > self.max_added_pairs
     }
 }
 
 /// Runs tasks on the threads of the current pool.
 pub(crate) struct ThreadExecutor<'a> {
-    pub(crate) prepared: &'a Prepared,
+    pub(crate) preparation: &'a Preparation,
     pub(crate) progress: &'a dyn Progress,
 }
 
 impl Executor for ThreadExecutor<'_> {
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error> {
-        let Self { prepared, progress } = *self;
-        let room = Room::new(stage.room);
+        let Self { preparation, progress } = *self;
+        let max_added_pairs = AddedPairLimit::new(stage.max_added_pairs);
         let run = |search: &mut RadiusSearch<'_>, index: usize| {
-            if room.is_exceeded() {
+            if max_added_pairs.is_exceeded() {
                 return None;
             }
-            let result = run_task((stage.task)(index), prepared, search, progress)?;
-            room.add(&result);
+            let result = run_task((stage.task)(index), preparation, search, progress)?;
+            max_added_pairs.add(&result);
             (stage.on_finished)(1);
             Some(result)
         };
         let tasks = (0..stage.count).into_par_iter().with_max_len(stage.grain);
-        let results: Vec<Option<TaskResult>> = tasks.map_init(|| prepared.search(progress), run).collect();
-        if room.is_exceeded() {
+        let results: Vec<Option<TaskResult>> = tasks.map_init(|| preparation.search(progress), run).collect();
+        if max_added_pairs.is_exceeded() {
             return Ok(None);
         }
         results.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(Error::Cancelled)

@@ -6,10 +6,11 @@
 
 use glam::DVec3;
 
-use super::context::SearchContext;
+use super::radius_search_context::RadiusSearchContext;
 use crate::Pair;
 use crate::bounds::{LeafPair, PairRefiner, RefinementTarget};
 use crate::filter::Hulls;
+use crate::hierarchy::NodePair;
 
 /// Directions along which all pairs are bounded, beside the first one.
 const MAX_SHARED_DIRECTIONS: usize = 3;
@@ -33,20 +34,20 @@ pub(super) struct BoundedTriangles {
 
 /// The triangle pairs between two leaves; owns its memory.
 pub(super) struct LeafBounds<'a> {
-    context: SearchContext<'a>,
+    context: RadiusSearchContext<'a>,
     leaves: LeafPair<'a>,
     hulls: Vec<HullPair>,
 }
 
 impl<'a> LeafBounds<'a> {
-    pub(super) fn new(context: SearchContext<'a>) -> Self {
+    pub(super) fn new(context: RadiusSearchContext<'a>) -> Self {
         Self { context, leaves: LeafPair::new(context.model), hulls: Vec::new() }
     }
 
     /// Takes the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. `dir`: a
     /// direction in which all are bounded.
-    pub(super) fn load(&mut self, (n, m): Pair, dir: Option<DVec3>, certified: f64) {
-        let SearchContext { hierarchy, filter, .. } = self.context;
+    pub(super) fn load(&mut self, (n, m): NodePair, dir: Option<DVec3>, certified: f64) {
+        let RadiusSearchContext { hierarchy, filter, .. } = self.context;
         let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
         self.leaves.load(x, y);
         if let Some(dir) = dir {

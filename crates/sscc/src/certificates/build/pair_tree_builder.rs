@@ -12,11 +12,11 @@ use super::executor::{Executor, Stage};
 use super::frontier::Frontier;
 use super::limit_schedule::LimitSchedule;
 use super::pair_tree_layout::lay_out;
-use super::split::SplitTask;
+use super::split_task::SplitTask;
 use super::task::{Task, TaskResult};
+use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
-use crate::hierarchy::Hierarchy;
-use crate::{Error, Pair};
+use crate::hierarchy::{Hierarchy, NodePair};
 
 /// Most node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed. Tests should run
 /// out of room.
@@ -85,23 +85,23 @@ impl PairTreeBuilder {
                 count: open.len(),
                 task: &task,
                 grain: SPLIT_GRAIN,
-                room: most.saturating_sub(bvtt.pairs.len()),
+                max_added_pairs: most.saturating_sub(bvtt.pairs.len()),
                 on_finished: &|_| {},
             };
             let Some(results) = executor.run(&stage)? else {
                 bvtt.pairs.truncate(before_round);
-                replaced.into_iter().for_each(|(place, pair)| bvtt.pairs[place] = pair);
+                replaced.into_iter().for_each(|(index, pair)| bvtt.pairs[index] = pair);
                 return Ok(false);
             };
-            let of_before = open.iter().map(|place| *place as usize).filter(|place| *place < before_round);
-            replaced.extend(of_before.map(|place| (place, bvtt.pairs[place])));
+            let of_before = open.iter().map(|index| *index as usize).filter(|index| *index < before_round);
+            replaced.extend(of_before.map(|index| (index, bvtt.pairs[index])));
             let before_stage = bvtt.pairs.len();
-            for (place, subtree) in open.into_iter().zip(results.into_iter().map(TaskResult::into_subtree)) {
-                bvtt.replace(place, subtree?);
+            for (index, subtree) in open.into_iter().zip(results.into_iter().map(TaskResult::into_subtree)) {
+                bvtt.replace(index, subtree?);
             }
             open = open_pairs(bvtt, before_stage..bvtt.pairs.len(), limit);
         }
-        let is_large = |(n, m): Pair| hierarchy.split_above_buckets(n, m).is_some();
+        let is_large = |(n, m): NodePair| hierarchy.split_above_buckets(n, m).is_some();
         if bvtt.pairs.iter().any(|pair| pair.is_open_below(limit) && is_large(pair.nodes)) {
             return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }
@@ -124,8 +124,8 @@ impl PairTreeBuilder {
         cap: f64,
     ) -> Option<Frontier> {
         let first = self.bvtt.of_node(node)?.start;
-        let places = first + siblings.start..first + siblings.end;
-        Some(Frontier::below(&self.bvtt, hierarchy, places, cap))
+        let indices = first + siblings.start..first + siblings.end;
+        Some(Frontier::below(&self.bvtt, hierarchy, indices, cap))
     }
 
     /// The tree of all pairs below the limit that the budget allows. What is known of a node or a pair as a whole is a
@@ -140,6 +140,6 @@ impl PairTreeBuilder {
 }
 
 /// The places of the open pairs that may collide below a limit.
-fn open_pairs(bvtt: &Bvtt, places: Range<usize>, limit: f64) -> Vec<u32> {
-    places.filter(|place| bvtt.pairs[*place].is_open_below(limit)).map(|place| place as u32).collect()
+fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
+    indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
 }

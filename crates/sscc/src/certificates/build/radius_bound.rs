@@ -1,18 +1,18 @@
 //! Bounds of radii: of one node pair before a search, of all pairs searched after it.
 
-use crate::Pair;
+use crate::hierarchy::NodePair;
 
 /// A node pair and a lower bound of its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KnownPair {
-    pub(crate) nodes: Pair,
+pub(crate) struct BoundedNodePair {
+    pub(crate) nodes: NodePair,
     /// 0: the pair has not been bounded yet.
     pub(crate) lower: f64,
 }
 
-impl KnownPair {
+impl BoundedNodePair {
     /// A pair that has not been bounded yet.
-    pub(crate) fn unbounded(nodes: Pair) -> Self {
+    pub(crate) fn unbounded(nodes: NodePair) -> Self {
         Self { nodes, lower: 0.0 }
     }
 }

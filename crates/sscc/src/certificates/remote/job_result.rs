@@ -3,10 +3,9 @@
 //! Of a pair that was split only states and lower bounds are written: which pairs they belong to follows from the pair
 //! and the splitting rule. So whoever reads a result must know the task.
 
-use super::reader::Reader;
-use crate::Pair;
+use super::byte_reader::ByteReader;
 use crate::certificates::build::{BvttPair, PairState, RadiusBound, Task, TaskResult};
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 
 /// The first byte: whether there was room for the results.
 const OUT_OF_ROOM: u8 = 0;
@@ -20,7 +19,7 @@ const SPLIT: u8 = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ResultLayout {
     /// The pair that is split.
-    Split(Pair),
+    Split(NodePair),
     NodeRadius,
 }
 
@@ -59,7 +58,7 @@ impl JobResult {
 
     /// The results of some tasks; none if the bytes are no such results.
     pub(super) fn read(hierarchy: &Hierarchy, layouts: &[ResultLayout], bytes: &[u8]) -> Option<Self> {
-        let mut from = Reader::new(bytes);
+        let mut from = ByteReader::new(bytes);
         let result = match from.u8()? {
             OUT_OF_ROOM => Self::OutOfRoom,
             COMPLETE => {
@@ -81,7 +80,7 @@ fn write_pair(pair: &BvttPair, bytes: &mut Vec<u8>) {
     bytes.extend(pair.lower.to_le_bytes());
 }
 
-fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut Reader<'_>) -> Option<TaskResult> {
+fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut ByteReader<'_>) -> Option<TaskResult> {
     Some(match layout {
         ResultLayout::Split(nodes) => TaskResult::Split(read_subtree(hierarchy, nodes, from)?),
         ResultLayout::NodeRadius => {
@@ -90,7 +89,7 @@ fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut Reader<'_
     })
 }
 
-fn read_subtree(hierarchy: &Hierarchy, nodes: Pair, from: &mut Reader<'_>) -> Option<Vec<BvttPair>> {
+fn read_subtree(hierarchy: &Hierarchy, nodes: NodePair, from: &mut ByteReader<'_>) -> Option<Vec<BvttPair>> {
     let mut subtree = vec![BvttPair::open(nodes, 0.0)];
     let mut next = 0;
     while next < subtree.len() {

@@ -118,7 +118,7 @@ fn damaged_bytes_are_answered_with_an_error() {
         }
     }
     let mut refused = 0;
-    let hierarchy = &worker.prepared.hierarchy;
+    let hierarchy = &worker.preparation.hierarchy;
     for (job, result) in &all {
         let body = worker.key.open("a job", job).unwrap();
         for at in (0..body.len()).step_by(1 + body.len() / 97) {
@@ -129,7 +129,7 @@ fn damaged_bytes_are_answered_with_an_error() {
             let _ = Job::read(hierarchy, &body[..at]);
         }
         let job = Job::read(hierarchy, body).unwrap();
-        let mut writer = JobWriter::new(job.room);
+        let mut writer = JobWriter::new(job.max_added_pairs);
         job.tasks.iter().for_each(|task| writer.add(task));
         assert_eq!(writer.into_bytes(), body);
         let layouts: Vec<ResultLayout> = job.tasks.iter().map(ResultLayout::of).collect();

@@ -42,7 +42,7 @@ impl Directions {
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
         // Underflow is far less than the last term.
-        let errors = right_or!(4.0, ApartSlackHalved, 2.0) * error;
+        let errors = right_or!(4.0, SeparatingAxisErrorHalved, 2.0) * error;
         let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut apart = [u32::MAX; 2];

@@ -2,16 +2,16 @@
 //! 1996).
 //!
 //! Directions are tried from the cheapest to the most precise. A direction that is fixed, or turns linearly, evaluated
-//! with rounded numbers ([`separating_direction`](super::separating_direction)), settles nearly all pairs in a few steps.
+//! with rounded numbers ([`candidate_direction`](super::candidate_direction)), settles nearly all pairs in a few steps.
 //! Thin sheets that turn together need more: a direction that follows two features is exact for as long as these two are
-//! closest, and exact numbers decide the signs of gaps along it where rounding does not ([`feature`](super::feature)). The
+//! closest, and exact numbers decide the signs of gaps along it where rounding does not ([`feature_direction`](super::feature_direction)). The
 //! number of steps then depends on how often the closest features change, and only by its logarithm on how narrow the gap
 //! is. Limits of steps: docs/notes/2026-11-23-continuous-tests.md.
 
+use super::candidate_direction::MovingPair;
 use super::closest_points::ClosestPoints;
-use super::feature::find_gap_above;
+use super::feature_direction::find_gap_above;
 use super::moving_triangle::MovingTriangle;
-use super::separating_direction::MovingPair;
 
 /// Steps by rounded directions, at most.
 const MAX_STEPS: usize = 128;

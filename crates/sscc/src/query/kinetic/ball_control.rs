@@ -45,7 +45,7 @@ impl BallControl {
     };
 
     /// A step within a motion.
-    pub(super) fn stepped(&mut self, step: f64) {
+    pub(super) fn record_step(&mut self, step: f64) {
         self.step = step;
     }
 
@@ -56,7 +56,7 @@ impl BallControl {
     }
 
     /// A search is complete. The next ball becomes larger, or smaller, as long as that makes balls cheaper for their size.
-    pub(super) fn searched(&mut self, cost: u64, share: f64) {
+    pub(super) fn record_search(&mut self, cost: u64, share: f64) {
         let rate = cost as f64 / share;
         if rate > self.rate {
             self.factor = 1.0 / self.factor;
@@ -66,14 +66,14 @@ impl BallControl {
     }
 
     /// A search found more pairs than its limit.
-    pub(super) fn overflowed(&mut self, cost: u64, share: f64) {
+    pub(super) fn record_overflow(&mut self, cost: u64, share: f64) {
         self.cost = cost;
-        self.left(0);
+        self.end_ball(0);
         (self.share, self.factor, self.rate) = ((share / 4.0).max(MIN_SHARE), 1.0 / FACTOR, f64::INFINITY);
     }
 
     /// A ball was left after so many steps. Its loss, if any, must be small beside the plain queries that follow.
-    pub(super) fn left(&mut self, steps: u64) {
+    pub(super) fn end_ball(&mut self, steps: u64) {
         let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain_cost));
         self.pause = PAUSE_FACTOR.saturating_mul(lost) / self.plain_cost.max(1);
         self.has_paid = lost == 0 && steps as f64 >= MIN_STEPS;

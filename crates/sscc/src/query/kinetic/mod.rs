@@ -6,8 +6,8 @@
 //! distance is used up, and those that collide or nearly do. That is a Verlet list (Verlet 1967) with a safe distance for
 //! each pair.
 
-mod active_pairs;
 mod ball_control;
+mod ball_pairs;
 mod ball_search;
 mod kinetic_query;
 mod safe_distance;

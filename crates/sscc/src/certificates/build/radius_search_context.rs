@@ -7,7 +7,7 @@ use crate::model::ScaledModel;
 
 /// Shared by all searches on one model.
 #[derive(Clone, Copy)]
-pub(crate) struct SearchContext<'a> {
+pub(crate) struct RadiusSearchContext<'a> {
     pub(crate) model: &'a ScaledModel,
     /// Which triangle pairs count; exceptions are left out.
     pub(crate) filter: &'a PairFilter,

@@ -1,10 +1,11 @@
 //! Splitting of a node pair into the part of the BVTT below it, as far as that may collide below a limit.
 
 use super::bvtt::{BvttPair, PairState};
-use super::prepare::Prepared;
-use super::search::RadiusSearch;
-use crate::certificates::pair_tree::round_down;
-use crate::{Pair, Progress};
+use super::preparation::Preparation;
+use super::radius_search::RadiusSearch;
+use crate::Progress;
+use crate::hierarchy::NodePair;
+use crate::model::rounding::to_f32_down;
 
 /// A pair of small nodes is bounded up to this many times the limit, so that most need no further search in the next
 /// round.
@@ -20,7 +21,7 @@ const CANCEL_INTERVAL: usize = 64;
 /// An open node pair that may collide below a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitTask {
-    pub(crate) nodes: Pair,
+    pub(crate) nodes: NodePair,
     /// A lower bound of its radius.
     pub(crate) lower: f32,
     /// Pairs with a lower bound below this are split.
@@ -31,7 +32,7 @@ pub(crate) struct SplitTask {
 /// [`MAX_BOUNDED`] pairs the others stay open with a lower bound below the limit. None if cancelled.
 pub(super) fn split(
     task: SplitTask,
-    prepared: &Prepared,
+    preparation: &Preparation,
     search: &mut RadiusSearch<'_>,
     progress: &dyn Progress,
 ) -> Option<Vec<BvttPair>> {
@@ -45,17 +46,17 @@ pub(super) fn split(
         let nodes @ (n, m) = subtree[next].nodes;
         let first = subtree.len() as u32;
         let pair = &mut subtree[next];
-        match prepared.hierarchy.split_above_buckets(n, m) {
+        match preparation.hierarchy.split_above_buckets(n, m) {
             None => {
-                let cap = (BUCKET_LOOKAHEAD * limit).min(prepared.global_radius);
+                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
                 let radius = search.between_coarse(nodes, cap)?.radius;
-                if radius < cap || cap == prepared.global_radius {
+                if radius < cap || cap == preparation.global_radius {
                     pair.set_state(PairState::Bounded);
                 }
-                pair.lower = pair.lower.max(round_down(radius));
+                pair.lower = pair.lower.max(to_f32_down(radius));
             }
             Some(split) => {
-                let lower = pair.lower.max(round_down(search.bound_nodes(nodes, limit)));
+                let lower = pair.lower.max(to_f32_down(search.bound_nodes(nodes, limit)));
                 pair.lower = lower;
                 if f64::from(lower) < limit {
                     pair.set_state(PairState::Split(first));

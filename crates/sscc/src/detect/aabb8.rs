@@ -8,7 +8,7 @@ use glam::Vec4;
 /// Boxes in a packet.
 pub(crate) const LANES: usize = 8;
 
-/// A box in the single-precision coordinates of a [`Frame`](crate::detect::frame::Frame): lower and upper corner; the fourth
+/// A box in the single-precision coordinates of a [`F32Frame`](crate::detect::f32_frame::F32Frame): lower and upper corner; the fourth
 /// components mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AabbF32 {
@@ -28,7 +28,7 @@ impl AabbF32 {
     pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
             let first = Self { lower: ends[0], upper: ends[0] };
-            let others = right_or!(&ends[1..], SweptTrianglesAtOneEnd, &ends[..0]);
+            let others = right_or!(&ends[1..], SweptTrianglesAtStart, &ends[..0]);
             others.iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
         });
         a.union(&b).union(&c)

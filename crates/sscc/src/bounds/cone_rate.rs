@@ -24,13 +24,13 @@ struct Cone {
 
 /// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite where the directions do not fit into a narrow cone.
-pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wanted: f64) -> f64 {
+pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row_len: usize, mut wanted: f64) -> f64 {
     let Some(corners) = enclose_in_pyramid(d) else { return f64::INFINITY };
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if !trace.is_finite() {
         return f64::INFINITY;
     }
-    let rounding = right_or!((row as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
+    let rounding = right_or!((row_len as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
     let forms = Forms { gram, rounding };
     let [u0, u1, u2, u3] = corners;
     let mut cones: Vec<Cone> = Vec::with_capacity(2 * MAX_CONES);

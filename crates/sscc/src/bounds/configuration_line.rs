@@ -20,7 +20,7 @@ const MIN_GAIN: f64 = 1e-4;
 const MAX_STEPS: usize = 1000;
 
 /// The vertices of a model along the line from `center` (t = 0) through q (t = 1): at `x + t w`.
-pub(crate) struct Line {
+pub(crate) struct ConfigurationLine {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) velocities: Vec<DVec3>,
     /// The rounding bound of a gap along a direction with components up to 1: `at_rest + per_step t`.
@@ -30,7 +30,7 @@ pub(crate) struct Line {
     pub(crate) farthest: f64,
 }
 
-impl Line {
+impl ConfigurationLine {
     pub(crate) fn new(model: &ReducedModel, center: &[f64], q: &[f64]) -> Self {
         let offset: Vec<f64> = q.iter().zip(center).map(|(q, c)| q - c).collect();
         let vertices = 0..model.mesh().rest_positions().len() as u32;
@@ -54,7 +54,7 @@ impl Line {
     /// The t up to which a gap that is at least `gap` at `t` and grows at least at the rate `opening` stays positive; 0
     /// where it is not positive at `t`.
     #[inline]
-    pub(crate) fn closes_at(&self, t: f64, gap: f64, opening: f64) -> f64 {
+    pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
         let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
         let opening = right_or!(opening - self.per_step, LineExact, opening);
         if gap.is_nan() || gap <= 0.0 {
@@ -73,7 +73,7 @@ impl Line {
         for _ in 0..MAX_STEPS {
             let now: [DVec3; 9] = std::array::from_fn(|ij| d[ij] + rates[ij] * t);
             let separates_until = |dir: DVec3| {
-                let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, dir.dot(*d), dir.dot(*w)));
+                let until = now.iter().zip(&rates).map(|(d, w)| self.open_until(t, dir.dot(*d), dir.dot(*w)));
                 until.fold(f64::INFINITY, f64::min)
             };
             // Each direction is a proof by itself. The one between the centroids is cheap and often sufficient; the one
@@ -103,7 +103,7 @@ impl Line {
             let (gap, opening) = (gap(&a.positions, &b.positions), gap(&a.velocities, &b.velocities));
             for axis in 0..3 {
                 if gap[axis] > 0.0 {
-                    bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
+                    bound = bound.max(self.open_until(0.0, gap[axis], opening[axis]));
                 }
             }
         }

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use super::candidate_direction::MovingPair;
 use super::conservative_advancement::advance;
 use super::moving_triangle::MovingTriangle;
 use super::number::power_of_two;
-use super::separating_direction::MovingPair;
 use crate::geometry::{TwoTriangles, intersect_triangle_triangle};
 use crate::limits;
 

@@ -2,10 +2,10 @@
 //!
 //! It follows from the model and the options alone, so each process makes its own, and all are equal.
 
-use super::context::SearchContext;
 use super::global_radius::global_radius;
-use super::goal::coarse_cap;
-use super::search::RadiusSearch;
+use super::radius_search::RadiusSearch;
+use super::radius_search_context::RadiusSearchContext;
+use super::search_goal::coarse_cap;
 use crate::bounds::NodePairBounds;
 use crate::certificates::{CertifyOptions, Digest, Scope};
 use crate::detect::colliding_pairs;
@@ -15,7 +15,7 @@ use crate::model::{ScaledModel, check_scaled_modes};
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
 /// Everything that tasks read, and the parts of the certificates that need no task.
-pub(crate) struct Prepared {
+pub(crate) struct Preparation {
     pub(crate) digest: Digest,
     pub(crate) scope: Scope,
     pub(crate) hierarchy: Hierarchy,
@@ -27,7 +27,7 @@ pub(crate) struct Prepared {
     nodes: NodePairBounds,
 }
 
-impl Prepared {
+impl Preparation {
     /// Prepares a model on the threads of the current pool.
     ///
     /// # Errors
@@ -91,7 +91,11 @@ impl Prepared {
     /// A search for one thread.
     pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
         let Self { scaled, filter, hierarchy, nodes, .. } = self;
-        RadiusSearch::new(SearchContext { model: scaled, filter, hierarchy, nodes }, self.epsilon, progress)
+        RadiusSearch::new(
+            RadiusSearchContext { model: scaled, filter, hierarchy, nodes },
+            self.epsilon,
+            progress,
+        )
     }
 }
 
