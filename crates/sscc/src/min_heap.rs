@@ -2,11 +2,11 @@
 //!
 //! `BinaryHeap` pops its largest entry and needs a total order, which f64 does not have: keys compare by
 //! `f64::total_cmp`, reversed. Answers must not depend on the order in which entries were pushed, so each entry also
-//! carries what breaks ties.
+//! has an order among equal keys.
 
 use std::cmp::Ordering;
 
-/// An entry that compares greater the smaller its key is; among equal keys, the smaller `tie` is. `item` is not
+/// A heap entry; the smallest key is popped first. Equal keys are popped in the order of `order`. `item` is not
 /// compared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MinHeapEntry<T, I = ()> {
@@ -16,7 +16,7 @@ pub(crate) struct MinHeapEntry<T, I = ()> {
 }
 
 impl<T> MinHeapEntry<T> {
-    /// An entry that is nothing but its key and what breaks ties.
+    /// An entry without an item.
     pub(crate) fn new(key: f64, order: T) -> Self {
         Self { key, order, item: () }
     }

@@ -1,5 +1,5 @@
-//! The claims of certificates: each radius of a node or a node pair says that none of its triangle pairs collides below
-//! it.
+//! The claims of certificates. A claim names a node or a node pair and its radius: none of its triangle pairs collides
+//! below it.
 
 use std::fmt;
 
@@ -110,7 +110,7 @@ impl<'a> Claims<'a> {
         Some(self.stored(random.below(self.entries.len())))
     }
 
-    /// The claim that two triangles refute that count and collide at a q of that norm, if any.
+    /// The claim that this triangle pair refutes, if any. The pair counts and collides at a q of this norm.
     fn refuted_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
         let (hierarchy, tree) = (&self.parts.hierarchy, &self.parts.pair_tree);
         let nodes = hierarchy.nodes();

@@ -1,9 +1,9 @@
 //! Audits of certificates: attempts to refute every claim they make.
 //!
-//! None of the attacks uses the bounds that made a claim to decide whether it is refuted; exact collision tests do.
+//! Exact collision tests alone decide whether a claim is refuted, never the bounds that made it. The tests:
 //! - Configurations q just inside radii, in random directions and in those of known collisions ([`attack`]).
-//! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum_search`]), which also measures how tight radii
-//!   are ([`tightness`]).
+//! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum_search`]), which also measures
+//!   how tight radii are ([`tightness`]).
 //! - Answers of certified queries, continuous ones too, compared with the traditional method, itself compared with brute
 //!   force ([`compare`]).
 //!

@@ -1,4 +1,5 @@
-//! How tight radii are: the quotient of each radius and the norm of the closest collision found.
+//! Measures tightness: radii divided by the norm of the closest collision found. A confirmed collision below a radius
+//! is a violation; all collisions are directions for `attack`.
 
 use rayon::prelude::*;
 
@@ -128,7 +129,7 @@ pub(super) fn measure(
     result
 }
 
-/// The node at or below n from whose own pairs the radius of n comes.
+/// Follows the radius of n down to the node whose own pairs determine it; ends at a bucket.
 fn find_responsible_node(certificates: &Certificates, mut n: u32) -> u32 {
     let parts = certificates.parts();
     loop {

@@ -1,5 +1,5 @@
-//! The affine-residual bound: for triangles that are close and move almost as one, such as triangles two rings apart on a
-//! surface. There the separating direction turns with q, and a fixed one gives a weak bound.
+//! The affine-residual bound of a triangle pair: for triangles that are close and move almost as one, such as triangles
+//! two rings apart on a surface. There the best separating direction changes with q, so a fixed one gives a weak bound.
 //!
 //! Take any affine map of the modes, `A_i = A_0 + G (p_i - p_0) + E_i` with residuals E. For two points at
 //! rest distance `|d| >= delta` and `u = d / |d|`: `|B'u| <= |d| g + e`, with `g >= max over unit u of |G(u)'u|` and
@@ -9,8 +9,9 @@
 //! R_ab >= (delta - e0) / (g delta + e + e1)
 //! ```
 //!
-//! (it grows with delta, so a lower bound of the distance serves). Only the symmetric part of each mode's
-//! gradient enters g: a local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
+//! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows
+//! with delta, so a lower bound of the distance serves. Only the symmetric part of each mode's gradient enters g: a
+//! local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
 
 use glam::DVec3;
 
@@ -30,7 +31,7 @@ pub(super) struct AffineBound {
     rate: f64,
 }
 
-/// What the bound needs of a triangle pair.
+/// The input of the bound of one triangle pair.
 #[derive(Clone, Copy)]
 pub(super) struct AffinePair<'a> {
     /// The differences of the corners.

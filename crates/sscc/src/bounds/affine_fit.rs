@@ -1,4 +1,4 @@
-//! An affine map fitted to the modes of a few points, and the residuals of the fit.
+//! Fits an affine map to the modes of some points and bounds the residuals.
 
 use glam::{DMat3, DVec3};
 
@@ -94,8 +94,8 @@ impl AffineFit {
         squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
     }
 
-    /// An upper bound of `|E_j - E_i|` from a [`Self::squared_residual`], up to the rounding bound of one of the two points
-    /// (the affine bound adds that of both).
+    /// An upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
+    /// is not included; the affine bound adds that of both.
     ///
     /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to
     /// `|G| |p_i - p_0|`; and corners of sub-triangles are themselves rounded, which moves both the offsets here and the

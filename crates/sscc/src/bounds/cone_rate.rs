@@ -1,4 +1,5 @@
-//! The rate at which an affine map closes gaps, bounded over the cone of directions between two triangles.
+//! An upper bound of the rate at which an affine map closes the gap of two triangles, over a cone that contains all
+//! directions from one to the other.
 //!
 //! `f(u) = |G(u)'u|` over unit directions u is the norm of a quadratic form. On the cone spanned by three
 //! directions, `u = sum m_i u_i` with `m >= 0`, let `c_ij = u_i' sym(G) u_j` (one number for each mode). Then
@@ -7,8 +8,8 @@
 //! f(u) |u|^2 = |sum_ij m_i m_j c_ij|,   |u|^2 = sum_ij m_i m_j u_i.u_j,   so   f(u) <= max over i <= j of |c_ij| / u_i.u_j
 //! ```
 //!
-//! where all `u_i.u_j > 0`. The error is quadratic in the width of the cone, so halving it helps quickly, and a
-//! test costs six forms of a 6 x 6 matrix whatever the number of modes.
+//! where all `u_i.u_j > 0`. The error is quadratic in the width of the cone, so few bisections suffice. One cone costs
+//! six quadratic forms of a 6 x 6 matrix, independent of the number of modes.
 
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
-//! How far a shape can move along a straight line in q-space before two of its parts can meet: conservative advancement
-//! (Mirtich 1996).
+//! Conservative advancement in q-space (Mirtich 1996): how far a shape can move along a straight line of configurations
+//! before two of its triangles can meet.
 //!
-//! Vertex i is at `x_i + t w_i`. Along a fixed direction n two triangles are separated as long as all nine pairs of
-//! corners are: `n.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
+//! Vertex i is at `x_i + t w_i`. Along a fixed direction dir two triangles are separated as long as all nine pairs of
+//! corners are: `dir.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
 //! certifies them up to a later one; there a new direction is chosen, until that gains nothing.
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use crate::limits;
 use crate::model::rounding::quotient_down;
 use crate::model::scale_direction;
 
-/// A step that gains less than this share of t is the last one: with it t is about where the triangles meet.
+/// A step that gains less than this share of t is the last one: t is then close to the contact.
 const MIN_GAIN: f64 = 1e-4;
 
 /// Steps, at most. The t reached by then is certified, but may be smaller than the contact.
@@ -51,8 +51,8 @@ impl ConfigurationLine {
         }
     }
 
-    /// The t up to which a gap that is at least `gap` at `t` and grows at least at the rate `opening` stays positive; 0
-    /// where it is not positive at `t`.
+    /// The t until which a gap stays positive. At `t` the gap is at least `gap`, and its rate is at least `opening`. 0
+    /// if it is not positive at `t`.
     #[inline]
     pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
         let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
@@ -66,8 +66,8 @@ impl ConfigurationLine {
         }
     }
 
-    /// Advances two triangles, by their vertices, that do not meet before `t`: infinite when they do not meet before
-    /// `goal`; else a t before which they do not, about where they meet.
+    /// Advances a triangle pair that does not meet before `t`. Returns infinity if it does not meet before `goal`, else
+    /// a t before which it does not meet, close to the contact.
     pub(crate) fn advance(&self, a: [u32; 3], b: [u32; 3], mut t: f64, goal: f64) -> f64 {
         let (d, rates) = (differences(&self.positions, a, b), differences(&self.velocities, a, b));
         for _ in 0..MAX_STEPS {

@@ -1,7 +1,5 @@
-//! Bounds of all triangle pairs between two leaves at once, by one direction or one affine map for all their vertices.
-//!
-//! Sums over the modes are computed once for each pair of vertices, not for each of the triangle pairs that they are
-//! corners of.
+//! Bounds all triangle pairs of two leaves at once, along one direction or with one affine map of all their vertices.
+//! Sums over the modes are computed once for each vertex pair.
 
 use glam::DVec3;
 

@@ -1,12 +1,14 @@
 //! Lower bounds of `|z|`, the distance in q-space from the centre, at which two parts of a model can first meet (paper,
 //! section 5).
 //!
-//! Each file is named by what it bounds, or by what it bounds with. Every lower bound is certified: it is at most the
-//! exact minimum of `|z|` over all z at which the **computed** f64 positions of the two parts meet. Directions, affine
-//! maps and mean modes are candidates: any heuristic in any precision may choose them, because only the final evaluation
-//! needs rounding bounds.
+//! Files that bound: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
+//! `node_pair`, `configuration_line`, `upper_bound`. The other files are their parts.
 //!
-//! `sufficient` is always a lower bound from which on the caller needs no larger one: computations end there.
+//! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
+//! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any
+//! precision may choose them, because only the final evaluation needs rounding bounds.
+//!
+//! `sufficient` is the lower bound at which the caller stops refining.
 
 mod affine_bound;
 mod affine_fit;

@@ -1,4 +1,4 @@
-//! The affine modes of a node: its AABB, an affine map of its modes, and what the map leaves over.
+//! The AABB of a node, an affine map fitted to its modes, and a bound of the residuals.
 
 use glam::{DMat3, DVec3};
 
@@ -12,7 +12,7 @@ pub(super) struct NodeModes {
     pub(super) center: DVec3,
     /// Half extents of the AABB, rounded up.
     pub(super) half: DVec3,
-    /// An upper bound of the residuals: `|E_i' n| <= n.abs().dot(residual)`.
+    /// An upper bound of the residuals: `|E_i' dir| <= dir.abs().dot(residual)`.
     pub(super) residual: DVec3,
     /// Modes at the centre: three rows.
     pub(super) modes: Vec<f64>,

@@ -1,13 +1,13 @@
-//! The bound of two nodes of the hierarchy (replaces the single-mode estimate of the paper's section 5.2, which
-//! is not conservative: modes combine).
+//! The lower bound of a node pair. It replaces the estimate of the paper's section 5.2, which takes each mode alone and
+//! is not conservative: modes combine.
 //!
 //! Every node has an AABB at rest with centre c and half extents h, and an affine map of its modes,
-//! `A_i = A_c + G (p_i - c) + E_i`, with `|E_i' n| <= rho(n)` ([`NodeModes`]). A node therefore lies in the hull of eight
-//! box corners with affine modes, up to the residual, and the separating-direction bound applies to corners as it does to
-//! the corners of triangles:
+//! `A_i = A_c + G (p_i - c) + E_i`, with `|E_i' dir| <= rho(dir)` ([`NodeModes`]). A node therefore lies in the hull of
+//! eight box corners with affine modes, up to the residual, and the separating-direction bound applies to corners as it
+//! does to the corners of triangles:
 //!
 //! ```text
-//! R_nm >= min over corners (i, j) of  (n.d_ij - e0) / (|B_ij' n| + rho_n(n) + rho_m(n) + e1)
+//! R_nm >= min over corners (i, j) of  (dir.d_ij - e0) / (|B_ij' dir| + rho_n(dir) + rho_m(dir) + e1)
 //! ```
 //!
 //! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/2026-11-23-bounds.md.
@@ -30,7 +30,7 @@ pub(crate) struct NodePairBounds {
 pub(crate) struct NodePairScratch {
     /// The relative modes at the centres: three rows.
     difference: Vec<f64>,
-    /// `B_0' n` at the centres, then its change along the three axes of each box: seven rows.
+    /// `B_0' dir` at the centres, then its change along the three axes of each box: seven rows.
     projections: Vec<f64>,
 }
 
@@ -82,8 +82,8 @@ impl NodePairBounds {
         self.nodes[n as usize].half.length_squared()
     }
 
-    /// A separating direction of two nodes, the best one for points whose difference is that between their AABBs; none
-    /// where these touch.
+    /// The best direction to separate two points whose difference is the gap vector of the AABBs; none if the AABBs
+    /// touch.
     pub(crate) fn direction(&self, n: u32, m: u32, scratch: &mut NodePairScratch) -> Option<DVec3> {
         let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
         let gap = n.gap(m);
@@ -150,7 +150,7 @@ fn bound_corners_along(
     let row_len = model.row_len;
     let (center, axes) = scratch.projections.split_at_mut(row_len);
     project(&scratch.difference, dir, center);
-    // Steps of the gap and of B'n from the centres to a corner, one for each axis of each box.
+    // Steps of the gap and of B'dir from the centres to a corner, one for each axis of each box.
     let mut steps = [0.0; 6];
     for (i, out) in axes.chunks_exact_mut(row_len).enumerate() {
         let (node, axis, sign) = if i < 3 { (m, i, 1.0) } else { (n, i - 3, -1.0) };

@@ -20,7 +20,7 @@ use crate::model::{ScaledModel, scale_direction};
 /// How far the bound of a triangle pair is refined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RefinementTarget {
-    /// Radii of at least this change nothing.
+    /// Refinement stops at this radius.
     pub(crate) cap: f64,
     /// The smallest upper bound found so far.
     pub(crate) upper: f64,

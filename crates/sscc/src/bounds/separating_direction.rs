@@ -1,14 +1,14 @@
 //! The separating-direction bound of a triangle pair (replaces the constant-mode bound of the paper's section 5.1).
 //!
-//! For a fixed direction n with `n.d_ij > 0` for all nine pairs of corners (i of triangle a, j of triangle b):
+//! For a fixed direction dir with `dir.d_ij > 0` for all nine pairs of corners (i of triangle a, j of triangle b):
 //!
 //! ```text
-//! R_ab >= min over (i, j) of  n.d_ij / |B_ij' n|,    d_ij = p_j - p_i,  B_ij = A_j - A_i
+//! R_ab >= min over (i, j) of  dir.d_ij / |B_ij' dir|,    d_ij = p_j - p_i,  B_ij = A_j - A_i
 //! ```
 //!
-//! Let t be the right side. For `|z| < t` each computed corner of b lies beyond each computed corner of a along n, so n
-//! separates the two triangles. The bound holds for any n, any rank and any modes. Rounding is covered by
-//! `(n.d_ij - e0) / (|B_ij' n| + e1)` with the two parts of the [`RoundingBound`].
+//! Let t be the right-hand side. For `|z| < t` each computed corner of b lies beyond each computed corner of a along
+//! dir, so dir separates the two triangles. The bound holds for any dir, any rank and any modes. Rounding is covered by
+//! `(dir.d_ij - e0) / (|B_ij' dir| + e1)` with the two parts of the [`RoundingBound`].
 
 use glam::DVec3;
 

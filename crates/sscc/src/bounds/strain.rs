@@ -1,4 +1,4 @@
-//! The strains of an affine map of the modes, and an upper bound of the rate at which they move points apart.
+//! The strains of an affine map of the modes, and an upper bound of the rate at which the map changes distances.
 
 use crate::model::mode_rows::LANES;
 

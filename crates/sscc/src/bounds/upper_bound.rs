@@ -1,5 +1,6 @@
-//! Upper bounds of the radius of a triangle pair: the norm of a z that brings two of its points together. They decide when
-//! refinement ends, and never enter a radius.
+//! Upper bounds of the radius of a triangle pair: the norm of a z at which two of its points meet. They end refinement
+//! and are never part of a certified radius. [`RelativeModes`] also gives the Gram matrix by which lower bounds choose
+//! directions.
 
 use glam::{DMat3, DVec3};
 

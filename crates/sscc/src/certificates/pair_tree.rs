@@ -1,11 +1,10 @@
 //! The pair tree: certified radii of node pairs, stored along the BVTT.
 //!
-//! With radii of nodes alone a query opens node pairs along every common border of siblings that are not certified
-//! together: their boxes always overlap. The tree stores the radius of every node pair below a limit, so a query ends
-//! at a pair whose radius it has not reached. Node pairs follow from the splitting rule alone
-//! ([`Hierarchy::split_above_buckets`]), never from boxes: boxes that are apart at rest may meet later. So below the limit a pair
-//! that is missing is certified; at the limit and beyond, absence means nothing. The tree says nothing of the pairs
-//! within a bucket.
+//! With radii of nodes alone, a query opens every two neighbouring siblings that are not certified together, because
+//! their AABBs always overlap. The pair tree stores the radius of every node pair below a limit, so a query ends at a
+//! pair whose radius it has not reached. The splitting rule ([`Hierarchy::split_above_buckets`]) alone decides which
+//! pairs there are, never AABBs: AABBs that are disjoint at rest may overlap later. Below the limit a pair that is not
+//! stored is certified. At the limit and beyond, nothing follows. The tree has no pairs within buckets.
 
 use crate::hierarchy::{Hierarchy, Node, NodePair};
 
@@ -19,7 +18,7 @@ const START: u32 = (1 << WHICH) - 1;
 /// The start of the children of a node without stored pairs.
 pub(crate) const NO_PAIRS: u32 = u32::MAX;
 
-/// Most entries: links cannot address more.
+/// The maximum number of entries: links cannot address more.
 pub(crate) const MAX_ENTRIES: usize = START as usize;
 
 /// A node pair that may collide below the limit, in 8 bytes.
@@ -37,7 +36,7 @@ impl PairEntry {
         Self { radius, link }
     }
 
-    /// Where its children start; 0: it has none, both nodes are small.
+    /// Where its children start; 0: it has none, both nodes are buckets.
     pub(crate) fn start(self) -> u32 {
         self.link & START
     }
@@ -53,7 +52,7 @@ impl PairEntry {
     }
 }
 
-/// An entry and its place in the tree.
+/// An entry and its index in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoredPair {
     pub(crate) index: u32,
@@ -76,7 +75,7 @@ pub struct PairTree {
 }
 
 impl PairTree {
-    /// Below this norm a node pair that is not stored is certified, except within buckets. 0: no pairs are stored.
+    /// The limit. Below it, a node pair that is not stored is certified, except within buckets. 0: the tree is empty.
     pub fn limit(&self) -> f64 {
         self.limit
     }
@@ -103,12 +102,12 @@ impl PairTree {
     }
 
     /// For each node pair its radius, rounded down, and its link: bits 0 to 27 say where its children start (0: none,
-    /// both nodes are small), bits 28 to 30 which child of its parent it is, bit 31 that no sibling follows.
+    /// both nodes are buckets), bits 28 to 30 which child of its parent it is, bit 31 that no sibling follows.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = (f32, u32)> {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
 
-    /// The entry at a place.
+    /// The entry of an index.
     pub(crate) fn entry(&self, index: usize) -> PairEntry {
         self.entries[index]
     }

@@ -1,4 +1,4 @@
-//! Certificates against brute force: whatever collides below a limit must be open there.
+//! Tests certificates against brute force: no triangle pair that collides below a limit is certified there.
 
 use glam::DVec3;
 use sscc_testing::{cases, threshold};

@@ -1,4 +1,4 @@
-//! All positions that vertices can have while z stays in a ball: the vertex motion of kinetic searches.
+//! The vertex motion of kinetic searches: an AABB of each vertex for all z in a ball.
 
 use glam::DVec3;
 

@@ -1,8 +1,7 @@
-//! One search after the other: the broad phase with its volumes, its stack and its counters.
+//! The state of a search: AABBs, traversal stack, counters, cancellation. It hands triangle pairs with overlapping
+//! AABBs to the [`NarrowPhase`], and tests the exceptions.
 //!
-//! A search begins, visits nodes and node pairs ([`traversal`](super::traversal), or a traversal of a higher layer by the
-//! same tests), tests buckets ([`bucket_pair`](super::bucket_pair)) and hands triangle pairs whose boxes overlap to its
-//! [`NarrowPhase`].
+//! The tests of nodes are in [`traversal`](super::traversal), those of buckets in [`bucket_pair`](super::bucket_pair).
 
 use std::sync::Arc;
 
@@ -41,7 +40,7 @@ pub(crate) struct Counters {
 #[derive(Clone)]
 pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) volumes: NodeVolumes<E>,
-    /// Of methods that use them, at one configuration.
+    /// The normal cones of methods that use them; only in discrete searches.
     pub(super) cones: Option<NormalCones>,
     /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
     pub(super) stack: Vec<NodePair>,

@@ -1,5 +1,5 @@
-//! Buckets: the nodes of at most 64 triangles in which traversals end, each cut into up to eight packets of up to eight
-//! triangles.
+//! Buckets: the largest nodes of at most 64 triangles, at which traversals end, each cut into up to eight packets of up
+//! to eight triangles.
 
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
 
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///
-/// A bucket is cut into full packets, not into the leaves of the hierarchy: these hold 4 triangles on average, half of
-/// what one comparison takes. On the spring at rest 5,516 node pairs are opened instead of 37,695.
+/// A bucket is cut into full packets, not into the leaves of the hierarchy, which fill only half of a packet
+/// (docs/notes/2026-11-21-packets.md, docs/notes/2026-11-23-packets-of-buckets.md).
 #[derive(Default)]
 pub(crate) struct Buckets {
     /// For each node the bucket that it is, or lies in.

@@ -9,8 +9,8 @@ use super::buckets::Buckets;
 use super::quantization::{CoarseMotion, Quantization};
 use super::vertex_store::VertexStore;
 
-/// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of them
-/// (on average 1.7 times on the dragon), so that a bucket is read from contiguous memory.
+/// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of
+/// them, so that a bucket is read from contiguous memory (docs/notes/2026-11-23-packets-of-buckets.md).
 #[derive(Default)]
 pub(crate) struct CoarseVertices {
     /// For each bucket its first group of four vertices, and the end.

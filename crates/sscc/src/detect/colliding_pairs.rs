@@ -1,4 +1,5 @@
-//! The colliding pairs at one configuration by the traditional method: for exceptions and ignored pairs.
+//! All colliding pairs at one configuration, by the traditional method: to find exceptions, and for
+//! [`ContactFilter::ignoring_rest`].
 
 use std::borrow::Cow;
 

@@ -28,8 +28,8 @@ impl<const E: usize> ExactPositions<E> {
         }
     }
 
-    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `overall_aabb` chooses the
-    /// frame.
+    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `overall_aabb`
+    /// chooses the frame.
     pub(crate) fn begin(&mut self, search: u32, overall_aabb: Aabb) {
         if search == 1 {
             self.searches.fill(0);

@@ -1,4 +1,4 @@
-//! The frame of a query: coordinates in single precision that keep the order of those in double precision.
+//! A monotone map from f64 to f32 coordinates: AABBs that are disjoint after it are disjoint before it.
 
 use glam::{DVec3, Vec4};
 

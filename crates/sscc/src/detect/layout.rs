@@ -1,4 +1,5 @@
-//! The model as the detector reads it: everything that does not depend on q, shared by all searches and their clones.
+//! All data of the detector that does not depend on q, in the order in which searches read it. Searches and their
+//! clones share it.
 
 use super::bd_tree::BdTree;
 use super::buckets::Buckets;

@@ -1,5 +1,6 @@
 //! The traversal of the bounding volume test tree (BVTT): which nodes and node pairs are opened. This one uses no
-//! certificates, but normal cones where the method has them; higher layers traverse by the same tests.
+//! certificates, but normal cones where the method has them. `query/` has the traversals with certificates; they use
+//! the same tests.
 //!
 //! One box is always compared with up to eight. The stack holds nodes `(n, n)`, and pairs `(n, m)` of nodes without
 //! common triangles whose boxes overlap.

@@ -6,7 +6,8 @@
 //! [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal number.
 //!
 //! All tests are Boolean formulas over comparisons of coordinates and signs of determinants ([`orientation`]). A
-//! floating-point filter with a proven error bound decides most signs, exact arithmetic ([`exact_orientation`]) the others.
+//! floating-point filter with a proven error bound decides most signs, exact arithmetic ([`exact_orientation`]) the
+//! others.
 
 mod aabb;
 mod binary64;

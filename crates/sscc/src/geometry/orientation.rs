@@ -1,8 +1,8 @@
 //! Exact signs of orientation determinants: on which side of a plane or a line a point lies.
 //!
 //! A filter in the sense of Shewchuk (1997): it evaluates a determinant in f64 and takes its sign only where the
-//! magnitude exceeds an error bound; otherwise [`exact_orientation`] decides. The error bounds, with `u = 2^-53`, follow from three
-//! facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
+//! magnitude exceeds an error bound; otherwise [`exact_orientation`] decides. The error bounds, with `u = 2^-53`,
+//! follow from three facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
 //! - `fl(x + y) = (x + y)(1 + d)` with `|d| <= u`; a sum that underflows is exact;
 //! - `fl(x y) = x y (1 + d) + h` with `|d| <= u`, and `h` is 0 unless the product underflows; `|h| <= 2^-1075`;
 //! - nothing overflows: coordinates are at most 2^200, so differences are at most 2^201 and no

@@ -1,4 +1,4 @@
-//! The points that k-means clusters: for each triangle its centroid and its modes, projected to a few numbers.
+//! The vectors that k-means clusters: for each triangle its centroid, and its modes projected to a few numbers.
 //!
 //! Clustering on the modes as well tends to put regions that move differently into different nodes even where they are
 //! close in space, which makes certificates stronger (paper, section 3, after Huang et al. 2009). Projections with random

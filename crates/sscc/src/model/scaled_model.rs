@@ -47,8 +47,8 @@ impl ScaledModel {
             let norm = |axis: usize| norm_up(magnitudes.iter().map(|m| m[axis] * m[axis]).sum(), row_len);
             mode_reach = mode_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
-        // A component that never moves beside others that do still needs a rounding bound above what squares
-        // lose to underflow (checked modes are largest above 2^-200, squares vanish below 2^-537).
+        // A component in which nothing moves still needs a positive rounding bound if others move: squares of numbers
+        // below 2^-537 underflow, and the largest mode is above 2^-200.
         let floor = mode_reach.max_element() * f64::EPSILON;
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());

@@ -1,5 +1,5 @@
-// The list of mutations: what is wrong with each, and the test that catches it. Included by this crate, which contains
-// the wrong code, and by `cargo xtask mutants`, which runs the tests.
+// The list of mutations: the error of each, and the test that catches it. Included by this crate, which contains the
+// wrong code, and by `cargo xtask mutants`, which runs the tests.
 //
 // `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for tests within
 // the crate, `it` for those in `tests/it/`.
@@ -10,7 +10,7 @@ mutants! {
     KineticBallAtCenter: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
     /// The rounding bound of positions about a centre omits the displacement of the centre.
     RestErrorWithoutCenter: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
-    /// Kinetic margins grant the rounding at rest alone, not that at z.
+    /// Safe distances include the rounding error at rest, but not that at z.
     SafeDistanceErrorAtRest: CaughtBy("it rounding::kinetic_margins_know_that_positions_far_from_rest_are_rounded");
     /// Radii of the pair tree are rounded to the nearest single-precision number.
     RadiusToNearest: CaughtBy("it rounding::radii_in_single_precision_are_no_larger");
@@ -52,7 +52,7 @@ mutants! {
     NodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of two children of the root is certified.
     RootPairRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
-    /// A |z| that equals a node's radius is certified in a walk of the pair tree.
+    /// A |z| that equals a node's radius is certified in a traversal of the pair tree.
     TreeNodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of a stored pair is certified.
     TreeRadiusReached: CaughtBy("it pair_tree_traversal::what_equals_a_radius_is_not_certified");
@@ -64,7 +64,7 @@ mutants! {
     OneHullOfTwo: CaughtBy("it neighbours::one_vertex_neighbours_are_found_when_asked_for");
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
-    /// Triangles are told apart in single precision with half of the slack.
+    /// The separating-axis test uses half of its error bound.
     SeparatingAxisErrorHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
     /// The contour test omits its rounding bound.
     ContourExact: CaughtBy("lib detect::contour_test::tests::rounding_separates_nothing_that_touches");
@@ -80,13 +80,13 @@ mutants! {
     CoarseTrianglesNotWidened: CaughtBy("it rounding::what_touches_exactly_is_met_in_single_precision");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
-    /// The boxes of triangles on the way from one q to another are those at its start.
+    /// Swept AABBs of triangles contain the start only.
     SweptTrianglesAtStart: CaughtBy("it pair_tree_traversal::traversal_finds_what_brute_force_finds");
-    /// The boxes of nodes on the way from one q to another are those at its start.
+    /// Swept AABBs of nodes contain the start only.
     SweptNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
-    /// The boxes in single precision of nodes on the way from one q to another are those at its start.
+    /// Swept AABBs of nodes in single precision contain the start only.
     SweptCoarseNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
-    /// The norm of the way from one q to another is that of its end.
+    /// The norm of a continuous query is that of its end.
     SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
     /// Vertices go half as far in a kinetic ball.
     BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
@@ -94,10 +94,10 @@ mutants! {
     BallNodesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// A kinetic ball omits the rounding error of positions.
     BallExact: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
-    /// The path length of z is not rounded up.
+    /// The travelled distance of z is not rounded up.
     TravelledToNearest: CaughtBy("lib query::kinetic::ball_pairs::tests::the_travelled_distance_is_never_short");
-    /// A margin that is used up exactly still holds.
-    SafeDistanceReached: Covered("the end of a margin has been rounded down");
+    /// A safe distance that is exactly used up still holds.
+    SafeDistanceReached: Covered("the end of a safe distance has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("it impact_tolerance::what_touches_at_the_end_is_listed");
     /// The error bound of a rounded number omits its own rounding.

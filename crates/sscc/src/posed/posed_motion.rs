@@ -12,7 +12,7 @@ use crate::geometry::Aabb;
 pub(super) struct PosedMotion {
     pub(super) q: Vec<f64>,
     pub(super) pose: Pose,
-    /// A box around about all shapes that are compared.
+    /// An AABB of approximately all shapes compared.
     pub(super) around: Aabb,
     /// An upper bound of the magnitude of every term of every position in the world.
     pub(super) reach: f64,

@@ -42,7 +42,7 @@ impl<'a> PosedShape<'a> {
         Ok(Self { context, volumes, motion, is_current: false, stack: Vec::new() })
     }
 
-    /// Deforms and moves the shape, and returns a box around it in the world, at a cost of O(r).
+    /// Deforms and moves the shape, and returns an AABB of it in the world, at a cost of O(r).
     ///
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
@@ -62,9 +62,9 @@ impl<'a> PosedShape<'a> {
         Ok(pose.apply_to_aabb(whole, rounding))
     }
 
-    /// Adds all pairs (triangle of this shape, triangle of the other one) that have a point in common, sorted;
-    /// touching counts. `around`: a box around about all shapes that are compared. Any box is right; volumes are computed
-    /// once after each [`PosedShape::place`] while it stays the same.
+    /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
+    /// Touching counts. `around` is an AABB of approximately all shapes compared. It affects speed only; while it stays
+    /// the same, AABBs are computed once after each [`PosedShape::place`].
     pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
         let first = found.len();
         self.enter(around);

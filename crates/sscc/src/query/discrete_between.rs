@@ -1,4 +1,4 @@
-//! The colliding pairs of a node pair, found without certificates: for audits.
+//! `Query::discrete_between`: the colliding pairs of two nodes, without certificates, for audits.
 
 use super::method::Method;
 use super::query::Query;

@@ -1,7 +1,7 @@
 //! The traversal of the certified pair tree: only node pairs whose radius is reached are opened.
 //!
-//! Every path down the tree comes through one pair of buckets, or one bucket, because the larger node is split first.
-//! There the traversal ends (docs/notes/2026-11-23-pair-tree-traversal.md).
+//! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
+//! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
 use crate::PairTree;
 use crate::certificates::StoredPair;

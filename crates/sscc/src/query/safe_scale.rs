@@ -1,5 +1,5 @@
-//! The safe scale: how far along the line from the centre to q the shape is proven free. Conservative advancement, best-first
-//! over the hierarchy.
+//! The safe scale: how far along the line from the centre to q the shape is proven free. Best-first search over the
+//! hierarchy; triangle pairs by conservative advancement.
 
 use std::collections::BinaryHeap;
 
@@ -140,8 +140,8 @@ impl Query<'_> {
         if radius > 0.0 && scale >= f64::MIN_POSITIVE { scale * DOWN } else { 0.0 }
     }
 
-    /// Advances two triangles that do not collide before `t`: infinite if they do not before `goal` either, or do not
-    /// count; else a scale below which they do not, close to where they collide.
+    /// Advances two triangles that do not collide before `t`. Infinite if they do not collide before `goal` or do not
+    /// count; else a scale below which they do not collide, close to the contact.
     fn advance(&self, line: &ConfigurationLine, (x, y): Pair, t: f64, goal: f64) -> f64 {
         if self.context.detect.filter.is_excluded(x, y) {
             return f64::INFINITY;
@@ -160,16 +160,16 @@ const LOOK_AHEAD: f64 = 1.5;
 /// ... but at least up to this share of the best known scale.
 const MIN_GOAL: f64 = 1.0 / 64.0;
 
-/// The entry of a node, and of a node pair that is certified up to the limit of the pair tree.
+/// No entry: a node, or a node pair that is certified up to the limit of the pair tree.
 const NONE: u32 = u32::MAX;
 
-/// The entry of a node pair that the pair tree does not cover: within a bucket, and below its leaves.
+/// Outside the pair tree: a node pair within a bucket, or below a pair of buckets.
 const UNKNOWN: u32 = u32::MAX - 1;
 
 /// A node has at most four children, hence six pairs of them.
 const MAX_SIBLINGS: usize = 6;
 
-/// For each node and each triangle the box of its vertices at the centre and that of their velocities.
+/// For each node and each triangle the AABBs of its vertices at the centre and of their velocities.
 struct LineAabbs {
     nodes: Vec<MovingAabb>,
     triangles: Vec<MovingAabb>,
@@ -197,7 +197,7 @@ impl LineAabbs {
         Self { nodes, triangles }
     }
 
-    /// A scale below which some axis separates the two nodes all the way.
+    /// A scale below which one axis separates the two nodes.
     fn separated_until(&self, line: &ConfigurationLine, (n, m): NodePair) -> f64 {
         line.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }

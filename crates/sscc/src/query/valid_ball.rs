@@ -1,4 +1,5 @@
-//! The ball that the root's certificate covers: every q in it is valid, so that a query need not check it.
+//! A ball about the centre in which every q is valid and the reach is bounded, so that a query need not check q. Its
+//! radius is the root's radius, or 0 where there is no such ball.
 
 use super::context::QueryContext;
 use crate::limits;

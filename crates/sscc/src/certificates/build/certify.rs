@@ -1,4 +1,4 @@
-//! The computation of all certificates, stage by stage: pair tree, then radii of nodes (paper, section 5.2).
+//! Computes all certificates: the pair tree, then the radii of nodes (paper, section 5.2).
 
 use super::executor::{Executor, ThreadExecutor};
 use super::node_radii::NodeRadii;

@@ -1,4 +1,5 @@
-//! Executors run the tasks of a stage: this one on the threads of this process, `remote/executor.rs` in other processes.
+//! The interface of executors, which run the tasks of a stage, and the executor on the threads of this process.
+//! `remote/executor.rs` has the one for other processes.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,9 +16,10 @@ pub(crate) struct Stage<'a> {
     pub(crate) count: usize,
     /// Makes the task with an index, when it is run: all at once would take too much memory.
     pub(crate) task: &'a (dyn Fn(usize) -> Task + Sync),
-    /// Most tasks that a thread takes at once. Tasks are unequal, and those taken cannot be shared any more.
+    /// The maximum number of tasks that a thread takes at once. Costs differ, and other threads cannot take over these
+    /// tasks.
     pub(crate) grain: usize,
-    /// Most node pairs that all results together may add to the BVTT.
+    /// The maximum number of node pairs that all results together may add to the BVTT.
     pub(crate) max_added_pairs: usize,
     /// Receives numbers of tasks that have finished.
     pub(crate) on_finished: &'a (dyn Fn(usize) + Sync),
@@ -25,14 +27,14 @@ pub(crate) struct Stage<'a> {
 
 /// Runs tasks, stage by stage.
 pub(crate) trait Executor {
-    /// The results of a stage, in the order of its tasks. None if there is no room for them.
+    /// The results of a stage, in the order of its tasks. None if they would add too many node pairs.
     ///
     /// # Errors
     /// When cancelled, or when other processes fail.
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error>;
 }
 
-/// Counts the node pairs that results add, and stops work for which there is no room.
+/// Counts the node pairs that results add to the BVTT, up to a limit.
 pub(crate) struct AddedPairLimit {
     max_added_pairs: usize,
     added: AtomicUsize,
@@ -61,19 +63,19 @@ pub(crate) struct ThreadExecutor<'a> {
 impl Executor for ThreadExecutor<'_> {
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error> {
         let Self { preparation, progress } = *self;
-        let max_added_pairs = AddedPairLimit::new(stage.max_added_pairs);
+        let limit = AddedPairLimit::new(stage.max_added_pairs);
         let run = |search: &mut RadiusSearch<'_>, index: usize| {
-            if max_added_pairs.is_exceeded() {
+            if limit.is_exceeded() {
                 return None;
             }
             let result = run_task((stage.task)(index), preparation, search, progress)?;
-            max_added_pairs.add(&result);
+            limit.add(&result);
             (stage.on_finished)(1);
             Some(result)
         };
         let tasks = (0..stage.count).into_par_iter().with_max_len(stage.grain);
         let results: Vec<Option<TaskResult>> = tasks.map_init(|| preparation.search(progress), run).collect();
-        if max_added_pairs.is_exceeded() {
+        if limit.is_exceeded() {
             return Ok(None);
         }
         results.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(Error::Cancelled)

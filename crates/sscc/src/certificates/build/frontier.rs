@@ -1,4 +1,4 @@
-//! The frontier of the BVTT below some node pairs: the pairs that make them up and are not split.
+//! The frontier of the BVTT below some node pairs: the node pairs that are not split.
 
 use std::ops::Range;
 
@@ -12,12 +12,12 @@ pub(super) struct Frontier {
     pub(super) radius: f64,
     /// Pairs of which only a lower bound is known.
     pub(super) open: Vec<BoundedNodePair>,
-    /// Pairs of small nodes whose radius is known, with the error of the pair tree.
+    /// Pairs of buckets whose radius is known, with the tolerance of the pair tree.
     pub(super) bounded: Vec<BoundedNodePair>,
 }
 
 impl Frontier {
-    /// The frontier below the pairs at some places.
+    /// The frontier below the pairs of some indices.
     pub(super) fn below(bvtt: &Bvtt, hierarchy: &Hierarchy, indices: Range<usize>, cap: f64) -> Self {
         let mut frontier = Self { radius: cap, open: Vec::new(), bounded: Vec::new() };
         let mut stack: Vec<usize> = indices.collect();

@@ -1,8 +1,8 @@
 //! Lower bounds of all triangle pairs between two leaves, or within one, without subdivision (paper, section 5.1).
 //!
-//! All pairs first share the direction that is best for the two nodes. Then only the pair with the smallest bound is
-//! refined, again and again, until the smallest bound is a refined one: the direction that it needs, or one affine map of
-//! all vertices, often settles the other pairs.
+//! First, all pairs are bounded along the best direction of the two nodes. Then the pair with the smallest bound is
+//! refined, until the smallest bound belongs to a refined pair. Its direction, and one affine map of all vertices, are
+//! tried for all pairs and often suffice.
 
 use glam::DVec3;
 
@@ -66,8 +66,8 @@ impl<'a> LeafBounds<'a> {
         }
     }
 
-    /// Refines the pair with the smallest bound until that of a refined one is the smallest. Upper bounds that are met
-    /// lower `target.upper`; gives the triangle pair of the last one, if one was.
+    /// Refines the pair with the smallest bound until the smallest bound belongs to a refined pair. Lowers
+    /// `target.upper`, and returns the triangle pair that lowered it last, if any.
     pub(super) fn refine(
         &mut self,
         refiner: &mut PairRefiner<'_>,

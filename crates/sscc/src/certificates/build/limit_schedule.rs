@@ -1,7 +1,7 @@
 //! The limits up to which the BVTT is built, one after the other, until the budget of the pair tree is used up.
 //!
-//! How many node pairs lie below a limit is not known in advance: each limit is estimated from how their number has grown
-//! so far. Measured in `docs/notes/2026-11-23-pair-tree-limits.md`.
+//! The number of node pairs below a limit is not known in advance, so each limit is extrapolated from its growth so far
+//! (docs/notes/2026-11-23-pair-tree-limits.md).
 
 use crate::model::rounding::to_f32_down;
 

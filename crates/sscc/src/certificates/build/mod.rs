@@ -1,7 +1,7 @@
 //! The computation of certificates, on the threads of this process or by any other executor.
 //!
-//! `prepare` makes what all tasks read; `pair_tree_builder` and `node_radii` make the tasks, stage by stage; an `executor`
-//! runs them with `task::run_task`, which searches radii with `search`.
+//! `preparation` computes the input of all tasks. `pair_tree_builder` and `node_radii` create the tasks. An `executor`
+//! runs them with `task::run_task`, which searches radii with `radius_search`.
 
 mod bvtt;
 mod certify;

@@ -1,10 +1,10 @@
 //! Radii of nodes, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's pairs)` (paper, section
 //! 5.2).
 //!
-//! Two passes. The first one is coarse: it takes what building the pair tree has bounded, and searches the rest with few
-//! subdivisions. On the way an upper bound of the root's radius is met; the second pass searches all radii that may be
-//! below it with the error asked for. Buckets are searched as a whole, and nodes in them get their radius, because no
-//! discrete or continuous query looks into a bucket.
+//! There are two passes. The first is coarse: it uses the bounds from building the pair tree and searches the rest with
+//! few subdivisions; it also yields an upper bound of the root's radius. The second searches every radius that may be
+//! below this bound, with the tolerance of the options. A bucket is searched as a whole, and the nodes within it get
+//! its radius, because traversals end at buckets.
 
 use std::ops::Range;
 
@@ -33,7 +33,7 @@ pub(super) struct NodeRadii {
 }
 
 impl NodeRadii {
-    /// Computes all radii, given what building the pair tree has bounded.
+    /// Computes all radii, given the bounds from building the pair tree.
     pub(super) fn compute(
         preparation: &Preparation,
         builder: &PairTreeBuilder,
@@ -62,7 +62,7 @@ struct Passes<'a> {
 }
 
 impl Passes<'_> {
-    /// Computes all radii that are below a limit; gives the smallest upper bound met of any radius.
+    /// Computes all radii that are below a limit. Returns the smallest upper bound found of any radius.
     ///
     /// Nodes of one level are independent of each other. So a stage is a level, from the leaves up, then the pairs of the
     /// root's children.
@@ -109,8 +109,8 @@ impl Passes<'_> {
         Ok(upper)
     }
 
-    /// An upper bound of the root's radius, if it comes from pairs that building the pair tree has bounded: as a rule the
-    /// search of the pairs from which it comes meets one. Infinite if not: then the first pass has met one.
+    /// An upper bound of the root's radius, if that radius comes from pairs bounded while building the pair tree:
+    /// searching these pairs again usually finds one. Infinite otherwise; then the first pass has found one.
     fn root_upper_bound(&self, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.preparation.hierarchy;
         let (nodes, radii) = (hierarchy.nodes(), &self.radii);

@@ -1,9 +1,9 @@
 //! Building of the pair tree: which node pairs it holds, and their radii (beyond the paper's section 5.2).
 //!
-//! The BVTT is built in rounds of ever higher limits: a pair with a lower bound below the limit is split, two small nodes
-//! get a radius, searched without subdivision. What becomes of a pair depends on the model alone; one priority queue for
-//! all would not, once several threads take from it. The budget ends the rounds: the last limit is the one below which
-//! all pairs are known.
+//! The BVTT is built in rounds with increasing limits. A pair with a lower bound below the limit is split; a pair of
+//! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
+//! threads, as it would with one shared priority queue. The rounds end when the budget is used up. All pairs below the
+//! last limit are known.
 
 use std::ops::Range;
 
@@ -18,11 +18,11 @@ use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// Most node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed. Tests should run
-/// out of room.
+/// The maximum number of node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed.
+/// In tests the limit is small, so that they reach it.
 const PAIRS_PER_ENTRY: usize = if cfg!(test) { 1 } else { 32 };
 
-/// Most node pairs of the BVTT, whatever the budget: places have 32 bits.
+/// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
 const MAX_PAIRS: usize = 1 << 31;
 
 /// Open pairs that a thread takes at once.
@@ -33,7 +33,7 @@ pub(super) struct PairTreeBuilder {
     bvtt: Bvtt,
     /// Radii below this are known; 0: none is.
     complete_below: f64,
-    /// Most entries of the tree.
+    /// The maximum number of entries of the tree.
     budget: usize,
 }
 
@@ -64,7 +64,8 @@ impl PairTreeBuilder {
         Ok(builder)
     }
 
-    /// Splits and bounds every pair below the limit. False, and nothing changed, if there would be more than `most`.
+    /// Splits or bounds every pair below the limit. Returns false, with the BVTT unchanged, if it would have more than
+    /// `most` pairs.
     fn run_round(
         &mut self,
         hierarchy: &Hierarchy,
@@ -128,8 +129,8 @@ impl PairTreeBuilder {
         Some(Frontier::below(&self.bvtt, hierarchy, indices, cap))
     }
 
-    /// The tree of all pairs below the limit that the budget allows. What is known of a node or a pair as a whole is a
-    /// lower bound for all pairs below it.
+    /// The pair tree: all pairs below the limit, as far as the budget allows. The radius of a node or a pair is a lower
+    /// bound for all pairs below it.
     pub(super) fn finish(mut self, hierarchy: &Hierarchy, node_radii: &[f64]) -> PairTree {
         if self.is_empty() {
             return PairTree::default();
@@ -139,7 +140,7 @@ impl PairTreeBuilder {
     }
 }
 
-/// The places of the open pairs that may collide below a limit.
+/// The indices of the open pairs that may collide below a limit.
 fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
     indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
 }

@@ -1,6 +1,5 @@
-//! The preparation that every task needs: hierarchy, scope and bounds of nodes.
-//!
-//! It follows from the model and the options alone, so each process makes its own, and all are equal.
+//! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
+//! the options alone, so every process computes its own, and all are equal.
 
 use super::global_radius::global_radius;
 use super::radius_search::RadiusSearch;
@@ -14,7 +13,7 @@ use crate::hierarchy::Hierarchy;
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
-/// Everything that tasks read, and the parts of the certificates that need no task.
+/// The input of all tasks, and the parts of the certificates that need no task.
 pub(crate) struct Preparation {
     pub(crate) digest: Digest,
     pub(crate) scope: Scope,

@@ -1,4 +1,4 @@
-//! Bounds of radii: of one node pair before a search, of all pairs searched after it.
+//! Input and result of a radius search: node pairs with lower bounds; a certified radius with an upper bound.
 
 use crate::hierarchy::NodePair;
 

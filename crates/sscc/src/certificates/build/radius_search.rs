@@ -1,8 +1,8 @@
 //! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
 //!
-//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a node
-//! pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends as soon as the
-//! smallest bound left is within the error allowed of the smallest upper bound that was met. The result depends on the
+//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a
+//! node pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends when the
+//! smallest remaining lower bound is within the tolerance of the smallest upper bound found. The result depends on the
 //! sets searched and the goal alone, never on earlier searches.
 
 use std::collections::BinaryHeap;
@@ -19,8 +19,8 @@ use crate::hierarchy::NodePair;
 use crate::min_heap::MinHeapEntry;
 use crate::{Pair, Progress};
 
-/// Most candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth first, in constant
-/// memory.
+/// The maximum number of candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth
+/// first, in constant memory.
 const MAX_QUEUED: usize = 1 << 20;
 
 /// Two nodes whose triangle pairs have not been listed, or one triangle pair. Of two with the same lower bound a triangle

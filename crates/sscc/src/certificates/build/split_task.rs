@@ -1,4 +1,4 @@
-//! Splitting of a node pair into the part of the BVTT below it, as far as that may collide below a limit.
+//! Splits an open node pair of the BVTT, and the pairs below it, while their lower bounds are below a limit.
 
 use super::bvtt::{BvttPair, PairState};
 use super::preparation::Preparation;
@@ -7,12 +7,11 @@ use crate::Progress;
 use crate::hierarchy::NodePair;
 use crate::model::rounding::to_f32_down;
 
-/// A pair of small nodes is bounded up to this many times the limit, so that most need no further search in the next
-/// round.
+/// A pair of buckets is bounded up to this many times the limit, so that most need no further search in the next round.
 const BUCKET_LOOKAHEAD: f64 = 2.0;
 
-/// Most pairs that one task bounds; those that it leaves open are further tasks, so that threads finish together. Tests
-/// have small models, and should leave some open, too.
+/// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
+/// finish together. Tests have small models, and should leave some open, too.
 const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
 
 /// Pairs between two tests for cancellation; searches test for themselves.
@@ -28,8 +27,8 @@ pub(crate) struct SplitTask {
     pub(crate) limit: f64,
 }
 
-/// The pair itself, then those that it is split into, breadth first; places count in this list. After
-/// [`MAX_BOUNDED`] pairs the others stay open with a lower bound below the limit. None if cancelled.
+/// Splits a pair breadth first. The result begins with the pair itself, and its indices refer to the result. After
+/// [`MAX_BOUNDED`] pairs the rest stay open. None if cancelled.
 pub(super) fn split(
     task: SplitTask,
     preparation: &Preparation,

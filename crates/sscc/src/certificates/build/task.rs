@@ -33,7 +33,7 @@ pub(crate) struct NodeRadiusTask {
 /// The result of a task.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum TaskResult {
-    /// What the pair has become, and the pairs below it; places count in this list.
+    /// The pair itself and the pairs below it; indices refer to this list.
     Split(Vec<BvttPair>),
     NodeRadius(RadiusBound),
 }

@@ -1,4 +1,4 @@
-//! Reading of numbers from bytes that nobody has checked.
+//! Reads numbers from untrusted bytes.
 
 /// Reads little-endian numbers one after the other; none if the bytes end, or the number is out of range.
 pub(super) struct ByteReader<'a>(&'a [u8]);

@@ -1,4 +1,4 @@
-//! The executor that has tasks run by workers in other processes.
+//! `Certificates::compute_in_shards`, and the executor that sends tasks as jobs to other processes.
 
 use super::job::JobWriter;
 use super::job_result::{JobResult, ResultLayout};
@@ -102,17 +102,15 @@ impl Executor for RemoteExecutor<'_> {
     }
 }
 
-/// The results in the order of their tasks; none if there is no room for all of them.
+/// The results in the order of their tasks; none if they would add too many node pairs.
 fn in_order(stage: &Stage<'_>, jobs: Vec<JobResult>) -> Option<Vec<TaskResult>> {
     let complete = |job: JobResult| match job {
         JobResult::OutOfRoom => None,
         JobResult::Complete(results) => Some(results.into_iter()),
     };
     let mut jobs = jobs.into_iter().map(complete).collect::<Option<Vec<_>>>()?;
-    let (max_added_pairs, count) = (AddedPairLimit::new(stage.max_added_pairs), jobs.len());
-    let results: Vec<TaskResult> = (0..stage.count)
-        .filter_map(|index| jobs[index % count].next())
-        .inspect(|r| max_added_pairs.add(r))
-        .collect();
-    (!max_added_pairs.is_exceeded()).then_some(results)
+    let (limit, count) = (AddedPairLimit::new(stage.max_added_pairs), jobs.len());
+    let results: Vec<TaskResult> =
+        (0..stage.count).filter_map(|index| jobs[index % count].next()).inspect(|r| limit.add(r)).collect();
+    (!limit.is_exceeded()).then_some(results)
 }

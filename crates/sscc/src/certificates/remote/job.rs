@@ -1,7 +1,8 @@
 //! Jobs as bytes: some tasks of one stage, for a worker.
 //!
-//! The bytes are a stage's room, then the tasks one after the other. They carry lower bounds and caps from earlier
-//! stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are refused.
+//! The bytes are the stage's maximum number of added pairs, then the tasks in order. They carry lower bounds and caps
+//! from earlier stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are
+//! refused.
 
 use super::byte_reader::ByteReader;
 use crate::certificates::build::{BoundedNodePair, NodeRadiusTask, Precision, SearchGoal, SplitTask, Task};
@@ -10,7 +11,7 @@ use crate::hierarchy::{Hierarchy, NodePair};
 /// Tasks that one worker runs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Job {
-    /// Most node pairs that the results may add.
+    /// The maximum number of node pairs that the results may add.
     pub(super) max_added_pairs: usize,
     pub(super) tasks: Vec<Task>,
 }
@@ -99,7 +100,7 @@ fn read_radius(
     hierarchy.nodes().get(node as usize)?;
     let goal = SearchGoal { cap: from.radius()?, refine_up_to: from.radius()?, precision };
     let count = from.u64()?;
-    // Nothing is allocated by a number that the bytes do not bear out.
+    // The count is untrusted: allocate only as pairs are read.
     let mut pairs = Vec::new();
     for _ in 0..count {
         pairs.push(BoundedNodePair { nodes: read_nodes(hierarchy, from)?, lower: from.radius()? });

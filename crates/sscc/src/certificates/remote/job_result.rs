@@ -1,13 +1,11 @@
-//! Results of jobs as bytes: those of the tasks one after the other.
-//!
-//! Of a pair that was split only states and lower bounds are written: which pairs they belong to follows from the pair
-//! and the splitting rule. So whoever reads a result must know the task.
+//! Job results as bytes: the results of the tasks, in order. For a split pair only states and lower bounds are written;
+//! the splitting rule gives the node pairs, so a reader needs the task.
 
 use super::byte_reader::ByteReader;
 use crate::certificates::build::{BvttPair, PairState, RadiusBound, Task, TaskResult};
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// The first byte: whether there was room for the results.
+/// The first byte: whether the results are within the maximum number of added pairs.
 const OUT_OF_ROOM: u8 = 0;
 const COMPLETE: u8 = 1;
 
@@ -35,7 +33,7 @@ impl ResultLayout {
 /// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum JobResult {
-    /// There is no room for the results.
+    /// The results would add too many node pairs.
     OutOfRoom,
     Complete(Vec<TaskResult>),
 }

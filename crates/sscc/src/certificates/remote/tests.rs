@@ -56,7 +56,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
     }
 }
 
-/// Models of a few triangles, whose root is a leaf or small.
+/// Models of a few triangles, whose root is a leaf or a bucket.
 #[test]
 fn small_models_can_be_sharded() {
     for quads in [2, 4, 9, 40] {

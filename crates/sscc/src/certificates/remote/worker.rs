@@ -48,12 +48,12 @@ impl ShardWorker {
     /// None if cancelled.
     fn run_tasks(&self, job: Job, progress: &dyn Progress) -> Option<JobResult> {
         let mut search = self.preparation.search(progress);
-        let max_added_pairs = AddedPairLimit::new(job.max_added_pairs);
+        let limit = AddedPairLimit::new(job.max_added_pairs);
         let mut results = Vec::with_capacity(job.tasks.len());
         for task in job.tasks {
             let result = run_task(task, &self.preparation, &mut search, progress)?;
-            max_added_pairs.add(&result);
-            if max_added_pairs.is_exceeded() {
+            limit.add(&result);
+            if limit.is_exceeded() {
                 return Some(JobResult::OutOfRoom);
             }
             results.push(result);

@@ -23,7 +23,7 @@ impl<T> Hits<T> {
         self.is_full = false;
     }
 
-    /// Whether the limit is reached. Called where there is something left to test: the answer is incomplete then.
+    /// Whether the limit is reached. Call it only if a test is left: it records that the answer is incomplete.
     #[inline]
     pub(crate) fn note_if_full(&mut self) -> bool {
         self.is_full |= self.hits.len() >= self.limit;
@@ -36,7 +36,7 @@ impl<T> Hits<T> {
         !self.is_full
     }
 
-    /// Ends the search as soon as it asks whether the limit is reached.
+    /// Makes the next call of [`Self::note_if_full`] end the search.
     pub(crate) fn stop(&mut self) {
         self.limit = 0;
     }

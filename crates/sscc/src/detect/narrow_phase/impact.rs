@@ -7,7 +7,8 @@ use crate::Pair;
 pub struct Impact {
     /// The triangles, the lower number first.
     pub pair: Pair,
-    /// The time of impact, from 0 to 1: never later than the true one, see [`Query::continuous`](crate::Query::continuous).
+    /// The time of impact, from 0 to 1: never later than the true one, see
+    /// [`Query::continuous`](crate::Query::continuous).
     pub time: f64,
 }
 

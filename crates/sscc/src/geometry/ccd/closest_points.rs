@@ -1,6 +1,6 @@
 //! The closest points of two moving triangles at one time, and a direction that separates the triangles there.
 //!
-//! Heuristics: [`candidate_direction`](super::candidate_direction) evaluates the directions.
+//! Both are heuristics. [`candidate_direction`](super::candidate_direction) certifies the directions.
 
 use glam::DVec3;
 

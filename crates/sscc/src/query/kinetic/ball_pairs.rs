@@ -1,6 +1,7 @@
-//! Active pairs: the pairs that can collide in the current ball, each with the time at which it must be tested again.
+//! The pairs that a ball search found. A pair is safe until z has travelled its safe distance; an active pair is tested
+//! in every step.
 //!
-//! Time is the distance that z has travelled, which is never shorter than the distance between two of its positions.
+//! Time here is the travelled distance of z, which is never shorter than the distance between two of its positions.
 
 use std::collections::BinaryHeap;
 
@@ -11,11 +12,11 @@ use crate::model::rounding::ROUND_DOWN;
 /// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
 const MAX_REMEMBERED: usize = 8;
 
-/// A pair that stays apart until z has travelled as far as its key; the next to expire comes first, equal ones by their
+/// A pair that stays free until z has travelled as far as its key. The next to expire comes first, equal ones by their
 /// triangles.
 pub(super) type SafePair = MinHeapEntry<Pair>;
 
-/// All pairs that can collide in the ball; the safe distances of the others are larger than the ball.
+/// All pairs that can collide in the ball. All other pairs are free in the whole ball.
 #[derive(Debug, Default)]
 pub(super) struct BallPairs {
     /// The distance that z has travelled since the last jump, rounded up.
@@ -106,8 +107,8 @@ impl BallPairs {
         self.end > 0.0
     }
 
-    /// Takes the pairs that a search found, sorted: puts those on `pending` that are not remembered to stay apart in the
-    /// ball.
+    /// Takes the sorted pairs of a ball search. Pushes to `pending` those that no remembered safe distance keeps
+    /// separate throughout the ball.
     pub(super) fn take(&mut self, found: &[Pair], pending: &mut Vec<Pair>) {
         self.safe.clear();
         self.active.clear();

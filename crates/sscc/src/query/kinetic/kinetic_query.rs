@@ -1,4 +1,5 @@
-//! The kinetic query: plain queries, ball searches, and steps that test active pairs alone.
+//! `KineticQuery`: tests only active pairs while z stays in a ball, searches a new ball when z leaves it, and falls
+//! back to an ordinary query where no ball pays.
 
 use super::ball_control::{BallControl, MAX_SHARE, MIN_STEPS};
 use super::ball_pairs::{BallPairs, up};
@@ -199,7 +200,7 @@ impl<'a> KineticQuery<'a> {
         if !is_cut {
             self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
         }
-        // The tests of this step are counted on top.
+        // The counters of this step begin with those of the ball search.
         let broad = &mut self.query.discrete.certified.broad;
         broad.counters = Counters { triangle_tests: 0, ..*counters };
         Ok(true)
