@@ -22,6 +22,6 @@ impl BoundedNodePair {
 pub(crate) struct RadiusBound {
     /// Certified: no triangle pair searched collides below this.
     pub(crate) radius: f64,
-    /// The smallest upper bound met of any such pair's radius; infinite if none was met.
+    /// The smallest upper bound found of any such pair's radius; infinite if none was found.
     pub(crate) upper: f64,
 }

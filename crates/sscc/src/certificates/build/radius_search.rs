@@ -65,7 +65,7 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 
-    /// The triangle pair for which the last search met its smallest upper bound.
+    /// The triangle pair for which the last search found its smallest upper bound.
     pub(crate) fn closest(&self) -> Option<Pair> {
         self.closest
     }

@@ -9,7 +9,7 @@
 pub(crate) enum Precision {
     /// To [`COARSE_EPSILON`], as far as [`COARSE_SUBDIVISIONS`] suffice.
     Coarse,
-    /// To the relative error asked for.
+    /// To the tolerance of the options.
     Full,
 }
 

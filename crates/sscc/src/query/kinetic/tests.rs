@@ -178,7 +178,7 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                 if random.signed() > 0.97 {
                     pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
                 }
-                // Towards a pair that stands.
+                // Towards a pair within its safe distance.
                 let Some(standing) = pairing.kinetic.ball_pairs.safe.peek().copied() else { continue };
                 if random.signed() < 0.8 {
                     continue;
