@@ -165,7 +165,7 @@ fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
     let nodes = hierarchy.nodes();
     let mut is_own = vec![true; nodes.len()];
     for (n, node) in nodes.iter().enumerate() {
-        let has_own_children = is_own[n] && (n == 0 || !node.is_bucket());
+        let has_own_children = is_own[n] && (n == 0 || !node.fits_in_bucket());
         node.children().for_each(|child| is_own[child as usize] = has_own_children);
     }
     let has_zero_radius = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;

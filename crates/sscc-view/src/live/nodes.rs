@@ -76,7 +76,7 @@ pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
         } else {
             opened.push(n);
             let node = &nodes[n as usize];
-            waiting.extend(node.children().filter(|_| !node.is_bucket()));
+            waiting.extend(node.children().filter(|_| !node.fits_in_bucket()));
         }
     }
     opened.sort_unstable();

@@ -1,4 +1,4 @@
-//! The context of a detector: state shared by all searches on one model.
+//! State shared by all searches of the detector on one model.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Pair, Progress, ReducedModel};
 
-/// The model, its hierarchy and layout, the pairs that count, and who may cancel.
+/// The model, its hierarchy and layout, the contact filter, the exceptions, and the progress that may cancel a search.
 #[derive(Clone)]
 pub(crate) struct Context<'a> {
     pub(crate) model: &'a ReducedModel,

@@ -2,16 +2,17 @@
 //! surface does not collide with itself.
 //!
 //! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
-//! directions: the corners and the face centres of a cube. That alone is no proof. It is a proof with the *contour
-//! test*: the patch is one oriented manifold with a single boundary, and the boundary, projected along the direction,
-//! does not intersect itself. Then the projection is one to one: a point off all projected edges is covered as often as the
-//! boundary winds around it, which for a simple curve is once or never. Two points of the patch on the same spot would
-//! be both on the boundary, where it would intersect itself, or one of them would be an inner point: around it the patch
-//! covers all, and near the other one some of that a second time.
+//! directions: the corners and the face centres of a cube. A cone is represented by one bit for each of these
+//! directions. That alone is no proof. It is a proof with the *contour test*: the patch is one oriented manifold with a
+//! single boundary, and the boundary, projected along the direction, does not intersect itself. Then the projection is
+//! one to one: a point off all projected edges is covered as often as the boundary winds around it, which for a simple
+//! curve is once or never. Suppose two points of the patch had the same projection. If both were on the boundary, it
+//! would intersect itself. Otherwise one is an inner point, so the patch covers a whole neighbourhood there; near the
+//! other point it covers part of that a second time.
 
 use glam::DVec3;
 
-use super::boundary::{ROUNDING, is_simple};
+use super::contour_test::{ROUNDING, is_simple};
 use super::node_volumes::NodeVolumes;
 use crate::hierarchy::Hierarchy;
 

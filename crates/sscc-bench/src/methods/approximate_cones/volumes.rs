@@ -35,7 +35,7 @@ pub fn volumes(hierarchy: &Hierarchy) -> Vec<Volume> {
     number[0] = Some(0);
     let mut count = 1;
     for (n, node) in nodes.iter().enumerate() {
-        if number[n].is_some() && !node.is_bucket() {
+        if number[n].is_some() && !node.fits_in_bucket() {
             node.children().for_each(|child| {
                 number[child as usize] = Some(count);
                 count += 1;
@@ -47,7 +47,7 @@ pub fn volumes(hierarchy: &Hierarchy) -> Vec<Volume> {
     for (node, _) in nodes.iter().zip(&number).filter(|(_, number)| number.is_some()) {
         let start = node.first_triangle as usize;
         let triangles = start..start + node.triangle_count as usize;
-        volumes.push(if node.is_bucket() {
+        volumes.push(if node.fits_in_bucket() {
             let first = count + packets.len();
             packets.extend(triangles.clone().step_by(LANES).map(|from| Volume {
                 kind: Kind::Packet,

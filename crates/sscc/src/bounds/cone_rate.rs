@@ -1,4 +1,5 @@
-//! The rate at which an affine map closes gaps, bounded over the cone of directions between two triangles.
+//! An upper bound of the rate at which an affine map closes the gap of two triangles, over a cone that contains all
+//! directions from one to the other.
 //!
 //! `f(u) = |G(u)'u|` over unit directions u is the norm of a quadratic form. On the cone spanned by three
 //! directions, `u = sum m_i u_i` with `m >= 0`, let `c_ij = u_i' sym(G) u_j` (one number for each mode). Then
@@ -7,8 +8,8 @@
 //! f(u) |u|^2 = |sum_ij m_i m_j c_ij|,   |u|^2 = sum_ij m_i m_j u_i.u_j,   so   f(u) <= max over i <= j of |c_ij| / u_i.u_j
 //! ```
 //!
-//! where all `u_i.u_j > 0`. The error is quadratic in the width of the cone, so halving it helps quickly, and a
-//! test costs six forms of a 6 x 6 matrix whatever the number of modes.
+//! where all `u_i.u_j > 0`. The error is quadratic in the width of the cone, so few bisections suffice. One cone costs
+//! six quadratic forms of a 6 x 6 matrix, independent of the number of modes.
 
 use glam::DVec3;
 
@@ -24,13 +25,13 @@ struct Cone {
 
 /// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite where the directions do not fit into a narrow cone.
-pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row: usize, mut wanted: f64) -> f64 {
+pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row_len: usize, mut wanted: f64) -> f64 {
     let Some(corners) = enclose_in_pyramid(d) else { return f64::INFINITY };
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if !trace.is_finite() {
         return f64::INFINITY;
     }
-    let rounding = right_or!((row as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
+    let rounding = right_or!((row_len as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
     let forms = Forms { gram, rounding };
     let [u0, u1, u2, u3] = corners;
     let mut cones: Vec<Cone> = Vec::with_capacity(2 * MAX_CONES);

@@ -1,17 +1,17 @@
-//! Splitting of a node pair into the part of the BVTT below it, as far as that may collide below a limit.
+//! Splits an open node pair of the BVTT, and the pairs below it, while their lower bounds are below a limit.
 
 use super::bvtt::{BvttPair, PairState};
-use super::prepare::Prepared;
-use super::search::RadiusSearch;
-use crate::certificates::pair_tree::round_down;
-use crate::{Pair, Progress};
+use super::preparation::Preparation;
+use super::radius_search::RadiusSearch;
+use crate::Progress;
+use crate::hierarchy::NodePair;
+use crate::model::rounding::to_f32_down;
 
-/// A pair of small nodes is bounded up to this many times the limit, so that most need no further search in the next
-/// round.
+/// A pair of buckets is bounded up to this many times the limit, so that most need no further search in the next round.
 const BUCKET_LOOKAHEAD: f64 = 2.0;
 
-/// Most pairs that one task bounds; those that it leaves open are further tasks, so that threads finish together. Tests
-/// have small models, and should leave some open, too.
+/// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
+/// finish together. Tests have small models, and should leave some open, too.
 const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
 
 /// Pairs between two tests for cancellation; searches test for themselves.
@@ -20,18 +20,18 @@ const CANCEL_INTERVAL: usize = 64;
 /// An open node pair that may collide below a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitTask {
-    pub(crate) nodes: Pair,
+    pub(crate) nodes: NodePair,
     /// A lower bound of its radius.
     pub(crate) lower: f32,
     /// Pairs with a lower bound below this are split.
     pub(crate) limit: f64,
 }
 
-/// The pair itself, then those that it is split into, breadth first; places count in this list. After
-/// [`MAX_BOUNDED`] pairs the others stay open with a lower bound below the limit. None if cancelled.
+/// Splits a pair breadth first. The result begins with the pair itself, and its indices refer to the result. After
+/// [`MAX_BOUNDED`] pairs the rest stay open. None if cancelled.
 pub(super) fn split(
     task: SplitTask,
-    prepared: &Prepared,
+    preparation: &Preparation,
     search: &mut RadiusSearch<'_>,
     progress: &dyn Progress,
 ) -> Option<Vec<BvttPair>> {
@@ -45,17 +45,17 @@ pub(super) fn split(
         let nodes @ (n, m) = subtree[next].nodes;
         let first = subtree.len() as u32;
         let pair = &mut subtree[next];
-        match prepared.hierarchy.split_above_buckets(n, m) {
+        match preparation.hierarchy.split_above_buckets(n, m) {
             None => {
-                let cap = (BUCKET_LOOKAHEAD * limit).min(prepared.global_radius);
+                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
                 let radius = search.between_coarse(nodes, cap)?.radius;
-                if radius < cap || cap == prepared.global_radius {
+                if radius < cap || cap == preparation.global_radius {
                     pair.set_state(PairState::Bounded);
                 }
-                pair.lower = pair.lower.max(round_down(radius));
+                pair.lower = pair.lower.max(to_f32_down(radius));
             }
             Some(split) => {
-                let lower = pair.lower.max(round_down(search.bound_nodes(nodes, limit)));
+                let lower = pair.lower.max(to_f32_down(search.bound_nodes(nodes, limit)));
                 pair.lower = lower;
                 if f64::from(lower) < limit {
                     pair.set_state(PairState::Split(first));

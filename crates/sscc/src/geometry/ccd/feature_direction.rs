@@ -11,7 +11,7 @@
 use glam::DVec3;
 
 use super::bernstein::{Polynomial, cross, dot, subtract};
-use super::bounded::Bounded;
+use super::bounded_float::BoundedFloat;
 use super::dyadic::Dyadic;
 use super::moving_triangle::MovingTriangle;
 use super::number::{Bounds, Number};
@@ -73,7 +73,7 @@ impl FeatureDirection {
     /// Whether the direction provably separates both triangles from `t` to `s`: by the signs of coefficients, which exact
     /// numbers decide where rounded ones do not.
     pub(super) fn separates(&self, a: &MovingTriangle, b: &MovingTriangle, t: f64, s: f64) -> bool {
-        let rounded = Corners::<Bounded>::between(a, b, t, s).is_separated_along(self);
+        let rounded = Corners::<BoundedFloat>::between(a, b, t, s).is_separated_along(self);
         rounded
             .unwrap_or_else(|| Corners::<Dyadic>::between(a, b, t, s).is_separated_along(self) == Some(true))
     }
@@ -88,7 +88,7 @@ pub(super) fn find_gap_above(
     b: &MovingTriangle,
     t: f64,
 ) -> Option<FeatureDirection> {
-    let rounded = Corners::<Bounded>::at(a, b, t);
+    let rounded = Corners::<BoundedFloat>::at(a, b, t);
     let gaps: Vec<FeatureGap> = FeaturePair::all().flat_map(|features| rounded.gaps(features)).collect();
     if let Some(found) = rounded.find_gap_above(tolerance, &gaps) {
         return Some(found);

@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 use num_traits::Signed;
 
-use super::bounded::Bounded;
+use super::bounded_float::BoundedFloat;
 use super::dyadic::Dyadic;
 use super::number::{Bounds, Number, power_of_two};
 
@@ -34,10 +34,12 @@ fn both_kinds_agree_with_rational_arithmetic() {
     for case in 0..3_000 {
         let widest = if case % 2 == 0 { 8 } else { 300 };
         let (a, b) = (double(&mut random, widest), double(&mut random, widest));
-        let mut numbers = (Bounded::difference(a, b), Dyadic::difference(a, b), rational(a) - rational(b));
+        let mut numbers =
+            (BoundedFloat::difference(a, b), Dyadic::difference(a, b), rational(a) - rational(b));
         for _ in 0..6 {
             let (c, d) = (double(&mut random, widest), double(&mut random, widest));
-            let (x, y, z) = (Bounded::difference(c, d), Dyadic::difference(c, d), rational(c) - rational(d));
+            let (x, y, z) =
+                (BoundedFloat::difference(c, d), Dyadic::difference(c, d), rational(c) - rational(d));
             numbers = match random(5) {
                 4 => (numbers.0.minimum(&x), numbers.1.minimum(&y), numbers.2.min(z)),
                 0 => (numbers.0.plus(&x), numbers.1.plus(&y), numbers.2 + z),
@@ -73,7 +75,7 @@ fn quotients_by_roots_are_rounded_down() {
     for (n, square, exact) in
         [(3.0, 4.0, 1.5), (5.0, 2.0, 12.5_f64.sqrt()), (-1.0, 4.0, 0.0), (1.0, 0.0, 0.0)]
     {
-        let bounded = Bounded::from_f64(n).over_root(&Bounded::from_f64(square));
+        let bounded = BoundedFloat::from_f64(n).over_root(&BoundedFloat::from_f64(square));
         let dyadic = Dyadic::from_f64(n).over_root(&Dyadic::from_f64(square));
         for Bounds { lower, upper } in [bounded, dyadic] {
             assert!(lower <= exact && lower >= exact * (1.0 - 1e-14), "{n} / sqrt({square}): {lower}");

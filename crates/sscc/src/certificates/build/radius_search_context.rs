@@ -1,15 +1,15 @@
-//! The data that searches for radii read: one model about its centre, its hierarchy, and bounds of its nodes.
+//! The input shared by all radius searches: scaled model, contact filter, hierarchy and bounds of nodes.
 
 use crate::bounds::NodePairBounds;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
 
-/// Shared by all searches on one model.
+/// The input of all radius searches on one model.
 #[derive(Clone, Copy)]
-pub(crate) struct SearchContext<'a> {
+pub(crate) struct RadiusSearchContext<'a> {
     pub(crate) model: &'a ScaledModel,
-    /// Which triangle pairs count; exceptions are left out.
+    /// The contact filter, which also excludes exceptions.
     pub(crate) filter: &'a PairFilter,
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) nodes: &'a NodePairBounds,

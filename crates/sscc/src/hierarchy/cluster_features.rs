@@ -1,4 +1,4 @@
-//! The points that k-means clusters: for each triangle its centroid and its modes, projected to a few numbers.
+//! The vectors that k-means clusters: for each triangle its centroid, and its modes projected to a few numbers.
 //!
 //! Clustering on the modes as well tends to put regions that move differently into different nodes even where they are
 //! close in space, which makes certificates stronger (paper, section 3, after Huang et al. 2009). Projections with random
@@ -17,11 +17,11 @@ const MODE_FEATURES: usize = 9;
 
 pub(super) const FEATURES: usize = 3 + MODE_FEATURES;
 
-pub(super) type Feature = [f64; FEATURES];
+pub(super) type ClusterFeature = [f64; FEATURES];
 
 /// One point for each triangle: its centroid in units of the mesh's AABB, and its mean scaled modes, projected, in units of
 /// their largest deviation from the mean.
-pub(super) fn features(model: &ReducedModel, metric: &Metric) -> Vec<Feature> {
+pub(super) fn cluster_features(model: &ReducedModel, metric: &Metric) -> Vec<ClusterFeature> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let p = mesh.rest_positions();
     let mut vertex_features = vec![[0.0; FEATURES]; p.len()];
@@ -39,7 +39,7 @@ pub(super) fn features(model: &ReducedModel, metric: &Metric) -> Vec<Feature> {
             }
         }
     }
-    let mut features: Vec<Feature> = mesh
+    let mut features: Vec<ClusterFeature> = mesh
         .faces()
         .iter()
         .map(|face| {
@@ -54,7 +54,7 @@ pub(super) fn features(model: &ReducedModel, metric: &Metric) -> Vec<Feature> {
 }
 
 /// Centres the features of a range and divides them by the largest deviation from the mean.
-fn normalize(features: &mut [Feature], range: Range<usize>) {
+fn normalize(features: &mut [ClusterFeature], range: Range<usize>) {
     let mut largest = 0.0_f64;
     for i in range.clone() {
         let mean = features.iter().map(|f| f[i]).sum::<f64>() / features.len() as f64;

@@ -1,11 +1,10 @@
-//! The preparation that every task needs: hierarchy, scope and bounds of nodes.
-//!
-//! It follows from the model and the options alone, so each process makes its own, and all are equal.
+//! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
+//! the options alone, so every process computes its own, and all are equal.
 
-use super::context::SearchContext;
 use super::global_radius::global_radius;
-use super::goal::coarse_cap;
-use super::search::RadiusSearch;
+use super::radius_search::RadiusSearch;
+use super::radius_search_context::RadiusSearchContext;
+use super::search_goal::coarse_cap;
 use crate::bounds::NodePairBounds;
 use crate::certificates::{CertifyOptions, Digest, Scope};
 use crate::detect::colliding_pairs;
@@ -14,8 +13,8 @@ use crate::hierarchy::Hierarchy;
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
-/// Everything that tasks read, and the parts of the certificates that need no task.
-pub(crate) struct Prepared {
+/// The input of all tasks, and the parts of the certificates that need no task.
+pub(crate) struct Preparation {
     pub(crate) digest: Digest,
     pub(crate) scope: Scope,
     pub(crate) hierarchy: Hierarchy,
@@ -27,7 +26,7 @@ pub(crate) struct Prepared {
     nodes: NodePairBounds,
 }
 
-impl Prepared {
+impl Preparation {
     /// Prepares a model on the threads of the current pool.
     ///
     /// # Errors
@@ -91,7 +90,11 @@ impl Prepared {
     /// A search for one thread.
     pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
         let Self { scaled, filter, hierarchy, nodes, .. } = self;
-        RadiusSearch::new(SearchContext { model: scaled, filter, hierarchy, nodes }, self.epsilon, progress)
+        RadiusSearch::new(
+            RadiusSearchContext { model: scaled, filter, hierarchy, nodes },
+            self.epsilon,
+            progress,
+        )
     }
 }
 

@@ -1,5 +1,5 @@
-//! The affine-residual bound: for triangles that are close and move almost as one, such as triangles two rings apart on a
-//! surface. There the separating direction turns with q, and a fixed one gives a weak bound.
+//! The affine-residual bound of a triangle pair: for triangles that are close and move almost as one, such as triangles
+//! two rings apart on a surface. There the best separating direction changes with q, so a fixed one gives a weak bound.
 //!
 //! Take any affine map of the modes, `A_i = A_0 + G (p_i - p_0) + E_i` with residuals E. For two points at
 //! rest distance `|d| >= delta` and `u = d / |d|`: `|B'u| <= |d| g + e`, with `g >= max over unit u of |G(u)'u|` and
@@ -9,13 +9,14 @@
 //! R_ab >= (delta - e0) / (g delta + e + e1)
 //! ```
 //!
-//! (it grows with delta, so a lower bound of the distance serves). Only the symmetric part of each mode's
-//! gradient enters g: a local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
+//! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows
+//! with delta, so a lower bound of the distance serves. Only the symmetric part of each mode's gradient enters g: a
+//! local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
 
 use glam::DVec3;
 
 use super::affine_fit::AffineFit;
-use super::cone::bound_rate_in_cone;
+use super::cone_rate::bound_rate_in_cone;
 use super::pair_corners::PairCorners;
 use super::strain::{StrainGram, bound_rate, strain_gram};
 use crate::model::RoundingBound;
@@ -23,14 +24,14 @@ use crate::model::rounding::{ROUND_UP, radius_down};
 
 /// An affine map of some points' modes and how fast it moves points apart. Owns its memory.
 pub(super) struct AffineBound {
-    row: usize,
+    row_len: usize,
     fit: AffineFit,
     gram: StrainGram,
     /// An upper bound of `|G(u)'u|` over all unit vectors u.
     rate: f64,
 }
 
-/// What the bound needs of a triangle pair.
+/// The input of the bound of one triangle pair.
 #[derive(Clone, Copy)]
 pub(super) struct AffinePair<'a> {
     /// The differences of the corners.
@@ -42,16 +43,16 @@ pub(super) struct AffinePair<'a> {
 }
 
 impl AffineBound {
-    pub(super) fn new(row: usize) -> Self {
-        Self { row, fit: AffineFit::new(row), gram: [[0.0; 6]; 6], rate: 0.0 }
+    pub(super) fn new(row_len: usize) -> Self {
+        Self { row_len, fit: AffineFit::new(row_len), gram: [[0.0; 6]; 6], rate: 0.0 }
     }
 
     /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
     pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let is_fitted = self.fit.fit(offsets, modes);
         if is_fitted {
-            self.gram = strain_gram(self.fit.gradient(), self.row);
-            self.rate = bound_rate(&self.gram, self.row);
+            self.gram = strain_gram(self.fit.gradient(), self.row_len);
+            self.rate = bound_rate(&self.gram, self.row_len);
         }
         is_fitted
     }
@@ -82,7 +83,7 @@ impl AffineBound {
         if wanted.is_nan() || wanted <= 0.0 {
             return over_all_directions;
         }
-        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row, wanted * (1.0 - 1e-9));
+        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted * (1.0 - 1e-9));
         over_all_directions.max(bound(rate))
     }
 

@@ -7,20 +7,20 @@ use std::collections::BinaryHeap;
 
 use glam::{DMat3, DVec3};
 
-use super::affine::{AffineBound, is_near};
+use super::affine_bound::{AffineBound, is_near};
 use super::pair_corners::PairCorners;
 use super::separating_direction::{bound_along, bound_rest_distance};
 use super::sub_triangle::{MAX_DEPTH, SubPair};
 use super::upper_bound::RelativeModes;
 use crate::geometry::nearest_to_origin;
-use crate::heap::MinFirst;
-use crate::model::rows::squared_distance;
+use crate::min_heap::MinHeapEntry;
+use crate::model::mode_rows::squared_distance;
 use crate::model::{ScaledModel, scale_direction};
 
 /// How far the bound of a triangle pair is refined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RefinementTarget {
-    /// Radii of at least this change nothing.
+    /// Refinement stops at this radius.
     pub(crate) cap: f64,
     /// The smallest upper bound found so far.
     pub(crate) upper: f64,
@@ -54,20 +54,20 @@ pub(crate) struct PairRefiner<'m> {
     relative: RelativeModes,
     affine: AffineBound,
     /// Sub-triangles by their lower bound and, to break ties, a serial number.
-    open: BinaryHeap<MinFirst<u32, SubPair>>,
+    open: BinaryHeap<MinHeapEntry<u32, SubPair>>,
     /// The direction that gave the largest bound of the last pair.
     best_direction: Option<DVec3>,
 }
 
 impl<'m> PairRefiner<'m> {
     pub(crate) fn new(model: &'m ScaledModel) -> Self {
-        let row = model.row;
+        let row_len = model.row_len;
         Self {
             model,
-            corner_modes: vec![0.0; 6 * 3 * row],
-            projections: vec![0.0; 6 * row],
-            relative: RelativeModes::new(row),
-            affine: AffineBound::new(row),
+            corner_modes: vec![0.0; 6 * 3 * row_len],
+            projections: vec![0.0; 6 * row_len],
+            relative: RelativeModes::new(row_len),
+            affine: AffineBound::new(row_len),
             open: BinaryHeap::new(),
             best_direction: None,
         }
@@ -99,7 +99,7 @@ impl<'m> PairRefiner<'m> {
         let mut open = std::mem::take(&mut self.open);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
         open.clear();
-        open.push(MinFirst { key: lower, tie: 0, item: SubPair::UNDIVIDED });
+        open.push(MinHeapEntry { key: lower, order: 0, item: SubPair::UNDIVIDED });
         let mut serial = 0;
         // The smallest bound of sub-triangles of the largest depth.
         let mut settled = f64::INFINITY;
@@ -109,13 +109,13 @@ impl<'m> PairRefiner<'m> {
                 open.push(entry);
                 break;
             }
-            let MinFirst { key: lower, item: part, .. } = entry;
+            let MinHeapEntry { key: lower, item: part, .. } = entry;
             // Where the modes reach all directions, the bounds themselves find better upper bounds.
             if step.is_power_of_two() && !self.relative.can_reach_everywhere(pair) {
                 // As far as the triangles may move: to the cap, or well beyond the lower bound.
                 let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
                 let part = part.corners(pair, &mut corner_modes);
-                let z = &mut self.projections[..self.model.row];
+                let z = &mut self.projections[..self.model.row_len];
                 if let Some(upper) = self.relative.bound_along_ray(pair, &part, farthest, z) {
                     target.lower_upper_bound(upper);
                 }
@@ -135,7 +135,7 @@ impl<'m> PairRefiner<'m> {
             for item in part.subdivide(is_a_divided) {
                 let bound = self.bound_corners(&item.corners(pair, &mut corner_modes), target);
                 serial += 1;
-                open.push(MinFirst { key: bound.max(lower), tie: serial, item });
+                open.push(MinHeapEntry { key: bound.max(lower), order: serial, item });
             }
         }
         let lower = open.peek().map_or(settled, |entry| entry.key.min(settled));

@@ -1,4 +1,4 @@
-//! The frame of a query: coordinates in single precision that keep the order of those in double precision.
+//! A monotone map from f64 to f32 coordinates: AABBs that are disjoint after it are disjoint before it.
 
 use glam::{DVec3, Vec4};
 
@@ -12,12 +12,12 @@ use crate::geometry::Aabb;
 /// boxes do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap,
 /// far from the centre (a shape of size 1 at 1e8) or below the smallest normal numbers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Frame {
+pub(crate) struct F32Frame {
     center: DVec3,
     scale: f64,
 }
 
-impl Frame {
+impl F32Frame {
     /// The frame in which this box (its corners in any order) becomes about [-1, 1] along its longest side.
     pub(crate) fn around(Aabb { lower, upper }: Aabb) -> Self {
         let half = (upper * 0.5 - lower * 0.5).abs().max_element();
@@ -72,7 +72,7 @@ mod tests {
         for (i, center) in sizes.into_iter().enumerate() {
             for half in sizes.into_iter().flat_map(|half| [half, -half]) {
                 let center = if i % 2 == 0 { center } else { -center };
-                let frame = Frame::around(Aabb {
+                let frame = F32Frame::around(Aabb {
                     lower: DVec3::splat(center - half),
                     upper: DVec3::splat(center + half),
                 });
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn its_own_box_is_told_apart_finely() {
         for (center, half) in [(0.0, 1.0), (1e-200, 1e-210), (-1e50, 1e45), (0.0, 1e-300)] {
-            let frame = Frame::around(Aabb {
+            let frame = F32Frame::around(Aabb {
                 lower: DVec3::splat(center - half),
                 upper: DVec3::splat(center + half),
             });

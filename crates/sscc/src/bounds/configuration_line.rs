@@ -1,8 +1,8 @@
-//! How far a shape can move along a straight line in q-space before two of its parts can meet: conservative advancement
-//! (Mirtich 1996).
+//! Conservative advancement in q-space (Mirtich 1996): how far a shape can move along a straight line of configurations
+//! before two of its triangles can meet.
 //!
-//! Vertex i is at `x_i + t w_i`. Along a fixed direction n two triangles are separated as long as all nine pairs of
-//! corners are: `n.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
+//! Vertex i is at `x_i + t w_i`. Along a fixed direction dir two triangles are separated as long as all nine pairs of
+//! corners are: `dir.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
 //! certifies them up to a later one; there a new direction is chosen, until that gains nothing.
 
 use glam::DVec3;
@@ -13,14 +13,14 @@ use crate::limits;
 use crate::model::rounding::quotient_down;
 use crate::model::scale_direction;
 
-/// A step that gains less than this share of t is the last one: with it t is about where the triangles meet.
+/// A step that gains less than this share of t is the last one: t is then close to the contact.
 const MIN_GAIN: f64 = 1e-4;
 
 /// Steps, at most. The t reached by then is certified, but may be smaller than the contact.
 const MAX_STEPS: usize = 1000;
 
 /// The vertices of a model along the line from `center` (t = 0) through q (t = 1): at `x + t w`.
-pub(crate) struct Line {
+pub(crate) struct ConfigurationLine {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) velocities: Vec<DVec3>,
     /// The rounding bound of a gap along a direction with components up to 1: `at_rest + per_step t`.
@@ -30,7 +30,7 @@ pub(crate) struct Line {
     pub(crate) farthest: f64,
 }
 
-impl Line {
+impl ConfigurationLine {
     pub(crate) fn new(model: &ReducedModel, center: &[f64], q: &[f64]) -> Self {
         let offset: Vec<f64> = q.iter().zip(center).map(|(q, c)| q - c).collect();
         let vertices = 0..model.mesh().rest_positions().len() as u32;
@@ -51,10 +51,10 @@ impl Line {
         }
     }
 
-    /// The t up to which a gap that is at least `gap` at `t` and grows at least at the rate `opening` stays positive; 0
-    /// where it is not positive at `t`.
+    /// The t until which a gap stays positive. At `t` the gap is at least `gap`, and its rate is at least `opening`. 0
+    /// if it is not positive at `t`.
     #[inline]
-    pub(crate) fn closes_at(&self, t: f64, gap: f64, opening: f64) -> f64 {
+    pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
         let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
         let opening = right_or!(opening - self.per_step, LineExact, opening);
         if gap.is_nan() || gap <= 0.0 {
@@ -66,14 +66,14 @@ impl Line {
         }
     }
 
-    /// Advances two triangles, by their vertices, that do not meet before `t`: infinite when they do not meet before
-    /// `goal`; else a t before which they do not, about where they meet.
+    /// Advances a triangle pair that does not meet before `t`. Returns infinity if it does not meet before `goal`, else
+    /// a t before which it does not meet, close to the contact.
     pub(crate) fn advance(&self, a: [u32; 3], b: [u32; 3], mut t: f64, goal: f64) -> f64 {
         let (d, rates) = (differences(&self.positions, a, b), differences(&self.velocities, a, b));
         for _ in 0..MAX_STEPS {
             let now: [DVec3; 9] = std::array::from_fn(|ij| d[ij] + rates[ij] * t);
             let separates_until = |dir: DVec3| {
-                let until = now.iter().zip(&rates).map(|(d, w)| self.closes_at(t, dir.dot(*d), dir.dot(*w)));
+                let until = now.iter().zip(&rates).map(|(d, w)| self.open_until(t, dir.dot(*d), dir.dot(*w)));
                 until.fold(f64::INFINITY, f64::min)
             };
             // Each direction is a proof by itself. The one between the centroids is cheap and often sufficient; the one
@@ -103,7 +103,7 @@ impl Line {
             let (gap, opening) = (gap(&a.positions, &b.positions), gap(&a.velocities, &b.velocities));
             for axis in 0..3 {
                 if gap[axis] > 0.0 {
-                    bound = bound.max(self.closes_at(0.0, gap[axis], opening[axis]));
+                    bound = bound.max(self.open_until(0.0, gap[axis], opening[axis]));
                 }
             }
         }

@@ -1,15 +1,16 @@
-//! Aabb8ets: eight boxes side by side, so that one box is compared with all of them at once.
+//! `Aabb8`, a packet of eight AABBs side by side: one AABB is compared with all of them at once. Also the AABB and the
+//! set of lanes that go with it.
 //!
 //! [`Vec4`] is one SSE2 or NEON register. Every x86-64 and AArch64 processor has those, so no instruction set is chosen
 //! at run time.
 
 use glam::Vec4;
 
-/// Boxes in a packet.
+/// AABBs in a packet.
 pub(crate) const LANES: usize = 8;
 
-/// A box in the single-precision coordinates of a [`Frame`](crate::detect::frame::Frame): lower and upper corner; the fourth
-/// components mean nothing.
+/// An AABB in the single-precision coordinates of an [`F32Frame`](crate::detect::f32_frame::F32Frame): lower and upper
+/// corner; the fourth components mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AabbF32 {
     pub(crate) lower: Vec4,
@@ -17,44 +18,44 @@ pub(crate) struct AabbF32 {
 }
 
 impl AabbF32 {
-    /// Contains nothing, and overlaps no box with finite corners.
+    /// Contains nothing, and overlaps no AABB with finite corners.
     pub(crate) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
     /// Contains everything.
     pub(crate) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
 
-    /// The box of a triangle whose corners are at `E` ends of a motion.
+    /// The AABB of a triangle whose corners are at `E` ends of a motion.
     #[inline]
     pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
             let first = Self { lower: ends[0], upper: ends[0] };
-            let others = right_or!(&ends[1..], SweptTrianglesAtOneEnd, &ends[..0]);
+            let others = right_or!(&ends[1..], SweptTrianglesAtStart, &ends[..0]);
             others.iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
         });
         a.union(&b).union(&c)
     }
 
-    /// A box larger by this much on both sides of each axis, up to a rounding.
+    /// An AABB larger by this much on both sides of each axis, up to a rounding.
     #[inline]
     pub(crate) fn widened(&self, by: Vec4) -> Self {
         Self { lower: self.lower - by, upper: self.upper + by }
     }
 
-    /// Whether the boxes have a point in common.
+    /// Whether the AABBs have a point in common.
     #[inline]
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         let apart = self.lower.cmpgt(other.upper) | other.lower.cmpgt(self.upper);
         apart.bitmask() & 0b111 == 0
     }
 
-    /// The smallest box that contains both.
+    /// The smallest AABB that contains both.
     #[inline]
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 }
 
-/// Up to eight boxes: for each axis the lower and the upper ends of all lanes.
+/// Up to eight AABBs: for each axis the lower and the upper ends of all lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub(crate) struct Aabb8 {
@@ -63,11 +64,11 @@ pub(crate) struct Aabb8 {
 }
 
 impl Aabb8 {
-    /// A packet of empty boxes.
+    /// A packet of empty AABBs.
     pub(crate) const EMPTY: Self =
         Self { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3] };
 
-    /// Sets the box of one lane.
+    /// Sets the AABB of one lane.
     #[inline]
     pub(crate) fn set(&mut self, lane: usize, b: &AabbF32) {
         for axis in 0..3 {
@@ -76,7 +77,7 @@ impl Aabb8 {
         }
     }
 
-    /// The lanes whose box overlaps a given one.
+    /// The lanes whose AABB overlaps a given one.
     #[inline]
     pub(crate) fn overlapping(&self, other: &AabbF32) -> Lanes {
         let (lower, upper) = (other.lower, other.upper);
@@ -86,7 +87,7 @@ impl Aabb8 {
         )
     }
 
-    /// The lanes whose box overlaps that of one lane of another packet.
+    /// The lanes whose AABB overlaps that of one lane of another packet.
     #[inline]
     pub(crate) fn overlapping_lane(&self, other: &Self, lane: usize) -> Lanes {
         self.compare(

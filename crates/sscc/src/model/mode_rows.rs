@@ -45,9 +45,9 @@ pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
 /// `out = A' dir` for the modes `A` of a point (three rows: x, y, z).
 #[inline]
 pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
-    let row = out.len();
-    let (x, rest) = modes.split_at(row);
-    let (y, z) = rest.split_at(row);
+    let row_len = out.len();
+    let (x, rest) = modes.split_at(row_len);
+    let (y, z) = rest.split_at(row_len);
     for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
         *out = dir.x * x + dir.y * y + dir.z * z;
     }
@@ -62,9 +62,9 @@ pub(crate) fn add_scaled(out: &mut [f64], weight: f64, a: &[f64]) {
 /// The 3 x 3 Gram matrix `B B'` of three rows.
 #[inline]
 pub(crate) fn gram(rows: &[f64]) -> DMat3 {
-    let row = rows.len() / 3;
-    let (x, rest) = rows.split_at(row);
-    let (y, z) = rest.split_at(row);
+    let row_len = rows.len() / 3;
+    let (x, rest) = rows.split_at(row_len);
+    let (y, z) = rest.split_at(row_len);
     let mut lanes = [[0.0; LANES]; 6];
     let chunks = x.as_chunks::<LANES>().0.iter().zip(y.as_chunks::<LANES>().0).zip(z.as_chunks::<LANES>().0);
     for ((x, y), z) in chunks {

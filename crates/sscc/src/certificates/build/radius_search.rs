@@ -1,25 +1,26 @@
 //! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
 //!
-//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a node
-//! pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends as soon as the
-//! smallest bound left is within the error allowed of the smallest upper bound that was met. The result depends on the
+//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a
+//! node pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends when the
+//! smallest remaining lower bound is within the tolerance of the smallest upper bound found. The result depends on the
 //! sets searched and the goal alone, never on earlier searches.
 
 use std::collections::BinaryHeap;
 
-use super::context::SearchContext;
-use super::goal::{
+use super::leaf_bounds::{BoundedTriangles, LeafBounds};
+use super::radius_bound::{BoundedNodePair, RadiusBound};
+use super::radius_search_context::RadiusSearchContext;
+use super::search_goal::{
     COARSE_EPSILON, COARSE_SUBDIVISIONS, FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
 };
-use super::leaf_bounds::{BoundedTriangles, LeafBounds};
-use super::radius_bound::{KnownPair, RadiusBound};
 use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
 use crate::filter::Hulls;
-use crate::heap::MinFirst;
+use crate::hierarchy::NodePair;
+use crate::min_heap::MinHeapEntry;
 use crate::{Pair, Progress};
 
-/// Most candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth first, in constant
-/// memory.
+/// The maximum number of candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth
+/// first, in constant memory.
 const MAX_QUEUED: usize = 1 << 20;
 
 /// Two nodes whose triangle pairs have not been listed, or one triangle pair. Of two with the same lower bound a triangle
@@ -32,13 +33,13 @@ enum Candidate {
 
 /// Searches radii of one model; owns the scratch memory for it.
 pub(crate) struct RadiusSearch<'a> {
-    context: SearchContext<'a>,
+    context: RadiusSearchContext<'a>,
     epsilon: f64,
     refiner: PairRefiner<'a>,
     scratch: NodePairScratch,
     leaves: LeafBounds<'a>,
     triangle_pairs: Vec<BoundedTriangles>,
-    queue: BinaryHeap<MinFirst<Candidate>>,
+    queue: BinaryHeap<MinHeapEntry<Candidate>>,
     target: RefinementTarget,
     /// The smallest certified radius among the pairs that need no more refinement.
     certified: f64,
@@ -48,12 +49,12 @@ pub(crate) struct RadiusSearch<'a> {
 }
 
 impl<'a> RadiusSearch<'a> {
-    pub(crate) fn new(context: SearchContext<'a>, epsilon: f64, progress: &'a dyn Progress) -> Self {
+    pub(crate) fn new(context: RadiusSearchContext<'a>, epsilon: f64, progress: &'a dyn Progress) -> Self {
         Self {
             context,
             epsilon,
             refiner: PairRefiner::new(context.model),
-            scratch: NodePairScratch::new(context.model.row),
+            scratch: NodePairScratch::new(context.model.row_len),
             leaves: LeafBounds::new(context),
             triangle_pairs: Vec::new(),
             queue: BinaryHeap::new(),
@@ -64,26 +65,26 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 
-    /// The triangle pair for which the last search met its smallest upper bound.
+    /// The triangle pair for which the last search found its smallest upper bound.
     pub(crate) fn closest(&self) -> Option<Pair> {
         self.closest
     }
 
     /// A certified lower bound for all triangle pairs between two nodes, by the nodes alone; a bound of at least
     /// `refine_up_to` is not made better.
-    pub(crate) fn bound_nodes(&mut self, (n, m): Pair, refine_up_to: f64) -> f64 {
+    pub(crate) fn bound_nodes(&mut self, (n, m): NodePair, refine_up_to: f64) -> f64 {
         self.context.nodes.bound(self.context.model, n, m, refine_up_to, &mut self.scratch)
     }
 
     /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
-    pub(crate) fn between(&mut self, pairs: Vec<KnownPair>, goal: SearchGoal) -> Option<RadiusBound> {
+    pub(crate) fn between(&mut self, pairs: Vec<BoundedNodePair>, goal: SearchGoal) -> Option<RadiusBound> {
         self.start(goal);
         // All at once: building a heap of many takes linear time.
         let mut queued = std::mem::take(&mut self.queue).into_vec();
         let bounded = pairs.iter().filter(|pair| pair.lower > 0.0);
         queued.extend(bounded.map(|pair| {
             let (n, m) = pair.nodes;
-            MinFirst::new(pair.lower, Candidate::Nodes(n, m))
+            MinHeapEntry::new(pair.lower, Candidate::Nodes(n, m))
         }));
         self.queue = queued.into();
         for pair in pairs.into_iter().filter(|pair| pair.lower <= 0.0) {
@@ -94,7 +95,7 @@ impl<'a> RadiusSearch<'a> {
 
     /// The radius, at most `cap`, of all triangle pairs between two nodes, with the error of the pair tree and without
     /// subdivision. None if cancelled.
-    pub(crate) fn between_coarse(&mut self, nodes: Pair, cap: f64) -> Option<RadiusBound> {
+    pub(crate) fn between_coarse(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::new(cap, Precision::Full));
         self.target =
             RefinementTarget { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
@@ -143,7 +144,7 @@ impl<'a> RadiusSearch<'a> {
     /// Refines the candidate with the smallest lower bound until none can lower the result by more than epsilon.
     fn run(&mut self) -> Option<RadiusBound> {
         let radius = loop {
-            let Some(MinFirst { key: lower, tie: candidate, .. }) = self.queue.pop() else {
+            let Some(MinHeapEntry { key: lower, order: candidate, .. }) = self.queue.pop() else {
                 break self.certified;
             };
             if self.progress.is_cancelled() {
@@ -166,13 +167,13 @@ impl<'a> RadiusSearch<'a> {
     }
 
     /// Bounds two nodes and queues them if they matter. `inherited`: a lower bound of a pair that contains this one.
-    fn add_nodes(&mut self, nodes: Pair, inherited: f64) {
+    fn add_nodes(&mut self, nodes: NodePair, inherited: f64) {
         let lower = self.bound_nodes(nodes, self.refine_up_to()).max(inherited);
         self.add(Candidate::Nodes(nodes.0, nodes.1), lower);
     }
 
     /// Bounds the triangle pairs between two leaves, or within one, and queues those that matter.
-    fn add_triangles(&mut self, leaves: Pair, inherited: f64) {
+    fn add_triangles(&mut self, leaves: NodePair, inherited: f64) {
         let (n, m) = leaves;
         let dir = if n == m { None } else { self.context.nodes.direction(n, m, &mut self.scratch) };
         self.leaves.load(leaves, dir, self.certified);
@@ -192,7 +193,7 @@ impl<'a> RadiusSearch<'a> {
             return;
         }
         if self.queue.len() < MAX_QUEUED {
-            self.queue.push(MinFirst::new(lower, candidate));
+            self.queue.push(MinHeapEntry::new(lower, candidate));
         } else if lower < self.refine_up_to() {
             self.refine(candidate, lower);
         } else {
@@ -220,8 +221,8 @@ impl<'a> RadiusSearch<'a> {
     }
 
     /// Splits the node with the larger box, or two leaves into their triangle pairs.
-    fn split_nodes(&mut self, (n, m): Pair, lower: f64) {
-        let SearchContext { hierarchy, nodes, .. } = self.context;
+    fn split_nodes(&mut self, (n, m): NodePair, lower: f64) {
+        let RadiusSearchContext { hierarchy, nodes, .. } = self.context;
         let (node_n, node_m) = (&hierarchy.nodes()[n as usize], &hierarchy.nodes()[m as usize]);
         if node_n.is_leaf() && node_m.is_leaf() {
             return self.add_triangles((n, m), lower);

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
+use super::candidate_direction::MovingPair;
 use super::conservative_advancement::advance;
 use super::moving_triangle::MovingTriangle;
 use super::number::power_of_two;
-use super::separating_direction::MovingPair;
 use crate::geometry::{TwoTriangles, intersect_triangle_triangle};
 use crate::limits;
 
-/// The time of impact of two triangles whose corners move linearly: none if they provably have no point in
-/// common at any time t in [0, 1]; else a time t such that
-/// - they have none before: t is never later than the true time of impact, and
-/// - at t their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding. Tolerances
+/// The time of impact of two triangles whose corners move linearly. None proves that they have no point in common at
+/// any t in [0, 1]. Else a time t with two guarantees:
+/// - t is never later than the true time of impact.
+/// - At t, their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding. Tolerances
 ///   below 6e-14 count as 6e-14. The size is the largest difference, at either end and in any coordinate, of a
 ///   corner from the first one of a.
 ///

@@ -24,11 +24,11 @@ impl Query<'_> {
     pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
         self.begin(usize::MAX);
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
-        self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtOneEnd, t1.norm);
+        self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
         swept.find(&self.context, [t0, t1], self.norm, &mut self.statistics)?;
-        let impacts = &swept.narrow.0.found;
-        self.discrete.narrow.0.found.extend(impacts.iter().map(|impact| impact.pair));
+        let impacts = &swept.narrow.0.hits;
+        self.discrete.narrow.0.hits.extend(impacts.iter().map(|impact| impact.pair));
         Ok(impacts)
     }
 

@@ -1,23 +1,24 @@
-//! Active pairs: the pairs that can collide in the current ball, each with the time at which it must be tested again.
+//! The pairs that a ball search found. A pair is safe until z has travelled its safe distance; an active pair is tested
+//! in every step.
 //!
-//! Time is the distance that z has travelled, which is never shorter than the distance between two of its positions.
+//! Time here is the travelled distance of z, which is never shorter than the distance between two of its positions.
 
 use std::collections::BinaryHeap;
 
 use crate::Pair;
-use crate::heap::MinFirst;
+use crate::min_heap::MinHeapEntry;
 use crate::model::rounding::ROUND_DOWN;
 
 /// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
 const MAX_REMEMBERED: usize = 8;
 
-/// A pair that stays apart until z has travelled as far as its key; the next to expire comes first, equal ones by their
+/// A pair that stays free until z has travelled as far as its key. The next to expire comes first, equal ones by their
 /// triangles.
-pub(super) type SafePair = MinFirst<Pair>;
+pub(super) type SafePair = MinHeapEntry<Pair>;
 
-/// All pairs that can collide in the ball; the safe distances of the others are larger than the ball.
+/// All pairs that can collide in the ball. All other pairs are free in the whole ball.
 #[derive(Debug, Default)]
-pub(super) struct ActivePairs {
+pub(super) struct BallPairs {
     /// The distance that z has travelled since the last jump, rounded up.
     pub(super) travelled: f64,
     /// The travelled distance at which z may leave the ball; 0: there is no ball.
@@ -29,16 +30,16 @@ pub(super) struct ActivePairs {
     /// Pairs within their safe distance.
     pub(super) safe: BinaryHeap<SafePair>,
     /// Pairs that are tested in every step.
-    pub(super) tested: Vec<Pair>,
+    pub(super) active: Vec<Pair>,
     /// Safe pairs that earlier searches found, sorted by pair, and scratch for them: a search finds most pairs again.
     pub(super) remembered: Vec<SafePair>,
     next_remembered: Vec<SafePair>,
 }
 
-impl ActivePairs {
+impl BallPairs {
     /// z moves by a step.
     pub(super) fn advance(&mut self, step: f64) {
-        self.travelled = right_or!(up(self.travelled + step), WayToNearest, self.travelled + step);
+        self.travelled = right_or!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
     }
 
     /// Begins a ball of this radius around the current z.
@@ -75,17 +76,17 @@ impl ActivePairs {
     pub(super) fn next_expired(&mut self) -> Option<Pair> {
         // Equality would be a proof here, too: the key was rounded down, the travelled distance up.
         let until = self.safe.peek()?.key;
-        if right_or!(until > self.travelled, MarginReached, until >= self.travelled) {
+        if right_or!(until > self.travelled, SafeDistanceReached, until >= self.travelled) {
             return None;
         }
-        self.safe.pop().map(|safe| safe.tie)
+        self.safe.pop().map(|safe| safe.order)
     }
 
     /// Ends a step.
     pub(super) fn end_step(&mut self) {
         if self.steps == 0 {
             std::mem::swap(&mut self.remembered, &mut self.next_remembered);
-            self.remembered.sort_unstable_by_key(|safe| safe.tie);
+            self.remembered.sort_unstable_by_key(|safe| safe.order);
         }
         self.steps += 1;
     }
@@ -106,11 +107,11 @@ impl ActivePairs {
         self.end > 0.0
     }
 
-    /// Takes the pairs that a search found, sorted: puts those on `pending` that are not remembered to stay apart in the
-    /// ball.
+    /// Takes the sorted pairs of a ball search. Pushes to `pending` those that no remembered safe distance keeps
+    /// separate throughout the ball.
     pub(super) fn take(&mut self, found: &[Pair], pending: &mut Vec<Pair>) {
         self.safe.clear();
-        self.tested.clear();
+        self.active.clear();
         pending.clear();
         if self.remembered.len() > MAX_REMEMBERED * found.len() + 1024 {
             self.remembered.clear();
@@ -119,10 +120,10 @@ impl ActivePairs {
             self.remembered.iter().copied().filter(|safe| safe.key > self.travelled).peekable();
         self.next_remembered.clear();
         for pair in found {
-            while let Some(earlier) = remembered.next_if(|safe| safe.tie < *pair) {
+            while let Some(earlier) = remembered.next_if(|safe| safe.order < *pair) {
                 self.next_remembered.push(earlier);
             }
-            match remembered.next_if(|safe| safe.tie == *pair) {
+            match remembered.next_if(|safe| safe.order == *pair) {
                 Some(safe) if safe.key >= self.end => self.next_remembered.push(safe),
                 _ => pending.push(*pair),
             }
@@ -146,57 +147,57 @@ mod tests {
     #[test]
     fn the_travelled_distance_is_never_short() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
-        let (mut active, mut sum) = (ActivePairs::default(), exact(0.0));
+        let (mut ball_pairs, mut sum) = (BallPairs::default(), exact(0.0));
         for i in 0..500 {
             let step = f64::from(i * i % 37 + 1).sqrt() * 0.1_f64.powi(i % 7);
-            active.advance(step);
+            ball_pairs.advance(step);
             sum += exact(step);
-            assert!(exact(active.travelled) >= sum, "{i}");
+            assert!(exact(ball_pairs.travelled) >= sum, "{i}");
         }
     }
 
     #[test]
     fn pairs_expire_in_order_and_never_late() {
-        let mut active = ActivePairs::default();
+        let mut ball_pairs = BallPairs::default();
         let mut pending = Vec::new();
-        active.begin_ball(8.0, 1.0);
-        active.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
+        ball_pairs.begin_ball(8.0, 1.0);
+        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
         assert_eq!(pending, [(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)]);
         for (pair, margin) in pending.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
-            active.store(*pair, margin);
+            ball_pairs.store(*pair, margin);
         }
         // A distance that vanishes in rounding is none.
-        active.advance(1.0);
-        assert!(!active.store((0, 5), 1e-18) && !active.store((0, 5), 0.0));
-        active.end_step();
-        assert_eq!(active.next_expired(), Some((0, 5)));
-        assert_eq!(active.next_expired(), None);
-        active.advance(0.5);
-        assert_eq!(active.next_expired(), None);
+        ball_pairs.advance(1.0);
+        assert!(!ball_pairs.store((0, 5), 1e-18) && !ball_pairs.store((0, 5), 0.0));
+        ball_pairs.end_step();
+        assert_eq!(ball_pairs.next_expired(), Some((0, 5)));
+        assert_eq!(ball_pairs.next_expired(), None);
+        ball_pairs.advance(0.5);
+        assert_eq!(ball_pairs.next_expired(), None);
         // A margin used up exactly no longer holds.
-        active.advance(0.5);
-        assert_eq!(active.next_expired(), Some((0, 2)));
-        active.advance(5.0);
-        assert_eq!(active.next_expired(), Some((0, 1)));
-        assert!(active.has_ball() && active.is_in_ball(1.0) && !active.is_in_ball(1.1));
-        active.advance(1.0);
-        assert!(!active.is_in_ball(1.0));
+        ball_pairs.advance(0.5);
+        assert_eq!(ball_pairs.next_expired(), Some((0, 2)));
+        ball_pairs.advance(5.0);
+        assert_eq!(ball_pairs.next_expired(), Some((0, 1)));
+        assert!(ball_pairs.has_ball() && ball_pairs.is_in_ball(1.0) && !ball_pairs.is_in_ball(1.1));
+        ball_pairs.advance(1.0);
+        assert!(!ball_pairs.is_in_ball(1.0));
         // In the next ball (8 to 12) one of the others is known to stay apart; one only up to 9.
-        active.leave_ball();
-        active.begin_ball(4.0, 1.0);
-        active.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        ball_pairs.leave_ball();
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
         assert_eq!(pending, [(0, 2), (0, 3), (1, 2)]);
-        pending.drain(..).for_each(|pair| assert!(active.store(pair, 50.0)));
-        active.end_step();
-        active.advance(3.0);
-        active.begin_ball(4.0, 1.0);
-        active.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        pending.drain(..).for_each(|pair| assert!(ball_pairs.store(pair, 50.0)));
+        ball_pairs.end_step();
+        ball_pairs.advance(3.0);
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
         assert_eq!(pending, [(0, 1)]);
         // After a jump nothing is known.
-        active.forget();
-        assert!(!active.has_ball());
-        active.begin_ball(4.0, 1.0);
-        active.take(&[(0, 4)], &mut pending);
+        ball_pairs.forget();
+        assert!(!ball_pairs.has_ball());
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 4)], &mut pending);
         assert_eq!(pending, [(0, 4)]);
     }
 }

@@ -1,26 +1,26 @@
 //! The goal of a search for a radius: how far and how precisely.
 //!
-//! Radii are precise where the root's radius comes from. Farther out small parts all collapse at about the same radius,
-//! tens of times the root's, and proving it would need subdivision for each of their pairs: there radii are coarse.
-//! Measured in `docs/notes/2026-11-23-coarse-radii.md`.
+//! The radii that determine the root's radius are precise. Larger radii are coarse: small parts of a model all collapse
+//! at about the same radius, tens of times the root's, and a precise bound there would need subdivision of every pair
+//! (docs/notes/2026-11-23-coarse-radii.md).
 
 /// How closely a radius is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Precision {
     /// To [`COARSE_EPSILON`], as far as [`COARSE_SUBDIVISIONS`] suffice.
     Coarse,
-    /// To the relative error asked for.
+    /// To the tolerance of the options.
     Full,
 }
 
 /// The relative error of coarse searches.
 pub(super) const COARSE_EPSILON: f64 = 0.4;
 
-/// Most subdivisions of one triangle pair in coarse searches.
+/// The maximum number of subdivisions of one triangle pair in coarse searches.
 pub(super) const COARSE_SUBDIVISIONS: usize = 4;
 
-/// Most subdivisions of one triangle pair in full searches. When they are used up the search takes the best lower bound
-/// so far: still certified, only less tight. Mostly modes of rank 1 and 2 need so many.
+/// The maximum number of subdivisions of one triangle pair in full searches. When they are used up the search takes the
+/// best lower bound so far: still certified, only less tight. Mostly modes of rank 1 and 2 need so many.
 pub(super) const FULL_SUBDIVISIONS: usize = 500;
 
 /// The relative error of pairs in the pair tree, as far as they need no subdivision: they are many, and each saves

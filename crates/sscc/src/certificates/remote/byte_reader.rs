@@ -1,9 +1,9 @@
-//! Reading of numbers from bytes that nobody has checked.
+//! Reads numbers from untrusted bytes.
 
 /// Reads little-endian numbers one after the other; none if the bytes end, or the number is out of range.
-pub(super) struct Reader<'a>(&'a [u8]);
+pub(super) struct ByteReader<'a>(&'a [u8]);
 
-impl<'a> Reader<'a> {
+impl<'a> ByteReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }

@@ -1,4 +1,4 @@
-//! The interface of narrow phases.
+//! The trait `NarrowPhase`: tests one triangle pair and collects the hits.
 
 use glam::DVec3;
 
@@ -6,7 +6,8 @@ use super::hits::Hits;
 use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 
-/// Tests two triangles exactly, and collects those that count. All methods share it, so that all give the same answers.
+/// Tests two triangles, and collects the hits. The discrete and the swept one are exact; the ball one compares AABBs.
+/// All methods share them, so that all give the same answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;

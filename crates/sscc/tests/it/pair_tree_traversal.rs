@@ -13,7 +13,7 @@ fn scaled(z: &[f64], size: f64) -> Vec<f64> {
 }
 
 #[test]
-fn walks_find_what_brute_force_finds() {
+fn traversal_finds_what_brute_force_finds() {
     let (mut below, mut hits, mut beyond, mut with_exceptions, mut partial) = (0, 0, 0, 0, 0);
     for seed in 0..40 {
         let random = &mut Random::new(seed + 500);

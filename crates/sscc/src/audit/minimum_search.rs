@@ -34,7 +34,7 @@ pub(super) struct Confirmed {
 /// The exact test may miss triangles that meet in one point alone: it is repeated at q times these factors ...
 const FACTORS: [f64; 5] = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.001];
 
-/// ... and at configurations where points meet that lie by these shares closer to the centroids.
+/// ... and at configurations where other points meet: the points found, moved by these fractions towards the centroids.
 const INWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.01, 0.05, 0.2];
 
 /// Steps of the local search.

@@ -1,4 +1,4 @@
-//! Whether certificates cover a model and a contact filter: for any other ones they would be a wrong proof.
+//! Checks that certificates were computed for a given model and contact filter. For any other they prove nothing.
 
 use super::{Certificates, Digest};
 use crate::{ContactFilter, Error, ReducedModel};

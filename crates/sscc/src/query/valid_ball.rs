@@ -1,11 +1,12 @@
-//! The ball that the root's certificate covers: every q in it is valid, so that a query need not check it.
+//! A ball about the centre in which every q is valid and the reach is bounded, so that a query need not check q. Its
+//! radius is the root's radius, or 0 where there is no such ball.
 
 use super::context::QueryContext;
 use crate::limits;
 
 /// A ball about the centre in which every q is a configuration of the model.
 #[derive(Clone, Copy)]
-pub(super) struct RootBall {
+pub(super) struct ValidBall {
     /// At most the root's radius; 0 where there is no such ball.
     pub(super) radius: f64,
     /// An upper bound of the magnitude of every term of every position at any q in it.
@@ -15,7 +16,7 @@ pub(super) struct RootBall {
 /// Covers a few roundings for each mode.
 const UP: f64 = 1.0 + 1e-9;
 
-impl RootBall {
+impl ValidBall {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
         let (model, scope) = (context.detect.model, &context.scope);
         let none = Self { radius: 0.0, reach: 0.0 };
@@ -58,17 +59,17 @@ mod tests {
             let options = CertifyOptions { center: Some(center.clone()), ..CertifyOptions::default() };
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let query = Query::new(&model, &certificates).unwrap();
-            assert_eq!(query.root_ball.radius, certificates.root_radius());
+            assert_eq!(query.valid_ball.radius, certificates.root_radius());
             let mut largest = 0.0_f64;
             for i in 0..1000 {
                 let z: Vec<f64> = (0..3).map(|k| (f64::from(i) * (k as f64 + 1.3)).sin()).collect();
                 let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
-                let z: Vec<f64> = z.iter().map(|z| z / length * query.root_ball.radius).collect();
+                let z: Vec<f64> = z.iter().map(|z| z / length * query.valid_ball.radius).collect();
                 let d = model.metric().unscaled(&z);
                 let q: Vec<f64> = center.iter().zip(d).map(|(c, d)| c + d).collect();
                 largest = largest.max(model.reach(&q));
             }
-            assert!(largest <= query.root_ball.reach && largest > 0.7 * query.root_ball.reach, "{largest}");
+            assert!(largest <= query.valid_ball.reach && largest > 0.7 * query.valid_ball.reach, "{largest}");
         }
     }
 

@@ -6,7 +6,7 @@ use super::number::{Bounds, Number};
 
 /// A double and an upper bound of its difference from the exact number. An overflow makes the error bound infinite.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounded {
+pub(super) struct BoundedFloat {
     pub(super) value: f64,
     pub(super) error: f64,
 }
@@ -14,7 +14,7 @@ pub(super) struct Bounded {
 /// `u = 2^-53`: half a unit in the last place of 1.
 const U: f64 = f64::EPSILON / 2.0;
 
-impl Bounded {
+impl BoundedFloat {
     /// A result `value` that was rounded once, with the error `error` from its operands. That sum of positive terms
     /// was itself rounded at most four times, each time by at most `u` of it; `8 u` covers these roundings and those
     /// of this function. Underflow adds less than 2^-1070 in all.
@@ -26,7 +26,7 @@ impl Bounded {
     }
 }
 
-impl Number for Bounded {
+impl Number for BoundedFloat {
     fn zero() -> Self {
         Self { value: 0.0, error: 0.0 }
     }

@@ -1,10 +1,9 @@
-//! The colliding pairs of a node pair, found without certificates: for audits.
+//! `Query::discrete_between`: the colliding pairs of two nodes, without certificates, for audits.
 
 use super::method::Method;
 use super::query::Query;
-use crate::detect::buckets::BUCKET;
-use crate::detect::vertex_motion::Deformed;
-use crate::hierarchy::Node;
+use crate::detect::vertex_motion::DeformedMotion;
+use crate::hierarchy::{BUCKET_TRIANGLES, Node, NodePair};
 use crate::{Certificates, Error, Pair};
 
 impl Query<'_> {
@@ -13,29 +12,30 @@ impl Query<'_> {
     ///
     /// # Errors
     /// As [`Query::discrete`].
-    pub(crate) fn discrete_between(&mut self, (n, m): Pair, q: &[f64]) -> Result<&[Pair], Error> {
+    pub(crate) fn discrete_between(&mut self, (n, m): NodePair, q: &[f64]) -> Result<&[Pair], Error> {
         debug_assert_ne!(self.context.method, Method::Certified);
         self.begin(usize::MAX);
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
         let (context, narrow) = (&self.context, &mut self.discrete.narrow);
         let (detect, broad) = (&context.detect, &mut self.discrete.certified.broad);
-        let motion = Deformed::new([q], configuration.reach);
+        let motion = DeformedMotion::new([q], configuration.reach);
         broad.begin_volumes(detect, &motion);
         broad.traverse(detect, (n, m), &motion, narrow);
         broad.end(narrow)?;
         let exceptions = context.certificates.map_or(&[][..], Certificates::exceptions);
         let hierarchy = &detect.hierarchy;
         let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
-        let contains =
-            |node: &Node, t| node.triangle_count as usize > BUCKET || hierarchy.triangles(node).contains(&t);
-        narrow.0.found.retain(|pair| {
+        let contains = |node: &Node, t| {
+            node.triangle_count as usize > BUCKET_TRIANGLES || hierarchy.triangles(node).contains(&t)
+        };
+        narrow.0.hits.retain(|pair| {
             let (a, b) = *pair;
             let is_between = contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a);
             is_between && exceptions.binary_search(pair).is_err()
         });
-        narrow.0.found.sort_unstable();
-        Ok(&narrow.0.found)
+        narrow.0.hits.sort_unstable();
+        Ok(&narrow.0.hits)
     }
 }
 
