@@ -4,7 +4,6 @@ use parry3d_f64::partitioning::BvhBuildStrategy;
 use sscc::{Method, Query};
 use sscc_sim::CertifiedModel;
 
-use super::approximate_cones::ApproximateCones;
 use super::engine::Engine;
 use super::parry::Parry;
 use crate::error::Error;
@@ -58,7 +57,7 @@ fn uncertified(model: &CertifiedModel, method: Method) -> Result<Box<dyn Engine 
 }
 
 fn approximate_cones(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {
-    Ok(Box::new(ApproximateCones::new(&model.model, &model.full.certificates)?))
+    Ok(Box::new(Query::with_approximate_cones(&model.model, &model.full.certificates)?))
 }
 
 fn paper(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {

@@ -41,7 +41,7 @@ pub(crate) struct Counters {
 pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) volumes: NodeVolumes<E>,
     /// The normal cones of methods that use them; only in discrete searches.
-    pub(super) cones: Option<NormalCones>,
+    pub(crate) cones: Option<NormalCones>,
     /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
     pub(super) stack: Vec<NodePair>,
     visits: u32,

@@ -54,7 +54,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// Whether the normals of a node prove that it is free, if the method uses them.
     fn is_free_by_normals(&mut self, n: u32) -> bool {
-        self.cones.as_mut().is_some_and(|cones| cones.proves_free(n, &self.volumes))
+        self.cones.as_mut().is_some_and(|cones| cones.cull(n, &self.volumes))
     }
 
     /// Opens a node (Algorithm 1, lines 1 to 14): tests a bucket, puts the children of a larger node on the stack. True if

@@ -1,4 +1,4 @@
-//! Tests of the approximate normal cones against exact methods.
+//! Tests of the approximate normal cones (`normal_cones_approx`) against exact methods.
 
 use std::f64::consts::TAU;
 
@@ -6,8 +6,6 @@ use glam::DVec3;
 use sscc::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
 use sscc_modes::shapes::spring_of;
 
-use super::query::ApproximateCones;
-use crate::methods::engine::Engine;
 use crate::random::Random;
 
 /// A grid of squares; `at` maps (u, v) in the unit square to positions.
@@ -48,7 +46,7 @@ fn listed_pairs_collide_and_few_are_missed() {
     for _ in 0..4 {
         let model = spring(random);
         let certificates = certify(&model);
-        let mut cones = ApproximateCones::new(&model, &certificates).unwrap();
+        let mut cones = Query::with_approximate_cones(&model, &certificates).unwrap();
         let mut exact = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
         for size in [0.0, 0.05, 0.2, 0.5] {
             let size = size * model.mesh().rest_positions()[0].length();
@@ -78,7 +76,7 @@ fn a_ramp_through_itself_is_missed() {
     let modes = Modes::new(1, (0..mesh.rest_positions().len()).map(bump).collect()).unwrap();
     let model = ReducedModel::new(mesh, modes).unwrap();
     let certificates = certify(&model);
-    let mut cones = ApproximateCones::new(&model, &certificates).unwrap();
+    let mut cones = Query::with_approximate_cones(&model, &certificates).unwrap();
     let mut exact = Query::with_method(&model, &certificates, Method::NormalCones).unwrap();
     assert!(exact.discrete(&[0.7]).unwrap().len() > 10);
     assert_eq!(cones.discrete(&[0.7]).unwrap(), []);
@@ -106,7 +104,7 @@ fn sheets_with_opposite_normals_are_not_culled() {
     let modes = Modes::new(1, (0..2 * count).map(lift).collect()).unwrap();
     let model = ReducedModel::new(mesh, modes).unwrap();
     let certificates = certify(&model);
-    let mut cones = ApproximateCones::new(&model, &certificates).unwrap();
+    let mut cones = Query::with_approximate_cones(&model, &certificates).unwrap();
     let mut exact = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     for q in [0.0, 0.9, 1.3, 1.6] {
         let expected = exact.discrete(&[q]).unwrap();
