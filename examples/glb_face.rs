@@ -1,4 +1,4 @@
-//! At which weight does each morph target make a face touch itself?
+//! Finds the weight at which each morph target of a face first makes it touch itself.
 //!
 //! `cargo run --release -p sscc-examples --example glb_face [FACE.glb [MESH]]`
 #![allow(clippy::print_stdout)]
@@ -12,7 +12,7 @@ use sscc::{Certificates, CertifyOptions, ContactFilter, Neighbours, Query};
 use sscc_examples::{exit_code, mouth_glb};
 use sscc_io::{LoadOptions, load_model_with, write_ply_pose};
 
-/// Weights from 0 to 1 in so many steps.
+/// Number of steps of the weight from 0 to 1.
 const STEPS: u32 = 200;
 
 fn main() -> ExitCode {
@@ -32,13 +32,13 @@ fn run() -> Result<(), Box<dyn Error>> {
     let model = loaded.model;
     println!("{}: {} triangles", loaded.info.provenance, model.mesh().faces().len());
 
-    // A glTF file splits vertices along seams: without welding, triangles on the two sides of a seam would
-    // share no vertex, and so would always collide. What collides at rest (closed lips, eyes in their
-    // sockets) is not what is asked here: these pairs are left out.
+    // A glTF file splits vertices along seams. Without welding, triangles on the two sides of a seam would share no
+    // vertex, so they would always collide. Pairs that collide at rest (closed lips, eyes in their sockets) are
+    // ignored.
     let filter = ContactFilter::new(Neighbours::Exclude, true);
     let options = CertifyOptions { filter, ignore_rest: true, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model, &options, &())?;
-    println!("left out because they collide at rest: {} pairs", certificates.rest_collisions());
+    println!("ignored because they collide at rest: {} pairs", certificates.rest_collisions());
 
     let mut query = Query::new(&model, &certificates)?;
     let mut first_pose = None;
@@ -48,7 +48,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             q[k] = weight;
             q
         };
-        // How far the target can be driven: proven for every weight on the way, so the sweep starts there.
+        // The shape is proven free at every weight up to the safe scale, so the sweep starts there.
         let safe = query.safe_scale(&at(1.0))?;
         let weights = (0..=STEPS).map(|step| f64::from(step) / f64::from(STEPS));
         let mut touch = None;
@@ -76,6 +76,6 @@ fn run() -> Result<(), Box<dyn Error>> {
     }
     let path = env::temp_dir().join("glb_face.ply");
     write_ply_pose(&path, model.mesh(), &model.positions(&q)?, &colliding)?;
-    println!("{name}, touching triangles red: {}", path.display());
+    println!("{name}, with the colliding triangles in red: {}", path.display());
     Ok(())
 }

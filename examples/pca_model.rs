@@ -1,4 +1,4 @@
-//! How many of the shapes that a statistical model makes up intersect themselves, and what to do with those.
+//! Counts the samples of a statistical shape model that intersect themselves, and repairs one of them.
 //!
 //! `cargo run --release -p sscc-examples --example pca_model [MODEL.npz]`
 #![allow(clippy::print_stdout)]
@@ -27,7 +27,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         None => mouths_npz(folder.path())?,
     };
 
-    // Mean, components and faces, by the names that PCA and body models give them.
+    // The file has mean, components and faces under the names that PCA and body models use.
     let loaded = load_model_with(&file, &LoadOptions::default())?;
     let model = loaded.model;
     println!(
@@ -39,8 +39,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("the mean itself has {} colliding pairs", certificates.rest_collisions());
 
-    // A sample has independent normal coefficients, in units of the standard deviation where the file has
-    // variances (`explained_variance`).
+    // A sample has independent normal coefficients, scaled by the standard deviations if the file has variances
+    // (`explained_variance`).
     let deviations: Vec<f64> = match &loaded.mode_weights {
         Some(variances) => variances.iter().map(|variance| variance.sqrt()).collect(),
         None => vec![1.0; model.rank()],
@@ -49,7 +49,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut sample = || deviations.iter().map(|deviation| deviation * random.normal()).collect();
     let samples: Vec<Vec<f64>> = (0..SAMPLES).map(|_| sample()).collect();
 
-    // All at once, on all cores; the answers are the same on one.
+    // A batch uses all cores. The answers do not depend on the number of threads.
     let mut query = Query::new(&model, &certificates)?;
     let start = Instant::now();
     let answers = query.batch(&samples, None, &())?;
@@ -67,12 +67,12 @@ fn run() -> Result<(), Box<dyn Error>> {
     let q = &samples[i];
     println!("sample {i}: {} pairs of triangles collide", answers[i].pairs.len());
 
-    // Drawn towards the mean until it is free, with everything on the way: as little as is needed.
+    // The sample is scaled towards the mean until it is proven free, and with it all shapes between.
     let scale = query.safe_scale(q)?;
     let repaired: Vec<f64> = q.iter().map(|x| scale * x).collect();
     println!("  safe_scale keeps {:.1} % of it: {} pairs", 100.0 * scale, query.count(&repaired)?);
 
-    // Drawn further, to where one comparison is proof: takes nanoseconds.
+    // It is scaled further, into the root's ellipsoid, where one comparison proves it free. This takes nanoseconds.
     if let Some(clamped) = certificates.clamp(q)? {
         let pairs = query.count(&clamped)?;
         println!("  clamp keeps {:.1} %: {pairs} pairs", 100.0 * query.norm() / answers[i].norm);

@@ -1,7 +1,7 @@
-//! A simulator's own loop, which asks in every step whether the shape touches itself.
+//! Queries self-collisions in every step of a simulation loop, until the first contact.
 //!
-//! The shape is the embedded spring. Each of its modes is a damped oscillator, and all are shaken,
-//! ever harder, at the frequency of one of them, which swings up until coils meet.
+//! The shape is the embedded spring, and each of its modes is a damped oscillator. A force of growing amplitude shakes
+//! all of them at the frequency of one, until coils of the spring touch.
 //!
 //! `cargo run --release -p sscc-examples --example simulation_loop`
 #![allow(clippy::print_stdout)]
@@ -18,7 +18,7 @@ use sscc_modes::{polynomial_modes, shapes};
 /// Length of a step (seconds).
 const STEP: f64 = 1.0 / 240.0;
 
-/// Share of the critical damping.
+/// Fraction of the critical damping.
 const DAMPING: f64 = 0.01;
 
 /// The polynomial mode that moves along z by the square of z: it squeezes one end and stretches the other.
@@ -36,11 +36,11 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("{} triangles, {} modes, certified", model.mesh().faces().len(), model.rank());
 
-    // Whatever happens, the loop ends in time: queries look at the deadline too.
+    // The deadline also cancels queries, so the loop always ends in time.
     let deadline = Deadline(Instant::now() + Duration::from_secs(300));
     let mut query = Query::new(&model, &certificates)?.cancelled_by(&deadline);
     let mut oscillators = Oscillators::new(model.metric().scales());
-    // Steps, and the time of their queries: those answered by the root's certificate, and the others.
+    // Numbers of steps and times of their queries: those that the root's certificate answers, and the others.
     let (mut steps, mut spent) = ([0_u32; 2], [Duration::ZERO; 2]);
     let touching = loop {
         oscillators.advance();
@@ -60,8 +60,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     let total = steps[0] + steps[1];
     println!("first contact in step {total}, after {:.3} s", f64::from(total) * STEP);
     println!("{} pairs of triangles, the first {:?}", touching.len(), touching[0]);
-    // The straight way from rest to here, as far as it is proven free: a place to set the shape back to.
-    println!("{:.4} of this deformation is free", query.safe_scale(&oscillators.q)?);
+    // The fraction of this deformation that is proven free. A simulator can set the shape back to it.
+    println!("{:.4} of this deformation is proven free", query.safe_scale(&oscillators.q)?);
     let microseconds = |kind: usize| 1e6 * spent[kind].as_secs_f64() / f64::from(steps[kind].max(1));
     println!("{} of {total} steps answered by one comparison, {:.2} us each", steps[0], microseconds(0));
     println!("the other {} took {:.0} us each", steps[1], microseconds(1));
@@ -73,7 +73,7 @@ struct Oscillators {
     time: f64,
     q: Vec<f64>,
     velocities: Vec<f64>,
-    /// By how much a unit of each mode moves the shape (metres).
+    /// The displacement of the shape by a unit of each mode (metres).
     scales: Vec<f64>,
 }
 
@@ -87,7 +87,7 @@ impl Oscillators {
         TAU * (1.0 + 0.2 * k as f64)
     }
 
-    /// One step: velocities first, then positions by the new velocities, which stays stable.
+    /// Makes one step of symplectic Euler: velocities first, then positions by the new velocities.
     fn advance(&mut self) {
         let shaking = 4.0 * self.time * libm::sin(Self::frequency(SQUEEZE) * self.time); // m/s^2
         for (k, scale) in self.scales.iter().enumerate() {
@@ -100,7 +100,7 @@ impl Oscillators {
     }
 }
 
-/// A point in time after which nothing is worth waiting for.
+/// The time at which queries are cancelled.
 struct Deadline(Instant);
 
 impl Progress for Deadline {

@@ -1,5 +1,5 @@
-//! A reduced model as VegaFEM writes it, along a trajectory: what a query costs, and how a centre helps when
-//! the shape moves about another pose than its rest.
+//! Measures queries of a VegaFEM model along a trajectory, and shows how a centre helps if the shape moves about
+//! another pose than rest.
 //!
 //! `cargo run --release -p sscc-examples --example vegafem [MESH.obj MODES.U]`
 #![allow(clippy::print_stdout)]
@@ -34,14 +34,14 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
 
-    // All modes swing, ever harder, until some vertex may have moved by half the size of the shape.
+    // All modes swing with growing amplitude, until some vertex may have moved by half the size of the shape.
     let (rest, largest) = (vec![0.0; model.rank()], certificates.global_radius());
     let growing = (0..FRAMES).map(|i| swing(&model, &rest, i, largest * i as f64 / FRAMES as f64));
     let mut query = Query::new(&model, &certificates)?;
     check("growing", &mut query, growing)?;
 
-    // The shape may have settled in another pose, say under its weight: here half as far as mode 0 can go
-    // backwards. About that pose it swings a little.
+    // The shape may have settled in another pose, for example under its weight. Here that pose is half of the safe
+    // scale of mode 0 in the negative direction. The shape swings about it with a small amplitude.
     let mut settled = rest.clone();
     settled[0] = -1.0;
     let safe = query.safe_scale(&settled)?;
@@ -54,7 +54,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let small = || (0..FRAMES).map(|i| swing(&model, &settled, i, size));
     check("settled", &mut query, small())?;
 
-    // Certificates about that pose measure from there.
+    // Certificates with that pose as centre measure |z| from there.
     let options = CertifyOptions { center: Some(settled.clone()), ..CertifyOptions::default() };
     let centred = Certificates::compute(&model, &options, &())?;
     println!("certified about the settled pose: free where |z| < {:.3e}", centred.root_radius());
@@ -62,8 +62,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Frame i of an oscillation about a pose, every mode with a frequency of its own, at the distance `size` from
-/// it in the model's metric.
+/// Returns frame i of an oscillation about a pose, at the distance `size` from it in the model's metric. Every mode has
+/// its own frequency.
 fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
     let time = i as f64 / FRAMES as f64;
     let turns = |k: usize| (3.0 + 0.7 * k as f64) * time + 0.13 * (1 + k) as f64;
@@ -73,7 +73,7 @@ fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
     about.iter().zip(offset).map(|(q, d)| q + d * size / length).collect()
 }
 
-/// Answers every frame, and tells what it cost.
+/// Queries every frame, and prints the mean cost.
 fn check(
     name: &str,
     query: &mut Query<'_>,
@@ -91,7 +91,7 @@ fn check(
     println!("{name}: {FRAMES} frames, {colliding} colliding, {by_root} answered by one comparison");
     let mean = |sum: u64| sum as f64 / FRAMES as f64;
     println!(
-        "    a frame opens {:.1} nodes, compares {:.1} boxes and tests {:.1} pairs of triangles",
+        "    a frame opens {:.1} nodes, makes {:.1} AABB tests and tests {:.1} triangle pairs",
         mean(opened),
         mean(boxes),
         mean(triangles)

@@ -1,13 +1,13 @@
 import { defineConfig, type Plugin } from "vite";
 
-/** Puts the script and the style into the page itself: one file that needs no other. */
+/** Puts the script and the style into the page, so that it is one file. */
 function oneFile(): Plugin {
     return {
         name: "one-file",
         enforce: "post",
         generateBundle(_options, bundle) {
             const page = bundle["index.html"];
-            if (page?.type !== "asset") throw new Error("the build made no index.html");
+            if (page?.type !== "asset") throw new Error("the build has no index.html");
             let html = String(page.source);
             for (const [name, part] of Object.entries(bundle)) {
                 if (name === "index.html") continue;
@@ -18,7 +18,7 @@ function oneFile(): Plugin {
                         : `<style>${text.trim()}</style>`;
                 const link = new RegExp(`[ \\t]*<(script|link)[^>]*"[^"]*${name}"[^>]*>(</script>)?\\n?`);
                 if (!link.test(html)) throw new Error(`index.html does not name ${name}`);
-                // A script stands where its elements do already: at the end of the body.
+                // The script goes to the end of the body, after the elements that it uses.
                 html = html.replace(link, "");
                 const end = part.type === "chunk" ? "</body>" : "</head>";
                 html = html.replace(end, () => `${tag}\n${end}`);

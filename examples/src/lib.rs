@@ -1,4 +1,4 @@
-//! What the example programs share: a small model for when they are given no file, and how they end.
+//! Code that the example programs share: a small model for runs without arguments, and the exit code.
 
 mod mouth;
 
@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 pub use mouth::{mouth_glb, mouth_vegafem, mouths_npz};
 
-/// Ends a program: an error becomes one line on standard error, and exit code 1.
+/// Returns the exit code of a program: 1 for an error, which is printed as one line on standard error.
 #[allow(clippy::print_stderr)]
 pub fn exit_code(outcome: Result<(), Box<dyn Error>>) -> ExitCode {
     match outcome {

@@ -1,4 +1,4 @@
-//! A mouth that can close, bite, smile and purse its lips, written in each of the forms that the examples read.
+//! A model of a mouth with four modes, written in each of the formats that the examples read.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -15,10 +15,10 @@ use zip::{ZipWriter, write::SimpleFileOptions};
 const AROUND: usize = 64;
 const RINGS: usize = 6;
 
-/// What the mouth can do, one mode each.
+/// The names of the modes.
 const NAMES: [&str; 4] = ["close", "bite", "smile", "purse"];
 
-/// How far the mouths of a population differ along each mode.
+/// The variance of a population of mouths along each mode.
 const VARIANCES: [f64; 4] = [0.09, 0.04, 0.25, 0.25];
 
 struct Mouth {
@@ -28,8 +28,8 @@ struct Mouth {
     faces: Vec<[u32; 3]>,
 }
 
-/// The mouth at rest, open: in the middle its lips are 0.6 apart. A unit of closing takes 0.8 off that, a unit
-/// of biting 0.9.
+/// Returns the mouth. At rest it is open, with a gap of 0.6 between the lips in the middle. A unit of the mode `close`
+/// reduces the gap by 0.8, a unit of `bite` by 0.9.
 fn mouth() -> Mouth {
     let mut mouth = Mouth { positions: Vec::new(), modes: Default::default(), faces: Vec::new() };
     for ring in 0..=RINGS {
@@ -57,8 +57,8 @@ fn mouth() -> Mouth {
     mouth
 }
 
-/// Writes `mouth.glb` with four morph targets. Each triangle has three vertices of its own, which is how drawing
-/// programs write sharp edges: it needs welding.
+/// Writes `mouth.glb` with four morph targets. Each triangle has three vertices of its own, as modelling programs write
+/// sharp edges, so the model needs welding.
 ///
 /// # Errors
 /// When the file cannot be written.

@@ -1,4 +1,4 @@
-//! Every example runs, on the model made in code and on real ones, and says what is true.
+//! Runs every example on the generated model and on real ones, and checks its output.
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,7 +12,7 @@ use sscc_io::read_mesh;
 use sscc_testing::models;
 use tempfile::TempDir;
 
-/// A program that cargo builds before all tests (but not for `--test run` alone).
+/// Returns the path of an example. Cargo builds it before all tests, but not for `--test run` alone.
 fn program(example: &str) -> PathBuf {
     let tests = env::current_exe().unwrap(); // PROFILE/deps/run-...
     let profile = tests.parent().unwrap().parent().unwrap();
@@ -33,7 +33,7 @@ fn output(example: &str, arguments: &[impl AsRef<OsStr>]) -> (Output, TempDir) {
     (command.output().unwrap(), folder)
 }
 
-/// What an example prints when all goes well, and its folder.
+/// Runs an example that must succeed. Returns its output and its folder.
 fn run(example: &str, arguments: &[impl AsRef<OsStr>]) -> (String, TempDir) {
     let (output, folder) = output(example, arguments);
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -43,7 +43,7 @@ fn run(example: &str, arguments: &[impl AsRef<OsStr>]) -> (String, TempDir) {
 
 const NONE: &[&str] = &[];
 
-/// The one line that contains this.
+/// Returns the only line that contains `part`.
 fn line<'a>(text: &'a str, part: &str) -> &'a str {
     let mut lines = text.lines().filter(|line| line.contains(part));
     match (lines.next(), lines.next()) {
@@ -56,7 +56,7 @@ fn line<'a>(text: &'a str, part: &str) -> &'a str {
 fn glb_face() {
     let (text, folder) = run("glb_face", NONE);
     assert!(line(&text, "at rest").ends_with(" 0 pairs"));
-    // The lips meet halfway: at weights 0.6 / 0.8 and 0.6 / 0.9.
+    // The lips touch at the weights 0.6 / 0.8 and 0.6 / 0.9.
     assert!(line(&text, " close:").contains("first touch found at 0.755:"));
     assert!(line(&text, " bite:").contains("first touch found at 0.67:"));
     assert!(line(&text, " smile:").ends_with("no touch found up to 1"));
@@ -98,7 +98,7 @@ fn vegafem_on_real_files() {
     settled_frames(&text);
 }
 
-/// Certificates about rest help none of them, those about the pose that they are near to all.
+/// Certificates with the centre at rest answer none of the frames by one comparison, those about the settled pose all.
 fn settled_frames(text: &str) {
     line(text, "settled: 300 frames, 0 colliding, 0 answered by one comparison");
     line(text, "settled: 300 frames, 0 colliding, 300 answered by one comparison");

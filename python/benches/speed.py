@@ -1,8 +1,8 @@
-"""What Python costs: single checks and batches beside the same in Rust, in one process, on the same q.
+"""The cost of Python: single checks and batches in Python and in Rust, in one process, on the same q.
 
 Usage: python benches/speed.py MODEL.model.safetensors [CERTIFICATES.sscc.safetensors]
 
-Without a file: a torus of 16,000 triangles with 12 modes, made here. Build the package in release mode first
+Without a file: a generated torus of 16,000 triangles with 12 modes. Build the package in release mode first
 (``maturin develop --release``).
 """
 
@@ -21,15 +21,15 @@ from sscc._sscc import _core_seconds
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from shapes import F64, torus  # noqa: E402
 
-#: Rounds of each measurement. Of single checks the median is told, of batches the least, as other work only adds to it.
-ROUNDS = 15
+#: Repetitions of each measurement. Single checks report the median, batches the minimum, as other work only adds time.
+REPETITIONS = 15
 
 
 def single(certs: sscc.Certificates, qs: F64, label: str) -> None:
-    """The median of one check, in Python and in Rust. Reading the clock costs both the same, and is taken off."""
+    """Prints the median of one check in Python and in Rust. The time to read the clock is subtracted in Python."""
     clock, python, rust = [], [], []
     rows = list(qs)
-    for _ in range(ROUNDS):
+    for _ in range(REPETITIONS):
         for q in rows:
             begin = time.perf_counter_ns()
             end = time.perf_counter_ns()
@@ -39,27 +39,28 @@ def single(certs: sscc.Certificates, qs: F64, label: str) -> None:
             end = time.perf_counter_ns()
             python.append(end - begin)
         rust += [1e9 * seconds for seconds in _core_seconds(certs, qs, 1)[1]]
-    ours = statistics.median(python) - statistics.median(clock)
-    theirs = statistics.median(rust)
-    more = (ours - theirs) / 1e3
-    print(f"check, {label:27} Python {ours / 1e3:9.2f} us   Rust {theirs / 1e3:9.2f} us   {more:+.2f} us")
+    in_python = statistics.median(python) - statistics.median(clock)
+    in_rust = statistics.median(rust)
+    more = (in_python - in_rust) / 1e3
+    print(f"check, {label:27} Python {in_python / 1e3:9.2f} us   Rust {in_rust / 1e3:9.2f} us   {more:+.2f} us")
 
 
 def batch(certs: sscc.Certificates, qs: F64, label: str) -> None:
-    """A whole batch on all cores, in Python and in Rust by turns."""
+    """Prints the minimum of a batch on all cores, in Python and in Rust, interleaved."""
     python, rust = [], []
-    for _ in range(ROUNDS):
+    for _ in range(REPETITIONS):
         begin = time.perf_counter()
         certs.check_many(qs, progress=False)
         python.append(time.perf_counter() - begin)
         rust.append(_core_seconds(certs, qs, None, False)[0])
-    ours, theirs = min(python), min(rust)
+    in_python, in_rust = min(python), min(rust)
     count = f"{len(qs):,} q"
-    print(f"check_many, {label:17} {count:>9} Python {ours:7.3f} s   Rust {theirs:7.3f} s   {ours / theirs - 1:+.1%}")
+    more = f"{in_python / in_rust - 1:+.1%}"
+    print(f"check_many, {label:17} {count:>9} Python {in_python:7.3f} s   Rust {in_rust:7.3f} s   {more}")
 
 
 def main() -> None:
-    """Measures certified, free and colliding configurations."""
+    """Measures configurations inside the root's radius, and free and colliding ones beyond it."""
     if len(sys.argv) > 1:
         model = sscc.Model.load(sys.argv[1])
     else:

@@ -1,4 +1,4 @@
-"""A library of models, one large model and a sweep of configurations on a cluster; here two processes of this machine.
+"""A library of models, one large model and many configurations on a cluster; here two processes of this machine.
 
     python cluster.py
 """
@@ -20,7 +20,7 @@ def main(client: Client) -> tuple[sscc.batch.Library, sscc.Certificates, sscc.Ba
         print(f"{name}: free for |z| < {certificates.root_radius:.3f}")
 
     large = sscc.batch.certify_in_shards(models["width 1.0"], client)
-    print(f"the same by shards: {large.root_radius == library.certificates['width 1.0'].root_radius}")
+    print(f"same root radius by shards: {large.root_radius == library.certificates['width 1.0'].root_radius}")
 
     Q = np.random.default_rng(3).normal(scale=0.5, size=(20_000, 4))
     answers = sscc.batch.check(large, Q, client)

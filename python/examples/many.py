@@ -21,11 +21,11 @@ def main(count: int = COUNT) -> sscc.Batch:
     answers = certificates.check_many(Q)
     seconds = time.perf_counter() - start
     print(f"{count} answers in {seconds:.2f} s: {answers.colliding.sum()} collide,")
-    print(f"{answers.root_certified.sum()} were answered by one comparison")
-    # All pairs lie in one array: those of row i are answers.pairs[offsets[i]:offsets[i + 1]].
+    print(f"{answers.root_certified.sum()} are proven free by one comparison")
+    # The pairs of all answers are in one array: those of row i are answers.pairs[offsets[i]:offsets[i + 1]].
     worst = int(answers.count.argmax())
     first, end = answers.offsets[worst : worst + 2]
-    print(f"row {worst} has most pairs, {end - first}, beginning with {answers.pairs[first].tolist()}")
+    print(f"row {worst} has the most pairs: {end - first}; the first is {answers.pairs[first].tolist()}")
     return answers
 
 

@@ -1,4 +1,4 @@
-"""A mouth that can close, bite, smile and purse its lips: data for the examples, made in code."""
+"""A generated model for the examples: a mouth that can close, bite, smile and purse its lips."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def mouth() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def mouth_glb(folder: Path) -> Path:
-    """Writes the mouth as ``mouth.glb`` with four morph targets. Each triangle has three vertices of its own, which is
-    how drawing programs write sharp edges: ``Model.load`` welds them."""
+    """Writes the mouth as ``mouth.glb`` with four morph targets. Each triangle has three vertices of its own, as in
+    files of modelling programs with sharp edges: ``Model.certify`` welds them."""
     vertices, faces, modes = mouth()
     blocks = [part[faces.ravel()].astype("<f4").tobytes() for part in (vertices, *np.moveaxis(modes, 2, 0))]
     size, count = len(blocks[0]), range(len(blocks))

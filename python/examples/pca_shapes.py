@@ -1,4 +1,4 @@
-"""Which samples of a statistical shape model intersect themselves, and how far each may go before it does.
+"""Which samples of a statistical shape model intersect themselves, and how far towards each the shape is free.
 
     python pca_shapes.py
 """
@@ -13,7 +13,7 @@ SUBJECTS, COMPONENTS, SAMPLES = 60, 4, 500
 
 
 def population(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Scans of so many people, vertex by vertex the same: (n, V, 3), and the faces."""
+    """Scans of people with corresponding vertices, (n, V, 3), and their faces."""
     vertices, faces, modes = mouth()
     habits = random.normal(size=(SUBJECTS, modes.shape[2])) * [0.5, 0.35, 0.5, 0.5]
     return vertices + np.einsum("nk,vck->nvc", habits, modes), faces
@@ -35,11 +35,11 @@ def main() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     colliding = certificates.check_many(Q).colliding
     print(f"{colliding.sum()} of {SAMPLES} samples intersect themselves")
 
-    # The largest step from the mean towards each sample that is proven free all the way; 1 and more: the sample itself.
+    # The scale up to which the line from the mean to each sample is proven free; from 1 on it contains the sample.
     steps = np.array([certificates.safe_scale(q) for q in Q])
-    print(f"safe steps: {steps.min():.2f} at the least, median {np.median(steps):.2f}")
+    print(f"safe scales: minimum {steps.min():.2f}, median {np.median(steps):.2f}")
     repaired = Q * np.minimum(steps, 1)[:, None] * (1 - 1e-9)
-    print(f"after stepping back, {certificates.check_many(repaired).count.sum()} pairs of triangles collide")
+    print(f"at the safe scale, {certificates.check_many(repaired).count.sum()} pairs of triangles collide")
     return colliding, steps, certificates.check_many(repaired).colliding
 
 

@@ -1,5 +1,4 @@
-"""In which frames of a performance does a face with blendshapes touch itself, and when between the frames does it
-begin?
+"""The frames of a performance in which a face with blendshapes touches itself, and the times at which contacts begin.
 
     python performance.py [FACE.glb [MESH]]
 """
@@ -18,10 +17,10 @@ FRAMES = 240
 
 
 def performance(rank: int) -> np.ndarray:
-    """Weights for each frame (FRAMES, rank): every target goes between 0 and 1 at its own pace."""
+    """Weights for each frame (FRAMES, rank): every target moves between 0 and 1 at its own frequency."""
     time = np.linspace(0, 1, FRAMES)[:, None]
-    pace = 2 * np.pi * (1 + 0.37 * np.arange(rank))
-    return 0.5 - 0.5 * np.cos(pace * time)
+    frequency = 2 * np.pi * (1 + 0.37 * np.arange(rank))
+    return 0.5 - 0.5 * np.cos(frequency * time)
 
 
 def main(file: str | None = None, mesh: str | None = None) -> tuple[np.ndarray, dict[int, float]]:
@@ -29,13 +28,13 @@ def main(file: str | None = None, mesh: str | None = None) -> tuple[np.ndarray, 
         model = sscc.Model.load(file or mouth_glb(Path(folder)), mesh_name=mesh)
     print(f"{model}, targets: {', '.join(model.mode_names)}")
 
-    # What collides at rest, such as closed lips, is not what is asked here.
+    # Ignores pairs that collide at rest, such as closed lips.
     certificates = model.certify(ignore_rest=True)
     weights = performance(model.rank)
     colliding = certificates.check_many(weights).colliding
     print(f"{colliding.sum()} of {FRAMES} frames collide")
 
-    # Every contact between two frames is found, too, with its time.
+    # A continuous query finds every contact between two frames, and its time.
     begins = {}
     for frame in range(FRAMES - 1):
         if not colliding[frame]:

@@ -15,19 +15,19 @@ pub fn count(
     range: RangeInclusive<usize>,
 ) -> PyResult<Option<usize>> {
     let Some(any) = any else { return Ok(None) };
-    let (least, most) = (*range.start(), *range.end());
-    let wanted = || match most {
-        usize::MAX => format!("a whole number of at least {least}"),
-        _ => format!("a whole number from {least} to {most}"),
+    let (min, max) = (*range.start(), *range.end());
+    let expected = || match max {
+        usize::MAX => format!("a whole number of at least {min}"),
+        _ => format!("a whole number from {min} to {max}"),
     };
     // `__index__` includes NumPy's integers. Booleans have it, too, but are refused.
     let index = any.call_method0("__index__").ok().filter(|_| !any.is_instance_of::<PyBool>());
     let Some(index) = index else {
-        return Err(kind(format!("{name} is a {}: {} was expected", any.get_type().name()?, wanted())));
+        return Err(kind(format!("{name} is a {}: {} was expected", any.get_type().name()?, expected())));
     };
     match index.extract::<usize>() {
         Ok(number) if range.contains(&number) => Ok(Some(number)),
-        _ => Err(value(format!("{name} is {index}: {} was expected", wanted()))),
+        _ => Err(value(format!("{name} is {index}: {} was expected", expected()))),
     }
 }
 

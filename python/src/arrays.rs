@@ -16,8 +16,8 @@ use sscc::Pair;
 
 use crate::errors::{kind, room, value};
 
-/// Beyond it, not every integer is a float64.
-const LARGEST_EXACT: i128 = 1 << 53;
+/// The largest integer up to which every integer is a float64.
+const MAX_EXACT_INTEGER: i128 = 1 << 53;
 
 /// Returns the floats of an argument in C order; `name` is the argument's. Other threads may write to them: see
 /// [`copied`].
@@ -58,8 +58,8 @@ pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonly
         return Err(kind(format!("{name} is an array of {dtype}: integers were expected")));
     }
     if letter == 'u' && dtype.getattr("itemsize")?.extract::<usize>()? == 8 && !is_empty(&array)? {
-        let most: u64 = array.call_method0("max")?.extract()?;
-        i64::try_from(most).map_err(|_| value(format!("{name}: {most} is too large")))?;
+        let max: u64 = array.call_method0("max")?.extract()?;
+        i64::try_from(max).map_err(|_| value(format!("{name}: {max} is too large")))?;
     }
     borrow(require(&array, "int64")?.cast::<PyArrayDyn<i64>>()?, name)
 }
@@ -103,7 +103,7 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
         {
             return error;
         }
-        let message = format!("{name}: no array of numbers: {}", error.value(py));
+        let message = format!("{name}: an array of numbers was expected: {}", error.value(py));
         if error.is_instance_of::<PyValueError>(py) { value(message) } else { kind(message) }
     };
     let array = numpy.call_method1("asarray", (any,)).map_err(refused)?;
@@ -114,7 +114,7 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
     }
     if matches!(letter, 'O' | 'U' | 'S' | 'M' | 'm' | 'V') {
         let found = any.get_type().name()?;
-        return Err(kind(format!("{name} is a {found} that is no array of numbers")));
+        return Err(kind(format!("{name} is a {found}: an array of numbers was expected")));
     }
     // After the conversion the depth of nested lists is known and finite.
     check_unmasked(any, name, &masked, array.getattr("ndim")?.extract()?)?;
@@ -164,11 +164,11 @@ fn check_exact(array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
     if is_empty(array)? {
         return Ok(());
     }
-    let (least, most): (i128, i128) =
+    let (min, max): (i128, i128) =
         (array.call_method0("min")?.extract()?, array.call_method0("max")?.extract()?);
-    let far = if least < -LARGEST_EXACT { least } else { most };
-    if far.abs() > LARGEST_EXACT {
-        return Err(value(format!("{name}: the integer {far} is beyond 2^53, no exact float64")));
+    let extreme = if min < -MAX_EXACT_INTEGER { min } else { max };
+    if extreme.abs() > MAX_EXACT_INTEGER {
+        return Err(value(format!("{name}: the integer {extreme} is beyond 2^53: pass it as a float64")));
     }
     Ok(())
 }
@@ -190,16 +190,16 @@ fn borrow<'py, T: Element>(
     array: &Bound<'py, PyArrayDyn<T>>,
     name: &str,
 ) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
-    array.try_readonly().map_err(|_| value(format!("{name} is being written to")))
+    array.try_readonly().map_err(|_| value(format!("{name} is borrowed for writing: pass a copy")))
 }
 
-/// An array that is created at the first access and then kept.
-pub type Cached = PyOnceLock<Py<PyAny>>;
+/// An array that the first access creates and the object keeps.
+pub type CachedArray = PyOnceLock<Py<PyAny>>;
 
 /// Returns the cached array; `make` creates it at the first access. It is read-only.
 pub fn cached<'py>(
     py: Python<'py>,
-    cell: &Cached,
+    cell: &CachedArray,
     make: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let array = cell.get_or_try_init(py, || frozen(make()?).map(Bound::unbind))?;

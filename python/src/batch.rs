@@ -5,9 +5,9 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::answer::{Answer, Pickled, Reduced, pickled, unpickled};
+use crate::answer::{Answer, PickledAnswer, Reduction, pickled, unpickled};
 use crate::arguments::count;
-use crate::arrays::{Cached, cached, copied, floats, line, table};
+use crate::arrays::{CachedArray, cached, copied, floats, line, table};
 use crate::errors::{refused, room, value};
 use crate::interrupt::run_borrowing;
 use crate::pool::{self, Pool};
@@ -15,21 +15,22 @@ use crate::pool::{self, Pool};
 #[pyclass(frozen, module = "sscc", name = "Batch")]
 pub struct Batch {
     pub answers: Vec<sscc::Answer>,
-    arrays: [Cached; 9],
+    /// The arrays of the getters, in their order below.
+    arrays: [CachedArray; 9],
 }
 
 impl Batch {
     pub fn of(answers: Vec<sscc::Answer>) -> Self {
-        Self { answers, arrays: std::array::from_fn(|_| Cached::new()) }
+        Self { answers, arrays: std::array::from_fn(|_| CachedArray::new()) }
     }
 
     fn column<'py, T: numpy::Element>(
         &self,
         py: Python<'py>,
-        place: usize,
+        column: usize,
         of: impl Fn(&sscc::Answer) -> T,
     ) -> PyResult<Bound<'py, PyAny>> {
-        cached(py, &self.arrays[place], || {
+        cached(py, &self.arrays[column], || {
             let mut items = room(self.answers.len(), "Batch")?;
             items.extend(self.answers.iter().map(of));
             Ok(line(py, items))
@@ -121,8 +122,8 @@ impl Batch {
         self.answers == other.answers
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyList>,)>> {
-        let answers: PyResult<Vec<Pickled<'py>>> =
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (Bound<'py, PyList>,)>> {
+        let answers: PyResult<Vec<PickledAnswer<'py>>> =
             self.answers.iter().map(|answer| Ok(pickled(py, answer))).collect();
         Ok((py.import("sscc._sscc")?.getattr("_batch")?, (PyList::new(py, answers?)?,)))
     }
@@ -135,14 +136,14 @@ impl Batch {
 
 /// Constructor for pickled batches.
 #[pyfunction]
-pub fn _batch(answers: Vec<Pickled<'_>>) -> PyResult<Batch> {
+pub fn _batch(answers: Vec<PickledAnswer<'_>>) -> PyResult<Batch> {
     Ok(Batch::of(answers.iter().map(unpickled).collect::<PyResult<_>>()?))
 }
 
 /// Returns a copy of the entries of Q (n, r).
 pub fn entries(array: &PyReadonlyArrayDyn<'_, f64>, rank: usize) -> PyResult<Vec<f64>> {
     if array.ndim() != 2 || array.shape()[1] != rank {
-        let hint = if array.ndim() == 1 { "; for one q there is check" } else { "" };
+        let hint = if array.ndim() == 1 { "; for one q use check" } else { "" };
         return Err(value(format!("Q has shape {:?}: (n, {rank}) was expected{hint}", array.shape())));
     }
     copied(array, "Q")

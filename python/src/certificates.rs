@@ -7,7 +7,7 @@ use pyo3::types::{PyBytes, PyType};
 use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
 use sscc_io::{read_certificates, write_certificates};
 
-use crate::answer::{Answer, Reduced};
+use crate::answer::{Answer, Reduction};
 use crate::arguments::{check_ending, count, path};
 use crate::arrays::{line, pairs, vector};
 use crate::batch::{self, Batch};
@@ -18,7 +18,7 @@ use crate::interrupt::answer;
 use crate::kinetic::KineticQuery;
 use crate::metric::factor;
 use crate::model::Model;
-use crate::pool::{Certified, Pool};
+use crate::pool::{CertifiedModel, Pool};
 
 #[pyclass(frozen, module = "sscc", name = "Certificates")]
 pub struct Certificates {
@@ -29,7 +29,7 @@ pub struct Certificates {
 impl Certificates {
     fn with(model: &Bound<'_, Model>, certificates: sscc::Certificates, name: &str) -> PyResult<Self> {
         let loaded = Arc::clone(&model.get().loaded);
-        let pool = model.py().detach(|| Pool::of(Certified { loaded, certificates }));
+        let pool = model.py().detach(|| Pool::of(CertifiedModel { loaded, certificates }));
         let pool = pool.map_err(|error| refused(&error, name))?;
         Ok(Self { model: model.clone().unbind(), pool: Arc::new(pool) })
     }
@@ -79,13 +79,13 @@ impl Certificates {
             Some(limit) => count(Some(limit), "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX),
             None => usize::MAX,
         };
-        let ask = || {
-            self.pool.ask(|query| {
+        let run = || {
+            self.pool.with_query(|query| {
                 let pairs = query.discrete_at_most(&q, limit).map(<[_]>::to_vec)?;
                 Ok(Answer::of(pairs, query.norm(), query.statistics()))
             })
         };
-        let found = if self.is_quick(&q) { ask() } else { answer(py, ask)? };
+        let found = if self.is_quick(&q) { run() } else { answer(py, run)? };
         found.map_err(|error| refused(&error, "q"))
     }
 
@@ -105,12 +105,12 @@ impl Certificates {
     fn continuous(&self, py: Python<'_>, q0: &Bound<'_, PyAny>, q1: &Bound<'_, PyAny>) -> PyResult<Impacts> {
         let [q0, q1] = [vector(q0, "q0")?, vector(q1, "q1")?];
         let found = answer(py, || {
-            self.pool.ask(|query| {
+            self.pool.with_query(|query| {
                 let impacts = query.continuous(&q0, &q1)?.to_vec();
                 Ok(Impacts::of(&impacts, query.norm(), query.statistics()))
             })
         })?;
-        // The core refuses the first end that it can refuse.
+        // The core reports the first end that is not a configuration of the model.
         let at_fault =
             if self.model.get().loaded.model.check_coordinates(&q0).is_err() { "q0" } else { "q1" };
         found.map_err(|error| refused(&error, at_fault))
@@ -118,7 +118,7 @@ impl Certificates {
 
     fn safe_scale(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<f64> {
         let q = vector(q, "q")?;
-        let scale = answer(py, || self.pool.ask(|query| query.safe_scale(&q)))?;
+        let scale = answer(py, || self.pool.with_query(|query| query.safe_scale(&q)))?;
         scale.map_err(|error| refused(&error, "q"))
     }
 
@@ -230,7 +230,7 @@ impl Certificates {
         Hierarchy::of(Arc::clone(&self.pool))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<Model>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (Bound<'py, PyBytes>, Py<Model>)>> {
         let bytes = certificates_to_bytes(self.core()).map_err(|error| value(error.to_string()))?;
         let make = py.import("sscc._sscc")?.getattr("_certificates")?;
         Ok((make, (PyBytes::new(py, &bytes), self.model.clone_ref(py))))

@@ -11,10 +11,11 @@ use crate::certificates::Certificates;
 use crate::errors::{refused, value};
 use crate::interrupt::run;
 use crate::metric::read_metric;
-use crate::model::{Loaded, Model};
-use crate::pool::{Certified, Pool, threads};
+use crate::model::{LoadedModel, Model};
+use crate::pool::{CertifiedModel, Pool, threads};
 
-pub struct Typed<'a, 'py> {
+/// The arguments of `Model.certify`, except `progress`; `None` for an absent one.
+pub struct CertifyArguments<'a, 'py> {
     pub epsilon: Option<&'a Bound<'py, PyAny>>,
     pub metric: Option<&'a Bound<'py, PyAny>>,
     pub center: Option<&'a Bound<'py, PyAny>>,
@@ -33,8 +34,9 @@ enum Scheme {
     Full,
 }
 
-impl Typed<'_, '_> {
-    pub fn options(&self, loaded: &Loaded) -> PyResult<CertifyOptions> {
+impl CertifyArguments<'_, '_> {
+    /// Returns the options of the core. An error names the argument.
+    pub fn options(&self, loaded: &LoadedModel) -> PyResult<CertifyOptions> {
         let default = CertifyOptions::default();
         let model = &loaded.model;
         let center = match self.center {
@@ -74,14 +76,14 @@ impl Typed<'_, '_> {
 /// Computes certificates. Ctrl-C stops the computation.
 pub fn certify(
     model: &Bound<'_, Model>,
-    typed: &Typed<'_, '_>,
+    arguments: &CertifyArguments<'_, '_>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Certificates> {
     let loaded = Arc::clone(&model.get().loaded);
-    let options = typed.options(&loaded)?;
+    let options = arguments.options(&loaded)?;
     let pool = run(model.py(), progress, "certifying", move |progress| -> Result<Pool, Error> {
         let certificates = sscc::Certificates::compute(&loaded.model, &options, progress)?;
-        Pool::of(Certified { loaded, certificates })
+        Pool::of(CertifiedModel { loaded, certificates })
     })?;
     let pool = pool.map_err(|error| refused(&error, ""))?;
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })

@@ -63,7 +63,7 @@ pub fn warn(py: Python<'_>, notes: &[String]) -> PyResult<()> {
     })
 }
 
-/// Returns an empty vector with space for `count` entries, or a `MemoryError`: the caller of Python controls the size.
+/// Returns an empty vector with space for `count` entries, or a `MemoryError`: a Python argument sets the size.
 pub fn room<T>(count: usize, what: &str) -> PyResult<Vec<T>> {
     let mut vec = Vec::new();
     match vec.try_reserve_exact(count) {

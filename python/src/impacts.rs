@@ -3,17 +3,18 @@
 use pyo3::prelude::*;
 use sscc::{Impact, Pair, Statistics};
 
-use crate::answer::{Pickled, Reduced, pickled, unpickled};
-use crate::arrays::{Cached, cached, line, pairs};
+use crate::answer::{PickledAnswer, Reduction, pickled, unpickled};
+use crate::arrays::{CachedArray, cached, line, pairs};
 use crate::errors::{kind, value};
 
 #[pyclass(frozen, module = "sscc", name = "Impacts")]
 pub struct Impacts {
     /// The pairs, the norm and the cost.
-    found: sscc::Answer,
+    answer: sscc::Answer,
+    /// The time of impact of each pair.
     times: Vec<f64>,
-    pairs_array: Cached,
-    times_array: Cached,
+    pairs_array: CachedArray,
+    times_array: CachedArray,
 }
 
 impl Impacts {
@@ -23,8 +24,8 @@ impl Impacts {
         Self::from_parts(sscc::Answer { pairs, norm, statistics }, times)
     }
 
-    fn from_parts(found: sscc::Answer, times: Vec<f64>) -> Self {
-        Self { found, times, pairs_array: Cached::new(), times_array: Cached::new() }
+    fn from_parts(answer: sscc::Answer, times: Vec<f64>) -> Self {
+        Self { answer, times, pairs_array: CachedArray::new(), times_array: CachedArray::new() }
     }
 }
 
@@ -32,7 +33,7 @@ impl Impacts {
 impl Impacts {
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        cached(py, &self.pairs_array, || pairs(py, &self.found.pairs))
+        cached(py, &self.pairs_array, || pairs(py, &self.answer.pairs))
     }
 
     #[getter]
@@ -57,49 +58,49 @@ impl Impacts {
 
     #[getter]
     fn norm(&self) -> f64 {
-        self.found.norm
+        self.answer.norm
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        self.found.statistics.complete
+        self.answer.statistics.complete
     }
 
     #[getter]
     fn root_certified(&self) -> bool {
-        self.found.statistics.root_certified
+        self.answer.statistics.root_certified
     }
 
     #[getter]
     fn opened(&self) -> u64 {
-        self.found.statistics.opened
+        self.answer.statistics.opened
     }
 
     #[getter]
     fn box_tests(&self) -> u64 {
-        self.found.statistics.box_tests
+        self.answer.statistics.box_tests
     }
 
     #[getter]
     fn triangle_tests(&self) -> u64 {
-        self.found.statistics.triangle_tests
+        self.answer.statistics.triangle_tests
     }
 
     fn __bool__(&self) -> PyResult<bool> {
-        Err(kind("impacts are neither true nor false: ask for .colliding"))
+        Err(kind("Impacts are neither true nor false: use .colliding"))
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        self.found == other.found && self.times == other.times
+        self.answer == other.answer && self.times == other.times
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Pickled<'py>, Vec<f64>)>> {
-        Ok((py.import("sscc._sscc")?.getattr("_impacts")?, (pickled(py, &self.found), self.times.clone())))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (PickledAnswer<'py>, Vec<f64>)>> {
+        Ok((py.import("sscc._sscc")?.getattr("_impacts")?, (pickled(py, &self.answer), self.times.clone())))
     }
 
     fn __repr__(&self) -> String {
         match self.time_of_impact() {
-            None => "<sscc.Impacts: free on the whole way>".into(),
+            None => "<sscc.Impacts: free from q0 to q1>".into(),
             Some(time) => format!("<sscc.Impacts: {} pairs, the first at {time:.4}>", self.times.len()),
         }
     }
@@ -107,10 +108,10 @@ impl Impacts {
 
 /// Constructor for pickled impacts.
 #[pyfunction]
-pub fn _impacts(found: Pickled<'_>, times: Vec<f64>) -> PyResult<Impacts> {
-    let found = unpickled(&found)?;
-    if found.pairs.len() != times.len() {
-        return Err(value("the pickled impacts are damaged"));
+pub fn _impacts(answer: PickledAnswer<'_>, times: Vec<f64>) -> PyResult<Impacts> {
+    let answer = unpickled(&answer)?;
+    if answer.pairs.len() != times.len() {
+        return Err(value("the pickled impacts are damaged: pairs and times differ in number"));
     }
-    Ok(Impacts::from_parts(found, times))
+    Ok(Impacts::from_parts(answer, times))
 }

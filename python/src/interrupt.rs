@@ -1,5 +1,6 @@
-//! Ctrl-C and progress. Only the thread that Python called may check signals. During long work on other threads it only
-//! waits; short queries run on it and check signals periodically.
+//! Ctrl-C and progress. Only the thread that Python called may check signals. Long work runs on other threads; the
+//! calling thread waits for it and checks signals. Short queries run on the calling thread and check signals
+//! periodically.
 
 use std::cell::RefCell;
 use std::panic::resume_unwind;
@@ -16,20 +17,21 @@ use sscc::Progress;
 /// Interval between two checks of signals.
 const PERIOD: Duration = Duration::from_millis(50);
 
-/// How long what is to stop is waited for.
-const PATIENCE: Duration = Duration::from_millis(400);
+/// The longest wait for the end of cancelled work.
+const MAX_WAIT: Duration = Duration::from_millis(400);
 
 thread_local! {
-    /// Of the query that this thread is answering: when Python was asked last, and what it said.
-    static CALL: RefCell<Call> = const { RefCell::new(Call { asked: None, raised: None }) };
+    /// The signal checks of the query that this thread answers.
+    static CHECKS: RefCell<SignalChecks> = const { RefCell::new(SignalChecks { last: None, raised: None }) };
 }
 
-struct Call {
-    asked: Option<Instant>,
+/// The time of the last check of signals, and the exception that a signal handler has raised.
+struct SignalChecks {
+    last: Option<Instant>,
     raised: Option<PyErr>,
 }
 
-/// Cancels a query on the thread that Python called when a signal handler raises an exception.
+/// Cancels a query on the thread that Python called, as soon as a signal handler raises an exception.
 pub struct Signals;
 
 impl Progress for Signals {
@@ -37,15 +39,15 @@ impl Progress for Signals {
 
     fn is_cancelled(&self) -> bool {
         let now = Instant::now();
-        let known = CALL.with_borrow_mut(|call| {
-            let is_early = now - *call.asked.get_or_insert(now) < PERIOD;
-            (call.raised.is_some() || is_early).then_some(call.raised.is_some())
+        let known = CHECKS.with_borrow_mut(|checks| {
+            let is_early = now - *checks.last.get_or_insert(now) < PERIOD;
+            (checks.raised.is_some() || is_early).then_some(checks.raised.is_some())
         });
         known.unwrap_or_else(|| {
             // No borrow is active here: a signal handler may run a query of its own.
             let raised = Python::attach(|py| py.check_signals()).err();
             let is_raised = raised.is_some();
-            CALL.set(Call { asked: Some(now), raised });
+            CHECKS.set(SignalChecks { last: Some(now), raised });
             is_raised
         })
     }
@@ -53,15 +55,15 @@ impl Progress for Signals {
 
 /// Runs one query on this thread without the GIL. The error is the exception of a signal handler.
 pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    let outer = CALL.replace(Call { asked: None, raised: None });
+    let outer = CHECKS.replace(SignalChecks { last: None, raised: None });
     let answer = py.detach(work);
-    match CALL.replace(outer).raised {
+    match CHECKS.replace(outer).raised {
         Some(error) => Err(error),
         None => Ok(answer),
     }
 }
 
-/// The progress of work on other threads, and the request to stop.
+/// The progress of work on other threads, and the flag that cancels it.
 #[derive(Default)]
 struct Monitor {
     done: AtomicUsize,
@@ -87,31 +89,32 @@ impl Progress for Monitor {
     }
 }
 
-/// What is told how far work has come, and what is called at its end: what the argument `progress` means.
-struct Shown(Option<(Py<PyAny>, Py<PyAny>)>);
+/// The argument `progress`, as two functions: one receives the finished share of the work, one ends the report. `None`
+/// shows no progress.
+struct Reporter(Option<(Py<PyAny>, Py<PyAny>)>);
 
-impl Shown {
+impl Reporter {
     fn of(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, label: &str) -> PyResult<Self> {
         Ok(Self(py.import("sscc._progress")?.call_method1("start", (progress, label))?.extract()?))
     }
 
-    fn tell(&self, py: Python<'_>, share: f64) -> PyResult<()> {
-        self.0.as_ref().map_or(Ok(()), |(tell, _)| tell.call1(py, (share,)).map(drop))
+    fn report(&self, py: Python<'_>, share: f64) -> PyResult<()> {
+        self.0.as_ref().map_or(Ok(()), |(report, _)| report.call1(py, (share,)).map(drop))
     }
 
     /// Ends the report after success or an error.
     fn close<T>(&self, py: Python<'_>, result: PyResult<T>) -> PyResult<T> {
-        let result = result.and_then(|result| self.tell(py, 1.0).map(|()| result));
+        let result = result.and_then(|result| self.report(py, 1.0).map(|()| result));
         if let Some((_, close)) = &self.0 {
             close.call0(py)?;
         }
         result
     }
 
-    /// Waits for work on another thread, and stops it when a signal or what is told raises something. None if that was
-    /// raised, and the work has not come to its end `patience` later.
-    fn wait<T>(&self, waiting: &Receiver<T>, monitor: &Monitor, patience: Duration) -> PyResult<Option<T>> {
-        let (mut raised, mut told, mut left) = (None, 0.0, patience);
+    /// Waits for work on another thread. An exception of a signal handler or of the reporting function cancels the work
+    /// and is the error, at the latest `max_wait` after the cancellation. `None` if the work ended without a result.
+    fn wait<T>(&self, waiting: &Receiver<T>, monitor: &Monitor, max_wait: Duration) -> PyResult<Option<T>> {
+        let (mut raised, mut reported, mut left) = (None, 0.0, max_wait);
         loop {
             let outcome = waiting.recv_timeout(PERIOD);
             match (outcome, &raised) {
@@ -120,12 +123,12 @@ impl Shown {
                 (Ok(result), None) => return Ok(Some(result)),
                 (Err(RecvTimeoutError::Disconnected), None) => return Ok(None),
                 (Err(RecvTimeoutError::Timeout), None) => {
-                    let share = monitor.share().filter(|share| *share > told);
+                    let share = monitor.share().filter(|share| *share > reported);
                     let outcome = Python::attach(|py| {
                         py.check_signals()?;
-                        share.map_or(Ok(()), |share| self.tell(py, share))
+                        share.map_or(Ok(()), |share| self.report(py, share))
                     });
-                    told = share.unwrap_or(told);
+                    reported = share.unwrap_or(reported);
                     raised = outcome.err();
                     monitor.cancelled.store(raised.is_some(), Ordering::Relaxed);
                 }
@@ -134,16 +137,16 @@ impl Shown {
     }
 }
 
-/// Runs long work on another thread, without the GIL. Meanwhile this thread reports the share done to `progress` (the
-/// argument of that name) and checks signals. An exception of either stops the work and is the error. Work that does
-/// not stop in time continues detached.
+/// Runs long work on another thread, without the GIL. Meanwhile this thread checks signals and reports the finished
+/// share to `progress` (the argument of that name). An exception of either cancels the work and is the error. Work that
+/// does not end in time continues detached.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     label: &str,
     work: impl FnOnce(&dyn Progress) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let shown = Shown::of(py, progress, label)?;
+    let reporter = Reporter::of(py, progress, label)?;
     let result = py.detach(|| {
         let monitor = Arc::new(Monitor::default());
         let (finished, waiting) = channel();
@@ -153,7 +156,7 @@ pub fn run<T: Send + 'static>(
             // The receiver is gone if the work was detached.
             let _ = finished.send(result);
         });
-        match shown.wait(&waiting, &monitor, PATIENCE)? {
+        match reporter.wait(&waiting, &monitor, MAX_WAIT)? {
             Some(result) => Ok(result),
             None => match worker.join() {
                 Err(panic) => resume_unwind(panic),
@@ -161,7 +164,7 @@ pub fn run<T: Send + 'static>(
             },
         }
     });
-    shown.close(py, result)
+    reporter.close(py, result)
 }
 
 /// Like [`run`], for work on borrowed data. It waits for the end of the work, which must stop soon.
@@ -171,7 +174,7 @@ pub fn run_borrowing<T: Send>(
     label: &str,
     work: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> PyResult<T> {
-    let shown = Shown::of(py, progress, label)?;
+    let reporter = Reporter::of(py, progress, label)?;
     let result = py.detach(|| {
         let monitor = Monitor::default();
         thread::scope(|scope| {
@@ -180,7 +183,7 @@ pub fn run_borrowing<T: Send>(
             let worker = scope.spawn(move || {
                 let _ = finished.send(work(monitor));
             });
-            match shown.wait(&waiting, monitor, PATIENCE)? {
+            match reporter.wait(&waiting, monitor, MAX_WAIT)? {
                 Some(result) => Ok(result),
                 None => match worker.join() {
                     Err(panic) => resume_unwind(panic),
@@ -189,5 +192,5 @@ pub fn run_borrowing<T: Send>(
             }
         })
     });
-    shown.close(py, result)
+    reporter.close(py, result)
 }

@@ -28,13 +28,14 @@ impl KineticQuery {
     fn check(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<Answer> {
         let q = vector(q, "q")?;
         let found = answer(py, || {
-            self.kinetic.ask(|query| {
+            self.kinetic.with_query(|query| {
                 let pairs = query.discrete(&q)?.to_vec();
                 Ok(Answer::of(pairs, query.norm(), query.statistics()))
             })
         })?;
-        let found =
-            found.ok_or_else(|| PyRuntimeError::new_err("this query is being asked: take another one"))?;
+        let found = found.ok_or_else(|| {
+            PyRuntimeError::new_err("this thread uses the KineticQuery already: use another one")
+        })?;
         found.map_err(|error: Error| refused(&error, "q"))
     }
 }

@@ -20,8 +20,8 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
             "energy" if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
             "energy" => {
                 return Err(value(format!(
-                    "metric: the model's own is '{}', not 'energy': that of a model with its stiffness, such as \
-                     sscc.modes.linear makes",
+                    "metric: the model's own is '{}', not 'energy': a model with a stiffness has it, such as one \
+                     from sscc.modes.linear",
                     model.metric().kind().name()
                 )));
             }

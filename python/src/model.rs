@@ -14,7 +14,7 @@ use crate::errors::{refused, room, value};
 
 /// A model and the facts that its file states.
 #[derive(Clone)]
-pub struct Loaded {
+pub struct LoadedModel {
     pub model: ReducedModel,
     pub info: ModelInfo,
     pub default_q: Option<Vec<f64>>,
@@ -23,8 +23,8 @@ pub struct Loaded {
     pub is_split: bool,
 }
 
-impl Loaded {
-    /// A model that no file is known of.
+impl LoadedModel {
+    /// Returns a model without an initial q and without names of modes.
     pub fn new(model: ReducedModel, info: ModelInfo, is_split: bool) -> Self {
         Self { model, info, default_q: None, mode_names: Vec::new(), is_split }
     }
@@ -32,11 +32,11 @@ impl Loaded {
 
 #[pyclass(frozen, module = "sscc", name = "Model")]
 pub struct Model {
-    pub loaded: Arc<Loaded>,
+    pub loaded: Arc<LoadedModel>,
 }
 
 impl Model {
-    pub fn of(loaded: Loaded) -> Self {
+    pub fn of(loaded: LoadedModel) -> Self {
         Self { loaded: Arc::new(loaded) }
     }
 
@@ -50,7 +50,7 @@ pub fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<T
     mesh_of(points(&floats(vertices, "vertices")?, "vertices")?, "vertices", faces)
 }
 
-/// Returns a mesh of these vertices, which come from the argument `name`, and faces (F, 3).
+/// Returns a mesh from vertices and faces (F, 3); `name` is the argument of the vertices.
 pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
     let corners = integers(faces, "faces")?;
     if corners.ndim() != 2 || corners.shape()[1] != 3 {

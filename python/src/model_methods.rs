@@ -8,14 +8,14 @@ use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
 
-use crate::answer::Reduced;
+use crate::answer::Reduction;
 use crate::arguments::{check_ending, path};
 use crate::arrays::{floats, line, table, vector};
 use crate::certificates::Certificates;
 use crate::certify;
 use crate::errors::{file, kind, refused, room, value};
 use crate::metric::{factor, read_metric};
-use crate::model::{Loaded, Model, mesh};
+use crate::model::{LoadedModel, Model, mesh};
 
 #[pymethods]
 impl Model {
@@ -37,7 +37,7 @@ impl Model {
             }
             None => model,
         };
-        Ok(Self::of(Loaded::new(model, ModelInfo::default(), false)))
+        Ok(Self::of(LoadedModel::new(model, ModelInfo::default(), false)))
     }
 
     #[classmethod]
@@ -53,10 +53,10 @@ impl Model {
         let modes = modes.map(|modes| self::path(modes, "modes")).transpose()?;
         let read = py.detach(|| load_model_with(&path, &LoadOptions::new(modes.as_deref(), mesh_name)));
         let read = read.map_err(|error| file(&error))?;
-        Ok(Self::of(Loaded {
+        Ok(Self::of(LoadedModel {
             default_q: read.default_q,
             mode_names: read.mode_names,
-            ..Loaded::new(read.model, read.info, splits_vertices(&path))
+            ..LoadedModel::new(read.model, read.info, splits_vertices(&path))
         }))
     }
 
@@ -84,7 +84,7 @@ impl Model {
         threads: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Certificates> {
-        let typed = certify::Typed {
+        let arguments = certify::CertifyArguments {
             epsilon,
             metric,
             center,
@@ -96,10 +96,10 @@ impl Model {
             max_exceptions,
             threads,
         };
-        certify::certify(slf, &typed, progress)
+        certify::certify(slf, &arguments, progress)
     }
 
-    /// The vertices at q, (V, 3): exactly the positions that all queries test.
+    /// The vertices at q, (V, 3): the positions that all queries test, bit for bit.
     fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let q = vector(q, "q")?;
         let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
@@ -167,7 +167,7 @@ impl Model {
         table(py, self.core().rank(), elasticity.stiffness().entries().to_vec()).map(Some)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduction<'py, Bound<'py, PyTuple>>> {
         let py = slf.py();
         let loaded = &slf.get().loaded;
         let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;
@@ -196,7 +196,7 @@ pub fn _model(
     is_split: bool,
 ) -> PyResult<Model> {
     let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
-    Ok(Model::of(Loaded { default_q, mode_names, ..Loaded::new(model, info, is_split) }))
+    Ok(Model::of(LoadedModel { default_q, mode_names, ..LoadedModel::new(model, info, is_split) }))
 }
 
 /// Returns modes for this number of vertices from an array in one of the shapes that the command accepts.

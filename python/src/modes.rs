@@ -18,7 +18,7 @@ use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
 use crate::errors::{file, kind, room, value, warn};
 use crate::interrupt::run;
-use crate::model::{Loaded, Model, mesh, mesh_of, points};
+use crate::model::{LoadedModel, Model, mesh, mesh_of, points};
 use crate::pool::{self, on_threads};
 
 /// A mesh or solid in a file, or a surface as `(vertices, faces)`.
@@ -85,23 +85,23 @@ pub fn _elastic(
     ];
     let kind = choice(Some(kind), "kind", &kinds)?.unwrap_or(ModesKind::Linear);
     let source = Source::of(source)?;
-    let mut wanted = Wanted {
+    let mut options = BodyOptions {
         rank: count(rank, "rank", 1..=500)?,
         material: read_material(&material)?,
         resolution: count(resolution, "resolution", 1..=2000)?,
-        ..Wanted::default()
+        ..BodyOptions::default()
     };
     if let Some(fix) = fix {
-        wanted.fixed = vertex_numbers(fix)?;
+        options.fixed = vertex_numbers(fix)?;
     }
     if let Some(corners) = fix_box {
         let corners = points(&floats(corners, "fix_box")?, "fix_box")?;
         let [a, b] = corners[..] else {
             return Err(value(format!("fix_box has {} rows: two corners were expected", corners.len())));
         };
-        wanted.fixed_box = Some([a, b]);
+        options.fixed_box = Some([a, b]);
     }
-    made(py, source, threads, progress, move |source, progress| elastic(source, kind, wanted, progress))
+    compute(py, source, threads, progress, move |source, progress| elastic(source, kind, options, progress))
 }
 
 /// Polynomial modes of a surface. A solid in a file adds its stiffness.
@@ -112,9 +112,9 @@ pub fn _polynomial(
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
-    made(py, Source::of(source)?, threads, progress, |source, progress| match source {
+    compute(py, Source::of(source)?, threads, progress, |source, progress| match source {
         Source::File(path) if is_solid(path) => {
-            elastic(source, ModesKind::Polynomial, Wanted::default(), progress)
+            elastic(source, ModesKind::Polynomial, BodyOptions::default(), progress)
         }
         Source::File(path) => Ok((polynomial_model(read_mesh(path)?, &source.name())?, None)),
         Source::Surface(mesh) => Ok((polynomial_model(mesh.clone(), &source.name())?, None)),
@@ -123,7 +123,7 @@ pub fn _polynomial(
 
 /// The options of an elastic body, apart from the kind of its modes.
 #[derive(Default)]
-struct Wanted {
+struct BodyOptions {
     rank: Option<usize>,
     material: PartialMaterial,
     /// Fixed vertices, and a box in which all are fixed.
@@ -136,10 +136,10 @@ struct Wanted {
 fn elastic(
     source: &Source,
     kind: ModesKind,
-    wanted: Wanted,
+    options: BodyOptions,
     progress: &dyn Progress,
 ) -> Result<(NewModel, Option<String>), SimError> {
-    let Wanted { rank, material, fixed, fixed_box, resolution } = wanted;
+    let BodyOptions { rank, material, fixed, fixed_box, resolution } = options;
     let solid = match source {
         Source::File(path) => SolidSource::read(path, resolution, &material, progress)?,
         Source::Surface(mesh) => SolidSource::around(mesh.clone(), resolution, &material, progress)?,
@@ -151,7 +151,7 @@ fn elastic(
     if let Some([a, b]) = fixed_box {
         let within = solid.within(a.min(b), a.max(b));
         if within.is_empty() {
-            return Err(SimError::refused("fix_box", "no vertex is there"));
+            return Err(SimError::refused("fix_box", "no vertex is in the box"));
         }
         held.extend(within);
     }
@@ -161,8 +161,8 @@ fn elastic(
     Ok((elastic_model(kind, rank, solid, &held, &source.name(), progress)?, note))
 }
 
-/// Makes a model on other threads, and issues the note on it.
-fn made(
+/// Computes a model on other threads, and issues the note on its file as a warning.
+fn compute(
     py: Python<'_>,
     source: Source,
     threads: Option<&Bound<'_, PyAny>>,
@@ -172,15 +172,11 @@ fn made(
     let threads = pool::threads(threads)?;
     let source = Arc::new(source);
     let of_worker = Arc::clone(&source);
-    let made =
+    let model =
         run(py, progress, "modes", move |progress| on_threads(threads, || make(&of_worker, progress)))?;
-    let (made, note) = made.map_err(|error| source.refused(&error))?;
+    let (model, note) = model.map_err(|error| source.refused(&error))?;
     warn(py, note.as_slice())?;
-    Ok(loaded(made))
-}
-
-fn loaded(made: NewModel) -> Model {
-    Model::of(Loaded::new(made.model, made.info, made.is_split))
+    Ok(Model::of(LoadedModel::new(model.model, model.info, model.is_split)))
 }
 
 fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<PartialMaterial> {
@@ -205,7 +201,7 @@ fn vertex_numbers(any: &Bound<'_, PyAny>) -> PyResult<Vec<u32>> {
     array.as_slice()?.iter().enumerate().map(number).collect()
 }
 
-/// The mean and the principal components of shapes.
+/// Model of the mean and the principal components of shapes.
 #[pyfunction]
 pub fn _pca(
     py: Python<'_>,
@@ -219,7 +215,7 @@ pub fn _pca(
     let threads = pool::threads(threads)?;
     let (mesh, frames, name, is_split) = if let Ok(folder) = shapes.extract::<PathBuf>() {
         if faces.is_some() {
-            return Err(value("faces: the meshes of a folder have their own"));
+            return Err(value("faces: the meshes of a folder have their own: leave faces out"));
         }
         let frames = py.detach(|| read_frames(&folder)).map_err(|error| file(&error))?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -236,15 +232,15 @@ pub fn _pca(
         on_threads(threads, || pca_model(&mesh, &frames, rank, &name, progress))
     })?;
     let found = found.map_err(|error| value(format!("shapes: {error}")))?;
-    Ok(Model::of(Loaded::new(found.model, found.info, is_split)))
+    Ok(Model::of(LoadedModel::new(found.model, found.info, is_split)))
 }
 
-/// Shapes from an array (n, V, 3) or (n, 3V).
+/// Returns the shapes in an array (n, V, 3) or (n, 3V).
 fn read_shapes(any: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<DVec3>>> {
     let array = floats(any, "shapes")?;
     let entries = match *array.shape() {
         [_, _, 3] => array.shape()[1] * 3,
-        // One shape (V, 3) is none of one vertex each.
+        // (V, 3) is one shape, not V shapes of one vertex.
         [_, entries] if entries % 3 == 0 && entries != 3 => entries,
         _ => {
             return Err(value(format!(

@@ -8,16 +8,16 @@ use self_cell::self_cell;
 use sscc::{Certificates, Error, KineticQuery, Query};
 
 use crate::interrupt::Signals;
-use crate::model::Loaded;
+use crate::model::LoadedModel;
 
-/// What queries are asked of.
-pub struct Certified {
-    pub loaded: Arc<Loaded>,
+/// A model and its certificates, which queries borrow.
+pub struct CertifiedModel {
+    pub loaded: Arc<LoadedModel>,
     pub certificates: Certificates,
 }
 
 pub struct Queries<'a> {
-    /// The query that others are cloned from.
+    /// The query from which the others are cloned.
     first: Query<'a>,
     /// Queries that are not in use.
     idle: Mutex<Vec<Query<'a>>>,
@@ -26,7 +26,7 @@ pub struct Queries<'a> {
 self_cell!(
     /// Certificates, and queries that borrow them.
     pub struct Pool {
-        owner: Certified,
+        owner: CertifiedModel,
 
         #[not_covariant]
         dependent: Queries,
@@ -35,7 +35,7 @@ self_cell!(
 
 impl Pool {
     /// Refuses certificates of another model.
-    pub fn of(certified: Certified) -> Result<Self, Error> {
+    pub fn of(certified: CertifiedModel) -> Result<Self, Error> {
         Self::try_new(certified, |certified| {
             let first = Query::new(&certified.loaded.model, &certified.certificates)?.cancelled_by(&Signals);
             Ok(Queries { first, idle: Mutex::default() })
@@ -44,17 +44,17 @@ impl Pool {
 
     /// Runs a function on a query that no other thread uses.
     #[inline]
-    pub fn ask<T>(&self, ask: impl FnOnce(&mut Query<'_>) -> T) -> T {
+    pub fn with_query<T>(&self, with: impl FnOnce(&mut Query<'_>) -> T) -> T {
         self.with_dependent(|_, queries| {
             let idle = lock(&queries.idle).pop();
             let mut query = idle.unwrap_or_else(|| queries.first.clone());
-            let answer = ask(&mut query);
+            let answer = with(&mut query);
             lock(&queries.idle).push(query);
             answer
         })
     }
 
-    /// Runs a function on the query that others are cloned from.
+    /// Runs a function on the query from which the others are cloned.
     pub fn with_first<T>(&self, with: impl FnOnce(&Query<'_>) -> T) -> T {
         self.with_dependent(|_, queries| with(&queries.first))
     }
@@ -66,39 +66,40 @@ self_cell!(
         owner: Arc<Pool>,
 
         #[not_covariant]
-        dependent: Steps,
+        dependent: KineticState,
     }
 );
 
-pub struct Steps<'a> {
+pub struct KineticState<'a> {
     query: Mutex<KineticQuery<'a>>,
-    /// The thread that asks it now.
-    asker: Mutex<Option<ThreadId>>,
+    /// The thread that uses the query now.
+    user: Mutex<Option<ThreadId>>,
 }
 
 impl Kinetic {
     pub fn of(pool: Arc<Pool>) -> Result<Self, Error> {
         Self::try_new(pool, |pool| {
-            let Certified { loaded, certificates } = pool.borrow_owner();
+            let CertifiedModel { loaded, certificates } = pool.borrow_owner();
             let query = KineticQuery::new(&loaded.model, certificates)?.cancelled_by(&Signals);
-            Ok(Steps { query: Mutex::new(query), asker: Mutex::default() })
+            Ok(KineticState { query: Mutex::new(query), user: Mutex::default() })
         })
     }
 
-    /// Asks it; who comes meanwhile waits. Not to be called with the GIL: who holds the query may wait for that. None
-    /// if this thread is asking it already: what handles a signal would wait for itself.
-    pub fn ask<T>(&self, ask: impl FnOnce(&mut KineticQuery<'_>) -> T) -> Option<T> {
+    /// Runs a function on the query; other threads wait meanwhile. Returns `None` if this thread already uses the
+    /// query: a signal handler would wait for its own thread. Call it without the GIL, because the thread that uses the
+    /// query may wait for the GIL.
+    pub fn with_query<T>(&self, with: impl FnOnce(&mut KineticQuery<'_>) -> T) -> Option<T> {
         let here = Some(thread::current().id());
-        self.with_dependent(|_, steps| {
-            let mut query = match steps.query.try_lock() {
-                Err(TryLockError::WouldBlock) if *lock(&steps.asker) == here => return None,
-                Err(TryLockError::WouldBlock) => lock(&steps.query),
+        self.with_dependent(|_, state| {
+            let mut query = match state.query.try_lock() {
+                Err(TryLockError::WouldBlock) if *lock(&state.user) == here => return None,
+                Err(TryLockError::WouldBlock) => lock(&state.query),
                 Ok(query) => query,
                 Err(TryLockError::Poisoned(query)) => query.into_inner(),
             };
-            *lock(&steps.asker) = here;
-            let answer = ask(&mut query);
-            *lock(&steps.asker) = None;
+            *lock(&state.user) = here;
+            let answer = with(&mut query);
+            *lock(&state.user) = None;
             Some(answer)
         })
     }

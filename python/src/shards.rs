@@ -11,14 +11,14 @@ use crate::arguments::count;
 use crate::arrays::{floats, table};
 use crate::batch::{Batch, checked_entries};
 use crate::certificates::Certificates;
-use crate::certify::Typed;
+use crate::certify::CertifyArguments;
 use crate::errors::{kind, refused};
 use crate::interrupt::{Signals, answer};
 use crate::model::Model;
-use crate::pool::{Certified, Pool};
+use crate::pool::{CertifiedModel, Pool};
 
 /// The keywords of `Model.certify`, except `progress`.
-const NAMES: [&str; 10] = [
+const KEYWORDS: [&str; 10] = [
     "epsilon",
     "metric",
     "center",
@@ -31,29 +31,29 @@ const NAMES: [&str; 10] = [
     "threads",
 ];
 
-fn check_names(typed: &Bound<'_, PyDict>) -> PyResult<()> {
-    for name in typed.keys() {
+fn check_names(keywords: &Bound<'_, PyDict>) -> PyResult<()> {
+    for name in keywords.keys() {
         let name: String = name.extract()?;
-        if !NAMES.contains(&name.as_str()) {
-            return Err(kind(format!("'{name}' is no option: there are {}", NAMES.join(", "))));
+        if !KEYWORDS.contains(&name.as_str()) {
+            return Err(kind(format!("'{name}' is not an option: use one of {}", KEYWORDS.join(", "))));
         }
     }
     Ok(())
 }
 
-/// What was typed as keywords of `certify`, and what it means for this model.
-fn options(model: &Bound<'_, Model>, typed: &Bound<'_, PyDict>) -> PyResult<CertifyOptions> {
-    check_names(typed)?;
-    let mut found = Vec::with_capacity(NAMES.len());
-    for name in NAMES {
-        found.push(typed.get_item(name)?.filter(|any| !any.is_none()));
+/// Returns the options of the core for this model from the keywords of `Model.certify`.
+fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<CertifyOptions> {
+    check_names(keywords)?;
+    let mut found = Vec::with_capacity(KEYWORDS.len());
+    for name in KEYWORDS {
+        found.push(keywords.get_item(name)?.filter(|any| !any.is_none()));
     }
     let [epsilon, metric, center, scheme, budget, neighbours, weld, ignore_rest, max_exceptions, threads] =
         &found[..]
     else {
-        return Err(kind("options"));
+        return Err(kind("options: certify has other keywords"));
     };
-    let typed = Typed {
+    let arguments = CertifyArguments {
         epsilon: epsilon.as_ref(),
         metric: metric.as_ref(),
         center: center.as_ref(),
@@ -65,15 +65,15 @@ fn options(model: &Bound<'_, Model>, typed: &Bound<'_, PyDict>) -> PyResult<Cert
         max_exceptions: max_exceptions.as_ref(),
         threads: threads.as_ref(),
     };
-    typed.options(&model.get().loaded)
+    arguments.options(&model.get().loaded)
 }
 
 /// Checks options as `Model.certify` does, without computing anything. Without a model it checks only their names.
 #[pyfunction]
-pub fn _check_options(model: Option<&Bound<'_, Model>>, typed: &Bound<'_, PyDict>) -> PyResult<()> {
+pub fn _check_options(model: Option<&Bound<'_, Model>>, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
     match model {
-        Some(model) => options(model, typed).map(|_| ()),
-        None => check_names(typed),
+        Some(model) => options(model, keywords).map(|_| ()),
+        None => check_names(keywords),
     }
 }
 
@@ -86,8 +86,8 @@ pub struct ShardWorker {
 #[pymethods]
 impl ShardWorker {
     #[new]
-    fn new(py: Python<'_>, model: &Bound<'_, Model>, typed: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let options = options(model, typed)?;
+    fn new(py: Python<'_>, model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let options = options(model, keywords)?;
         let loaded = Arc::clone(&model.get().loaded);
         let core = answer(py, || sscc::ShardWorker::new(&loaded.model, &options, &Signals))?;
         Ok(Self { core: core.map_err(|error| refused(&error, ""))? })
@@ -100,7 +100,7 @@ impl ShardWorker {
     }
 }
 
-/// The share done, as the bits of a float. Ctrl-C cancels as in queries.
+/// The finished share of the work, as the bits of a float. Ctrl-C cancels the work as it cancels queries.
 #[derive(Default)]
 struct Share(AtomicU64);
 
@@ -115,22 +115,23 @@ impl Progress for Share {
     }
 }
 
-/// `Model.certify` by jobs. `run(jobs, share)` runs a list of jobs and receives the share done.
+/// `Model.certify` by jobs. `run(jobs, share)` returns the results of a list of jobs; `share` is the finished share of
+/// the work.
 #[pyfunction]
 pub fn _certify_in_shards(
     py: Python<'_>,
     model: &Bound<'_, Model>,
-    typed: &Bound<'_, PyDict>,
+    keywords: &Bound<'_, PyDict>,
     shards: &Bound<'_, PyAny>,
     run: Py<PyAny>,
 ) -> PyResult<Certificates> {
-    let options = options(model, typed)?;
+    let options = options(model, keywords)?;
     let shards = count(Some(shards), "shards", 1..=1 << 20)?.unwrap_or(1);
     let loaded = Arc::clone(&model.get().loaded);
     let mut raised = None;
     let computed = answer(py, || {
         let share = Share::default();
-        let mut elsewhere = |jobs: Vec<Vec<u8>>| {
+        let mut run_jobs = |jobs: Vec<Vec<u8>>| {
             let call = |py: Python<'_>| -> PyResult<Vec<Vec<u8>>> {
                 let jobs = PyList::new(py, jobs.iter().map(|job| PyBytes::new(py, job)))?;
                 let share = f64::from_bits(share.0.load(Ordering::Relaxed));
@@ -146,8 +147,8 @@ pub fn _certify_in_shards(
             })
         };
         let certificates =
-            sscc::Certificates::compute_in_shards(&loaded.model, &options, shards, &mut elsewhere, &share)?;
-        Pool::of(Certified { loaded: Arc::clone(&loaded), certificates })
+            sscc::Certificates::compute_in_shards(&loaded.model, &options, shards, &mut run_jobs, &share)?;
+        Pool::of(CertifiedModel { loaded: Arc::clone(&loaded), certificates })
     })?;
     if let Some(error) = raised {
         return Err(error);
@@ -174,7 +175,7 @@ pub fn _joined(batches: Vec<Bound<'_, Batch>>) -> Batch {
     Batch::of(batches.iter().flat_map(|batch| batch.get().answers.clone()).collect())
 }
 
-/// The version and the hash of the core's source. Results of equal builds may be mixed.
+/// Returns the version and the hash of the core's source. Results of equal builds may be mixed.
 #[pyfunction]
 pub fn _build() -> &'static str {
     sscc::BUILD

@@ -1,4 +1,4 @@
-//! `sscc.simulate`: the part in Rust.
+//! The part of `sscc.simulate` in Rust: its arguments, and the files that it writes.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};

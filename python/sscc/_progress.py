@@ -1,4 +1,4 @@
-"""What the argument ``progress`` of long calls means."""
+"""The argument ``progress`` of long calls."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import sys
 import time
 from collections.abc import Callable
 
-#: Work shorter than this (seconds) shows no bar.
-PATIENCE = 0.5
+#: Shorter work shows no bar (seconds).
+MIN_SECONDS = 0.5
+#: Characters of the bar.
 WIDTH = 30
 
 
 class Bar:
-    """A bar on standard error, which appears when the work takes long."""
+    """A bar on standard error, for work that takes long."""
 
     def __init__(self, label: str) -> None:
         self.label = label
@@ -21,7 +22,7 @@ class Bar:
 
     def __call__(self, share: float) -> None:
         seconds = time.monotonic() - self.start
-        if seconds < PATIENCE and not self.shown:
+        if seconds < MIN_SECONDS and not self.shown:
             return
         self.shown = True
         done = int(share * WIDTH)
@@ -34,24 +35,25 @@ class Bar:
             sys.stderr.write("\n")
 
 
-def is_watched() -> bool:
-    """Whether somebody looks at standard error: a terminal or a notebook."""
+def is_interactive() -> bool:
+    """Whether standard error is a terminal or belongs to a notebook."""
     if sys.stderr is None:
         return False
     if sys.stderr.isatty():
         return True
-    # Whoever is in a notebook has imported IPython.
+    # A notebook has imported IPython.
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return type(shell).__name__ == "ZMQInteractiveShell"
 
 
-Tell = Callable[[float], object]
+#: Receives the finished share of the work, from 0 to 1.
+Report = Callable[[float], object]
 
 
-def start(progress: Tell | bool | None, label: str) -> tuple[Tell, Callable[[], object]] | None:
-    """What is to be told the share of the work that is done, if anything, and what is to be called at its end."""
-    if progress is False or progress is None and not is_watched():
+def start(progress: Report | bool | None, label: str) -> tuple[Report, Callable[[], object]] | None:
+    """Returns two functions: one receives the finished share, one ends the report. None for no report."""
+    if progress is False or progress is None and not is_interactive():
         return None
     if progress is None or progress is True:
         bar = Bar(label)

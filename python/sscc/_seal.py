@@ -1,8 +1,7 @@
-"""How results that come from other processes are sealed.
+"""Seals of results that other processes compute.
 
-A result is taken only if it arrived whole, and if its key is the one expected: the key is made, on both sides, of the
-build, of what was worked on and of the options. (A worker that lies is not found out: workers are trusted as this
-process is.)
+A result is accepted only if it is complete and has the expected key. Both sides compute the key from the build, the
+model and the options. Seals find damage and mix-ups. They do not detect workers that lie: workers are trusted.
 """
 
 from __future__ import annotations
@@ -26,19 +25,19 @@ def _hash(parts: tuple[bytes, ...]) -> bytes:
 
 
 def key(task: str, *parts: bytes) -> bytes:
-    """What a result must be of."""
+    """Returns the key of the results of a task on these data."""
     return _hash((_build().encode(), task.encode(), *parts))
 
 
 def options_bytes(options: Mapping[str, object]) -> bytes:
-    """Options as bytes: the same for the same values."""
+    """Returns options as bytes, the same for equal values."""
     written = b""
     for name, value in sorted(options.items()):
         if isinstance(value, (np.ndarray, list, tuple)):
             array = np.ascontiguousarray(value)
             text = f"{name}: {array.dtype} {array.shape} ".encode() + array.tobytes()
         else:
-            # Numbers of NumPy are written differently by its versions.
+            # The text of NumPy's numbers depends on its version.
             plain = value.item() if isinstance(value, np.generic) else value
             text = f"{name}: {plain!r}".encode()
         written += len(text).to_bytes(8, "little") + text
@@ -46,18 +45,18 @@ def options_bytes(options: Mapping[str, object]) -> bytes:
 
 
 def seal(key: bytes, content: bytes) -> bytes:
-    """The content between its key and a hash of both."""
+    """Returns the key, the content and a hash of both, joined."""
     return key + content + _hash((key, content))
 
 
 def unseal(key: bytes, sealed: bytes) -> bytes:
-    """The content, if it arrived whole and is of this key."""
+    """Returns the content. Raises ValueError if it is damaged or has another key."""
     found, content, hashed = sealed[:_SIZE], sealed[_SIZE:-_SIZE], sealed[-_SIZE:]
     if len(sealed) < 2 * _SIZE or _hash((found, content)) != hashed:
-        raise ValueError("a result is damaged: it was cut off or changed on its way")
+        raise ValueError("a result is damaged: it was truncated or changed in transfer")
     if found != key:
         raise ValueError(
-            f"a result is of another model, other options or another build of sscc (here {_build()}): "
-            "install the same version everywhere"
+            f"a result belongs to another model, other options or another build of sscc (this process has {_build()}): "
+            "install the same version on all machines"
         )
     return content

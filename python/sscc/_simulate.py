@@ -16,9 +16,9 @@ class Simulation(NamedTuple):
     summary: dict[str, Any]
     """The keys of ``sscc simulate --json``."""
     folder: Path
-    """Where its results are."""
+    """The folder of the results."""
     files: list[Path]
-    """What was written: motions (``.npz``), an animation (``.glb``), a report (``.html``), sound."""
+    """The written files: motions (``.npz``), an animation (``.glb``), a report (``.html``), sound."""
 
 
 def simulate(
@@ -31,16 +31,19 @@ def simulate(
     cache: str | PathLike[str] | None = None,
     threads: int | None = None,
 ) -> Simulation:
-    """Lets the bodies of a scene move, as ``sscc simulate`` does.
+    """Simulates the bodies of a scene, as ``sscc simulate`` does.
 
     scene: a ``.toml`` file, or the name of a scene that comes with the package, such as "spring".
-    out: the folder to write to; None: the scene's name. A run that was stopped goes on from there.
-    steps: how many from the beginning; None: those of the scene. ``restart`` begins again.
-    models, cache: the folder of real models; where models and certificates are kept from run to run.
+    out: the folder to write to; None: the scene's name. A stopped run in this folder is resumed.
+    steps: number of steps from the beginning; None: the scene's number.
+    restart: True: simulate from the beginning, also if the folder has a stopped run.
+    models: the folder of real models.
+    cache: the folder that keeps models and certificates between runs.
+    threads: None: all cores.
 
-    A bar shows the progress of the steps, on a terminal or in a notebook. Ctrl-C stops after the step at hand; what was
-    simulated until then is written, and the same call continues from there. Several threads may simulate at the same
-    time, each in a folder of its own. Raises FileNotFoundError, OSError, ValueError.
+    A bar shows the progress of the steps on a terminal or in a notebook. Ctrl-C stops the simulation after the current
+    step and writes the steps until then; the same call resumes it. Several threads may simulate at the same time, each
+    in a folder of its own. Raises FileNotFoundError, OSError, ValueError.
     """
     summary, folder, files = _simulate(scene, out, steps, restart, models, cache, threads)
     return Simulation(json.loads(summary), Path(folder), [Path(file) for file in files])

@@ -21,15 +21,15 @@ _F64 = NDArray[np.float64]
 class Model:
     """A triangle mesh and its deformation modes: at q the shape is ``x = p + U q``.
 
-    Arrays may have any memory order and byte order, and be of float64, float32 or integers; lists of numbers do, too.
-    NaN, infinities, masked arrays and other types are refused.
+    Arrays are float64, float32, float16 or integers, in any memory and byte order, or lists of numbers. They are
+    copied. NaN, infinities, masked arrays and other types are refused.
 
     vertices: (V, 3), rest positions p in any unit of length.
     faces: (F, 3) integers, vertex numbers counted from 0.
     modes: U as (3V, r), (V, 3, r) or (r, V, 3): the displacement of each vertex for a unit of each entry of q.
-    metric: how modes weigh in ``norm``: a name, weights (r,) or a matrix (r, r); None: "displacement".
+    metric: the weights of modes in norms: a name, weights (r,) or a matrix (r, r); None: "displacement".
 
-    Raises TypeError or ValueError, whose message names the argument and the row.
+    Raises TypeError or ValueError; the message names the argument and the row.
     """
 
     def __new__(
@@ -59,21 +59,22 @@ class Model:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> Certificates:
-        """Computes certificates: once for a model. The same for any number of ``threads`` (None: all cores).
+        """Computes certificates, once for a model.
 
-        epsilon: relative error allowed of the root's radius (0.1).
-        metric: as of the model; None: the model's own.
-        center: the q about which radii are measured (r,); None: 0, the rest pose.
-        scheme: "full" (default) stores pairs of nodes, too, ``budget`` (16) bytes for each triangle; "paper" does not.
-        neighbours: whether triangles that share exactly one vertex count where they meet beside it.
-        weld: whether vertices of equal position and modes are one, for adjacency; None: STL and glTF files.
-        ignore_rest: pairs that collide at rest are left out for good.
-        max_exceptions: how many pairs that collide at the centre may be tested in every query; None: F / 2.
-        progress: a function that is called with the share done, from 0 to 1; True: a bar on standard error; False:
-            nothing; None: a bar in a terminal or notebook. What the function raises stops the work.
+        epsilon: allowed relative error of the root's radius; None: 0.1.
+        metric: as in ``Model``; None: the model's own.
+        center: the q from which radii are measured (r,); None: 0, the rest pose.
+        scheme: "full" (default) stores a pair tree of up to ``budget`` (16) bytes for each triangle; "paper" does not.
+        neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
+        weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
+        ignore_rest: whether pairs that collide at rest never count.
+        max_exceptions: largest number of pairs that collide at the centre and are tested in every query; None: F / 2.
+        threads: None: all cores. The certificates are the same for any number.
+        progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. True: a bar on
+            standard error; False: nothing; None: a bar on a terminal or in a notebook.
         """
     def positions(self, q: ArrayLike) -> _F64:
-        """The vertices at q, (V, 3): exactly the shape that all answers speak of."""
+        """The vertices at q, (V, 3): the shape that all answers are about."""
     @property
     def vertices(self) -> _F64:
         """Rest positions, (V, 3); a copy."""
@@ -88,7 +89,7 @@ class Model:
         """Number of modes r."""
     @property
     def metric(self) -> str:
-        """The name of the default metric: energy, displacement, mass, identity or given."""
+        """The name of the metric: energy, displacement, mass, identity or given."""
     @property
     def metric_factor(self) -> _F64:
         """The factor S of ``norm = |S q|``: its diagonal (r,), or S itself (r, r)."""
@@ -97,22 +98,23 @@ class Model:
         """The unit of length, or empty."""
     @property
     def provenance(self) -> str:
-        """Where mesh and modes come from, or empty."""
+        """The origin of mesh and modes, or empty."""
     @property
     def mode_names(self) -> list[str]:
-        """Names of the modes (r), such as those of morph targets, or none."""
+        """Names of the modes (r), such as those of morph targets; empty if unknown."""
     @property
     def default_q(self) -> _F64:
-        """The q that a glTF file shows when nothing moves it (r,), else 0."""
+        """The default weights of a glTF file (r,); 0 for other models."""
     @property
     def stiffness(self) -> _F64 | None:
-        """The reduced stiffness at rest (r, r), where it is known."""
+        """The reduced stiffness at rest (r, r); None if unknown."""
 
 @final
 class Certificates:
-    """What is proven of a model. Use it from any number of threads at once.
+    """Certificates of a model, and queries. Any number of threads may use them at once.
 
-    All radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
+    ``docs/guarantees.md`` states what each answer proves, and its error. Each call copies its arrays first, so later
+    writes to them change nothing. Radii and norms are lengths ``|S (q - center)|`` in the metric of the certificates.
     """
 
     @classmethod
@@ -121,7 +123,7 @@ class Certificates:
     def save(self, path: _Path) -> None:
         """Writes ``*.sscc.safetensors``, whole or not at all."""
     def check(self, q: ArrayLike, limit: SupportsIndex | None = None) -> Answer:
-        """Which pairs of triangles intersect or touch at q (r,). With ``limit`` at most so many; which is not fixed."""
+        """The pairs of triangles that collide at q (r,). ``limit``: the search ends after this number of pairs."""
     def check_many(
         self,
         Q: ArrayLike,
@@ -130,33 +132,28 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> Batch:
-        """``check`` for every row of Q (n, r), on so many threads (None: all cores). Q is read where it is: do not
-        write to it meanwhile."""
+        """``check`` for every row of Q (n, r). ``threads``: None: all cores. ``progress``: as in ``Model.certify``."""
     def continuous(self, q0: ArrayLike, q1: ArrayLike) -> Impacts:
-        """Which pairs meet while every vertex moves on a straight line from its place at q0 to that at q1, and when.
-
-        None is missed, and no time is later than the true one; a pair listed without need has come within 1e-12 of its
-        size.
-        """
+        """The pairs that collide between q0 and q1, and when. Each vertex moves on a straight line."""
     def safe_scale(self, q: ArrayLike) -> float:
-        """A scale s: the shape is proven free on the whole way from the centre to ``center + s (q - center)``."""
+        """A scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s."""
     def clamp(self, q: ArrayLike) -> _F64 | None:
-        """q, or the last point on the way from the centre to q that is free by the root's certificate. None where
-        that proves nothing: its radius is 0, or there are exceptions."""
+        """q, or the last point on the line from the centre to q that the root's certificate proves free. None if its
+        radius is 0 or there are exceptions."""
     def norm(self, q: ArrayLike) -> float:
         """``|S (q - center)|``, rounded up."""
     def radius(self, node: SupportsIndex) -> float:
-        """Below this norm no two triangles of the node meet, exceptions apart."""
+        """The norm below which no two triangles of the node collide, apart from exceptions."""
     def kinetic(self) -> KineticQuery:
-        """A query for the small steps of one simulation."""
+        """A query for a sequence of q with small steps."""
     @property
     def model(self) -> Model: ...
     @property
     def root_radius(self) -> float:
-        """Below this norm the whole shape is free, exceptions apart."""
+        """The norm below which the whole shape is free, apart from exceptions."""
     @property
     def global_radius(self) -> float:
-        """Up to here radii are resolved; may be infinite."""
+        """The largest radius: radii are computed up to it. It may be infinite."""
     @property
     def epsilon(self) -> float: ...
     @property
@@ -166,7 +163,7 @@ class Certificates:
         """The factor S: its diagonal (r,), or S itself (r, r)."""
     @property
     def center(self) -> _F64:
-        """(r,)"""
+        """The q from which radii are measured, (r,)."""
     @property
     def neighbours(self) -> str: ...
     @property
@@ -176,28 +173,28 @@ class Certificates:
         """Pairs that never count, (n, 2)."""
     @property
     def exceptions(self) -> _U32:
-        """Pairs that collide at the centre: no radius speaks of them, every query tests them. (n, 2)"""
+        """Pairs that collide at the centre, (n, 2): no radius covers them, and every query tests them."""
     @property
     def rest_collisions(self) -> int:
         """Number of pairs that collide at rest, ignored ones included."""
     @property
     def nodes(self) -> int:
-        """Number of nodes of the hierarchy."""
+        """Number of nodes of the BVH."""
     @property
     def pairs(self) -> int:
-        """Number of pairs of nodes whose radii are stored."""
+        """Number of node pairs with a stored radius."""
     @property
     def pair_limit(self) -> float:
-        """Up to this norm the pairs of nodes are complete; 0 without any."""
+        """The norm below which the pair tree has every node pair that can collide; 0 without a pair tree."""
     @property
     def digest(self) -> str:
-        """BLAKE3 of all that the certificates speak of, in hexadecimal."""
+        """BLAKE3 of the model and the scope of the certificates, in hexadecimal."""
     @property
     def hierarchy(self) -> Hierarchy: ...
 
 @final
 class Hierarchy:
-    """The tree over the triangles. Node n holds ``order[first[n]:first[n] + count[n]]``; node 0 is the root."""
+    """The BVH over the triangles. Node n holds ``order[first[n]:first[n] + count[n]]``; node 0 is the root."""
 
     @property
     def parent(self) -> _I32:
@@ -218,36 +215,36 @@ class Hierarchy:
 
 @final
 class KineticQuery:
-    """``check`` for a q that changes little from call to call: the same answers, at less cost. One caller at a time;
-    others wait."""
+    """``check`` for a q that changes little from call to call: the same answers, at less cost. It serves one call after
+    the other."""
 
     def check(self, q: ArrayLike) -> Answer: ...
 
 @final
 class Answer:
-    """What was found at one q. Not true or false by itself: ask for ``colliding``."""
+    """The result of a query at one q. It is neither true nor false: use ``colliding``."""
 
     @property
     def pairs(self) -> _U32:
         """Colliding pairs (i, j), i < j, sorted: (n, 2), read-only."""
     @property
     def colliding(self) -> bool:
-        """Whether any pair collides; False is a proof."""
+        """Whether any pair collides."""
     @property
     def count(self) -> int:
-        """Number of pairs; a lower bound where not ``complete``."""
+        """Number of pairs; a lower bound if not ``complete``."""
     @property
     def norm(self) -> float:
         """``|S (q - center)|``, rounded up."""
     @property
     def complete(self) -> bool:
-        """Whether the pairs are all; False where ``limit`` stopped the search."""
+        """Whether all pairs are listed; False if ``limit`` stopped the search."""
     @property
     def root_certified(self) -> bool:
-        """Whether one comparison was the proof, exceptions apart."""
+        """Whether one comparison proved the shape free, apart from exceptions."""
     @property
     def opened(self) -> int:
-        """Nodes and pairs of nodes that had to be opened."""
+        """Number of opened nodes and node pairs."""
     @property
     def box_tests(self) -> int: ...
     @property
@@ -255,24 +252,24 @@ class Answer:
 
 @final
 class Impacts:
-    """What meets on the way from one q to another. Not true or false by itself: ask for ``colliding``."""
+    """The result of a continuous query. It is neither true nor false: use ``colliding``."""
 
     @property
     def pairs(self) -> _U32:
-        """Pairs that meet, sorted: (n, 2), read-only."""
+        """Pairs that collide during the motion, sorted: (n, 2), read-only."""
     @property
     def times(self) -> _F64:
-        """When each does, from 0 to 1, never later than the true time: (n,), read-only."""
+        """The time of impact of each pair, from 0 to 1: (n,), read-only."""
     @property
     def time_of_impact(self) -> float | None:
-        """The earliest time; the shape is free before. None: free on the whole way."""
+        """The earliest time of impact; None: the shape is free from q0 to q1."""
     @property
     def colliding(self) -> bool: ...
     @property
     def count(self) -> int: ...
     @property
     def norm(self) -> float:
-        """The larger one of both ends."""
+        """The larger norm of q0 and q1."""
     @property
     def complete(self) -> bool: ...
     @property
@@ -286,7 +283,7 @@ class Impacts:
 
 @final
 class Batch:
-    """The answers to n configurations: arrays with one entry for each (read-only), and ``batch[i]``, an Answer."""
+    """The answers for n configurations: read-only arrays with one entry for each, and ``batch[i]``, an Answer."""
 
     @property
     def colliding(self) -> _Bool: ...
@@ -304,10 +301,10 @@ class Batch:
     def triangle_tests(self) -> _U64: ...
     @property
     def pairs(self) -> _U32:
-        """The pairs of all answers, one after the other: (m, 2)."""
+        """The pairs of all answers, joined: (m, 2)."""
     @property
     def offsets(self) -> _I64:
-        """(n + 1,): those of answer i are ``pairs[offsets[i]:offsets[i + 1]]``."""
+        """(n + 1,): the pairs of answer i are ``pairs[offsets[i]:offsets[i + 1]]``."""
     def __len__(self) -> int: ...
     def __getitem__(self, index: SupportsIndex, /) -> Answer: ...
     def __iter__(self) -> Iterator[Answer]: ...
@@ -340,19 +337,19 @@ def _simulate(
     threads: int | None,
 ) -> tuple[str, str, list[str]]: ...
 
-# For sscc.batch.
+# Used by sscc.batch.
 
 def _certificates(bytes: bytes, model: Model) -> Certificates: ...
 
 @final
 class _ShardWorker:
-    def __new__(cls, model: Model, typed: dict[str, Any]) -> _ShardWorker: ...
+    def __new__(cls, model: Model, keywords: dict[str, Any]) -> _ShardWorker: ...
     def run(self, job: bytes) -> bytes: ...
 
 def _build() -> str: ...
 def _certify_in_shards(
-    model: Model, typed: dict[str, Any], shards: int, run: Callable[[list[bytes], float], list[bytes]]
+    model: Model, keywords: dict[str, Any], shards: int, run: Callable[[list[bytes], float], list[bytes]]
 ) -> Certificates: ...
-def _check_options(model: Model | None, typed: dict[str, Any]) -> None: ...
+def _check_options(model: Model | None, keywords: dict[str, Any]) -> None: ...
 def _configurations(certificates: Certificates, Q: ArrayLike) -> _F64: ...
 def _joined(batches: list[Batch]) -> Batch: ...

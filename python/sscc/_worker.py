@@ -1,4 +1,4 @@
-"""What `sscc.batch` has workers do. Needs no dask."""
+"""Tasks of `sscc.batch`, run by workers. Needs no dask."""
 
 from __future__ import annotations
 
@@ -17,37 +17,37 @@ from sscc._sscc import Certificates, Model, _ShardWorker
 
 
 def as_given(data: bytes) -> bytes:
-    """Data for other tasks."""
+    """Returns the data, for other tasks."""
     return data
 
 
 def certify_whole(model: Model, options: dict[str, Any]) -> bytes:
-    """The certificates of a model, sealed."""
+    """Computes the certificates of a model; returns them sealed."""
     certificates = model.certify(**options, progress=False)
     return seal(key_of_model(model, options), content_of(certificates))
 
 
 def check_chunk(held: bytes, rows: NDArray[np.float64], limit: int | None) -> bytes:
-    """The answers to some rows, pickled and sealed. `held`: the certificates."""
+    """Answers rows of Q; returns the answers pickled and sealed. held: the pickled certificates."""
     certificates, content = _prepared(held, lambda certificates: (certificates, content_of(certificates)))
     answers = certificates.check_many(rows, limit, threads=1, progress=False)
     return seal(key_of_chunk(content, rows, limit), pickle.dumps(answers))
 
 
 def do_job(held: bytes, job: bytes) -> bytes:
-    """The result of a job of one large model, sealed by the core. `held`: the model and its options."""
+    """Returns the result of a job of one large model, which the core seals. held: the pickled model and options."""
     worker: _ShardWorker = _prepared(held, lambda model_and_options: _ShardWorker(*model_and_options))
     return worker.run(job)
 
 
 def content_of(whole: Model | Certificates) -> bytes:
-    """A model or certificates as the bytes of a file."""
+    """Returns a model or certificates as the bytes of their file."""
     content: bytes = _reduced(whole)[0]
     return content
 
 
 def _reduced(whole: Model | Certificates) -> Any:
-    """What is pickled: the bytes of a file first."""
+    """Returns the pickled arguments; the first is the bytes of the file."""
     reduced: Any = whole.__reduce__()
     return reduced[1]
 
@@ -62,13 +62,13 @@ def key_of_chunk(content: bytes, rows: NDArray[np.float64], limit: int | None) -
     return key("check", content, repr(plain).encode(), np.ascontiguousarray(rows).tobytes())
 
 
-#: What this process has prepared last, and for what.
+#: The hash of the object that this process prepared last, and the result.
 _last: tuple[bytes, Any] = (b"", None)
 _preparing = threading.Lock()
 
 
 def _prepared(held: bytes, prepare: Callable[[Any], Any]) -> Any:
-    """What `prepare` makes of the object that is held: made once while it is asked for the same one."""
+    """Returns `prepare` of the pickled object. Computes it again only when the object changes."""
     global _last
     name = hashlib.blake2b(held).digest()
     with _preparing:

@@ -1,8 +1,9 @@
 """Many models, one large model, or many configurations on many machines, by ``dask.distributed``.
 
-Every function takes a ``distributed.Client`` and gives what this process alone would have given, byte for byte. Workers
-need this package and nothing else: models travel to them. What a worker did when it was lost is done again by another
-one. Needs ``pip install './python[dask]'``.
+Every function takes a ``distributed.Client``. Results equal those of one process, byte for byte. Workers need only this
+package: the client sends them the models. Another worker repeats the tasks of a lost worker.
+
+Needs ``pip install './python[dask]'``.
 """
 
 from __future__ import annotations
@@ -36,23 +37,23 @@ except ImportError as _missing:
 
 __all__ = ["Library", "certify", "certify_in_shards", "check"]
 
-#: Models on their way for each thread of the workers: one in work, one waiting.
+#: Models sent for each thread of the workers: one in work, one waiting.
 _WAITING = 2
 
-#: Jobs of one stage for each thread of the workers, so that all are busy to the end.
+#: Jobs of one stage for each thread of the workers, so that all threads have work until the end.
 _JOBS = 4
 
-#: Data travels as the argument of a task, which the scheduler keeps and can give to another worker: no reason to warn.
+#: Turns off a warning: large data are arguments of tasks, so that the scheduler can send them to another worker.
 _LARGE = {"distributed.admin.large-graph-warning-threshold": "1TB"}
 
 
 @dataclass
 class Library:
-    """What became of the models of a library, each under its name, in the order given."""
+    """Results of a library of models, by name, in the given order."""
 
-    #: Certificates of those that were certified.
+    #: Certificates of the certified models.
     certificates: dict[str, Certificates] = field(default_factory=dict)
-    #: Why the others were not. Messages begin with the name.
+    #: Errors of the other models. Messages begin with the name.
     failures: dict[str, Exception] = field(default_factory=dict)
 
 
@@ -65,11 +66,11 @@ def certify(
 ) -> Library:
     """Certifies each model of a library on a worker.
 
-    ``models``: models or files, or a mapping from names to them. Without names a file is named by its path, a model by
-    its place (``models[3]``). Files are read here, when their turn comes. ``options``: as of ``Model.certify``, the
-    same for all; each model is certified on ``threads`` threads, 1 if nothing is said.
+    models: models or files, or a mapping from names to them. Without a mapping, the name of a file is its path, and the
+        name of a model its index (``models[3]``). The client reads each file when its turn comes.
+    progress, options: as in ``Model.certify``; the same for all models. ``threads`` is 1 by default.
 
-    A model that cannot be read or certified fails alone.
+    The error of a model that cannot be read or certified is in ``failures``; the other models are certified.
     """
     _check_client(client)
     options = {"threads": 1, **options}
@@ -82,7 +83,7 @@ def certify(
     shown = _progress.start(progress, "certifying")
 
     def send() -> Future | None:
-        """Sends the next model that can be read."""
+        """Sends the next readable model; returns None after the last."""
         for name in names:
             try:
                 model = _model(named[name])
@@ -126,15 +127,17 @@ def certify(
 def certify_in_shards(
     model: Model, client: Client, *, shards: int | None = None, progress: Any = None, **options: Any
 ) -> Certificates:
-    """Certifies one large model by all workers.
+    """Certifies one large model on all workers.
 
-    The work goes in a few dozen stages, each as at most ``shards`` jobs (if nothing is said, four for each thread of
-    the workers), of one thread each; every number of shards gives the same certificates. Every worker process prepares
-    the model once. ``options``: as of ``Model.certify``; ``threads`` counts here.
+    The work has a few dozen stages. Each worker process prepares the model once.
+
+    shards: largest number of jobs of one stage; None: four for each thread of the workers. A job uses one thread. The
+        certificates are the same for any number.
+    progress, options: as in ``Model.certify``; ``threads`` is the number of threads of the client.
     """
     _check_client(client)
     if not isinstance(model, Model):
-        raise TypeError(f"model is a {type(model).__name__}: a sscc.Model was expected; for many there is certify")
+        raise TypeError(f"model is a {type(model).__name__}: a sscc.Model was expected; for many models use certify")
     _check_options(model, options)
     if shards is None:
         shards = _JOBS * _threads(client)
@@ -171,7 +174,7 @@ def check(
     chunk: int = 4096,
     progress: Any = None,
 ) -> Batch:
-    """Answers every row of ``Q`` (n, r) as ``certificates.check_many`` does, in chunks of so many rows."""
+    """Answers every row of Q (n, r) as ``certificates.check_many`` does; ``chunk`` is the number of rows of a task."""
     _check_client(client)
     if not isinstance(certificates, Certificates):
         raise TypeError(f"certificates is a {type(certificates).__name__}: sscc.Certificates were expected")
@@ -180,7 +183,7 @@ def check(
     rows = _configurations(certificates, Q)
     if len(rows) == 0:
         return certificates.check_many(rows, limit, progress=False)
-    # Refuses the limit here.
+    # Checks the limit before anything is sent.
     certificates.check_many(rows[:0], limit, progress=False)
     shown = _progress.start(progress, "checking")
     held = _hold(client, certificates)
@@ -201,7 +204,7 @@ def check(
 
 
 def _hold(client: Client, data: object) -> Future:
-    """Data for many tasks, as the result of a task: made again where the worker that had it is lost."""
+    """Sends data for many tasks, as the result of a task, so that the scheduler restores them after a lost worker."""
     return _submit(client, as_given, pickle.dumps(data))
 
 
@@ -211,7 +214,7 @@ def _submit(client: Client, task: Any, *arguments: Any) -> Future:
 
 
 def _drop(client: Client, futures: Iterable[Future]) -> None:
-    """Stops what is not done, and forgets the rest."""
+    """Cancels unfinished tasks and releases finished ones."""
     futures = list(futures)
     if futures and client.status == "running":
         client.cancel(futures)
@@ -232,25 +235,25 @@ def _model(given: Model | str | os.PathLike[str]) -> Model:
 
 def _named(models: Any) -> dict[str, Any]:
     if isinstance(models, (Model, str, os.PathLike)):
-        raise TypeError("models is a single one: give a list or a mapping, or take certify_in_shards for a large one")
+        raise TypeError("models is a single model: pass a list or a mapping, or use certify_in_shards")
     named: dict[str, Any] = {}
     if isinstance(models, Mapping):
         for given, model in models.items():
             name = str(given)
             if name in named:
-                raise ValueError(f"models: {given!r} is {name} again: each name may stand for one model")
+                raise ValueError(f"models: {given!r} is {name} again: each name may occur once")
             named[name] = model
         return named
     for place, model in enumerate(models):
         name = os.fspath(model) if isinstance(model, (str, os.PathLike)) else f"models[{place}]"
         if name in named:
-            raise ValueError(f"models[{place}] is {name} again: each name may stand for one model")
+            raise ValueError(f"models[{place}] is {name} again: each name may occur once")
         named[name] = model
     return named
 
 
 def _named_error(name: str, error: Exception) -> Exception:
-    """The same error, its message beginning with the name."""
+    """Returns the same error with a message that begins with the name."""
     text = str(error)
     if text.startswith(name):
         return error
@@ -265,6 +268,6 @@ def _named_error(name: str, error: Exception) -> Exception:
 def _check_client(client: Any) -> None:
     if not isinstance(client, Client) or client.asynchronous:
         found = "an asynchronous client" if isinstance(client, Client) else f"a {type(client).__name__}"
-        raise TypeError(f"client is {found}: a distributed.Client was expected, such as Client(address) makes")
+        raise TypeError(f"client is {found}: a distributed.Client was expected, such as Client(address)")
 
 

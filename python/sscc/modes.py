@@ -1,16 +1,16 @@
-"""Models from bodies and from samples: their modes are made here.
+"""Models with computed modes, from bodies and from samples of a shape.
 
-A ``source`` is the name of a file or a surface as ``(vertices, faces)``: (V, 3) numbers and (F, 3) integers. Files are
+A ``source`` is a file or a surface as ``(vertices, faces)``: (V, 3) numbers and (F, 3) integers. Files are
 triangle meshes (OBJ, PLY, OFF, STL) or solids of tetrahedra and cubes (Medit ``.mesh``, VegaFEM ``.veg``, gmsh
-``.msh``, TetGen ``.node``, ``.ele``). A surface must be closed; a lattice of cubes around it is the solid then.
+``.msh``, TetGen ``.node``, ``.ele``). A surface must be closed; its solid is a lattice of cubes around it.
 
 Common arguments:
 
-- ``fix``: vertex numbers (n,) that do not move; ``fix_box``: two corners (2, 3) of a box in which none moves. Without
-  any the body is free, and its rigid motions are no modes.
-- ``youngs``, ``poisson``, ``density``: what it is made of; None is what a solid's file says, else 1e6, 0.4 and 1000.
-- ``resolution``: cubes along the longest side of the lattice (for about 20,000 in all).
-- ``threads``, ``progress``: as of ``Model.certify``.
+- ``fix``: numbers of fixed vertices (n,); ``fix_box``: two corners (2, 3) of a box in which all vertices are fixed.
+  Without fixed vertices the body is free, and its rigid motions are not among the modes.
+- ``youngs``, ``poisson``, ``density``: the material; None: that of a solid's file, else 1e6, 0.4 and 1000.
+- ``resolution``: number of cubes along the longest side of the lattice; None: about 20,000 cubes in all.
+- ``threads``, ``progress``: as in ``Model.certify``.
 
 All raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
 """
@@ -22,7 +22,7 @@ from typing import Literal
 
 from numpy.typing import ArrayLike
 
-from sscc._progress import Tell
+from sscc._progress import Report
 from sscc._sscc import Model, _elastic, _pca, _polynomial
 
 __all__ = ["linear", "nonlinear", "pca", "polynomial"]
@@ -41,9 +41,9 @@ def linear(
     density: float | None = None,
     resolution: int | None = None,
     threads: int | None = None,
-    progress: Tell | bool | None = None,
+    progress: Report | bool | None = None,
 ) -> Model:
-    """The ``rank`` (20) lowest natural vibrations of a body; the metric is their strain energy."""
+    """The ``rank`` (None: 20) lowest natural vibrations of a body. The metric is their strain energy."""
     material = (youngs, poisson, density)
     return _elastic(source, "linear", rank, fix, fix_box, material, resolution, threads, progress)
 
@@ -59,9 +59,9 @@ def nonlinear(
     density: float | None = None,
     resolution: int | None = None,
     threads: int | None = None,
-    progress: Tell | bool | None = None,
+    progress: Report | bool | None = None,
 ) -> Model:
-    """A basis of ``rank`` (30) modes for large deformations (modal derivatives), with its reduced forces."""
+    """A basis of ``rank`` (None: 30) modes for large deformations (modal derivatives), with its reduced forces."""
     material = (youngs, poisson, density)
     return _elastic(source, "nonlinear", rank, fix, fix_box, material, resolution, threads, progress)
 
@@ -75,13 +75,13 @@ def polynomial(
     density: float | None = None,
     resolution: int | None = None,
     threads: int | None = None,
-    progress: Tell | bool | None = None,
+    progress: Report | bool | None = None,
 ) -> Model:
-    """The 24 quadratic polynomials of the rest position, rigid motions taken out.
+    """The 24 quadratic polynomials of the rest position without rigid motions.
 
-    A surface needs no volume for them, and its metric is displacement. With ``solid=True``, a ``resolution`` or a
-    material, and for solids in files, they get the stiffness and the forces of the body, and the metric is its strain
-    energy.
+    Modes of a surface need no volume, and its metric is displacement. With ``solid=True``, a ``resolution`` or a
+    material, and for solids in files, the model has the stiffness and the forces of the body, and the metric is its
+    strain energy.
     """
     material = (youngs, poisson, density)
     options = (*material, resolution)
@@ -97,11 +97,11 @@ def pca(
     rank: int | None = None,
     *,
     threads: int | None = None,
-    progress: Tell | bool | None = None,
+    progress: Report | bool | None = None,
 ) -> Model:
-    """The mean of shapes and their principal components; q counts standard deviations.
+    """The mean of shapes and their principal components. q is in standard deviations.
 
     shapes: (n, V, 3) or (n, 3V), with their ``faces`` (F, 3); or a folder of meshes with the same faces.
-    rank: how many components, fewer than shapes; None: as many as explain 99.9% of the variance.
+    rank: number of components, less than the number of shapes; None: as many as explain 99.9% of the variance.
     """
     return _pca(shapes, faces, rank, threads, progress)

@@ -1,4 +1,4 @@
-"""Where tests find their data, and how they say that they did without it."""
+"""Fixtures: models, the command, real data, and the log of skipped tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PROJECT = Path(__file__).parents[2]
 
 
 def skip(test: str, reason: str) -> None:
-    """Skips a test and notes it where ``cargo xtask test`` lists what was skipped."""
+    """Skips a test, and adds it to the list of skipped tests of ``cargo xtask test``."""
     log = os.environ.get("SSCC_SKIP_LOG")
     if log:
         with open(log, "a") as file:
@@ -36,14 +36,14 @@ def ipctk(request: pytest.FixtureRequest) -> None:
 
 
 def needs(request: pytest.FixtureRequest, module: str) -> None:
-    """Skips a test that needs a module which is not there."""
+    """Skips a test if a module is not installed."""
     if importlib.util.find_spec(module) is None:
         skip(request.node.name, f"there is no package {module} for this interpreter")
 
 
 @pytest.fixture
 def models(request: pytest.FixtureRequest) -> Path:
-    """The folder of real models; it is no part of the project."""
+    """The folder of real models, which is not part of the project."""
     folder = Path(os.environ.get("SSCC_MODELS") or PROJECT.parent / "shared" / "models")
     if not folder.is_dir():
         skip(request.node.name, "no real models found; set SSCC_MODELS to their folder")
@@ -52,7 +52,7 @@ def models(request: pytest.FixtureRequest) -> Path:
 
 @pytest.fixture
 def command(request: pytest.FixtureRequest) -> Path:
-    """The ``sscc`` command, as ``cargo xtask python`` has built it."""
+    """The ``sscc`` command that ``cargo xtask python`` has built."""
     path = os.environ.get("SSCC_COMMAND")
     if not path:
         skip(request.node.name, "SSCC_COMMAND does not name the sscc command")
@@ -62,7 +62,7 @@ def command(request: pytest.FixtureRequest) -> Path:
 
 @pytest.fixture(scope="session")
 def model() -> sscc.Model:
-    """A torus of 576 triangles with 6 smooth modes; it is not to be changed."""
+    """A torus of 576 triangles with 6 smooth modes, shared by all tests."""
     return sscc.Model(*torus(24, 12, 6))
 
 

@@ -1,4 +1,4 @@
-"""Configurations of real models, and what libigl's exact predicates say of them."""
+"""Configurations of real models, and their self-intersections by libigl's exact predicates."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ import sscc
 F64 = NDArray[np.float64]
 U32 = NDArray[np.uint32]
 
-#: Models without vertices of equal position (libigl leaves pairs out that touch at such), and how far configurations
-#: move them at most, in half diagonals of their box: so that many of them collide.
+#: Models without vertices of equal position (libigl omits pairs that touch at such vertices), and the largest
+#: displacement of their configurations in half diagonals of their AABB, such that many of them collide.
 MODELS = {"vega_A": 8.0, "bunny": 4.0, "face": 0.2}
-#: Configurations of each.
+#: Number of configurations of each model.
 COUNT = 500
 
 
@@ -38,8 +38,8 @@ def load(name: str, models: Path) -> sscc.Model:
 
 
 def configurations(model: sscc.Model, count: int, most: float) -> F64:
-    """Random q: z_i = N(0, 1) / i, scaled so that the vertex that moves farthest moves 0.5% to 100% of ``most`` half
-    diagonals of the box."""
+    """Random q: z_i = N(0, 1) / i, scaled to a largest vertex displacement of 0.5% to 100% of ``most`` half diagonals
+    of the AABB."""
     random = np.random.default_rng(2026)
     vertices = model.vertices[np.unique(model.faces)]
     half = np.linalg.norm(np.ptp(vertices, axis=0)) / 2
@@ -75,7 +75,7 @@ def libigl_answers(questions: Iterable[tuple[F64, NDArray[np.int64]]]) -> Iterat
 
 
 def differences(name: str, models: Path, count: int = COUNT) -> tuple[int, int, list[int]]:
-    """How many of so many configurations collide, in how many pairs, and at which of them libigl says otherwise."""
+    """The number of colliding configurations, the number of pairs, and the configurations where libigl differs."""
     model = load(name, models)
     certs = model.certify(scheme="paper", progress=False)
     qs = configurations(model, count, MODELS[name])

@@ -1,10 +1,11 @@
-"""The first time at which two moving triangles meet, in exact arithmetic: slow, and as simple as can be.
+"""The time of impact of two moving triangles in exact arithmetic: simple and slow.
 
-Two triangles meet exactly when some corners of one and some of the other, at most five together, form a Radon partition:
-their homogeneous coordinates have exactly one linear dependency, which is positive on one side and negative on the
-other. One of five corners stays for a while, so when the triangles first meet after time 0 there is one of at most four,
-which are in one plane then: the time is a root of their determinant. Where that determinant vanishes all the time, some
-coefficient of the dependency changes its sign: the time is a root of a smaller determinant.
+Two triangles meet exactly when some corners of one and some of the other, at most five together, form a Radon
+partition: their homogeneous coordinates have exactly one linear dependency, which is positive on one side and negative
+on the other. A partition of five corners holds during an interval of time. So at an impact after time 0 there is a
+partition of at most four corners. These are in one plane, so the time is a root of their determinant. Where that
+determinant is always zero, a coefficient of the dependency changes its sign, so the time is a root of a smaller
+determinant.
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ from numpy.typing import NDArray
 from polynomial import Polynomial, Root, add, multiply, negate, rational, refine, roots, sign_at, trimmed
 
 Set = tuple[int, ...]
-#: How well the time is known before it is rounded.
+#: The width of the interval of the time before it is rounded.
 WIDTH = Fraction(1, 2**60)
 
 
 def first_contact(corners: NDArray[np.float64]) -> float | None:
-    """The first time in [0, 1] at which two triangles have a point in common, rounded; None if they never do.
+    """The first time in [0, 1] at which two triangles have a common point, rounded; None if there is none.
 
-    Corners (2, 2, 3, 3): of each triangle those at the start and those at the end.
+    corners: (2, 2, 3, 3), for each triangle its corners at the start and at the end.
     """
     pair = Pair(corners)
     start = rational(Fraction(0))
@@ -40,7 +41,7 @@ def first_contact(corners: NDArray[np.float64]) -> float | None:
 
 
 def mixed(corners: Iterable[int], most: int) -> Iterator[Set]:
-    """All sets of at most so many corners that has some of each triangle: 0, 1, 2 and 3, 4, 5."""
+    """All sets of at most this many corners with some of each triangle: 0, 1, 2 and 3, 4, 5."""
     corners = tuple(corners)
     sets = chain.from_iterable(combinations(corners, size) for size in range(2, most + 1))
     return (some for some in sets if some[0] < 3 <= some[-1])
@@ -69,14 +70,14 @@ class Pair:
         return self.minors[some, rows]
 
     def critical_sets(self) -> Iterator[Set]:
-        """Sets of corners of which one is a partition when the triangles first meet, unless they do at time 0."""
+        """Sets of corners of which one is a partition at the impact, unless the impact is at time 0."""
         fours = list(combinations(range(6), 4))
         yield from fours
         if not all(self.minor(some, (0, 1, 2, 3)) for some in fours):
             yield from mixed(range(6), 3)
 
     def roots(self, some: Set) -> list[Root]:
-        """When the corners of a set can become dependent."""
+        """Times at which the corners of a set can become dependent."""
         minors = {self.minor(some, rows) for rows in combinations(range(4), len(some))}
         return [root for minor in minors if minor for root in roots(minor)]
 

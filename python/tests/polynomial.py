@@ -11,9 +11,9 @@ Polynomial = tuple[Fraction, ...]
 
 
 class Root(NamedTuple):
-    """The only root of a polynomial in an interval, or a rational number: then both ends are that number."""
+    """The only root of a polynomial in an interval; for a rational root both ends are that number."""
 
-    #: Without repeated roots; neither end of the interval is one of its roots, unless they are the same.
+    #: A polynomial without repeated roots. No end of the interval is a root of it, unless both ends are the same.
     of: Polynomial
     low: Fraction
     high: Fraction
@@ -113,7 +113,7 @@ def halve(root: Root) -> Root:
     at_middle = sign(value(root.of, middle))
     if at_middle == 0:
         return rational(middle)
-    # The root is a simple one: the sign changes there.
+    # The root is simple, so the sign changes there.
     is_above = at_middle == sign(value(root.of, root.low))
     return Root(root.of, middle, root.high) if is_above else Root(root.of, root.low, middle)
 

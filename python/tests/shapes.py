@@ -42,7 +42,7 @@ def samples(count: int, rank: int, scale: float, seed: int = 7) -> F64:
 
 
 def write_obj(path: Path, vertices: F64, faces: I64) -> None:
-    """Writes a mesh, every digit of it."""
+    """Writes a mesh as OBJ with all digits."""
     rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
     rows += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
     path.write_text("\n".join(rows))

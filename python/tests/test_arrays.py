@@ -93,7 +93,7 @@ def test_subarrays_of_records(certs: sscc.Certificates) -> None:
     assert certs.check(records["weight"]) == certs.check(records["weight"].copy())
 
 
-def test_broadcast_views_are_taken_as_they_read(certs: sscc.Certificates) -> None:
+def test_broadcast_views_are_read_entry_by_entry(certs: sscc.Certificates) -> None:
     q = samples(1, 6, 0.4)[0]
     batch = certs.check_many(np.broadcast_to(q, (5, 6)))
     assert list(batch) == [certs.check(q)] * 5
@@ -101,7 +101,7 @@ def test_broadcast_views_are_taken_as_they_read(certs: sscc.Certificates) -> Non
     assert certs.check(same) == certs.check(np.full(6, 0.2))
 
 
-def test_what_was_given_is_copied() -> None:
+def test_arguments_are_copied() -> None:
     vertices, faces, modes = torus(8, 5, 2)
     model = sscc.Model(vertices, faces, modes)
     before = model.positions([1, 1])

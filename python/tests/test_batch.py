@@ -1,4 +1,4 @@
-"""`sscc.batch` on a local cluster of two worker processes: what this process alone gives, byte for byte."""
+"""`sscc.batch` on a local cluster of two worker processes equals the results of this process, byte for byte."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ pytestmark = pytest.mark.filterwarnings("default")
 
 T = TypeVar("T")
 
-#: Seconds after which something hangs; the machine may be busy.
-LONG = 600
+#: Time limit of each step (s), long enough for a busy machine.
+TIME_LIMIT = 600
 
 
 @pytest.fixture(scope="module")
@@ -47,8 +47,8 @@ def client() -> Iterator[Any]:
         yield client
 
 
-def within(work: Callable[[], T], seconds: float = LONG) -> T:
-    """The result of some work; fails when it takes too long."""
+def within(work: Callable[[], T], seconds: float = TIME_LIMIT) -> T:
+    """Returns the result of the work; fails if it takes longer than this."""
     found: list[T] = []
     raised: list[BaseException] = []
 
@@ -83,7 +83,7 @@ class Killed:
             def waiting(*arguments: Any) -> Any:
                 if next(calls) == call:
                     Path(started).touch()
-                    time.sleep(LONG)
+                    time.sleep(TIME_LIMIT)
                 return given(*arguments)
 
             setattr(worker, name, waiting)
@@ -103,9 +103,9 @@ class Killed:
     def __exit__(self, *_: object) -> None:
         self.over.set()
         self.thread.join()
-        assert self.started.exists(), "the worker was given nothing to do"
-        # The next test finds two workers again, one of them new.
-        end = time.monotonic() + LONG
+        assert self.started.exists(), "the worker received no task"
+        # Waits until there are two workers again, one of them new.
+        end = time.monotonic() + TIME_LIMIT
         while time.monotonic() < end:
             workers = self.client.nthreads()
             if len(workers) == 2 and self.address not in workers:
@@ -114,7 +114,7 @@ class Killed:
         raise AssertionError("the killed worker did not come back")
 
 
-def test_a_library_is_certified_as_here(client: Any, tmp_path: Path) -> None:
+def test_certificates_of_a_library_equal_those_of_this_process(client: Any, tmp_path: Path) -> None:
     models: dict[str, Any] = {f"torus {n}": sscc.Model(*torus(16, n, 3)) for n in (8, 10, 12)}
     file = tmp_path / "saved.model.safetensors"
     models["torus 10"].save(file)
@@ -126,7 +126,7 @@ def test_a_library_is_certified_as_here(client: Any, tmp_path: Path) -> None:
         assert content_of(certificates) == content_of(model.certify(epsilon=0.2)), name
 
 
-def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> None:
+def test_a_bad_model_fails_alone_under_its_name(client: Any, tmp_path: Path) -> None:
     good = sscc.Model(*torus(16, 8, 3))
     good.save(tmp_path / "good.model.safetensors")
     data = (tmp_path / "good.model.safetensors").read_bytes()
@@ -168,7 +168,7 @@ def test_a_bad_model_fails_alone_and_is_named(client: Any, tmp_path: Path) -> No
     assert "center" in str(library.failures["models[4]"])
 
 
-def test_shards_give_the_same_bytes(client: Any) -> None:
+def test_certificates_by_shards_have_the_same_bytes(client: Any) -> None:
     model = sscc.Model(*torus(32, 16, 5))
     choices: list[dict[str, Any]] = [
         {},
@@ -182,7 +182,7 @@ def test_shards_give_the_same_bytes(client: Any) -> None:
             assert content_of(there) == here, (options, shards)
 
 
-def test_queries_in_chunks_give_the_same_answers(client: Any, certs: sscc.Certificates) -> None:
+def test_answers_in_chunks_are_the_same(client: Any, certs: sscc.Certificates) -> None:
     Q = samples(1000, 6, 1.0)
     here = certs.check_many(Q)
     assert 0 < here.colliding.sum() < 1000
@@ -253,7 +253,7 @@ def test_damaged_and_foreign_results_are_refused() -> None:
         unseal(mine, sealed + b"0")
 
 
-def test_numbers_of_numpy_make_the_keys_of_plain_ones() -> None:
+def test_keys_are_the_same_for_numbers_of_numpy() -> None:
     from sscc._seal import options_bytes
     from sscc._worker import key_of_chunk
 
@@ -265,7 +265,7 @@ def test_numbers_of_numpy_make_the_keys_of_plain_ones() -> None:
     assert key_of_chunk(b"", rows, limit) == key_of_chunk(b"", rows, 2) != key_of_chunk(b"", rows, None)
 
 
-def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -> None:
+def test_the_client_refuses_bad_arguments(client: Any, certs: sscc.Certificates) -> None:
     model = certs.model
     Q = samples(10, 6, 1.0)
     Q[7, 2] = np.nan
@@ -287,7 +287,7 @@ def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -
     for refused in (None, "tcp://127.0.0.1:8786"):
         with pytest.raises(TypeError, match="distributed.Client was expected"):
             check(certs, Q, refused)
-    with pytest.raises(TypeError, match="'epsilom' is no option"):
+    with pytest.raises(TypeError, match="'epsilom' is not an option"):
         certify([model], client, epsilom=0.1)
     with pytest.raises(TypeError, match="certify_in_shards"):
         certify(model, client)
@@ -303,7 +303,7 @@ def test_bad_arguments_are_refused_here(client: Any, certs: sscc.Certificates) -
         in_shards([model], client)
 
 
-def test_workers_show_no_bars_and_this_process_does(client: Any, model: sscc.Model, capfd: Any) -> None:
+def test_only_the_client_reports_progress(client: Any, model: sscc.Model, capfd: Any) -> None:
     shares: list[float] = []
     within(lambda: sscc.batch.certify_in_shards(model, client, progress=shares.append))
     assert shares == sorted(shares) and shares[0] == 0 and shares[-1] == 1
@@ -313,9 +313,9 @@ def test_workers_show_no_bars_and_this_process_does(client: Any, model: sscc.Mod
     assert "certifying" not in capfd.readouterr().err
 
 
-def test_without_dask_the_message_says_what_to_install(tmp_path: Path) -> None:
+def test_the_error_without_dask_names_the_package(tmp_path: Path) -> None:
     code = "import sys; sys.modules['distributed'] = None; import sscc; import sscc.batch"
-    # Elsewhere, as python -c prefers what is in the current folder: here that is the source, which is not built.
+    # In another folder: python -c imports from the current folder first, and the source here is not built.
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].endswith("pip install './python[dask]'")
@@ -329,9 +329,9 @@ def test_the_document_runs_as_a_script(tmp_path: Path) -> None:
 """
     script = tmp_path / "script.py"
     script.write_text(first + "".join(textwrap.indent(block, "    ") for block in others) + shown)
-    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True, timeout=LONG)
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True, timeout=TIME_LIMIT)
     assert done.returncode == 0, done.stderr
     radius, lost, colliding, rows = done.stdout.split()
     assert 0.8 <= float(radius) <= 1 and lost == "FileNotFoundError"
-    # Between -2 and 2 the triangles touch at -1 alone, which is none of the rows.
+    # Between -2 and 2 the triangles touch only at -1, which is not among the rows.
     assert colliding == "0" and rows == "10000"

@@ -27,10 +27,10 @@ def test_certificates_and_answers_are_the_same(
     ours, theirs = tmp_path / "o.sscc.safetensors", tmp_path / "t.sscc.safetensors"
     model.save(file)
     certs.save(ours)
-    (told,) = lines(command, "certify", file, "-o", theirs)
+    (result,) = lines(command, "certify", file, "-o", theirs)
     assert ours.read_bytes() == theirs.read_bytes()
-    assert (told["root_radius"], told["global_radius"]) == (certs.root_radius, certs.global_radius)
-    assert (told["nodes"], told["pairs"]) == (certs.nodes, certs.pairs)
+    assert (result["root_radius"], result["global_radius"]) == (certs.root_radius, certs.global_radius)
+    assert (result["nodes"], result["pairs"]) == (certs.nodes, certs.pairs)
 
     qs = samples(100, 6, 0.4)
     np.save(tmp_path / "q.npy", qs)
@@ -59,7 +59,7 @@ def test_certificates_and_answers_are_the_same(
         (["--ignore-rest", "--max-exceptions", "7"], {"ignore_rest": True, "max_exceptions": 7}),
     ],
 )
-def test_options_mean_the_same(
+def test_options_have_the_same_meaning(
     tmp_path: Path, command: Path, model: sscc.Model, flags: list[str], options: dict[str, Any]
 ) -> None:
     file = tmp_path / "a.model.safetensors"
@@ -76,8 +76,9 @@ def test_modes_in_files_and_in_memory_are_the_same(tmp_path: Path, command: Path
     for number, shape in enumerate((modes, modes.reshape(-1, 3), np.moveaxis(modes, 2, 0))):
         path = tmp_path / f"{number}.npy"
         np.save(path, shape)
-        (told,) = lines(command, "certify", tmp_path / "a.obj", "--modes", path, "-o", tmp_path / "a.sscc.safetensors")
+        output = tmp_path / "a.sscc.safetensors"
+        (result,) = lines(command, "certify", tmp_path / "a.obj", "--modes", path, "-o", output)
         certs = sscc.Model(vertices, faces, shape).certify()
-        assert told["root_radius"] == certs.root_radius
-        read = sscc.Certificates.load(tmp_path / "a.sscc.safetensors", sscc.Model.load(tmp_path / "a.obj", path))
+        assert result["root_radius"] == certs.root_radius
+        read = sscc.Certificates.load(output, sscc.Model.load(tmp_path / "a.obj", path))
         assert read.digest == certs.digest

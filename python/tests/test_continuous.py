@@ -1,4 +1,4 @@
-"""Continuous answers beside exact arithmetic, and beside another collision library (ipctk)."""
+"""Continuous queries equal exact arithmetic, and differences from another library (ipctk) are explained."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from shapes import samples, torus
 
 F64 = NDArray[np.float64]
 
-#: How close two triangles must come to be listed without touching: a share of their size.
+#: The distance within which triangles may be listed without touching, as a share of their size.
 TOLERANCE = 2.0**-40
 
 
 def coarse(numbers: F64, bits: int = 5) -> F64:
-    """Numbers of few binary digits, with which exact arithmetic is fast."""
+    """Rounds numbers to few binary digits, with which exact arithmetic is fast."""
     return np.round(numbers * 2.0**bits) / 2.0**bits
 
 
@@ -37,12 +37,12 @@ def moving(model: sscc.Model, q0: F64, q1: F64) -> F64:
 
 
 def contact(corners: F64, i: int, j: int) -> float | None:
-    """The exact time at which two triangles first meet."""
+    """The exact time of impact of two triangles."""
     return first_contact(corners[[i, j]])
 
 
 def candidates(corners: F64, faces: NDArray[np.uint32]) -> Iterator[tuple[int, int]]:
-    """Pairs of triangles without a common vertex whose ways have boxes that overlap."""
+    """Pairs of triangles without a common vertex whose swept AABBs overlap."""
     low, high = corners.min(axis=(1, 2)), corners.max(axis=(1, 2))
     for i in range(len(faces)):
         near = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
@@ -59,7 +59,7 @@ def is_close(corners: F64, i: int, j: int, time: float) -> bool:
 
 
 def distance(x: F64, y: F64) -> float:
-    """How far two triangles that do not intersect are from each other."""
+    """The distance of two triangles that do not intersect."""
     edges = [(x[a], x[a - 1] - x[a], y[b], y[b - 1] - y[b]) for a in range(3) for b in range(3)]
     found = [segments(*pair) for pair in edges]
     found += [point_triangle(p, y) for p in x] + [point_triangle(p, x) for p in y]
@@ -83,7 +83,7 @@ def segments(p: F64, d: F64, r: F64, e: F64) -> float:
 
 
 def point_triangle(p: F64, t: F64) -> float:
-    """The distance of a point to the inside of a triangle; its edges are looked at elsewhere."""
+    """The distance of a point to the interior of a triangle; infinite if its projection is outside."""
     u, v, w = t[1] - t[0], t[2] - t[0], p - t[0]
     gram = np.array([[u @ u, u @ v], [u @ v, v @ v]])
     if np.linalg.det(gram) <= 0:
@@ -92,8 +92,8 @@ def point_triangle(p: F64, t: F64) -> float:
     return float(np.linalg.norm(w - s * u - r * v)) if s >= 0 and r >= 0 and s + r <= 1 else float("inf")
 
 
-def test_every_impact_that_is_exact_is_reported() -> None:
-    """Of some pairs whose boxes meet on the way, listed or not: exact arithmetic takes a while for each."""
+def test_no_exact_impact_is_missed() -> None:
+    """For a sample of the pairs with overlapping swept AABBs, since exact arithmetic is slow."""
     model = coarse_torus(10, 6, 3)
     certs = model.certify()
     random = np.random.default_rng(3)
@@ -119,7 +119,7 @@ def test_every_impact_that_is_exact_is_reported() -> None:
 
 
 def ipctk_pairs(model: sscc.Model, q0: F64, q1: F64) -> set[tuple[int, int]]:
-    """Pairs of triangles without a common vertex of which ipctk finds a vertex and a face, or two edges, that meet."""
+    """Pairs of triangles without a common vertex with an impact of a vertex and a face or of two edges by ipctk."""
     import ipctk
 
     faces = model.faces.astype(np.int32)
@@ -149,7 +149,7 @@ def ipctk_pairs(model: sscc.Model, q0: F64, q1: F64) -> set[tuple[int, int]]:
 
 
 def onsets(model: sscc.Model, qs: F64) -> Iterator[tuple[F64, F64]]:
-    """On the way from rest to each q, the part around the first impact."""
+    """Motions around the first impact on the line from rest to each q."""
     certs = model.certify()
     for q in qs:
         first = certs.continuous(0 * q, q).time_of_impact
@@ -177,13 +177,13 @@ def test_differences_from_ipctk_are_explained(name: str, request: pytest.Fixture
         theirs = ipctk_pairs(model, q0, q1)
         both += len(theirs & times.keys())
         for i, j in sorted(theirs - times.keys()):
-            # ipctk grants itself a tolerance of 1e-6, so what it reports need not meet.
+            # ipctk has a tolerance of 1e-6, so its pairs need not meet.
             exact = contact(corners, i, j)
             print(f"{name}: only ipctk reports {i}, {j}: exactly {exact}")
             assert exact is None
             theirs_alone += 1
         for i, j in sorted(times.keys() - theirs):
-            # Such as a face that an edge pierces all the way: no vertex and no edge meets anything then.
+            # Such as a face that an edge pierces during the whole motion: it has no impact of vertices or edges.
             exact = contact(corners, i, j)
             print(f"{name}: only sscc reports {i}, {j}: exactly {exact}")
             assert exact is not None or is_close(corners, i, j, times[i, j])

@@ -1,4 +1,4 @@
-"""What scripts rely on."""
+"""The interface on which scripts rely."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import sscc
 from shapes import samples, torus, two_triangles
 
 
-def test_the_ten_lines() -> None:
+def test_the_first_example() -> None:
     model = sscc.Model(*two_triangles())
     certs = model.certify()
     free = certs.check([0.5])
@@ -25,7 +25,7 @@ def test_the_ten_lines() -> None:
     assert 0.8 <= certs.root_radius <= 1.0
 
 
-def test_model_holds_what_it_was_given(model: sscc.Model) -> None:
+def test_a_model_has_the_given_arrays(model: sscc.Model) -> None:
     vertices, faces, modes = torus(24, 12, 6)
     assert np.array_equal(model.vertices, vertices)
     assert np.array_equal(model.faces, faces) and model.faces.dtype == np.uint32
@@ -38,7 +38,7 @@ def test_model_holds_what_it_was_given(model: sscc.Model) -> None:
     assert np.allclose(model.positions(q), vertices + modes @ q, rtol=0, atol=1e-14)
 
 
-def test_all_shapes_of_modes_are_one_model() -> None:
+def test_all_shapes_of_modes_give_the_same_model() -> None:
     vertices, faces, modes = torus(8, 5, 3)
     for given in (modes, modes.reshape(-1, 3), np.moveaxis(modes, 2, 0)):
         assert np.array_equal(sscc.Model(vertices, faces, given).modes, modes)
@@ -46,7 +46,7 @@ def test_all_shapes_of_modes_are_one_model() -> None:
     assert np.array_equal(one.modes, modes[:, :, :1])
 
 
-def test_metrics_change_norms_and_no_answers(model: sscc.Model) -> None:
+def test_metrics_change_norms_but_not_answers(model: sscc.Model) -> None:
     vertices, faces, modes = torus(24, 12, 6)
     qs = samples(40, 6, 0.4)
     expected = [answer.pairs.tolist() for answer in model.certify().check_many(qs)]
@@ -62,7 +62,7 @@ def test_metrics_change_norms_and_no_answers(model: sscc.Model) -> None:
     assert np.isclose(model.certify(metric=dense).norm(qs[0]), math.sqrt(qs[0] @ dense @ qs[0]))
 
 
-def test_options_are_kept(model: sscc.Model) -> None:
+def test_certificates_state_their_options(model: sscc.Model) -> None:
     center = np.full(6, 0.01)
     certs = model.certify(
         epsilon=0.3, center=center, scheme="paper", neighbours="include-one-vertex", weld=True, threads=1
@@ -88,7 +88,7 @@ def test_contacts_at_rest_are_exceptions_or_ignored() -> None:
     assert strict.root_radius == 0 and len(strict.exceptions) == 0
 
 
-def test_limit_stops_early(certs: sscc.Certificates) -> None:
+def test_a_limit_stops_the_search(certs: sscc.Certificates) -> None:
     q = next(q for q in samples(100, 6, 0.6) if certs.check(q).count > 3)
     whole, some = certs.check(q), certs.check(q, limit=2)
     assert some.count == 2 and not some.complete and whole.complete
@@ -97,7 +97,7 @@ def test_limit_stops_early(certs: sscc.Certificates) -> None:
     assert batch.count.tolist() == [2, 0] and batch.complete.tolist() == [False, True]
 
 
-def test_batches_hold_every_answer(certs: sscc.Certificates) -> None:
+def test_batches_equal_single_answers(certs: sscc.Certificates) -> None:
     qs = samples(200, 6, 0.3)
     batch = certs.check_many(qs, threads=2)
     assert len(batch) == 200 and batch == certs.check_many(qs, threads=1)
@@ -116,7 +116,7 @@ def test_batches_hold_every_answer(certs: sscc.Certificates) -> None:
     assert len(empty) == 0 and empty.pairs.shape == (0, 2) and empty.offsets.tolist() == [0]
 
 
-def test_continuous_tells_times() -> None:
+def test_continuous_queries_return_times() -> None:
     certs = sscc.Model(*two_triangles()).certify()
     impacts = certs.continuous([0.0], [-2.0])
     assert impacts.colliding and impacts.count == 1 and impacts.pairs.tolist() == [[0, 1]]
@@ -127,7 +127,7 @@ def test_continuous_tells_times() -> None:
     assert free.norm == certs.norm([0.5]) and free.times.shape == (0,)
 
 
-def test_ways_that_are_free(certs: sscc.Certificates) -> None:
+def test_safe_scales_and_clamped_q_are_free(certs: sscc.Certificates) -> None:
     for q in samples(10, 6, 1.0):
         scale = certs.safe_scale(q)
         assert scale >= certs.root_radius / certs.norm(q) * 0.999
@@ -150,7 +150,7 @@ def test_kinetic_queries_give_the_same_answers(certs: sscc.Certificates) -> None
         assert np.array_equal(kinetic.check(q).pairs, certs.check(q).pairs)
 
 
-def test_hierarchy_is_a_tree_over_all_triangles(certs: sscc.Certificates) -> None:
+def test_the_hierarchy_covers_all_triangles(certs: sscc.Certificates) -> None:
     tree = certs.hierarchy
     assert len(tree) == certs.nodes == len(tree.parent) and tree.parent[0] == -1
     assert sorted(tree.order) == list(range(576)) and tree.count[0] == 576
@@ -161,7 +161,7 @@ def test_hierarchy_is_a_tree_over_all_triangles(certs: sscc.Certificates) -> Non
     assert certs.radius(np.int64(5)) == tree.radius[5]
 
 
-def test_files_come_back_whole(tmp_path: Path, model: sscc.Model, certs: sscc.Certificates) -> None:
+def test_files_round_trip(tmp_path: Path, model: sscc.Model, certs: sscc.Certificates) -> None:
     model.save(tmp_path / "a.model.safetensors")
     certs.save(str(tmp_path / "a.sscc.safetensors"))
     again = sscc.Model.load(str(tmp_path / "a.model.safetensors"))
@@ -184,7 +184,7 @@ def test_meshes_with_modes_are_loaded(tmp_path: Path) -> None:
     assert model.provenance == "mesh two.obj, modes two.npy"
 
 
-def test_what_is_read_only(certs: sscc.Certificates) -> None:
+def test_result_arrays_are_read_only(certs: sscc.Certificates) -> None:
     answer = certs.check(np.full(6, 2.0))
     assert answer.colliding and answer.pairs is answer.pairs
     with pytest.raises(ValueError, match="read-only"):
@@ -194,16 +194,16 @@ def test_what_is_read_only(certs: sscc.Certificates) -> None:
         batch.norm[0] = 1
 
 
-def test_answers_are_neither_true_nor_false(certs: sscc.Certificates) -> None:
+def test_results_have_no_truth_value(certs: sscc.Certificates) -> None:
     for result in (certs.check(np.zeros(6)), certs.continuous(np.zeros(6), np.zeros(6))):
-        with pytest.raises(TypeError, match=r"ask for \.colliding"):
+        with pytest.raises(TypeError, match=r"use \.colliding"):
             bool(result)
 
 
-def test_they_tell_what_they_are(model: sscc.Model, certs: sscc.Certificates) -> None:
+def test_representations(model: sscc.Model, certs: sscc.Certificates) -> None:
     assert repr(model) == "<sscc.Model: 576 triangles, 288 vertices, 6 modes>"
     assert repr(certs).startswith("<sscc.Certificates: root radius 0.")
     assert repr(certs.check(np.zeros(6))) == "<sscc.Answer: free, norm 0.0000>"
     assert repr(certs.check_many(np.zeros((2, 6)))) == "<sscc.Batch: 2 answers, 0 colliding>"
-    assert repr(certs.continuous(np.zeros(6), np.zeros(6))) == "<sscc.Impacts: free on the whole way>"
+    assert repr(certs.continuous(np.zeros(6), np.zeros(6))) == "<sscc.Impacts: free from q0 to q1>"
     assert repr(certs.hierarchy).startswith("<sscc.Hierarchy: ")

@@ -1,4 +1,4 @@
-"""The examples of the documentation run."""
+"""The examples of docs/python.md run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def blocks(page: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
 
 
-def test_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     found = blocks("docs/python.md")
     assert len(found) > 5

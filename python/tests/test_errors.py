@@ -1,4 +1,4 @@
-"""What is wrong is refused in one line that names the argument and the place."""
+"""Error messages: one line that names the argument and the place."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ MODELS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"vertices": put(V, (7, 1), np.nan)}, ValueError, "vertices: vertex 7 (counted from 0) has the position"),
     ({"vertices": put(V, (7, 1), 1e80)}, ValueError, "vertices: vertex 7 (counted from 0)"),
     ({"vertices": V.astype(complex)}, TypeError, "vertices is an array of complex128: float64, float32 or"),
-    ({"vertices": V.astype(object)}, TypeError, "vertices is a ndarray that is no array of numbers"),
+    ({"vertices": V.astype(object)}, TypeError, "vertices is a ndarray: an array of numbers was expected"),
     ({"vertices": V.astype(bool)}, TypeError, "vertices is an array of bool"),
     ({"vertices": V.astype(np.longdouble)}, TypeError, "vertices is an array of float128"),
-    ({"vertices": "x.obj"}, TypeError, "vertices is a str that is no array of numbers"),
-    ({"vertices": None}, TypeError, "vertices is a NoneType that is no array of numbers"),
-    ({"vertices": [[1, 2, 3], [1, 2]]}, ValueError, "vertices: no array of numbers: "),
+    ({"vertices": "x.obj"}, TypeError, "vertices is a str: an array of numbers was expected"),
+    ({"vertices": None}, TypeError, "vertices is a NoneType: an array of numbers was expected"),
+    ({"vertices": [[1, 2, 3], [1, 2]]}, ValueError, "vertices: an array of numbers was expected: "),
     ({"vertices": np.ma.masked_array(V)}, TypeError, "vertices is a masked array: fill it first, as by vert"),
     ({"vertices": V[:0]}, ValueError, "faces[0] names vertex"),
     ({"faces": F[:, :2]}, ValueError, "faces has shape [80, 2]: (F, 3) was expected"),
@@ -63,7 +63,7 @@ MODELS: list[tuple[dict[str, Any], type[Exception], str]] = [
 
 
 @pytest.mark.parametrize(("changed", "error", "message"), MODELS, ids=[m for _, _, m in MODELS])
-def test_models(changed: dict[str, Any], error: type[Exception], message: str) -> None:
+def test_invalid_models_are_refused(changed: dict[str, Any], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match="^" + re.escape(message)) as raised:
         model(**changed)
     assert "\n" not in str(raised.value) or "inhomogeneous" in str(raised.value)
@@ -96,12 +96,12 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
 
 
 @pytest.mark.parametrize(("options", "error", "message"), OPTIONS, ids=[m for _, _, m in OPTIONS])
-def test_options(options: dict[str, Any], error: type[Exception], message: str) -> None:
+def test_invalid_options_are_refused(options: dict[str, Any], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match="^" + re.escape(message)):
         model().certify(**options)
 
 
-def test_there_are_no_other_options() -> None:
+def test_unknown_and_positional_options_are_refused() -> None:
     with pytest.raises(TypeError, match="bugdet"):
         model().certify(bugdet=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="positional"):
@@ -115,19 +115,19 @@ QS: list[tuple[Any, type[Exception], str]] = [
     ([1e200, 0, 0, 0, 0, 0], ValueError, "{} moves vertices beyond 2^200 (about 1.6e60)"),
     (np.zeros((2, 6)), ValueError, "{} has shape [2, 6]: one configuration was expected"),
     (1.0, ValueError, "{} has shape []: one configuration was expected"),
-    (None, TypeError, "{} is a NoneType that is no array of numbers"),
-    (["a"] * 6, TypeError, "{} is a list that is no array of numbers"),
+    (None, TypeError, "{} is a NoneType: an array of numbers was expected"),
+    (["a"] * 6, TypeError, "{} is a list: an array of numbers was expected"),
     (np.ma.masked_array(np.zeros(6), mask=np.arange(6) == 0), TypeError, "{} is a masked array: fill it first"),
     ([2**64, 0, 0, 0, 0, 0], ValueError, "{} has an integer of more than 64 bits: integers are exact up to 2^53"),
     ([-(10**5000), 0, 0, 0, 0, 0], ValueError, "{} has an integer of more than 64 bits"),
-    (np.zeros(6, "M8[s]"), TypeError, "{} is a ndarray that is no array of numbers"),
+    (np.zeros(6, "M8[s]"), TypeError, "{} is a ndarray: an array of numbers was expected"),
     ([2**53 + 1, 0, 0, 0, 0, 0], ValueError, "{}: the integer 9007199254740993 is beyond 2^53"),
     ([-(2**63), 0, 0, 0, 0, 0], ValueError, "{}: the integer -9223372036854775808 is beyond 2^53"),
 ]
 
 
 @pytest.mark.parametrize(("q", "error", "message"), QS, ids=[m for _, _, m in QS])
-def test_configurations(certs: sscc.Certificates, q: Any, error: type[Exception], message: str) -> None:
+def test_invalid_q_are_refused(certs: sscc.Certificates, q: Any, error: type[Exception], message: str) -> None:
     good = np.zeros(6)
     calls: dict[str, list[Callable[[], object]]] = {
         "q": [
@@ -145,11 +145,11 @@ def test_configurations(certs: sscc.Certificates, q: Any, error: type[Exception]
         for call in named:
             with pytest.raises(error, match="^" + re.escape(message.format(name))):
                 call()
-    # A refusal leaves nothing behind.
+    # An error leaves the state of the query as it was.
     assert not certs.check(good).colliding
 
 
-def test_rows_are_named(certs: sscc.Certificates) -> None:
+def test_errors_of_batches_name_the_row(certs: sscc.Certificates) -> None:
     rows = np.zeros((100, 6))
     rows[40, 3], rows[70, 1] = np.nan, np.inf
     for threads in (1, 2):
@@ -157,7 +157,7 @@ def test_rows_are_named(certs: sscc.Certificates) -> None:
             certs.check_many(rows, threads=threads)
     with pytest.raises(ValueError, match=re.escape("Q has shape [100, 5]: (n, 6) was expected")):
         certs.check_many(rows[:, :5])
-    with pytest.raises(ValueError, match=re.escape("Q has shape [6]: (n, 6) was expected; for one q there is check")):
+    with pytest.raises(ValueError, match=re.escape("Q has shape [6]: (n, 6) was expected; for one q use check")):
         certs.check_many(rows[0])
     with pytest.raises(TypeError, match="Q is a masked array"):
         certs.check_many(np.ma.masked_array(rows))
@@ -172,7 +172,7 @@ def test_rows_are_named(certs: sscc.Certificates) -> None:
         certs.check_many(rows, threads=-1)
 
 
-def test_limits(certs: sscc.Certificates) -> None:
+def test_invalid_limits_and_node_numbers_are_refused(certs: sscc.Certificates) -> None:
     limits: list[Any] = [0, -3, 1.5, "1", True]
     for limit in limits:
         error = ValueError if type(limit) is int else TypeError
@@ -187,7 +187,7 @@ def test_limits(certs: sscc.Certificates) -> None:
         certs.radius(-1)
 
 
-def test_sizes_that_fit_nowhere(certs: sscc.Certificates) -> None:
+def test_arrays_beyond_memory_raise_memory_error(certs: sscc.Certificates) -> None:
     with pytest.raises(MemoryError):
         certs.check_many(np.broadcast_to(np.zeros(6), (10**14, 6)))
     with pytest.raises(MemoryError):
@@ -196,7 +196,7 @@ def test_sizes_that_fit_nowhere(certs: sscc.Certificates) -> None:
         model(vertices=np.broadcast_to(0.0, (10**13, 3)))
 
 
-def test_files(tmp_path: Path, certs: sscc.Certificates) -> None:
+def test_errors_of_files_name_the_file(tmp_path: Path, certs: sscc.Certificates) -> None:
     with pytest.raises(FileNotFoundError, match=r"a\.obj: not found$"):
         sscc.Model.load(tmp_path / "a.obj")
     with pytest.raises(OSError, match="is a directory, a file was expected"):

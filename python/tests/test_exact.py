@@ -1,4 +1,4 @@
-"""Answers equal libigl's exact self-intersection on 500 random configurations of each of three real models."""
+"""Answers equal libigl's exact self-intersections at 500 random configurations of each of three real models."""
 
 from __future__ import annotations
 

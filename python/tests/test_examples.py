@@ -1,4 +1,4 @@
-"""The examples run, and show what they are to show."""
+"""The examples run and give the expected results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def example(name: str) -> Any:
 def test_samples_of_a_shape_model_and_their_safe_steps(capsys: pytest.CaptureFixture[str]) -> None:
     colliding, steps, repaired = example("pca_shapes").main()
     assert 20 < colliding.sum() < 480
-    # Whatever collides lies beyond its safe step.
+    # Every colliding sample is beyond its safe step.
     assert (steps[colliding] <= 1).all() and steps.min() > 0
     assert not repaired.any()
     assert f"{colliding.sum()} of 500 samples intersect themselves" in capsys.readouterr().out
@@ -36,7 +36,7 @@ def test_samples_of_a_shape_model_and_their_safe_steps(capsys: pytest.CaptureFix
 def test_a_performance_of_blendshapes_from_a_glb() -> None:
     colliding, begins = example("performance").main()
     assert 0 < colliding.sum() < len(colliding)
-    # Each run of colliding frames begins with a contact that was found between two frames.
+    # Each sequence of colliding frames begins with a contact between two frames.
     starts = np.flatnonzero(~colliding[:-1] & colliding[1:])
     assert len(starts) > 0 and set(starts) <= set(begins)
     assert all(frame <= time <= frame + 1 for frame, time in begins.items())

@@ -1,4 +1,4 @@
-"""The exact oracle of the continuous tests, on cases whose answer is known by hand."""
+"""The exact oracle of the continuous tests, on cases with a time of impact known by hand."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TURNING = (FACE, FACE + np.array([[0, 0, 0], [0, 0, 1], [0, 0, 0]]))
 
 
 def time(x: tuple[F64, F64], y: tuple[F64, F64]) -> float | None:
-    """When they first meet, whichever is named first."""
+    """The time of impact, which must not depend on the order of the triangles."""
     one, other = (first_contact(np.array(pair)) for pair in ((x, y), (y, x)))
     assert one == other
     return one
@@ -31,7 +31,7 @@ def moved(triangle: F64, start: tuple[float, ...], end: tuple[float, ...]) -> tu
 
 
 def below(start: tuple[float, ...], end: tuple[float, ...], sign: int = -1) -> tuple[F64, F64]:
-    """A triangle with one corner that moves so; the other two are far below it, or above."""
+    """A moving triangle with one corner between these positions; the other two are far below it, or above."""
     other = sign * np.array([[0, 0, 0], [0.25, 0, 8], [0, 0.25, 8]])
     return moved(other, start, end)
 

@@ -1,4 +1,4 @@
-"""Long calls tell how far they are, and stop at once: by Ctrl-C or by what a progress function raises."""
+"""Long calls report their progress, and stop within a second of Ctrl-C or an exception of the progress function."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ import pytest
 import sscc
 from shapes import samples, torus
 
-# Work stops within a second. It is counted in processor time, of all cores: other work on the machine does not count.
-SOON = 1.0 * (os.cpu_count() or 1)
+#: The longest time until work stops, in processor time of all cores, so that other work on the machine does not count.
+MAX_SECONDS = 1.0 * (os.cpu_count() or 1)
 
 
 @pytest.fixture(autouse=True)
-def ctrl_c_is_heard() -> Iterator[None]:
-    """What a shell starts in the background ignores Ctrl-C, and so would these tests."""
+def ctrl_c_handler() -> Iterator[None]:
+    """Handles Ctrl-C also in a process that a shell started in the background, which would ignore it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -35,13 +35,13 @@ def large() -> sscc.Model:
 
 @pytest.fixture(scope="module")
 def one_point() -> sscc.Certificates:
-    """Of a torus that is in one point at q = 1, where each pair of triangles collides: exact tests take minutes."""
+    """Certificates of a torus that is one point at q = 1: each pair of triangles collides, so queries take minutes."""
     vertices, faces, _ = torus(90, 45, 1)
     return sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
 
 
 def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> float:
-    """Presses Ctrl-C while the work goes on; how long it takes to stop."""
+    """Presses Ctrl-C during the work; returns the time until it stops (s)."""
     pressed = []
 
     def press() -> None:
@@ -60,24 +60,24 @@ def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> flo
 
 
 def test_certify_stops_on_ctrl_c(large: sscc.Model) -> None:
-    assert seconds_until_stopped(large.certify) < SOON
+    assert seconds_until_stopped(large.certify) < MAX_SECONDS
 
 
 def test_check_many_stops_on_ctrl_c(certs: sscc.Certificates, one_point: sscc.Certificates) -> None:
     many, long = samples(1_000_000, 6, 0.5), np.ones((4, 1))
-    assert seconds_until_stopped(lambda: certs.check_many(many)) < SOON
-    assert seconds_until_stopped(lambda: one_point.check_many(long)) < SOON
+    assert seconds_until_stopped(lambda: certs.check_many(many)) < MAX_SECONDS
+    assert seconds_until_stopped(lambda: one_point.check_many(long)) < MAX_SECONDS
 
 
 def test_single_queries_stop_on_ctrl_c(one_point: sscc.Certificates) -> None:
-    assert seconds_until_stopped(lambda: one_point.check([1.0])) < SOON
-    assert seconds_until_stopped(lambda: one_point.continuous([0.9], [1.0])) < SOON
-    assert seconds_until_stopped(lambda: one_point.kinetic().check([1.0])) < SOON
+    assert seconds_until_stopped(lambda: one_point.check([1.0])) < MAX_SECONDS
+    assert seconds_until_stopped(lambda: one_point.continuous([0.9], [1.0])) < MAX_SECONDS
+    assert seconds_until_stopped(lambda: one_point.kinetic().check([1.0])) < MAX_SECONDS
     assert one_point.check([0.0]).count == 0
 
 
-@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers that signal")
-def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked(one_point: sscc.Certificates) -> None:
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no interval timers")
+def test_a_signal_handler_cannot_use_the_query_that_it_interrupted(one_point: sscc.Certificates) -> None:
     kinetic, other = one_point.kinetic(), one_point.kinetic()
 
     def handle(_signal: int, _frame: object) -> None:
@@ -87,7 +87,7 @@ def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked(one_poi
     before = signal.signal(signal.SIGALRM, handle)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.3)
-        with pytest.raises(RuntimeError, match="^this query is being asked"):
+        with pytest.raises(RuntimeError, match="^this thread uses the KineticQuery already"):
             kinetic.check([1.0])
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
@@ -98,13 +98,13 @@ def test_what_handles_a_signal_may_not_ask_the_query_that_is_being_asked(one_poi
 def test_builders_of_modes_stop_on_ctrl_c() -> None:
     vertices, faces, _ = torus(30, 20, 1)
     shapes = vertices + np.random.default_rng(3).normal(size=(1000, 600, 3))
-    assert seconds_until_stopped(lambda: sscc.modes.pca(shapes, faces)) < SOON
-    assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < SOON
+    assert seconds_until_stopped(lambda: sscc.modes.pca(shapes, faces)) < MAX_SECONDS
+    assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < MAX_SECONDS
     with pytest.raises(ZeroDivisionError):
         sscc.modes.linear((vertices, faces), 8, resolution=20, progress=lambda share: 1 / 0)
 
 
-def test_what_was_stopped_leaves_queries_whole(certs: sscc.Certificates) -> None:
+def test_queries_work_after_an_interruption(certs: sscc.Certificates) -> None:
     qs = samples(300_000, 6, 0.4)
     expected = certs.check_many(qs[:50])
     kinetic = certs.kinetic()
@@ -114,31 +114,31 @@ def test_what_was_stopped_leaves_queries_whole(certs: sscc.Certificates) -> None
     assert [kinetic.check(q).pairs.tolist() for q in qs[:50]] == [a.pairs.tolist() for a in expected]
 
 
-def test_progress_is_told_in_order(model: sscc.Model) -> None:
+def test_progress_ascends_to_one(model: sscc.Model) -> None:
     shares: list[float] = []
     certs = model.certify(progress=shares.append)
     assert shares[-1] == 1.0 and shares == sorted(shares) and 0 < shares[0]
     assert len(certs.hierarchy) > 1
 
 
-def test_progress_is_told_while_work_goes_on(large: sscc.Model) -> None:
+def test_progress_is_reported_during_the_work(large: sscc.Model) -> None:
     class Enough(Exception):
         pass
 
-    told: list[tuple[float, threading.Thread]] = []
+    reports: list[tuple[float, threading.Thread]] = []
 
-    def tell(share: float) -> None:
-        told.append((share, threading.current_thread()))
-        if len(told) == 3:
+    def report(share: float) -> None:
+        reports.append((share, threading.current_thread()))
+        if len(reports) == 3:
             raise Enough("three are enough")
 
     with pytest.raises(Enough, match="three are enough"):
-        large.certify(progress=tell)
-    assert 0 < told[0][0] < told[-1][0] < 1
-    assert len(told) == 3 and {thread for _, thread in told} == {threading.current_thread()}
+        large.certify(progress=report)
+    assert 0 < reports[0][0] < reports[-1][0] < 1
+    assert len(reports) == 3 and {thread for _, thread in reports} == {threading.current_thread()}
 
 
-def test_bars_are_for_people(model: sscc.Model, capfd: pytest.CaptureFixture[str]) -> None:
+def test_bars_need_a_terminal_and_long_work(model: sscc.Model, capfd: pytest.CaptureFixture[str]) -> None:
     from sscc._progress import Bar, start
 
     model.certify()
@@ -147,7 +147,7 @@ def test_bars_are_for_people(model: sscc.Model, capfd: pytest.CaptureFixture[str
     bar = Bar("certifying")
     bar(0.5)
     bar.close()
-    assert capfd.readouterr() == ("", "")  # too soon to be of interest
+    assert capfd.readouterr() == ("", "")  # the work was short
     bar.start -= 10
     bar(0.5)
     bar.close()
@@ -156,23 +156,23 @@ def test_bars_are_for_people(model: sscc.Model, capfd: pytest.CaptureFixture[str
     assert begun is not None and isinstance(begun[0], Bar)
 
 
-def test_nothing_is_left_half_written(tmp_path: Path, large: sscc.Model) -> None:
+def test_interrupted_work_leaves_no_file(tmp_path: Path, large: sscc.Model) -> None:
     path = tmp_path / "a.sscc.safetensors"
-    assert seconds_until_stopped(lambda: large.certify().save(path)) < SOON
+    assert seconds_until_stopped(lambda: large.certify().save(path)) < MAX_SECONDS
     assert list(tmp_path.iterdir()) == []
 
 
-def test_threads_other_than_the_first_can_be_stopped_by_progress(large: sscc.Model) -> None:
+def test_progress_functions_stop_work_on_other_threads(large: sscc.Model) -> None:
     stop = threading.Event()
     raised: list[BaseException] = []
 
-    def tell(_share: float) -> None:
+    def report(_share: float) -> None:
         if stop.is_set():
             raise InterruptedError("stopped")
 
     def work() -> None:
         try:
-            large.certify(progress=tell)
+            large.certify(progress=report)
         except InterruptedError as error:
             raised.append(error)
 

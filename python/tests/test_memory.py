@@ -1,4 +1,4 @@
-"""What is created, used and dropped leaves nothing behind."""
+"""Objects release their memory."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def resident() -> int:
     return int(STATM.read_text().split()[1]) * 4096
 
 
-@pytest.mark.skipif(not STATM.exists(), reason="only Linux tells a process its memory this way")
+@pytest.mark.skipif(not STATM.exists(), reason="only Linux has /proc/self/statm")
 def test_a_thousand_cycles_leave_memory_flat() -> None:
     vertices, faces, modes = torus(5, 4, 2)
     qs = samples(4, 2, 0.4)
@@ -46,5 +46,5 @@ def test_a_thousand_cycles_leave_memory_flat() -> None:
     for _ in range(1000):
         cycle()
     grown = resident() - before
-    # A leak of 8 kB in each cycle would show.
+    # A leak of 8 kB in each cycle fails.
     assert grown < 8 << 20, f"{grown / 2**20:.1f} MB more after 1,000 cycles"

@@ -1,4 +1,4 @@
-"""Modes that are made: of bodies, and of samples."""
+"""Modes of bodies and of samples."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_linear_modes(surface: Surface) -> None:
     assert not model.certify().check(np.zeros(8)).colliding
 
 
-def test_fixed_bodies_do_not_move_there(surface: Surface) -> None:
+def test_fixed_vertices_do_not_move(surface: Surface) -> None:
     vertices = surface[0]
     box = sscc.modes.linear(surface, 3, resolution=14, fix_box=[[-2, -2, -2], [-1, 2, 2]])
     moved = np.abs(box.modes).max(axis=(1, 2))
@@ -56,7 +56,7 @@ def test_nonlinear_and_polynomial_modes(surface: Surface) -> None:
     assert solid.rank == 24 and solid.metric == "energy" and solid.stiffness is not None
 
 
-def test_files_give_what_the_command_gives(tmp_path: Path, command: Path, surface: Surface) -> None:
+def test_models_of_files_equal_those_of_the_command(tmp_path: Path, command: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(24, 12, 1)
     mesh, theirs, ours = (tmp_path / name for name in ("a.obj", "t.model.safetensors", "o.model.safetensors"))
     write_obj(mesh, vertices, faces)
@@ -87,7 +87,7 @@ def test_principal_components_span_the_shapes() -> None:
     assert sscc.modes.pca(shapes, faces).rank <= 4
 
 
-def test_a_folder_of_meshes_is_an_animation(tmp_path: Path) -> None:
+def test_shapes_in_a_folder_equal_shapes_in_memory(tmp_path: Path) -> None:
     vertices, faces, modes = torus(8, 5, 2)
     shapes = [vertices + modes @ q for q in np.random.default_rng(5).normal(size=(6, 2))]
     for number, shape in enumerate(shapes):
@@ -96,7 +96,7 @@ def test_a_folder_of_meshes_is_an_animation(tmp_path: Path) -> None:
     assert np.array_equal(files.modes, memory.modes) and np.array_equal(files.vertices, memory.vertices)
 
 
-def test_what_is_wrong_is_named(tmp_path: Path, surface: Surface) -> None:
+def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(12, 8, 1)
     text: Any = "x"
     not_a_pair: Any = vertices

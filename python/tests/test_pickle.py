@@ -1,4 +1,4 @@
-"""Everything that is not a running query goes from process to process."""
+"""Results, models and certificates can be pickled and sent to other processes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import sscc
 from shapes import samples
 
 
-def test_results(certs: sscc.Certificates) -> None:
+def test_results_round_trip(certs: sscc.Certificates) -> None:
     qs = samples(50, 6, 0.4)
     batch = certs.check_many(qs)
     for result in (batch, *batch, certs.continuous(qs[0], qs[1])):
@@ -25,7 +25,7 @@ def test_results(certs: sscc.Certificates) -> None:
     assert certs.check(qs[0]) != certs.check(qs[1])
 
 
-def test_models_and_certificates(certs: sscc.Certificates) -> None:
+def test_models_and_certificates_round_trip(certs: sscc.Certificates) -> None:
     model, again = pickle.loads(pickle.dumps((certs.model, certs)))
     assert again.model is model
     assert again.digest == certs.digest and again.root_radius == certs.root_radius
@@ -48,7 +48,7 @@ def colliding(certs: sscc.Certificates, qs: np.ndarray[tuple[int, int], np.dtype
 
 
 @pytest.mark.parametrize("method", ["spawn", "forkserver"])
-def test_other_processes(certs: sscc.Certificates, method: str) -> None:
+def test_other_processes_give_the_same_answers(certs: sscc.Certificates, method: str) -> None:
     qs = samples(40, 6, 0.4)
     with multiprocessing.get_context(method).Pool(2) as pool:
         first, second = pool.starmap(colliding, [(certs, qs[:20]), (certs, qs[20:])])

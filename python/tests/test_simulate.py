@@ -1,4 +1,4 @@
-"""Simulations from Python."""
+"""`sscc.simulate` equals the command, reports errors, and resumes."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def test_simulations_equal_the_commands(tmp_path: Path, command: Path) -> None:
     )
     assert theirs.returncode == 0, theirs.stderr
     ours = sscc.simulate(scene, tmp_path / "o", steps=10, cache=cache)
-    told = json.loads(theirs.stdout)
+    summary = json.loads(theirs.stdout)
     for key in ("scene", "objects", "steps", "scene_steps", "colliding_steps", "energy_last"):
-        assert ours.summary[key] == told[key]
+        assert ours.summary[key] == summary[key]
     assert ours.folder == tmp_path / "o" and all(file.is_file() for file in ours.files)
     motions = [file for file in ours.files if file.suffix == ".npz"]
     assert motions
@@ -55,7 +55,7 @@ def test_simulations_equal_the_commands(tmp_path: Path, command: Path) -> None:
             assert sorted(mine) == sorted(other)
 
 
-def test_what_is_wrong_is_named(tmp_path: Path) -> None:
+def test_errors_name_the_argument(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="did you mean 'spring'"):
         sscc.simulate("sprig", tmp_path / "o")
     with pytest.raises(ValueError, match="^steps is 0"):
@@ -64,7 +64,7 @@ def test_what_is_wrong_is_named(tmp_path: Path) -> None:
         sscc.simulate("spring", tmp_path / "o", restart=1)  # type: ignore[arg-type]
 
 
-def test_several_simulate_at_the_same_time(tmp_path: Path) -> None:
+def test_threads_simulate_at_the_same_time(tmp_path: Path) -> None:
     vertices, faces, _ = torus(24, 12, 1)
     write_obj(tmp_path / "ring.obj", vertices, faces)
     scene, cache = tmp_path / "scene.toml", tmp_path / "cache"
@@ -85,7 +85,7 @@ def test_several_simulate_at_the_same_time(tmp_path: Path) -> None:
     assert all((simulation.folder / "trajectories.npz").read_bytes() == motion for simulation in found.values())
 
 
-def test_ctrl_c_stops_and_the_same_call_continues(tmp_path: Path) -> None:
+def test_the_same_call_resumes_after_ctrl_c(tmp_path: Path) -> None:
     vertices, faces, _ = torus(24, 12, 1)
     write_obj(tmp_path / "ring.obj", vertices, faces)
     scene, cache, out = tmp_path / "scene.toml", tmp_path / "cache", tmp_path / "out"
@@ -99,7 +99,7 @@ def test_ctrl_c_stops_and_the_same_call_continues(tmp_path: Path) -> None:
             time.sleep(0.01)
         os.kill(os.getpid(), signal.SIGINT)
 
-    # What a shell starts in the background ignores Ctrl-C.
+    # A process that a shell started in the background would ignore Ctrl-C.
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     presser = threading.Thread(target=press)
     presser.start()
@@ -115,7 +115,7 @@ def test_ctrl_c_stops_and_the_same_call_continues(tmp_path: Path) -> None:
     steps = len(stopped) + 10
     again = sscc.simulate(scene, out, steps=steps, cache=cache)
     assert again.summary["steps"] == steps
-    # Steps made by the call before are not timed again.
+    # The factor is unknown: the steps of the earlier call are not timed again.
     assert again.summary["real_time_factor_processor"] is None
     with np.load(out / "trajectories.npz") as motion:
         assert np.array_equal(motion["positions"][: len(stopped)], stopped)

@@ -1,4 +1,4 @@
-"""Certificates serve any number of threads at once."""
+"""Certificates answer any number of threads at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ THREADS = 8
 def test_eight_threads_get_the_same_answers(certs: sscc.Certificates) -> None:
     qs = samples(160, 6, 0.4)
     expected = [certs.check(q) for q in qs]
-    ways = [certs.continuous(q, q / 2) for q in qs[:20]]
+    motions = [certs.continuous(q, q / 2) for q in qs[:20]]
     start = threading.Barrier(THREADS)
 
     def ask(thread: int) -> None:
@@ -25,8 +25,8 @@ def test_eight_threads_get_the_same_answers(certs: sscc.Certificates) -> None:
         for i in range(len(qs)):
             i = (i + 20 * thread) % len(qs)
             assert certs.check(qs[i]) == expected[i]
-            if i < len(ways):
-                assert certs.continuous(qs[i], qs[i] / 2) == ways[i]
+            if i < len(motions):
+                assert certs.continuous(qs[i], qs[i] / 2) == motions[i]
         assert list(certs.check_many(qs, threads=2)) == expected
 
     with ThreadPoolExecutor(THREADS) as pool:
@@ -34,7 +34,7 @@ def test_eight_threads_get_the_same_answers(certs: sscc.Certificates) -> None:
             outcome.result()
 
 
-def test_one_kinetic_query_serves_threads_in_turn(certs: sscc.Certificates) -> None:
+def test_a_kinetic_query_answers_threads_one_after_the_other(certs: sscc.Certificates) -> None:
     qs = samples(40, 6, 0.4)
     expected = [certs.check(q).pairs.tolist() for q in qs]
     kinetic = certs.kinetic()
@@ -46,8 +46,8 @@ def test_one_kinetic_query_serves_threads_in_turn(certs: sscc.Certificates) -> N
         assert list(pool.map(ask, range(THREADS))) == [expected] * THREADS
 
 
-def test_what_is_written_to_an_array_meanwhile_changes_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each row is answered as it was when the call began, whatever is written to the array before the work ends."""
+def test_later_writes_to_an_array_change_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A batch answers the rows as they were when the call began."""
     vertices, faces, modes = two_triangles()
     certs = sscc.Model(vertices, faces, modes).certify()
     free, colliding = np.full((50, 1), 0.5), np.full((50, 1), -1.0)
@@ -66,8 +66,8 @@ def test_what_is_written_to_an_array_meanwhile_changes_no_answer(monkeypatch: py
         assert np.array_equal(qs, after)
 
 
-def test_others_work_meanwhile(model: sscc.Model) -> None:
-    """Long calls release the GIL: another thread counts while certificates are computed."""
+def test_long_calls_release_the_gil(model: sscc.Model) -> None:
+    """Another thread counts while certificates are computed."""
     counted = 0
     done = threading.Event()
 

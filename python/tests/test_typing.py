@@ -1,4 +1,4 @@
-"""The stubs are strict, complete and true."""
+"""The stubs are strict and complete, and agree with the module."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ def test_package_and_tests_are_typed_strictly() -> None:
     run("mypy", "--strict")
 
 
-def test_stubs_say_what_is_there() -> None:
-    # Of private things nothing is promised, such as of functions that unpickle.
+def test_stubs_agree_with_the_module() -> None:
+    # Private functions, such as those that unpickle, need no stub.
     run("mypy.stubtest", "sscc", "--ignore-disjoint-bases", "--ignore-missing-stub")

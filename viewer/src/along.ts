@@ -1,11 +1,11 @@
-/** Motions along one direction: vibration, and the way to the first self-collision. */
+/** Motions along one direction: vibration, and the motion to the first self-collision. */
 import type { App } from "./app";
 import { digits } from "./dom";
 import type { SafeScale } from "./protocol";
 
-/** A vibration is slowed to one period in so many seconds at least. */
-const SLOWEST = 2.4;
-const QUICKEST = 0.7;
+/** Longest and shortest period of a displayed vibration (s). */
+const MAX_PERIOD = 2.4;
+const MIN_PERIOD = 0.7;
 
 export function vibrate(app: App, mode: number): void {
     const name = `vibrating ${app.shape.modeName(mode)}`;
@@ -20,7 +20,7 @@ export function vibrate(app: App, mode: number): void {
     const known = (frequencies ?? []).filter((f): f is number => f !== null && f > 0);
     const own = frequencies?.[mode] ?? null;
     const ratio = own && known.length > 0 ? own / Math.min(...known) : 1;
-    const period = Math.max(QUICKEST, SLOWEST / ratio);
+    const period = Math.max(MIN_PERIOD, MAX_PERIOD / ratio);
     const path = (t: number): Float64Array => {
         const at = q.slice();
         at[mode] = center[mode] + amplitude * Math.sin((2 * Math.PI * t) / period);
@@ -33,12 +33,12 @@ export function vibrate(app: App, mode: number): void {
         );
 }
 
-/** Of several searches only the last is waited for; the server ends the others. */
+/** Number of searches so far. Only the last one counts; the server cancels the others. */
 let searches = 0;
 
 export async function toFirstCollision(app: App, direction: number[], name: string): Promise<void> {
     app.motion.stop();
-    app.say(`looking for the first self-collision along ${name}…`);
+    app.say(`searching the first self-collision along ${name}…`);
     const search = ++searches;
     const { serial } = app.pose;
     let found: SafeScale;
@@ -50,20 +50,20 @@ export async function toFirstCollision(app: App, direction: number[], name: stri
     }
     if (search !== searches) return;
     const { certified, first, searched, complete } = found;
-    const proven = certified === null ? "certified free without end" : `certified free up to ${digits(certified)}`;
+    const proven = certified === null ? "certified free at every scale" : `certified free up to ${digits(certified)}`;
     if (!first) {
         const end = searched === null ? "" : ` up to ${digits(searched)}`;
-        const why = complete ? "" : ", where the time for it ran out";
+        const why = complete ? "" : " (time limit of the search)";
         app.say(`no self-collision along ${name}${end}${why}; ${proven}`);
         return;
     }
     app.say(`first self-collision along ${name} at ${digits(first.scale)}; ${proven}`);
-    // Whoever has moved the shape meanwhile wants to see that.
+    // A person has moved the shape meanwhile: it stays as it is.
     if (app.pose.serial !== serial) return;
     const { center } = app.shape.model;
     const seconds = 1.4;
     const path = (t: number): number[] => {
-        // Slow at the end, where something happens.
+        // The motion slows down towards the collision.
         const s = first.scale * (1 - (1 - Math.min(1, t / seconds)) ** 2);
         return center.map((c, k) => c + s * direction[k]);
     };

@@ -1,4 +1,4 @@
-/** What the parts of the page share. */
+/** The state that all parts of the page share. */
 import type { Body } from "./body";
 import type { Checker } from "./checker";
 import type { Frames } from "./frames";
@@ -22,22 +22,22 @@ export interface App {
     readonly stage: Stage | null;
     /** The shape that the modes move; null while several bodies play, or without a stage. */
     body: Body | null;
-    /** The pair looked at. */
+    /** The pair chosen in the list of collisions. */
     chosen: [number, number] | null;
     /**
-     * What a recording says of the frame shown: its colliding pairs of triangles, null where they are not known; and
-     * the most of them in one step since the frame before.
+     * The displayed frame of a recording: its number of colliding pairs, null if unknown; and the largest number in one
+     * step since the previous frame.
      */
     recorded: { pairs: number | null; since: number } | null;
-    /** Paints the colliding triangles again. */
+    /** Updates the marks of colliding triangles. */
     refreshMarks(): void;
     /** Plays q row by row. */
     playRows(rows: number[][]): void;
-    /** One line for people: what went wrong, or what came out. */
+    /** Shows a line: a result, or an error. */
     say(message: string, wrong?: boolean): void;
 }
 
-/** Runs what a person asked for; what goes wrong is told in one line. */
+/** Runs an action of a person; an error is shown in one line. */
 export async function attempt(app: App, work: () => Promise<void>): Promise<void> {
     try {
         await work();

@@ -1,4 +1,4 @@
-/** All instances of one model, drawn at once: one mesh and one texture of modes for any number of bodies. */
+/** All instances of one model in one draw call: one mesh and one texture of modes for any number of bodies. */
 import * as THREE from "three";
 import { corners } from "./corners";
 import { fragmentShader, hiddenShader, vertexShader } from "./shaders";
@@ -26,7 +26,7 @@ function dataTexture(
     return texture;
 }
 
-/** Vectors as rows of a texture of 2^shift columns; null where the graphics card has not enough room. */
+/** The modes as a texture of 2^shift columns; null if it is larger than the graphics card allows. */
 function modesTexture(shape: Shape, largest: number): { texture: THREE.DataTexture; shift: number } | null {
     const n = shape.modes.length / 3;
     let shift = MARKS_SHIFT;
@@ -122,10 +122,10 @@ export class Body {
             depthFunc: THREE.GreaterDepth,
         });
         this.mesh = new THREE.InstancedMesh(this.geometry, this.material, instances);
-        // Hidden triangles are shown of the first instance: where many bodies move, they would only confuse.
+        // Hidden triangles are shown only for the first instance: with many bodies they would be confusing.
         this.hidden = new THREE.InstancedMesh(this.hiddenGeometry, this.hiddenMaterial, 1);
         this.hidden.renderOrder = 1;
-        // Until something collides its program need not even be compiled.
+        // Its shader is compiled at the first collision.
         this.hidden.visible = false;
         for (const mesh of [this.mesh, this.hidden]) {
             mesh.frustumCulled = false;
@@ -170,7 +170,7 @@ export class Body {
         }
     }
 
-    /** Marks triangles of one instance as colliding, `chosen` among them as looked at. */
+    /** Marks triangles of one instance as colliding, and some as chosen. */
     setMarks(instance: number, colliding: Iterable<number>, chosen: Iterable<number> = []): void {
         const data = this.marks.image.data as Uint8Array;
         const { triangles } = this.shape.model;
@@ -200,7 +200,7 @@ export class Body {
         this.hidden.visible = list.length > 0;
     }
 
-    /** The triangles marked as colliding in one instance, in order. */
+    /** The marked triangles of one instance, ascending. */
     markedTriangles(instance: number): number[] {
         const { triangles } = this.shape.model;
         const start = instance * triangles;
@@ -210,7 +210,7 @@ export class Body {
             .sort((a, b) => a - b);
     }
 
-    /** Colours all triangles by a table of 256 colours; null: as they are. */
+    /** Colours all triangles by a table of 256 colours; null: the plain colour. */
     setTints(tints: { bytes: Uint8Array; palette: Uint8Array } | null): void {
         const { uniforms } = this.material;
         uniforms.tinted.value = tints !== null;
@@ -221,7 +221,7 @@ export class Body {
         uniforms.palette.value.needsUpdate = true;
     }
 
-    /** Without marks and tints, or with them again. */
+    /** Turns marks and tints off or on. */
     setPlain(plain: boolean): void {
         this.material.uniforms.plain.value = plain;
         this.hidden.visible = !plain && (this.hiddenGeometry.index?.count ?? 0) > 0;

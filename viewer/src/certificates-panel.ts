@@ -1,4 +1,4 @@
-/** Certificates on the shape: nodes coloured by radius, or as the answer opened and culled them; boxes. */
+/** Certificates on the shape: nodes coloured by radius, or as opened and culled by the query; AABBs of nodes. */
 import { type App, attempt } from "./app";
 import { digits, h } from "./dom";
 import { NONE, OPENED, openCss, ramp, rampCss, searched, searchedCss } from "./palette";
@@ -50,7 +50,7 @@ export class CertificatesPanel {
             live && h("label", { class: "field" }, h("span", {}, "colours"), this.colouring),
             live && this.legend,
             live && h("label", { class: "field" }, h("span", {}, "level"), this.level, this.levelText),
-            live && h("label", { class: "check" }, this.boxes, "boxes of this level"),
+            live && h("label", { class: "check" }, this.boxes, "AABBs of this level"),
             app.shape.model.extremal.length > 0 && thumbnails(app),
         );
         this.levelText.textContent = this.level.value;
@@ -76,7 +76,7 @@ export class CertificatesPanel {
             ["root radius", digits(model.root_radius)],
             ...(model.resolved_up_to === null
                 ? []
-                : [["resolved up to", digits(model.resolved_up_to)] as [string, string]]),
+                : [["pair tree limit", digits(model.resolved_up_to)] as [string, string]]),
             ["global radius", digits(model.global_radius)],
             ["metric", model.metric],
             ["nodes", model.nodes.toLocaleString("en")],
@@ -121,7 +121,7 @@ export class CertificatesPanel {
         return this.tree;
     }
 
-    /** Each triangle by the radius of its node at the level, or of the deepest above it. */
+    /** Colours each triangle by the radius of its node at the level, or of its deepest node above the level. */
     private async paintRadius(): Promise<void> {
         const tree = await this.load();
         const level = this.level.valueAsNumber;
@@ -132,7 +132,7 @@ export class CertificatesPanel {
         ];
         const span = Math.log(high / low) || 1;
         const bytes = this.blank();
-        // Parents come before their children, so that the deepest has the last word.
+        // Parents come before their children, so the deepest node sets the colour.
         for (let node = 0; node < tree.level.length; node++) {
             if (tree.level[node] > level) continue;
             const radius = tree.radius[node];
@@ -152,7 +152,7 @@ export class CertificatesPanel {
         const bytes = this.blank();
         const deepest = nodes.culled.reduce((deepest, node) => Math.max(deepest, tree.level[node]), 1);
         const shade = (node: number): number => Math.round(((OPENED - 1) * tree.level[node]) / deepest);
-        // What is culled below an opened node has the last word.
+        // Culled nodes overwrite the opened nodes that contain them.
         for (const node of nodes.opened) this.fill(tree, node, bytes, OPENED);
         for (const node of nodes.culled) this.fill(tree, node, bytes, shade(node));
         this.app.body?.setTints({ bytes, palette: searched });
@@ -167,7 +167,7 @@ export class CertificatesPanel {
             bar,
             h("span", {}, `at level ${deepest}`),
             box,
-            h("span", {}, "nowhere"),
+            h("span", {}, "not culled"),
         );
         this.app.frames.invalidate();
     }

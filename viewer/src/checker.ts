@@ -1,23 +1,23 @@
-/** Asks the native core about q: one check in flight at most, and of those waiting only the latest. */
+/** Requests checks of q from the server: at most one check is in flight, and only the latest q waits. */
 import type { Answer } from "./protocol";
 import type { Source } from "./source";
 
-interface Wanted {
+interface CheckRequest {
     q: Float64Array;
     serial: number;
     settle: (answer: Answer | null) => void;
 }
 
 export class Checker {
-    /** The last answer; it speaks of the q with its serial only. */
+    /** The last answer; it holds only for the q with its serial. */
     answer: Answer | null = null;
     error: string | null = null;
-    /** Whether answers are to list the nodes that were opened and culled. */
+    /** Whether answers list the opened and culled nodes. */
     nodes = false;
-    /** The serial asked for last. */
-    asked = -1;
-    private flying = false;
-    private wanted: Wanted | null = null;
+    /** The serial of the last request. */
+    lastSerial = -1;
+    private isInFlight = false;
+    private waiting: CheckRequest | null = null;
     private readonly listeners: (() => void)[] = [];
 
     constructor(private readonly source: Source) {}
@@ -26,21 +26,21 @@ export class Checker {
         this.listeners.push(listener);
     }
 
-    /** Null where a later q took its place, or no answer came. */
+    /** The answer; null if a later q replaced this one, or there was no answer. */
     check(q: Float64Array, serial: number): Promise<Answer | null> {
-        this.wanted?.settle(null);
-        this.asked = serial;
+        this.waiting?.settle(null);
+        this.lastSerial = serial;
         return new Promise((settle) => {
-            this.wanted = { q, serial, settle };
-            void this.fly();
+            this.waiting = { q, serial, settle };
+            void this.send();
         });
     }
 
-    private async fly(): Promise<void> {
-        if (this.flying || !this.wanted) return;
-        const { q, serial, settle } = this.wanted;
-        this.wanted = null;
-        this.flying = true;
+    private async send(): Promise<void> {
+        if (this.isInFlight || !this.waiting) return;
+        const { q, serial, settle } = this.waiting;
+        this.waiting = null;
+        this.isInFlight = true;
         let answer: Answer | null = null;
         try {
             answer = await this.source.ask<Answer>("/api/check", { q: [...q], serial, nodes: this.nodes });
@@ -49,9 +49,9 @@ export class Checker {
         } catch (error) {
             this.error = (error as Error).message;
         }
-        this.flying = false;
+        this.isInFlight = false;
         settle(answer);
         for (const listener of this.listeners) listener();
-        void this.fly();
+        void this.send();
     }
 }

@@ -1,11 +1,11 @@
-/** The pairs of the q shown, and what the answer cost beside the traditional method. */
+/** The colliding pairs of the displayed q, and the cost of the query compared with the traditional method. */
 import { type App, attempt } from "./app";
 import { count, digits, duration, h } from "./dom";
 import type { Answer, Traditional } from "./protocol";
 
 const FIRST_ROWS = 100;
-/** The traditional method is asked once q has stood still for so long (ms). */
-const STILL = 350;
+/** The traditional method runs after q has not changed for this time (ms). */
+const REST_TIME = 350;
 
 export class CollisionsPanel {
     readonly element: HTMLElement;
@@ -27,9 +27,9 @@ export class CollisionsPanel {
         this.element = h(
             "div",
             { class: "collisions" },
-            h("h2", {}, "Cost of this answer"),
+            h("h2", {}, "Cost of this query"),
             this.counters,
-            h("label", { class: "check" }, this.compare, "measure the traditional method beside it"),
+            h("label", { class: "check" }, this.compare, "also measure the traditional method"),
             this.heading,
             this.list,
         );
@@ -38,7 +38,7 @@ export class CollisionsPanel {
         this.answered();
     }
 
-    /** Goes to the next pair of the list. */
+    /** Flies to the pair `step` rows further in the list. */
     next(step: number): void {
         const pairs = this.current()?.pairs ?? [];
         if (pairs.length === 0) return;
@@ -57,7 +57,7 @@ export class CollisionsPanel {
         this.rows = FIRST_ROWS;
         clearTimeout(this.timer);
         if (this.compare.checked)
-            this.timer = window.setTimeout(() => void attempt(this.app, () => this.ask()), STILL);
+            this.timer = window.setTimeout(() => void attempt(this.app, () => this.ask()), REST_TIME);
         this.answered();
     }
 
@@ -95,7 +95,7 @@ export class CollisionsPanel {
             ),
             cells("pairs", number(answer?.count), traditional ? number(traditional.count) : ""),
             cells("nodes opened", number(answer?.opened)),
-            cells("box tests", number(answer?.box_tests)),
+            cells("AABB tests", number(answer?.box_tests)),
             cells("triangle tests", number(answer?.triangle_tests)),
             cells("speed-up", ratio ? `${digits(ratio, ratio < 100 ? 2 : 3)} ×` : ""),
         );
@@ -132,7 +132,13 @@ export class CollisionsPanel {
             );
         }
         if (answer && answer.count > pairs.length)
-            rows.push(h("li", { class: "hint" }, `of ${answer.count.toLocaleString("en")}, the first are listed`));
+            rows.push(
+                h(
+                    "li",
+                    { class: "hint" },
+                    `the first ${pairs.length.toLocaleString("en")} of ${answer.count.toLocaleString("en")} pairs are listed`,
+                ),
+            );
         this.list.replaceChildren(...rows);
     }
 }

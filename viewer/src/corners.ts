@@ -1,11 +1,11 @@
 /**
- * Copies of vertices such that copy i is the last corner of triangle i, and of no other triangle. What is passed on
- * "flat" comes from the last corner, so that the fragment shader knows its triangle, for about F copies in place of 3F.
+ * Copies of vertices such that copy i is the last corner of triangle i, and of no other triangle. "flat" variables have
+ * the value of the last corner, so the fragment shader knows its triangle, for about F copies instead of 3F.
  */
 export interface Corners {
-    /** The vertex each copy is of. */
+    /** The vertex of each copy. */
     source: Uint32Array;
-    /** Copies, three for each triangle, turned the same way as the triangle. */
+    /** Three copies for each triangle, in the orientation of the triangle. */
     index: Uint32Array;
 }
 
@@ -15,7 +15,7 @@ export function corners(faces: Uint32Array, vertices: number): Corners {
     const copy = new Int32Array(vertices).fill(-1);
     const last = new Uint8Array(triangles);
     for (let t = 0; t < triangles; t++) {
-        // A corner that has no copy yet, so that few are needed besides.
+        // Prefers a corner without a copy, so that there are few copies.
         let c = 0;
         for (let k = 2; k >= 0; k--) if (copy[faces[3 * t + k]] < 0) c = k;
         last[t] = c;

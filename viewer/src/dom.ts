@@ -1,4 +1,4 @@
-/** Elements in one expression. */
+/** DOM elements in one expression, numbers as text, and downloads. */
 type Child = Node | string | null | false;
 type Attributes = Record<string, string | number | boolean | null | ((event: never) => void)>;
 
@@ -31,7 +31,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
     return element;
 }
 
-/** Up to four digits, as people write numbers. */
+/** A number with `n` significant digits. */
 export function digits(value: number | null | undefined, n = 4): string {
     if (value === null || value === undefined) return "infinite";
     if (!Number.isFinite(value)) return String(value);
@@ -46,7 +46,7 @@ export function count(value: number, one: string, many = `${one}s`): string {
     return `${value.toLocaleString("en")} ${value === 1 ? one : many}`;
 }
 
-/** Microseconds in the unit that suits them. */
+/** A duration (microseconds) in a suitable unit. */
 export function duration(microseconds: number): string {
     if (microseconds < 1) return `${Math.round(microseconds * 1000)} ns`;
     if (microseconds < 1000) return `${digits(microseconds, 3)} µs`;
@@ -54,7 +54,7 @@ export function duration(microseconds: number): string {
     return `${digits(microseconds / 1e6, 3)} s`;
 }
 
-/** Closes a dialog at once, and gives the keys back: what is closed only keeps the focus until the next picture. */
+/** Closes and removes a dialog. A dialog that is only closed keeps the focus until the next frame. */
 export function dismiss(dialog: HTMLDialogElement): void {
     dialog.close();
     dialog.remove();

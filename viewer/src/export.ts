@@ -1,7 +1,7 @@
-/** What can be taken away: a picture of the view, and the motion as GLB. */
+/** Exports: a picture of the view, and the motion as GLB. */
 import type { App } from "./app";
 import { save } from "./dom";
-import { type Moved, writeGlb } from "./glb";
+import { type MovingBody, writeGlb } from "./glb";
 
 function fileName(app: App, ending: string): string {
     return `${app.shape.model.name.replace(/[^\w.-]+/g, "_") || "shape"}.${ending}`;
@@ -14,7 +14,7 @@ export async function exportPng(app: App): Promise<void> {
     app.say(`saved ${fileName(app, "png")}`);
 }
 
-/** The motion shown last; of a shape at rest, the way from the centre to it and back. */
+/** The last motion; without one, the line from the centre to the displayed q and back. */
 export function track(app: App): { q: number[][]; times: number[] } {
     if (app.motion.track) return app.motion.track;
     const { center } = app.shape.model;
@@ -24,8 +24,8 @@ export function track(app: App): { q: number[][]; times: number[] } {
     return { q: rows, times };
 }
 
-/** The recording while it is shown; else the motion of the shape. A report has no server to write it. */
-export async function exportGlb(app: App, recorded: { bodies: Moved[]; times: number[] } | null): Promise<void> {
+/** Saves the recording if it is displayed, else the last motion. A report writes the file itself. */
+export async function exportGlb(app: App, recorded: { bodies: MovingBody[]; times: number[] } | null): Promise<void> {
     const { q, times } = track(app);
     let file: Blob;
     if (recorded) file = writeGlb(recorded.bodies, recorded.times);
@@ -37,5 +37,5 @@ export async function exportGlb(app: App, recorded: { bodies: Moved[]; times: nu
         file = writeGlb([{ name: shape.model.name, shape, q: rows, rigid: null, center: [0, 0, 0] }], times);
     }
     save(fileName(app, "glb"), file);
-    app.say(`saved ${fileName(app, "glb")}: the motion itself, what moves of the modes as morph targets`);
+    app.say(`saved ${fileName(app, "glb")}: a morph target for each mode that moves`);
 }

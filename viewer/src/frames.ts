@@ -1,4 +1,4 @@
-/** What moves, moves once in a frame; then, if anything changed, the picture is drawn. */
+/** The frame loop: runs each task once a frame, then draws the picture if anything changed. */
 type Task = (now: number) => boolean;
 
 export class Frames {
@@ -14,7 +14,7 @@ export class Frames {
         this.wake();
     }
 
-    /** Calls the task in every frame until it answers false. */
+    /** Calls the task in every frame until it returns false. */
     run(task: Task): void {
         this.tasks.add(task);
         this.wake();

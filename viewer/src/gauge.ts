@@ -1,4 +1,4 @@
-/** Whether the q that is shown is free, and how far the root's certificate holds. */
+/** The verdict on the displayed q, and |z| as a share of the root's radius. */
 import type { App } from "./app";
 import { count, digits, h } from "./dom";
 
@@ -9,7 +9,7 @@ interface Verdict {
     text: string;
 }
 
-/** An answer counts only for the q it was asked for. */
+/** The verdict on the displayed q. An answer counts only for its own q. */
 export function verdict(app: App): Verdict {
     const { checker, pose, recorded } = app;
     if (recorded) {
@@ -18,7 +18,7 @@ export function verdict(app: App): Verdict {
         if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (as recorded)` };
         return { kind: "free", text: "free (as recorded)" };
     }
-    // Told in the very frame that draws the shape; the answer, which says the same, has the costs.
+    // Decided in the frame that draws the shape. The answer agrees, and adds the cost of the query.
     if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: "free, proven by the root's certificate" };
     if (!checker) return { kind: "unknown", text: "not checked: this is a report" };
     if (checker.error) return { kind: "unknown", text: "unknown: no answer" };
@@ -32,7 +32,7 @@ export function verdict(app: App): Verdict {
     return { kind: "free", text: "free, proven" };
 }
 
-/** The most pairs in one step between the frame before and the one shown: neither picture shows them. */
+/** The largest number of pairs in one step between the previous frame and this one, as text. */
 export function sinceText(since: number): string {
     return since > 0 ? `collided since the last frame: at most ${count(since, "pair")}` : "";
 }
@@ -53,7 +53,7 @@ export class Gauge {
             { class: "gauge", "aria-label": "certificate gauge" },
             h(
                 "div",
-                { class: "told" },
+                { class: "verdicts" },
                 h("div", { class: "verdict", role: "status", "aria-live": "polite" }, this.mark, this.text),
                 this.since,
             ),
@@ -62,7 +62,7 @@ export class Gauge {
         );
     }
 
-    /** In each frame, with the picture of the same q. */
+    /** Updates the gauge in the frame that draws the same q. */
     update(): void {
         const { app } = this;
         const { kind, text } = verdict(app);
@@ -82,7 +82,7 @@ export class Gauge {
         this.since.textContent = since;
         this.since.hidden = since === "";
         this.bar.hidden = norm === null;
-        // The root's radius stands at half of the bar; what is beyond is squeezed into the other half.
+        // The root's radius is at half of the bar; larger norms share the other half.
         const at = share === null ? 0 : share <= 1 ? share / 2 : 1 - 0.5 / share;
         this.needle.style.width = `${(100 * at).toFixed(2)}%`;
         const of = root === null ? "root radius infinite" : `root radius ${digits(root)}`;

@@ -1,15 +1,16 @@
 /**
- * Writes a motion as GLB, rigid motion on the nodes. Morph targets are the modes that move, each as far as it moves,
- * and a first one to where these begin: so all weights lie in [0, 1], where some programs cut them off (Blender does).
+ * Writes a motion as GLB, with rigid motions on the nodes. The morph targets are the modes that move, scaled to their
+ * range; a first target with the weight 1 has the lower ends of all ranges. So all weights are in [0, 1], and programs
+ * that clamp weights there, as Blender does, show every vertex at its position.
  */
 import type { Shape } from "./shape";
 
-export interface Moved {
+export interface MovingBody {
     name: string;
     shape: Shape;
-    /** Row after row. */
+    /** q of all frames (frames x r), row by row. */
     q: Float32Array;
-    /** x y z and a quaternion x y z w for each row. */
+    /** x y z and a quaternion x y z w for each frame. */
     rigid: Float32Array | null;
     center: number[];
 }
@@ -19,14 +20,14 @@ const UNSIGNED_INT = 5125;
 const VERTEX_BUFFER = 34962;
 const INDEX_BUFFER = 34963;
 
-/** The pieces of the one buffer, and what describes them. */
+/** The parts of the binary buffer, with their views and accessors. */
 class Buffer {
     readonly views: object[] = [];
     readonly accessors: object[] = [];
     readonly parts: Uint8Array[] = [];
     length = 0;
 
-    /** An accessor over all of an array; glTF wants the bounds of positions and times. */
+    /** Adds an array; returns its accessor. glTF requires the bounds of positions and times. */
     add(
         array: Float32Array | Uint32Array,
         type: "SCALAR" | "VEC3" | "VEC4",
@@ -59,7 +60,7 @@ function extent(array: Float32Array | Uint32Array, size: number): { min: number[
     return { min, max };
 }
 
-/** What moves of a shape in any of several tracks. */
+/** The range of each mode of a shape over several tracks. */
 class Range {
     private readonly low: number[];
     private readonly high: number[];
@@ -108,7 +109,7 @@ class Range {
     }
 }
 
-export function writeGlb(bodies: Moved[], times: number[]): Blob {
+export function writeGlb(bodies: MovingBody[], times: number[]): Blob {
     const buffer = new Buffer();
     const meshes: object[] = [];
     const known = new Map<Shape, { at: number; range: Range }>();

@@ -1,25 +1,25 @@
-/** What the keys do. */
+/** The help dialog: keys and answers. */
 import { dismiss, h } from "./dom";
 
 export const KEYS: [string, string][] = [
-    ["drag, wheel, right drag", "turn, come nearer, move (one, two fingers)"],
-    ["arrows, + −", "the same, when the picture has the focus"],
-    ["Space", "play or pause; else vibrate the mode in focus"],
-    [", .", "one frame back, one frame on"],
-    ["[ ]", "to the slider of the mode before, after"],
-    ["V", "vibrate the mode in focus"],
-    ["C", "along a random direction to the first self-collision"],
-    ["X", "a random shape"],
-    ["R", "reset q"],
+    ["drag, wheel, right drag", "rotate, zoom, pan (touch: one, two fingers)"],
+    ["arrows, + −", "rotate and zoom, when the picture has the focus"],
+    ["Space", "play or pause; without a recording vibrate the focused mode"],
+    [", .", "previous, next frame"],
+    ["[ ]", "focus the slider of the previous, next mode"],
+    ["V", "vibrate the focused mode"],
+    ["C", "move along a random direction to the first self-collision"],
+    ["X", "show a random q"],
+    ["R", "reset q to the centre"],
     ["L", "load q"],
-    ["N, Shift+N", "fly to the next, the previous colliding pair"],
-    ["F", "see the whole shape again"],
-    ["U", "turn upright: z or y up"],
-    ["K", "colours: plain, by radius, opened and culled"],
-    ["B", "boxes of a level"],
+    ["N, Shift+N", "fly to the next, previous colliding pair"],
+    ["F", "show the whole shape"],
+    ["U", "switch between z up and y up"],
+    ["K", "switch colours: plain, by radius, opened and culled"],
+    ["B", "show the AABBs of a level"],
     ["P, G", "save a picture, the motion as GLB"],
-    ["T", "light or dark"],
-    ["?", "this help"],
+    ["T", "switch between light and dark"],
+    ["?", "show this help"],
 ];
 
 export function help(): void {
@@ -37,9 +37,8 @@ export function help(): void {
         h(
             "p",
             {},
-            "“Free” is a proof: no two triangles without a common vertex have a point in common. " +
-                "“Colliding” lists exactly the pairs that do. An answer counts only for the shape it was asked for; " +
-                "until it comes, the gauge says so.",
+            "“Free” is a proof; “colliding” lists exactly the intersecting pairs (docs/guarantees.md). " +
+                "The gauge shows an answer only for the displayed shape, and “checking…” until it arrives.",
         ),
         h("button", { type: "button", class: "primary", onclick: () => dismiss(dialog) }, "Close"),
     );

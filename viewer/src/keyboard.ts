@@ -1,4 +1,4 @@
-/** Keys, where no field takes them; help.ts tells what they do. */
+/** Keyboard shortcuts outside of text fields; help.ts describes them. */
 export function keyboard(actions: Record<string, (() => void) | undefined>): void {
     document.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey) return;

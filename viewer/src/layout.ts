@@ -1,4 +1,4 @@
-/** The places of the page. */
+/** The layout of the page: header, picture, panels and messages. */
 import { h } from "./dom";
 
 export interface Tab {
@@ -10,7 +10,7 @@ export class Layout {
     readonly canvas = h("canvas", {
         tabindex: 0,
         role: "img",
-        "aria-label": "the shape; drag or use the arrows to turn it, plus and minus to come nearer",
+        "aria-label": "the shape; drag or use the arrows to rotate it, plus and minus to zoom",
     });
     readonly stage = h("div", { class: "stage" }, this.canvas);
     readonly below = h("div", { class: "below" });
@@ -81,13 +81,13 @@ export class Layout {
         select(0);
     }
 
-    /** Plots and tables have all the room. */
+    /** Removes the picture, so that plots and tables have the whole width. */
     withoutShape(): void {
         this.stage.parentElement?.remove();
         this.panel.classList.add("alone");
     }
 
-    /** In place of the picture. */
+    /** Shows a message in place of the picture. */
     noPicture(): void {
         this.stage.replaceChildren(
             h(
@@ -97,8 +97,8 @@ export class Layout {
                 h(
                     "p",
                     {},
-                    "This browser offers no WebGL 2, or it is switched off, so shapes cannot be drawn here. " +
-                        "All else on this page works: sliders, answers, pairs and plots.",
+                    "This browser has no WebGL 2, or it is switched off, so the page cannot draw shapes. " +
+                        "Sliders, answers, pairs and plots work without it.",
                 ),
             ),
         );

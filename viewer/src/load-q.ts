@@ -1,9 +1,9 @@
-/** q from people: pasted numbers, or a text or .npy file; several rows become a trajectory. */
+/** Input of q: pasted numbers, or a text or .npy file. Several rows are a trajectory. */
 import { type App, attempt } from "./app";
 import { count, dismiss, h } from "./dom";
 import { readNpy } from "./npy";
 
-/** Rows of numbers: separated by commas, blanks, semicolons or brackets; each line that is not empty is a row. */
+/** Reads rows of numbers, separated by commas, blanks, semicolons or brackets. Each non-empty line is a row. */
 export function parseRows(text: string, rank: number): number[][] {
     const lines = text
         .split(/[\n\r]+/)
@@ -12,24 +12,24 @@ export function parseRows(text: string, rank: number): number[][] {
     const rows = lines.map((line, i) =>
         line.split(/\s+/).map((word) => {
             const value = Number(word);
-            if (!Number.isFinite(value)) throw new Error(`line ${i + 1}: '${word.slice(0, 20)}' is no number`);
+            if (!Number.isFinite(value)) throw new Error(`line ${i + 1}: '${word.slice(0, 20)}' is not a number`);
             return value;
         }),
     );
-    // One number in each line, or a matrix broken into lines, is one q.
+    // One number in each line, or one row broken into lines, is one q.
     if (rows.length > 1 && rows.some((row) => row.length !== rank) && rows.flat().length === rank)
         return [rows.flat()];
     return checkRows(rows, rank);
 }
 
 export function checkRows(rows: number[][], rank: number): number[][] {
-    if (rows.length === 0) throw new Error("there are no numbers");
+    if (rows.length === 0) throw new Error(`there are no numbers: enter ${count(rank, "number")}`);
     const bad = rows.findIndex((row) => row.length !== rank);
     if (bad >= 0)
         throw new Error(
             `row ${bad + 1} has ${count(rows[bad].length, "number")}, the model has ${count(rank, "mode")}`,
         );
-    if (rows.some((row) => row.some((v) => !Number.isFinite(v)))) throw new Error("q must be finite");
+    if (rows.some((row) => row.some((v) => !Number.isFinite(v)))) throw new Error("every number must be finite");
     return rows;
 }
 
@@ -40,7 +40,7 @@ export async function rowsOfFile(file: File, rank: number): Promise<number[][]> 
 }
 
 /** Shows one q, or plays several as a trajectory. */
-export function take(app: App, rows: number[][]): void {
+export function showRows(app: App, rows: number[][]): void {
     app.motion.stop();
     if (rows.length === 1) {
         app.pose.show(rows[0]);
@@ -58,9 +58,9 @@ export function loadQ(app: App): void {
     });
     text.value = [...app.pose.q].join(" ");
     const wrong = h("p", { class: "wrong", role: "alert" });
-    const use = async (rows: Promise<number[][]>): Promise<void> => {
+    const load = async (rows: Promise<number[][]>): Promise<void> => {
         try {
-            take(app, await rows);
+            showRows(app, await rows);
             dismiss(dialog);
         } catch (error) {
             wrong.textContent = (error as Error).message;
@@ -70,7 +70,7 @@ export function loadQ(app: App): void {
         type: "file",
         accept: ".npy,.txt,.csv",
         "aria-label": "file",
-        onchange: () => file.files?.[0] && void use(rowsOfFile(file.files[0], rank)),
+        onchange: () => file.files?.[0] && void load(rowsOfFile(file.files[0], rank)),
     });
     const dialog = h(
         "dialog",
@@ -79,8 +79,8 @@ export function loadQ(app: App): void {
         h(
             "p",
             {},
-            `Numbers separated by blanks or commas, ${rank} in a row; or a text or .npy file. ` +
-                "Several rows play one after the other.",
+            `Numbers separated by blanks or commas, ${rank} to a row; or a text or .npy file. ` +
+                "Several rows are played as a motion.",
         ),
         text,
         file,
@@ -93,7 +93,7 @@ export function loadQ(app: App): void {
                 {
                     type: "button",
                     class: "primary",
-                    onclick: () => void use(Promise.resolve().then(() => parseRows(text.value, rank))),
+                    onclick: () => void load(Promise.resolve().then(() => parseRows(text.value, rank))),
                 },
                 "Show",
             ),
@@ -103,7 +103,7 @@ export function loadQ(app: App): void {
                     type: "button",
                     onclick: () => void attempt(app, () => navigator.clipboard.writeText([...app.pose.q].join(","))),
                 },
-                "Copy the q shown",
+                "Copy the displayed q",
             ),
             h("button", { type: "button", onclick: () => dismiss(dialog) }, "Close"),
         ),

@@ -1,4 +1,4 @@
-/** A slider for each mode; what can be done along it. */
+/** A slider for each mode, and motions along the mode. */
 
 import { toFirstCollision, vibrate } from "./along";
 import { type App, attempt } from "./app";
@@ -31,7 +31,7 @@ export class ModesPanel {
                     {
                         type: "button",
                         onclick: () => this.reset(),
-                        title: "back to where certificates are centred (R)",
+                        title: "reset q to the centre of the certificates (R)",
                     },
                     "Reset",
                 ),
@@ -40,7 +40,7 @@ export class ModesPanel {
                     {
                         type: "button",
                         onclick: () => this.random(),
-                        title: "a random direction, in which all modes take part (X)",
+                        title: "show a random q (X)",
                     },
                     "Random",
                 ),
@@ -51,7 +51,7 @@ export class ModesPanel {
                             type: "button",
                             id: "random-collision",
                             onclick: () => this.randomCollision(),
-                            title: "along a random direction to the first self-collision (C)",
+                            title: "move along a random direction to the first self-collision (C)",
                         },
                         "To a collision",
                     ),
@@ -68,8 +68,8 @@ export class ModesPanel {
             h(
                 "p",
                 { class: "hint" },
-                "Drag a mode; double click puts it back. ~ vibrates it",
-                app.checker ? ", ⇥ goes along it to the first self-collision." : ".",
+                "Drag a slider; a double click resets it. ~ vibrates the mode",
+                app.checker ? ", ⇥ moves along it to the first self-collision." : ".",
             ),
             h("div", { class: "mode-list" }, ...list),
         );
@@ -103,7 +103,7 @@ export class ModesPanel {
         this.rows[mode]?.slider.focus();
     }
 
-    /** The mode whose slider has the focus. */
+    /** The mode with the focus; null if none has it. */
     focused(): number | null {
         const at = this.rows.findIndex(
             (row) => row.slider === document.activeElement || row.number === document.activeElement,
@@ -111,7 +111,7 @@ export class ModesPanel {
         return at < 0 ? null : at;
     }
 
-    /** The same every time: the n-th direction of this page. Lower modes get more, as in shapes that are seen. */
+    /** The next of a fixed sequence of random directions. Lower modes have larger entries, as in usual motions. */
     private direction(): number[] {
         let state = ++this.randoms * 0x9e3779b9;
         const uniform = (): number => {
@@ -191,7 +191,7 @@ export class ModesPanel {
                         type: "button",
                         class: "small",
                         "aria-label": `${name} to the first self-collision`,
-                        title: "to the first self-collision",
+                        title: "move to the first self-collision",
                         onclick: () =>
                             void attempt(app, () => toFirstCollision(app, this.toward(k, direction()), name)),
                     },
@@ -200,7 +200,7 @@ export class ModesPanel {
         );
     }
 
-    /** The side on which the slider is. */
+    /** The direction to the side of the centre on which the slider is. */
     private toward(k: number, direction: number[]): number[] {
         return this.app.pose.q[k] < this.app.shape.model.center[k] ? direction.map((d) => -d) : direction;
     }

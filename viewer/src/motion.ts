@@ -1,13 +1,13 @@
-/** Motions of q: each q is shown together with its answer, so that the gauge never lags behind the picture. */
+/** Motions of q. Each q is displayed together with its answer, so the gauge and the picture agree. */
 import type { Checker } from "./checker";
 import type { Frames } from "./frames";
 import type { Pose } from "./pose";
 
-/** A q that waits longer for its answer is shown before it (ms). */
-const PATIENCE = 250;
+/** Longest time that a q waits for its answer before it is displayed (ms). */
+const MAX_WAIT = 250;
 
 export class Motion {
-    /** What moves, for people; null at rest. */
+    /** Name of the motion; null at rest. */
     name: string | null = null;
     /** q over time, for export. */
     track: { q: number[][]; times: number[] } | null = null;
@@ -33,8 +33,8 @@ export class Motion {
     }
 
     /**
-     * Moves q along `path`, seconds -> q, for so many seconds; for ever where they are infinite, and then `period` is
-     * what is exported.
+     * Moves q along `path` (seconds -> q) for `seconds`, which may be infinite. The export has the first `period`
+     * seconds.
      */
     start(name: string, path: (seconds: number) => ArrayLike<number>, seconds: number, period = seconds): void {
         this.stop();
@@ -46,7 +46,7 @@ export class Motion {
         this.frames.run((now) => {
             if (run !== this.run) return false;
             begin ??= now;
-            if (this.waitingSince !== null && now - this.waitingSince < PATIENCE) return true;
+            if (this.waitingSince !== null && now - this.waitingSince < MAX_WAIT) return true;
             const t = Math.min((now - begin) / 1000, seconds);
             this.propose(path(t), now, () => run === this.run);
             if (t < seconds) return true;
@@ -57,7 +57,7 @@ export class Motion {
         for (const listener of this.listeners) listener();
     }
 
-    /** Shows q with its answer. */
+    /** Displays q together with its answer. */
     propose(q: ArrayLike<number>, now = performance.now(), wanted: () => boolean = () => true): void {
         const serial = this.pose.next();
         if (!this.checker) {

@@ -1,4 +1,4 @@
-/** Puts the parts together. */
+/** Creates all parts of the page and connects them. */
 import type { App } from "./app";
 import { attempt } from "./app";
 import { CertificatesPanel } from "./certificates-panel";
@@ -44,7 +44,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         return;
     }
     const arriving = Shape.load(source, scene.models[0]);
-    // While the arrays are on their way.
+    // Opens the stage while the arrays load.
     const stage = openStage(layout, frames);
     const shape = await arriving;
     const pose = new Pose(Float64Array.from(shape.model.default_q));
@@ -74,7 +74,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         stage?.draw();
     };
     pose.onChange(() => {
-        if (checker && checker.asked < pose.serial) void checker.check(pose.q, pose.serial);
+        if (checker && checker.lastSerial < pose.serial) void checker.check(pose.q, pose.serial);
         player.explore();
         shared.body?.setQ(0, pose.q);
         marks(shared);
@@ -134,13 +134,13 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         "?": help,
     });
     await player.begin();
-    // For tests, and for the curious.
+    // For tests and debugging.
     Object.assign(globalThis, { sscc: shared, player });
 }
 
 /**
- * Colliding triangles as the last answer has them; the gauge tells whether it speaks of this very shape. None where the
- * root's certificate holds.
+ * Marks the colliding triangles of the last answer; the gauge shows whether that answer is for the displayed q. Marks
+ * nothing if the root's certificate holds.
  */
 function marks(app: App): void {
     const { body, checker, chosen } = app;
@@ -155,8 +155,8 @@ function summary(source: Source): Tab[] {
         h("tr", {}, h("th", { scope: "row" }, label), h("td", {}, value)),
     );
     const text = source.live
-        ? "This page talks to the program on this machine alone; nothing leaves it."
-        : "This report is one file; it needs no other and no network.";
+        ? "This page exchanges data only with the program on this machine."
+        : "This report is one file. It loads no other file and uses no network.";
     return [
         {
             name: "About",

@@ -1,6 +1,6 @@
-/** Tables of 256 colours that people with any kind of colour vision tell apart. */
+/** Tables of 256 colours that are distinct with any kind of colour vision. */
 
-/** Cividis (Nuñez, Anderton, Renslow 2018), from dark blue to yellow, at nine places. */
+/** Cividis (Nuñez, Anderton, Renslow 2018), from dark blue to yellow, at nine points. */
 const CIVIDIS = [
     [0, 34, 78],
     [18, 53, 112],
@@ -32,20 +32,20 @@ function table(colour: (i: number) => number[]): Uint8Array {
 /** Entries 0 to 254: from small to large. */
 export const ramp = table((i) => between(CIVIDIS, i / 254));
 
-/** From blue to yellow; bright enough for a dark ground. */
+/** From blue to yellow, bright enough for a dark background. */
 const SEARCHED = [
     [52, 98, 166],
     [128, 148, 168],
     [232, 196, 84],
 ];
 
-/** What no certificate culls. */
+/** The colour of nodes that no certificate culls. */
 const OPEN = [255, 240, 160];
 
-/** The entry of what is opened to the end. */
+/** The entry of nodes that no certificate culls. */
 export const OPENED = 254;
 
-/** Entries 0 to 253: culled, from the root to the deepest level. */
+/** Entries 0 to 253: culled nodes, from the root to the deepest level. */
 export const searched = table((i) => (i === OPENED ? OPEN : between(SEARCHED, i / (OPENED - 1))));
 
 const css = (colour: number[]): string => `rgb(${colour.join(" ")})`;

@@ -1,13 +1,13 @@
-/** Recorded motion: several bodies with their q and rigid motion, or one body whose q is shown as if dragged. */
+/** Recorded motions: several bodies with q and rigid motion, or one body whose q moves the shape of the sliders. */
 import * as THREE from "three";
 import type { App } from "./app";
 import type { Body } from "./body";
-import type { Moved } from "./glb";
+import type { MovingBody } from "./glb";
 import type { PlaybackData } from "./protocol";
 import type { Shape } from "./shape";
 import type { Source } from "./source";
 
-interface Moving {
+interface StagedBody {
     body: Body | null;
     instance: number;
     shape: Shape;
@@ -23,7 +23,7 @@ interface Colliding {
 }
 
 export class Playback {
-    private bodies: Moving[] = [];
+    private bodies: StagedBody[] = [];
     private marked = false;
 
     private constructor(
@@ -61,7 +61,7 @@ export class Playback {
         return new Playback(app, data, shapes, tracks, colliding);
     }
 
-    /** One body that only deforms is the shape with the sliders itself. */
+    /** Whether the recording is one body that only deforms: it moves the shape of the sliders. */
     get posed(): boolean {
         return this.data.bodies.length === 1 && this.data.bodies[0].rigid === null && this.data.ground === null;
     }
@@ -70,21 +70,21 @@ export class Playback {
         return this.data.times.length;
     }
 
-    /** Colliding pairs of all bodies in each frame itself; null where they are not known. */
+    /** Colliding pairs of all bodies in each frame; null if unknown. */
     get pairs(): number[] | null {
-        // Without `pairs_since` those of a simulation are the most up to the next frame, not those of the frame.
+        // Without `pairs_since`, pairs of a simulation are the maximum up to the next frame, not those of the frame.
         if (this.data.pairs_since === undefined && !this.posed) return null;
         const known = this.data.bodies.flatMap((b) => (b.pairs ? [b.pairs] : []));
         if (known.length === 0) return null;
         return this.data.times.map((_, t) => known.reduce((sum, pairs) => sum + pairs[t], 0));
     }
 
-    /** The most of them in one step between the frame before and each frame; null where there are no such steps. */
+    /** The largest number of pairs in one step between the previous frame and each frame; null without such steps. */
     get since(): number[] | null {
         return this.data.pairs_since ?? null;
     }
 
-    get moved(): Moved[] {
+    get moving(): MovingBody[] {
         return this.data.bodies.map((b, i) => ({
             ...this.tracks[i],
             name: b.name,
@@ -99,7 +99,7 @@ export class Playback {
         return q.subarray(frame * rank, (frame + 1) * rank);
     }
 
-    /** Puts all bodies on the stage. */
+    /** Adds all bodies to the stage. */
     enter(): void {
         const { stage } = this.app;
         if (this.posed || !stage) return;
@@ -124,13 +124,13 @@ export class Playback {
         stage.frame(middle, radius, "z");
     }
 
-    /** Shows one frame, as it was recorded. */
+    /** Displays one frame as recorded. */
     show(frame: number): void {
         const { app } = this;
         const pairs = this.pairs;
         const recorded = { pairs: pairs?.[frame] ?? null, since: this.since?.[frame] ?? 0 };
         if (this.posed) {
-            // Live, each frame is asked about again.
+            // A live page checks each frame again.
             if (app.checker) app.motion.propose(this.row(0, frame));
             else {
                 app.recorded = pairs ? recorded : null;
@@ -148,7 +148,7 @@ export class Playback {
         app.frames.invalidate();
     }
 
-    /** The triangles of body 0 that collide in a frame; null where they were not recorded. */
+    /** The colliding triangles of a body in a frame; null if they were not recorded. */
     triangles(body: number, frame: number): Uint32Array | null {
         if (!this.colliding) return null;
         const at = frame * this.data.bodies.length + body;
@@ -166,7 +166,7 @@ export class Playback {
     }
 
     /** x -> R (x - center) + place. */
-    private matrix(b: Moving, frame: number): THREE.Matrix4 {
+    private matrix(b: StagedBody, frame: number): THREE.Matrix4 {
         if (!b.rigid) return new THREE.Matrix4();
         const [x, y, z, i, j, k, w] = b.rigid.subarray(7 * frame, 7 * frame + 7);
         const [cx, cy, cz] = b.center;
@@ -176,7 +176,7 @@ export class Playback {
             .multiply(new THREE.Matrix4().makeTranslation(-cx, -cy, -cz));
     }
 
-    /** A ball around all bodies at all times, but for those few that fly away. */
+    /** A ball around all bodies at all times, without bodies that fall far below the ground. */
     private extent(): { middle: [number, number, number]; radius: number } {
         const box = new THREE.Box3();
         for (const b of this.bodies) {

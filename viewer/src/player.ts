@@ -1,13 +1,13 @@
-/** Goes between the shape that is explored and what was recorded. */
+/** Switches between the shape of the sliders and the recording. */
 import type { App } from "./app";
 import { h } from "./dom";
-import type { Moved } from "./glb";
+import type { MovingBody } from "./glb";
 import type { Layout } from "./layout";
 import { Playback } from "./playback";
 import { Shape } from "./shape";
 import { Timeline, type Track } from "./timeline";
 
-/** Rows of numbers come without times. */
+/** Frame rate of loaded rows of q, which have no times. */
 const ROWS_PER_SECOND = 30;
 
 export class Player {
@@ -34,7 +34,7 @@ export class Player {
         this.listeners.push(listener);
     }
 
-    /** Shows the first picture; a recording if there is one. */
+    /** Shows the recording, if there is one, else the shape. */
     async begin(): Promise<void> {
         const { app } = this;
         this.standAlone();
@@ -52,7 +52,7 @@ export class Player {
         this.enterPlayback();
     }
 
-    /** Plays q that a person loaded. */
+    /** Plays loaded rows of q. */
     playRows(rows: number[][]): void {
         const { app } = this;
         const times = rows.map((_, i) => i / ROWS_PER_SECOND);
@@ -68,10 +68,10 @@ export class Player {
         this.timeline?.start();
     }
 
-    /** The recording, while it is on show. */
-    get shown(): { bodies: Moved[]; times: number[] } | null {
+    /** The recording while it is displayed; else null. */
+    get shown(): { bodies: MovingBody[]; times: number[] } | null {
         if (this.exploring || !this.recorded) return null;
-        return { bodies: this.recorded.moved, times: this.recorded.data.times };
+        return { bodies: this.recorded.moving, times: this.recorded.data.times };
     }
 
     step(by: number): void {
@@ -80,7 +80,7 @@ export class Player {
         this.timeline.seek(this.timeline.frame + by);
     }
 
-    /** A changed q ends the recording's turn, unless the recording itself changed it. */
+    /** Leaves the recording after a change of q, unless the recording itself changed q. */
     explore(): void {
         if (this.showing || this.exploring) return;
         this.app.recorded = null;

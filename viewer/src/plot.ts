@@ -1,4 +1,4 @@
-/** Line plots as SVG: linear or logarithmic axes, told apart by dash and marker as well as by colour. */
+/** Line plots as SVG, with linear or logarithmic axes. Dashes distinguish lines as well as colours. */
 import { digits, h, svg } from "./dom";
 import type { Axis, PlotData, Series } from "./protocol";
 
@@ -12,7 +12,7 @@ const DASHES = ["none", "6 3", "2 3", "8 3 2 3", "1 2", "10 4"];
 
 export interface Plot {
     element: HTMLElement;
-    /** A line at x, such as the time shown. */
+    /** Shows a vertical line at x, such as the current time. */
     setCursor(x: number | null): void;
 }
 
@@ -20,7 +20,7 @@ interface Scale {
     low: number;
     high: number;
     ticks: number[];
-    /** From 0 to 1. */
+    /** The position of a value on the axis, from 0 to 1. */
     at(value: number): number;
 }
 
@@ -58,7 +58,7 @@ function tickText(value: number): string {
     return String(Number(value.toPrecision(3)));
 }
 
-/** At most two points for each column of pixels, the least and the largest. */
+/** Keeps at most two points for each column of pixels: the smallest and the largest. */
 function thin(points: [number, number][]): [number, number][] {
     if (points.length <= 2 * WIDTH) return points;
     const columns = new Map<number, [number, number][]>();
@@ -198,7 +198,7 @@ function line(
     }
 }
 
-/** The values nearest to the pointer. */
+/** Shows the values nearest to the pointer. */
 function read(
     event: PointerEvent,
     root: SVGSVGElement,

@@ -1,4 +1,4 @@
-/** Plots where people would rather look than read. */
+/** The panel of plots. */
 import type { App } from "./app";
 import { h } from "./dom";
 import { type Plot, plot } from "./plot";
@@ -8,12 +8,13 @@ import type { Model, PlotData } from "./protocol";
 function levels(model: Model): PlotData {
     const x = model.levels.map((l) => l.level);
     const root = model.root_radius;
-    const series = (["least", "median", "largest"] as const).map((name) => ({
-        name,
+    const names = { least: "minimum", median: "median", largest: "maximum" };
+    const series = (["least", "median", "largest"] as const).map((key) => ({
+        name: names[key],
         x,
-        y: model.levels.map((l) => l[name]),
+        y: model.levels.map((l) => l[key]),
     }));
-    if (root !== null) series.push({ name: "root" as never, x, y: x.map(() => root) });
+    if (root !== null) series.push({ name: "root", x, y: x.map(() => root) });
     return {
         title: `Radius of certificates per level: ${model.name}`,
         x: { label: "level of the hierarchy", log: false },
@@ -22,7 +23,7 @@ function levels(model: Model): PlotData {
     };
 }
 
-/** Times at which something collides with itself, as spans from frame to frame: in a frame, or before the next one. */
+/** Times of self-collisions, as spans of frames: in a frame, or in a step before the next frame. */
 export function contactSpans(times: number[], pairs: number[][], since: number[] | null): [number, number][] {
     const spans: [number, number][] = [];
     let open: number | null = null;

@@ -1,4 +1,4 @@
-/** The q that is shown. Each has a serial; an answer counts only for the q of its own serial. */
+/** The displayed q. Each q has a serial; an answer counts only for the q with its serial. */
 export class Pose {
     serial = 0;
     private last = 0;
@@ -10,7 +10,7 @@ export class Pose {
         this.listeners.push(listener);
     }
 
-    /** The serial for a q that may be shown later. */
+    /** Returns the serial for a q that may be displayed later. */
     next(): number {
         return ++this.last;
     }

@@ -1,4 +1,4 @@
-/** What the page is given: the scene, and the answers of the local server. Arrays travel by name, little-endian. */
+/** The data of the page: the scene, and the answers of the local server. Arrays are named and little-endian. */
 
 export interface Level {
     level: number;
@@ -6,7 +6,7 @@ export interface Level {
     least: number | null;
     median: number | null;
     largest: number | null;
-    /** Share of entries that were capped, 0 to 1. */
+    /** Share of the nodes whose radius is the global radius, from 0 to 1. */
     capped: number;
 }
 
@@ -66,8 +66,8 @@ export interface PlaybackData {
     times: number[];
     bodies: PlaybackBody[];
     /**
-     * For each frame the most colliding pairs of all bodies in one step between the frame before and this one; null
-     * where there are no such steps. Earlier versions wrote none, and counted these steps in the `pairs` of bodies.
+     * For each frame the largest number of colliding pairs of all bodies in one step between the previous frame and
+     * this one; null without such steps. Earlier versions counted these steps in the `pairs` of bodies instead.
      */
     pairs_since?: number[] | null;
     colliding: { offsets: string; triangles: string } | null;
@@ -98,7 +98,7 @@ export interface Answer {
     count: number;
     complete: boolean;
     pairs: [number, number][];
-    /** Every triangle of any pair found; pairs may be too many to list. */
+    /** The triangles of all pairs found; `pairs` lists only the first ones. */
     triangles?: number[];
     microseconds: number;
     root_certified: boolean;
@@ -112,9 +112,9 @@ export interface Answer {
 export interface SafeScale {
     certified: number | null;
     first: { scale: number; pairs: [number, number][] } | null;
-    /** The way is known so far. */
+    /** The scale up to which the search covers every shape. */
     searched: number | null;
-    /** False where time ran out. */
+    /** Whether the search ended before its time limit. */
     complete: boolean;
 }
 

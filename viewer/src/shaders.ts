@@ -1,6 +1,6 @@
 /**
  * Deformation on the graphics card: x = p + U q, the modes in a texture. Row i of `weights` holds the number of modes
- * that are not zero for instance i, then (mode, weight) of each, so that any number of modes costs only what is used.
+ * that are not zero for instance i, then (mode, weight) of each. So only modes that are not zero cost time.
  */
 export const vertexShader = /* glsl */ `
 precision highp float;
@@ -32,7 +32,7 @@ void main() {
     gl_Position = projectionMatrix * view;
 }`;
 
-/** Colours are told apart without hue: colliding triangles are striped as well. */
+/** The visible surface. Colliding triangles are striped, so they are distinct without colour vision. */
 export const fragmentShader = /* glsl */ `
 precision highp float;
 precision highp int;
@@ -81,7 +81,7 @@ void main() {
     }
 }`;
 
-/** Colliding triangles hidden by others: a pale shade of them shows through. */
+/** Colliding triangles behind others: they show through as a pale shade. */
 export const hiddenShader = /* glsl */ `
 precision highp float;
 flat in int triangle;

@@ -1,8 +1,8 @@
-/** A model's arrays, and its positions at q where the processor needs them: x = p + U q. */
+/** A model's arrays, and its positions at q on the processor: x = p + U q. */
 import type { Model } from "./protocol";
 import type { Source } from "./source";
 
-/** More than what |z| is rounded by, here and where certificates are computed. */
+/** Larger than the rounding error of |z|, here and in the certificates. */
 const ROUNDING = 1 + 1e-12;
 
 export class Shape {
@@ -24,7 +24,7 @@ export class Shape {
         return shape;
     }
 
-    /** Half the diagonal of the box. */
+    /** Half the diagonal of the AABB. */
     get radius(): number {
         const { min, max } = this.model.box;
         return Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2 || 1;
@@ -61,7 +61,7 @@ export class Shape {
         return x;
     }
 
-    /** The middle of some triangles, and how far their corners are from it. */
+    /** The middle of triangles, and the largest distance of their corners from it. */
     around(triangles: number[], q: ArrayLike<number>): { middle: [number, number, number]; reach: number } {
         const corners = triangles.flatMap((t) => [0, 1, 2].map((c) => this.vertex(this.faces[3 * t + c], q)));
         const middle: [number, number, number] = [0, 0, 0];
@@ -70,7 +70,7 @@ export class Shape {
         return { middle, reach };
     }
 
-    /** |z| where the metric is diagonal. */
+    /** |z|; null if the metric is not diagonal. */
     norm(q: ArrayLike<number>): number | null {
         const { scales, center } = this.model;
         if (!scales) return null;
@@ -78,8 +78,8 @@ export class Shape {
     }
 
     /**
-     * Whether the root's certificate alone proves q free, in which case nothing need be asked. Where exceptions were
-     * made, or the metric is not diagonal, that is for the program to say.
+     * Whether the root's certificate alone proves q free. With exceptions, or a metric that is not diagonal, the page
+     * does not decide: false.
      */
     isRootCertified(q: ArrayLike<number>): boolean {
         const { root_radius: radius, exceptions } = this.model;
@@ -87,7 +87,7 @@ export class Shape {
         return exceptions === 0 && norm !== null && norm * ROUNDING < (radius ?? Number.POSITIVE_INFINITY);
     }
 
-    /** Names a mode: its own name, else its number and frequency. */
+    /** The name of a mode, else its number. */
     modeName(k: number): string {
         return this.model.mode_names?.[k] || `mode ${k + 1}`;
     }

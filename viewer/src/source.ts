@@ -1,16 +1,17 @@
-/** Where the page's data come from: the local server, or a report within the page. */
+/** The two sources of the page's data: the local server, or the report within the page. */
 import type { Report, Scene } from "./protocol";
 
-export class Refused extends Error {}
+/** The source has no such data, or the server refuses a request. */
+export class RequestError extends Error {}
 
-/** The server has gone. */
-export class Gone extends Error {}
+/** The server does not answer. */
+export class ConnectionError extends Error {}
 
 export interface Source {
     readonly live: boolean;
     readonly scene: Scene;
     array(name: string): Promise<ArrayBuffer>;
-    /** A question to the server; a report has none. */
+    /** Sends a request to the server; a report has no server, and throws. */
     ask<T>(path: string, body?: unknown): Promise<T>;
     bytes(path: string, body?: unknown): Promise<ArrayBuffer>;
 }
@@ -18,10 +19,10 @@ export interface Source {
 export async function openSource(): Promise<Source> {
     const text = document.getElementById("sscc-report")?.textContent ?? "null";
     const report = JSON.parse(text) as Report | null;
-    return report ? new Within(report) : Live.open();
+    return report ? new ReportSource(report) : LiveSource.open();
 }
 
-class Within implements Source {
+class ReportSource implements Source {
     readonly live = false;
     readonly scene: Scene;
     constructor(private readonly report: Report) {
@@ -29,32 +30,32 @@ class Within implements Source {
     }
     async array(name: string): Promise<ArrayBuffer> {
         const text = this.report.arrays[name];
-        if (text === undefined) throw new Refused(`the report has no array '${name}'`);
+        if (text === undefined) throw new RequestError(`the report has no array '${name}'`);
         return Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
     }
     ask<T>(): Promise<T> {
-        return Promise.reject(new Refused("a report cannot answer questions"));
+        return Promise.reject(new RequestError("a report has no server for this request"));
     }
     bytes(): Promise<ArrayBuffer> {
         return this.ask();
     }
 }
 
-class Live implements Source {
+class LiveSource implements Source {
     readonly live = true;
     private constructor(
         private readonly token: string,
         public scene: Scene,
     ) {}
 
-    static async open(): Promise<Live> {
+    static async open(): Promise<LiveSource> {
         const address = new URL(location.href);
         const token = address.searchParams.get("token") ?? "";
-        // What is seen, kept in histories and sent in pictures holds no token. Reloading still finds it.
+        // Removes the token from the visible address and from histories. A reload finds it in the state.
         address.searchParams.delete("token");
         const known = token || (history.state as { token?: string } | null)?.token || "";
         history.replaceState({ token: known }, "", address);
-        const source = new Live(known, null as unknown as Scene);
+        const source = new LiveSource(known, null as unknown as Scene);
         source.scene = await source.ask<Scene>("/api/scene");
         return source;
     }
@@ -84,11 +85,11 @@ class Live implements Source {
         try {
             response = await fetch(path, init);
         } catch {
-            throw new Gone(
+            throw new ConnectionError(
                 "The server does not answer: is 'sscc view' still running? Start it again and open its new address.",
             );
         }
-        if (!response.ok) throw new Refused(await explain(response));
+        if (!response.ok) throw new RequestError(await explain(response));
         return response;
     }
 }
@@ -98,7 +99,7 @@ async function explain(response: Response): Promise<string> {
         const { error } = (await response.json()) as { error?: string };
         if (error) return error;
     } catch {
-        // Not ours: the status must do.
+        // The body is not JSON: the message has the status.
     }
     return `the server answered with ${response.status} ${response.statusText}`.trim();
 }

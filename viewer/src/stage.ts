@@ -1,4 +1,4 @@
-/** The picture: camera, light and what stands on the stage. */
+/** The picture: camera, renderer, bodies, ground and AABBs. */
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Body } from "./body";
@@ -6,6 +6,7 @@ import type { Frames } from "./frames";
 import type { Shape } from "./shape";
 import { colours } from "./theme";
 
+/** Duration of a flight of the camera (ms). */
 const FLIGHT = 450;
 
 export class Stage {
@@ -18,7 +19,7 @@ export class Stage {
     private ground: THREE.GridHelper | null = null;
     private boxes: THREE.LineSegments | null = null;
 
-    /** Throws where WebGL 2 is missing. */
+    /** Throws if WebGL 2 is missing. */
     constructor(
         readonly canvas: HTMLCanvasElement,
         readonly frames: Frames,
@@ -66,7 +67,7 @@ export class Stage {
         this.frames.invalidate();
     }
 
-    /** Looks at a ball from the front, a little from above and aside. */
+    /** Points the camera at a ball, from the front, slightly from above and from the side. */
     frame(middle: number[], radius: number, up: "y" | "z"): void {
         this.home = { middle: new THREE.Vector3(...middle), radius };
         this.camera.up.set(0, up === "y" ? 1 : 0, up === "z" ? 1 : 0);
@@ -79,7 +80,7 @@ export class Stage {
         this.frames.invalidate();
     }
 
-    /** Goes to a place on the shape and stays as far as suits its size. */
+    /** Flies to a point of the shape, to a distance that suits the size of the part. */
     flyTo(middle: number[], reach: number): void {
         const target = new THREE.Vector3(...middle);
         const away = this.camera.position.clone().sub(this.controls.target).normalize();
@@ -125,7 +126,7 @@ export class Stage {
         this.recolour();
     }
 
-    /** A picture of the shape alone at q. */
+    /** Returns a picture of a body; `draw` sets its q first. */
     thumbnail(body: Body, draw: () => void, width: number, height: number): ImageData {
         const target = new THREE.WebGLRenderTarget(width, height, { samples: 4 });
         const camera = new THREE.PerspectiveCamera(32, width / height, this.camera.near, this.camera.far);
@@ -198,7 +199,7 @@ export class Stage {
         this.frames.invalidate();
     }
 
-    /** Arrows turn, plus and minus come nearer and go away. */
+    /** Arrows rotate the view, plus and minus zoom. */
     private key(event: KeyboardEvent): void {
         const turns: Record<string, [number, number, number]> = {
             ArrowLeft: [-0.1, 0, 1],
@@ -226,7 +227,7 @@ export class Stage {
     }
 }
 
-/** The twelve edges of each box. */
+/** The twelve edges of each AABB. */
 function boxLines(boxes: number[][]): Float32Array {
     const lines = new Float32Array(boxes.length * 72);
     let at = 0;

@@ -1,4 +1,4 @@
-/** Light and dark: the system's choice, unless another was made here. Colours are in style.css. */
+/** Light and dark theme: the system's choice, unless a person switches it. Colours are in style.css. */
 export interface Colours {
     ground: [number, number, number];
     background: [number, number, number];

@@ -1,4 +1,4 @@
-/** Extremal deformations of the root's ellipsoid as small pictures (the paper's Figure 11); a click shows one. */
+/** Small pictures of the largest certified deformations (paper, Figure 11). A click shows one. */
 import type { App } from "./app";
 import { h } from "./dom";
 
@@ -24,8 +24,8 @@ export function thumbnails(app: App): HTMLElement {
     const element = h(
         "section",
         { "aria-label": "extremal deformations" },
-        h("h2", {}, "As far as the root certifies"),
-        h("p", { class: "hint" }, "Shapes on the boundary of what the root's certificate proves free."),
+        h("h2", {}, "Extremal deformations"),
+        h("p", { class: "hint" }, "Shapes at the root's radius: the certificate proves all smaller ones free."),
         h("div", { class: "thumbnails" }, ...pictures.map((p) => p.button)),
     );
     const draw = (): void => {
@@ -40,7 +40,7 @@ export function thumbnails(app: App): HTMLElement {
         body.setQ(0, app.pose.q);
         app.frames.invalidate();
     };
-    // Once they are seen: until then they cost nothing.
+    // Draws them when they first become visible.
     new IntersectionObserver((entries, observer) => {
         if (!entries.some((e) => e.isIntersecting)) return;
         observer.disconnect();

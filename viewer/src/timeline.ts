@@ -1,17 +1,17 @@
-/** Plays frames against a clock, sound in sync; contact is marked on the line. */
+/** The timeline: plays frames by a clock, in sync with the sound; marks show contacts. */
 
 import { count, digits, h, svg } from "./dom";
 import type { Frames } from "./frames";
 
 const SPEEDS = [2, 1, 0.5, 0.25, 0.1, 0.02];
-/** A motion is slowed to last so long at least (s), unless it sounds. */
-const AT_LEAST = 3;
+/** The initial speed makes a motion without sound last at least this time (s). */
+const MIN_DURATION = 3;
 
 export interface Track {
     times: number[];
-    /** Colliding pairs per frame, null where not known. */
+    /** Colliding pairs of each frame; null if unknown. */
     pairs: number[] | null;
-    /** The most of them in one step between the frame before and each frame, null where there are no such steps. */
+    /** The largest number of pairs in one step between the previous frame and each frame; null without such steps. */
     since: number[] | null;
     show(frame: number): void;
     sound: Blob | null;
@@ -37,7 +37,7 @@ export class Timeline {
         const { times } = track;
         this.time = times[0] ?? 0;
         const length = (times.at(-1) ?? 0) - this.time;
-        const first = track.sound ? 1 : (SPEEDS.find((s) => s <= 1 && length / s >= AT_LEAST) ?? SPEEDS.at(-1)!);
+        const first = track.sound ? 1 : (SPEEDS.find((s) => s <= 1 && length / s >= MIN_DURATION) ?? SPEEDS.at(-1)!);
         this.audio = track.sound ? h("audio", { src: URL.createObjectURL(track.sound), preload: "auto" }) : null;
         this.play = h("button", { type: "button", class: "play", onclick: () => this.toggle() }, "▶");
         this.slider = h("input", {
@@ -106,7 +106,7 @@ export class Timeline {
         if (this.audio) {
             this.respeed();
             this.audio.currentTime = Math.max(0, this.time - this.track.times[0]);
-            // Where sound may not begin by itself, the picture goes on without it.
+            // If the browser blocks the sound, the picture plays without it.
             void this.audio.play().catch(() => undefined);
         }
         this.frames.run((now) => this.tick(now));
@@ -132,13 +132,13 @@ export class Timeline {
         this.element.remove();
     }
 
-    /** Whether bodies collide with themselves in a frame, or did since the frame before. */
+    /** Whether bodies collide with themselves in a frame or in a step since the previous frame. */
     private touches(frame: number): boolean {
         const { pairs, since } = this.track;
         return (pairs?.[frame] ?? 0) > 0 || (since?.[frame] ?? 0) > 0;
     }
 
-    /** To the next frame that touches after one that does not. */
+    /** Seeks the next start of a contact. */
     private jump(step: number): void {
         for (let f = this.frame + step; f >= 0 && f < this.track.times.length; f += step) {
             if (this.touches(f) && !this.touches(f - 1)) {
@@ -196,8 +196,8 @@ export class Timeline {
     }
 
     /**
-     * Bars where pairs collide, higher for more; low ones where they did between two frames alone. At most three for
-     * each hundredth of the line's width.
+     * At most 300 bars: at frames with colliding pairs, higher for more pairs, and low bars for collisions only between
+     * two frames.
      */
     private marks(): SVGElement {
         const { pairs, since, times } = this.track;

@@ -1,4 +1,4 @@
-// Chromium as it is installed; none is downloaded.
+// Starts the installed Chromium; no browser is downloaded.
 import { existsSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -6,8 +6,8 @@ import { chromium } from "playwright-core";
 
 const here = dirname(fileURLToPath(import.meta.url));
 export const builtPage = join(here, "../../crates/sscc-view/page/index.html");
-/** Drawing without a graphics card takes its time on a busy machine (ms). */
-const PATIENCE = 240_000;
+/** Timeout of each step (ms): drawing without a graphics card is slow on a busy machine. */
+const TIMEOUT = 240_000;
 
 const places = [
     process.env.SSCC_CHROMIUM,
@@ -16,7 +16,7 @@ const places = [
     "/usr/bin/google-chrome",
 ];
 
-/** Draws by the processor (SwiftShader), so that it needs no graphics card. */
+/** Starts Chromium. The processor draws (SwiftShader), so no graphics card is needed. */
 export function launch(more = []) {
     const executablePath = places.find((place) => place && existsSync(place));
     if (!executablePath) throw new Error("no Chromium: install Debian's package, or name one in SSCC_CHROMIUM");
@@ -31,10 +31,10 @@ export function launch(more = []) {
     return chromium.launch({ executablePath, headless: true, args });
 }
 
-/** A page of its own that notes what goes wrong in it, and every request. */
+/** Opens a page in a new context; returns it with its errors and requests. */
 export async function open(browser, address, { width = 900, height = 560, scheme = "light", ...more } = {}) {
     const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, ...more });
-    context.setDefaultTimeout(PATIENCE);
+    context.setDefaultTimeout(TIMEOUT);
     const page = await context.newPage();
     const seen = { errors: [], requests: [] };
     page.on("pageerror", (error) => seen.errors.push(String(error)));
@@ -45,7 +45,7 @@ export async function open(browser, address, { width = 900, height = 560, scheme
     return { page, context, ...seen };
 }
 
-/** What can be pressed or filled in and has no name for those who do not see it. */
+/** Controls without an accessible name. */
 export function nameless(page) {
     return page.evaluate(() =>
         [...document.querySelectorAll("button, input, select, textarea, canvas[tabindex]")]

@@ -1,4 +1,4 @@
-// The `sscc` command of this build, and its server.
+// Runs the `sscc` command of this build and its server.
 import { execFile, spawn } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -14,7 +14,7 @@ function command() {
     return found;
 }
 
-/** Runs it to its end; exit code 1 means collisions, not failure. */
+/** Runs a command; returns its output. Exit code 1 means collisions, not failure. */
 export function run(...args) {
     return new Promise((done, failed) => {
         execFile(command(), args, { maxBuffer: 1 << 30 }, (error, stdout, stderr) => {
@@ -24,7 +24,7 @@ export function run(...args) {
     });
 }
 
-/** Starts `sscc view`; answers with its address once it is printed. */
+/** Starts `sscc view`; returns its address, its token and a function that stops it. */
 export async function view(...args) {
     const child = spawn(command(), ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
     const gone = new Promise((done) => child.once("exit", done));
@@ -45,7 +45,7 @@ export async function view(...args) {
     throw new Error("sscc view ended without an address");
 }
 
-/** Rows of a .npy file of float64, as the demo writes it. */
+/** Reads the rows of a .npy file of float64 as the demo writes it. */
 export function readRows(path) {
     const bytes = readFileSync(path);
     const begin = 10 + bytes.readUInt16LE(8);

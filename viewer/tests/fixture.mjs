@@ -1,4 +1,4 @@
-// A small scene made in code: a tube with four modes, three bodies that fall, contact in the middle, another one between two frames, a tone.
+// A generated scene: three falling tubes with four modes, one contact in the middle, one between two frames, a tone.
 const RINGS = 60;
 const SIDES = 16;
 
@@ -7,7 +7,7 @@ export function base64(array) {
     return Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64");
 }
 
-/** A closed tube along x from -1 to 1, and what its modes move. */
+/** A tube along x from -1 to 1, and its modes. */
 export function tube() {
     const positions = [];
     for (let i = 0; i < RINGS; i++) {
@@ -37,7 +37,7 @@ export function tube() {
     return { positions: new Float32Array(positions), faces: new Uint32Array(faces), modes: new Float32Array(modes) };
 }
 
-/** Sixteen-bit samples of a tone, as WAV. */
+/** A tone of 16-bit samples, as WAV. */
 function tone(seconds, rate = 8000) {
     const n = Math.round(seconds * rate);
     const wav = Buffer.alloc(44 + 2 * n);
@@ -61,7 +61,7 @@ function tone(seconds, rate = 8000) {
 const FRAMES = 60;
 const BODIES = 3;
 
-/** A whole report; `change` may alter its scene before it is written. */
+/** A report; `change` may modify its scene. */
 export function report({ sound = false, playback = true, change = () => {} } = {}) {
     const { positions, faces, modes } = tube();
     const times = Array.from({ length: FRAMES }, (_, t) => t / 30);
@@ -169,10 +169,10 @@ export function report({ sound = false, playback = true, change = () => {} } = {
     return { scene, arrays };
 }
 
-/** The page with a report put in, as the program does it. */
+/** Inserts a report into the page, as the program does. */
 export function withReport(page, data) {
     const empty = '<script type="application/json" id="sscc-report">null</script>';
-    if (page.split(empty).length !== 2) throw new Error("the page must have one place for its report");
+    if (page.split(empty).length !== 2) throw new Error("the page must have one element for its report");
     const json = JSON.stringify(data).replaceAll("<", "\\u003c");
     return page.replace(empty, () => empty.replace("null", () => json));
 }

@@ -1,4 +1,4 @@
-// GLB as three.js reads and plays it.
+// Reads and plays GLB by three.js.
 import { AnimationMixer } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
@@ -7,7 +7,7 @@ export async function parse(bytes) {
     return new GLTFLoader().parseAsync(buffer, "");
 }
 
-/** Whether all weights of morph targets lie in [0, 1]: programs may cut them off there. */
+/** Whether all weights of morph targets are in [0, 1], since programs may clamp them. */
 export function isBounded(gltf) {
     const tracks = gltf.animations[0].tracks.filter((track) => track.name.endsWith(".morphTargetInfluences"));
     return tracks.length > 0 && tracks.every(({ values }) => values.every((w) => w >= 0 && w <= 1));

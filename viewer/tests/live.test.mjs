@@ -1,4 +1,4 @@
-// The live page before the real server, on the demo's spring.
+// The live page with the real server, for the spring of the demo.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { request } from "node:http";
@@ -16,7 +16,7 @@ const certificates = join(folder, "spring.sscc.safetensors");
 let browser;
 let server;
 let rows;
-/** What `sscc check --json` says of each row. */
+/** The answer of `sscc check --json` for each row. */
 let answers;
 
 before(async () => {
@@ -37,7 +37,7 @@ after(async () => {
     rmSync(folder, { recursive: true, force: true });
 });
 
-/** Opens the live page, runs the steps, and fails where the page complained or asked for anything from elsewhere. */
+/** Opens the live page and runs the steps. Fails after an error of the page or a request to another address. */
 async function look(steps, { allowed = [] } = {}) {
     const { page, context, errors, requests } = await open(browser, server.address, {});
     try {
@@ -65,7 +65,7 @@ const answered = (page) =>
             gauge.serial === String(pose.serial)
         );
     });
-/** A row that is as asked for. */
+/** The first row whose answer satisfies the condition. */
 const row = (wanted) => {
     const index = answers.findIndex(wanted);
     assert.ok(index >= 0, "the demo has such a row");
@@ -74,7 +74,7 @@ const row = (wanted) => {
 const fewPairs = () => row((a) => a.colliding && a.count < 400);
 
 describe("live", () => {
-    test("loads, hides the token, and loads again", () =>
+    test("loads, removes the token from the address, and reloads", () =>
         look(async (page) => {
             assert.ok(!page.url().includes("token"));
             await answered(page);
@@ -90,7 +90,7 @@ describe("live", () => {
             assert.match(await page.locator(".subtitle").innerText(), /16,000 triangles, 20 modes/);
         }));
 
-    test("the gauge tells what check tells", () =>
+    test("the gauge shows the answer of check", () =>
         look(async (page) => {
             for (const wanted of [
                 (a) => a.root_certified,
@@ -108,7 +108,7 @@ describe("live", () => {
             }
         }));
 
-    test("what the root certifies is told in the frame that draws it, as the program tells it", () =>
+    test("the gauge shows root-certified q in the frame that draws them, and agrees with the server", () =>
         look(async (page) => {
             await show(page, fewPairs().q);
             await answered(page);
@@ -127,14 +127,14 @@ describe("live", () => {
             for (const { q, share } of ball) {
                 await show(page, q);
                 await answered(page);
-                const told = await page.evaluate(() => globalThis.sscc.checker.answer.root_certified);
-                assert.equal(told, share < 1);
+                const certified = await page.evaluate(() => globalThis.sscc.checker.answer.root_certified);
+                assert.equal(certified, share < 1);
                 assert.equal(await page.locator(".gauge").getAttribute("data-kind"), share < 1 ? "root" : "free");
             }
             await show(page, fewPairs().q);
             await answered(page);
             await page.route("**/api/check", () => undefined);
-            // Within one frame, and without any answer.
+            // Within one frame, and without an answer.
             const seen = await page.evaluate(async (q) => {
                 const { pose, body } = globalThis.sscc;
                 pose.show(q);
@@ -149,7 +149,7 @@ describe("live", () => {
             assert.deepEqual(seen, { kind: "root", isOf: true, marks: [] });
         }));
 
-    test("the colliding triangles shown are check's", () =>
+    test("the marked triangles are those of check", () =>
         look(async (page) => {
             const { q, answer } = fewPairs();
             assert.equal(orange(await pixels(page)), 0);
@@ -168,7 +168,7 @@ describe("live", () => {
             );
             const first = page.locator(".pair").first();
             await first.click();
-            // It flies until the pair is in the middle of the picture.
+            // The camera flies until the pair is in the middle of the picture.
             await page.waitForFunction(() => {
                 const { shape, pose, checker, stage } = globalThis.sscc;
                 const { middle } = shape.around(checker.answer.pairs[0], pose.q);
@@ -183,16 +183,16 @@ describe("live", () => {
             assert.deepEqual(await page.evaluate(() => globalThis.sscc.body.markedTriangles(0)), []);
         }));
 
-    test("an answer counts only for its own q; of those waiting the latest is asked", () =>
+    test("an answer counts only for its own q; only the latest waiting q is sent", () =>
         look(async (page) => {
             await answered(page);
             let release;
             const held = new Promise((done) => {
                 release = done;
             });
-            const asked = [];
+            const serials = [];
             await page.route("**/api/check", async (route) => {
-                asked.push(route.request().postDataJSON().serial);
+                serials.push(route.request().postDataJSON().serial);
                 await held;
                 await route.continue();
             });
@@ -205,15 +205,15 @@ describe("live", () => {
             await show(page, fewPairs().q);
             await settled(page);
             assert.equal(await verdict(page), "checking…");
-            assert.equal(asked.length, 1);
+            assert.equal(serials.length, 1);
             release();
             await answered(page);
             assert.match(await verdict(page), /^COLLIDING/);
-            assert.equal(asked.length, 2);
-            assert.equal(asked[1], await page.evaluate(() => globalThis.sscc.pose.serial));
+            assert.equal(serials.length, 2);
+            assert.equal(serials[1], await page.evaluate(() => globalThis.sscc.pose.serial));
         }));
 
-    test("a slider dragged by the mouse is answered on its way", () =>
+    test("there are answers while the mouse drags a slider", () =>
         look(async (page) => {
             await answered(page);
             const slider = page.locator('.mode input[type="range"]').nth(1);
@@ -233,9 +233,9 @@ describe("live", () => {
             assert.ok(kinds.has("colliding"), [...kinds].join(", "));
         }));
 
-    test("goes along a mode to the first self-collision, or says that there is none", () =>
+    test("moves along a mode to the first self-collision, or says that there is none", () =>
         look(async (page) => {
-            // What each mode meets on its way is another matter for each model: the server knows.
+            // The server finds which modes lead to a collision.
             const found = await page.evaluate(async () => {
                 const { source, shape } = globalThis.sscc;
                 const along = [];
@@ -249,16 +249,16 @@ describe("live", () => {
             const [mode, free] = [found.findIndex((a) => a.first), found.findIndex((a) => !a.first)];
             const press = (k) =>
                 page.getByRole("button", { name: `mode ${k + 1} to the first self-collision` }).click();
-            const said = async (text) => {
+            const message = async (text) => {
                 await page.locator(".message", { hasText: text }).waitFor();
                 return page.locator(".message").innerText();
             };
             assert.ok(mode >= 0 && free >= 0);
             await press(free);
-            const none = await said(`no self-collision along mode ${free + 1} up to`);
-            assert.ok(!none.includes("ran out"), none);
+            const none = await message(`no self-collision along mode ${free + 1} up to`);
+            assert.ok(!none.includes("time limit"), none);
             await press(mode);
-            await said(`first self-collision along mode ${mode + 1} at`);
+            await message(`first self-collision along mode ${mode + 1} at`);
             await page.waitForFunction(
                 ([k, scale]) => globalThis.sscc.pose.q[k] === scale,
                 [mode, found[mode].first.scale],
@@ -274,7 +274,7 @@ describe("live", () => {
             assert.ok(!(await check(q.map((v) => v * (1 - 1e-6)))).colliding);
         }));
 
-    test("of two searches the later one counts", () =>
+    test("only the later of two searches counts", () =>
         look(async (page) => {
             let release;
             const held = new Promise((done) => {
@@ -298,7 +298,7 @@ describe("live", () => {
             assert.ok(!(await page.locator(".message").innerText()).includes("mode 1 "));
         }));
 
-    test("costs stand beside the traditional method's", () =>
+    test("the costs of both methods are shown", () =>
         look(async (page) => {
             const { q, answer } = fewPairs();
             await show(page, q);
@@ -310,7 +310,7 @@ describe("live", () => {
             assert.match(table, new RegExp(`nodes opened\\s+${answer.opened.toLocaleString("en")}`));
         }));
 
-    test("nodes are coloured by radius, and as opened and culled; boxes are drawn", () =>
+    test("nodes are coloured by radius, and as opened and culled; AABBs are drawn", () =>
         look(async (page) => {
             await show(
                 page,
@@ -346,7 +346,7 @@ describe("live", () => {
             assert.ok(culled > 0 && opened > 0, text);
             await settled(page);
             assert.ok(yellow(await pixels(page)) > 100);
-            await page.getByLabel("boxes of this level").check();
+            await page.getByLabel("AABBs of this level").check();
             await page.waitForFunction(() => globalThis.sscc.stage.scene.children.some((c) => c.isLineSegments));
         }));
 
@@ -364,7 +364,7 @@ describe("live", () => {
             assert.ok(png.length > 5000);
             const glb = await parse(await saved(page.getByRole("button", { name: "save the motion" })));
             assert.ok(isBounded(glb));
-            // The way from the centre to q and back: there at one second.
+            // The line from the centre to q and back; q is reached at one second.
             for (const [time, share] of [
                 [0, 0],
                 [0.5, 0.5],
@@ -383,7 +383,7 @@ describe("live", () => {
 });
 
 describe("the server", () => {
-    /** A request as any program could make it. */
+    /** A request of any program. */
     const ask = (path, { headers = {}, body } = {}) =>
         new Promise((done, failed) => {
             const url = new URL(path, server.origin);
@@ -408,11 +408,11 @@ describe("the server", () => {
         assert.equal((await ask("/api/scene", { headers: { ...token(), Host: "example.com" } })).status, 403);
     });
 
-    test("refuses bodies too large, q too long, what is not there; in one line", async () => {
+    test("refuses large bodies, q of a wrong length and unknown paths, in one line", async () => {
         const large = await ask("/api/check", { headers: token(), body: `{"q":[${"1,".repeat(1 << 20)}1]}` }).catch(
             () => null,
         );
-        // The server may hang up before all is sent.
+        // The server may close the connection before the whole body is sent.
         if (large) assert.equal(large.status, 413);
         const long = await ask("/api/check", { headers: token(), body: '{"q":[1],"serial":1}' });
         assert.equal(long.status, 400);
@@ -421,7 +421,7 @@ describe("the server", () => {
         assert.equal((await ask("/api/nothing", { headers: token() })).status, 404);
     });
 
-    test("a page opened with a wrong token says so", async () => {
+    test("a page with a wrong token shows an error", async () => {
         const context = await browser.newContext();
         const page = await context.newPage();
         await page.goto(server.origin);
@@ -430,7 +430,7 @@ describe("the server", () => {
         await context.close();
     });
 
-    test("another site's page gets no answer", async () => {
+    test("a page of another site gets no answer", async () => {
         const context = await browser.newContext();
         const page = await context.newPage();
         await page.goto("data:text/html,<p>elsewhere");
@@ -446,7 +446,7 @@ describe("the server", () => {
         await context.close();
     });
 
-    test("what happened is told once it has gone; nothing stays free", async () => {
+    test("the page shows an error after the server has stopped, and no verdict", async () => {
         const own = await view(model, "--certificates", certificates);
         const { page, context } = await open(browser, own.address);
         await answered(page);

@@ -1,6 +1,6 @@
-// Reading pictures: what is drawn, measured from outside.
+// Measures the displayed picture.
 
-/** Pixels of an element as the screen shows them: `at(x, y)` gives [r, g, b]. */
+/** The displayed pixels of an element: `at(x, y)` returns [r, g, b]. */
 export async function pixels(page, selector = ".stage canvas") {
     const png = await page.locator(selector).screenshot();
     const data = await page.evaluate(async (base64) => {
@@ -19,7 +19,7 @@ export async function pixels(page, selector = ".stage canvas") {
     return { width: data.width, height: data.height, at };
 }
 
-/** The box of all that is not background, which the corner shows. */
+/** The bounding box of all pixels that differ from the background in the corner. */
 export function drawnBox(picture) {
     const background = picture.at(picture.width - 3, 3);
     const box = { left: picture.width, right: -1, top: picture.height, bottom: -1, count: 0 };
@@ -37,7 +37,7 @@ export function drawnBox(picture) {
     return box;
 }
 
-/** Where the processor's own positions p + U q lie in the picture. */
+/** The bounding box in the picture of the positions p + U q by the processor. */
 export function expectedBox(page) {
     return page.evaluate(() => {
         const { stage, shape, pose } = globalThis.sscc;
@@ -67,13 +67,13 @@ function count(picture, wanted) {
     return n;
 }
 
-/** Pixels in the orange of colliding triangles, which nothing else has. */
+/** Number of pixels in the orange of colliding triangles, which nothing else has. */
 export const orange = (picture) => count(picture, (r, g, b) => r > 150 && r > 1.6 * g && g > b);
 
-/** Pixels in the yellow of nodes that lie deep. */
+/** Number of pixels in the yellow of deep nodes. */
 export const yellow = (picture) => count(picture, (r, g, b) => r > 1.3 * b && r < 1.5 * g);
 
-/** After the next frame was drawn. */
+/** Waits until the next frame is drawn. */
 export function settled(page) {
     return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }

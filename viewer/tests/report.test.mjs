@@ -1,4 +1,4 @@
-// Reports: the page with its data in it, opened as a file.
+// Reports: the page with its data, opened as a file.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -28,7 +28,7 @@ after(async () => {
     rmSync(folder, { recursive: true, force: true });
 });
 
-/** Opens a report, runs the steps, and fails where the page complained or asked for anything from elsewhere. */
+/** Opens a report and runs the steps. Fails after an error of the page or a request to another address. */
 async function look(options, steps) {
     const { page, context, errors, requests } = await open(browser, write("report", options), options);
     try {
@@ -44,10 +44,10 @@ async function look(options, steps) {
 describe("the shape", () => {
     test("is deformed on the graphics card as by the processor", () =>
         look({ playback: false }, async (page) => {
-            // From so far that every shape below is in the picture as a whole.
+            // Zooms out until every shape below is entirely in the picture.
             await page.focus(".stage canvas");
             for (let i = 0; i < 6; i++) await page.keyboard.press("-");
-            // Without the ring around what has the focus.
+            // Removes the focus ring.
             await page.evaluate(() => document.activeElement.blur());
             for (const q of [
                 [0, 0, 0, 0],
@@ -66,10 +66,10 @@ describe("the shape", () => {
             }
         }));
 
-    test("turns when dragged, comes nearer by the wheel, and by keys", () =>
+    test("is rotated by dragging and keys, and zoomed by the wheel", () =>
         look({ playback: false }, async (page) => {
             const place = () => page.evaluate(() => globalThis.sscc.stage.camera.position.toArray());
-            /** Waits until the camera is so far from a place, and so many times as far from the middle. */
+            /** Waits until the camera has moved by more than `apart`, to less than `ratio` times the distance. */
             const until = async (from, apart, ratio) => {
                 await page.waitForFunction(
                     ([from, apart, ratio]) => {
@@ -94,7 +94,7 @@ describe("the shape", () => {
             await until(near, 0.05, 1.001);
         }));
 
-    test("follows the slider of a mode; a double click puts it back", () =>
+    test("follows the slider of a mode; a double click resets it", () =>
         look({ playback: false }, async (page) => {
             const before = drawnBox(await pixels(page));
             const slider = page.locator('.mode input[type="range"]').first();
@@ -120,7 +120,7 @@ describe("the shape", () => {
             assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), still);
         }));
 
-    test("takes q pasted, or from files of text and NumPy", () =>
+    test("accepts q pasted, and from text and .npy files", () =>
         look({ playback: false }, async (page) => {
             const q = () => page.evaluate(() => [...globalThis.sscc.pose.q]);
             await page.getByRole("button", { name: "Load q…" }).click();
@@ -130,7 +130,7 @@ describe("the shape", () => {
             await page.keyboard.press("l");
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2 x");
             await page.getByRole("button", { name: "Show", exact: true }).click();
-            assert.match(await page.locator(".dialog .wrong").innerText(), /line 1: 'x' is no number/);
+            assert.match(await page.locator(".dialog .wrong").innerText(), /line 1: 'x' is not a number/);
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2");
             await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.match(await page.locator(".dialog .wrong").innerText(), /2 numbers, the model has 4 modes/);
@@ -149,7 +149,7 @@ describe("the shape", () => {
             await page.keyboard.press("l");
             const cut = { ...file, buffer: rows.subarray(0, rows.length - 5) };
             await page.locator('.dialog input[type="file"]').setInputFiles(cut);
-            await page.getByText("the .npy file is cut off or too long").waitFor();
+            await page.getByText("the .npy file is truncated or too long").waitFor();
         }));
 });
 
@@ -163,7 +163,7 @@ function npy(values, shape) {
 }
 
 describe("playback", () => {
-    test("plays on a clock, is marked where bodies touch themselves, and shows what was recorded", () =>
+    test("plays by a clock, marks self-contacts, and shows the recorded answers", () =>
         look({}, async (page) => {
             const slider = page.getByRole("slider", { name: "frame" });
             const verdict = page.locator(".verdict-text");
@@ -190,7 +190,7 @@ describe("playback", () => {
             assert.equal(await slider.inputValue(), "59");
         }));
 
-    test("tells what collided since the last frame apart from the frame itself", () =>
+    test("distinguishes collisions since the last frame from those of the frame", () =>
         look({}, async (page) => {
             const slider = page.getByRole("slider", { name: "frame" });
             const verdict = page.locator(".verdict-text");
@@ -204,7 +204,7 @@ describe("playback", () => {
                 /^1.33 seconds, collided since the last frame$/,
             );
             assert.equal(orange(await pixels(page)), 0);
-            // Low marks here and where the longer contact ends, lower than all others.
+            // Low marks here and at the end of the longer contact, lower than all others.
             const heights = (which) =>
                 page.locator(which).evaluateAll((bars) => bars.map((bar) => Number(bar.getAttribute("height"))));
             assert.deepEqual(await heights(".marks .contact.since"), [4, 4]);
@@ -219,12 +219,12 @@ describe("playback", () => {
             assert.ok(await since.isHidden());
             await page.getByRole("button", { name: "next self-contact" }).click();
             assert.equal(await slider.inputValue(), "40");
-            // It lies between the two frames in plots, too.
+            // Plots show the contact between the two frames, too.
             await page.getByRole("tab", { name: "Plots" }).click();
             assert.equal(await page.locator(".plot").nth(0).locator(".span").count(), 2);
         }));
 
-    test("claims nothing of frames whose own collisions were not recorded", () =>
+    test("shows no verdict for frames without recorded collisions", () =>
         look({ change: (scene) => delete scene.playback.pairs_since }, async (page) => {
             await page.getByRole("slider", { name: "frame" }).fill("25");
             await settled(page);
@@ -264,7 +264,7 @@ describe("playback", () => {
             for (const [i, value] of due.entries()) assert.ok(Math.abs(place[i] - value) < 1e-6, `${i}: ${place[i]}`);
         }));
 
-    test("is saved as GLB with the same positions, as three.js plays them", () =>
+    test("is saved as GLB; three.js plays the same positions", () =>
         look({}, async (page) => {
             const button = page.getByRole("button", { name: "save the motion" });
             const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
@@ -287,7 +287,7 @@ describe("playback", () => {
             });
         }));
 
-    test("a slider leaves the recording, a button goes back", () =>
+    test("a slider leaves the recording, a button returns to it", () =>
         look({}, async (page) => {
             await page.locator('.mode input[type="range"]').first().fill("0.5");
             assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 1);
@@ -297,10 +297,10 @@ describe("playback", () => {
             assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 3);
         }));
 
-    test("sound and picture keep together", () =>
+    test("sound and picture are in sync", () =>
         look({ sound: true }, async (page) => {
             await page.evaluate(() => document.querySelector(".play").click());
-            // In one go within the page: the recording lasts two seconds only.
+            // In one evaluation, since the recording lasts only two seconds.
             const apart = await page.evaluate(async () => {
                 const { timeline } = globalThis.player;
                 const audio = document.querySelector("audio");
@@ -310,7 +310,7 @@ describe("playback", () => {
                 document.querySelector(".play").click();
                 return apart;
             });
-            // A recorded frame lasts 0.033 s; a slow picture may be a few behind.
+            // A recorded frame lasts 0.033 s; a slow picture may be a few frames late.
             assert.ok(Math.abs(apart) < 0.25, `${apart} s apart`);
             assert.ok(await page.evaluate(() => document.querySelector("audio").paused));
         }));
@@ -339,7 +339,7 @@ describe("the page", () => {
             assert.equal(await page.locator(".plot").nth(0).locator(".cursor").getAttribute("visibility"), "visible");
         }));
 
-    test("shows extremal deformations; a click takes one", () =>
+    test("shows extremal deformations; a click displays one", () =>
         look({ playback: false }, async (page) => {
             await page.getByRole("tab", { name: "Certificates" }).click();
             const pictures = page.locator(".thumbnail");
@@ -351,7 +351,7 @@ describe("the page", () => {
             assert.deepEqual(await page.evaluate(() => [...globalThis.sscc.pose.q]), [0, 0, 0.8, 0]);
         }));
 
-    test("is usable by keys: help, tabs, names for all that can be pressed", () =>
+    test("is usable by keys: help, tabs, names of all controls", () =>
         look({}, async (page) => {
             await page.keyboard.press("?");
             await page.getByRole("dialog", { name: "help" }).waitFor();
@@ -379,7 +379,7 @@ describe("the page", () => {
         }
     });
 
-    test("without a shape has plots alone, in all its width", () =>
+    test("without a shape has only plots, in its whole width", () =>
         look({ playback: false, width: 1280, change: (scene) => (scene.models = []) }, async (page) => {
             assert.equal(await page.locator(".plot").count(), 1);
             assert.equal(await page.locator("canvas").count(), 0);
@@ -391,7 +391,7 @@ describe("the page", () => {
             assert.equal(await page.locator("h1").innerText(), "</script><img src=x onerror=alert(1)>");
         }));
 
-    test("says so where WebGL is missing, and goes on", async () => {
+    test("works without WebGL, and says that it is missing", async () => {
         const without = await launch(["--disable-3d-apis"]);
         try {
             const { page, errors } = await open(without, write("none", { playback: false }));

@@ -1,7 +1,8 @@
-//! Tasks of the project: `cargo xtask test` runs every test and says what it skipped, `cargo xtask python` those of the
-//! Python package alone; `cargo xtask page` builds the page, with `--test` it runs the page's own; `cargo xtask mutants`
-//! tries whether the tests of the core catch wrong variants of it; `cargo xtask layers` checks the order of crates and
-//! modules.
+//! Tasks of the project.
+//!
+//! `cargo xtask test` runs all tests and lists the skipped ones. `cargo xtask python` runs those of the Python package.
+//! `cargo xtask page` builds the page, and with `--test` runs its tests. `cargo xtask mutants` checks that the tests of
+//! the core catch wrong variants of it. `cargo xtask layers` checks the order of crates and modules.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod layers;

@@ -1,8 +1,8 @@
-//! `cargo xtask mutants`: whether the tests catch each of the wrong variants that `crates/sscc/src/mutants/list.rs`
-//! names. With arguments only those of these names.
+//! `cargo xtask mutants`: checks that the tests catch each wrong variant in `crates/sscc/src/mutants/list.rs`.
+//! Arguments select mutations by name.
 //!
-//! The core is built once with all of them. Then the tests run without any, which must pass, and for each mutation the
-//! test that is to catch it, which must reach the wrong code and fail.
+//! The task builds the core once with all mutations. The tests must pass without any mutation. With a mutation, the
+//! test in the list must reach the wrong code and fail.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,31 +13,31 @@ use std::process::{Command, ExitCode};
 use crate::program::cargo;
 use crate::tally::Tally;
 
-/// A wrong variant of some line of the core.
+/// A wrong variant of a line of the core.
 struct Mutation {
     name: &'static str,
-    /// What is wrong with it.
+    /// The defect in words.
     wrong: &'static str,
-    fate: Fate,
+    expectation: Expectation,
 }
 
-enum Fate {
-    /// The test that fails: `lib` or the name of a program of tests, and the test's own.
+enum Expectation {
+    /// The test that must fail: `lib` or the name of a test program, and the name of the test.
     CaughtBy(&'static str),
-    /// Why no test can fail.
+    /// The reason why no test can fail.
     Covered(&'static str),
 }
 
 macro_rules! mutants {
-    ($($(#[doc = $wrong:literal])+ $name:ident: $fate:ident($text:literal);)+) => {
+    ($($(#[doc = $wrong:literal])+ $name:ident: $expectation:ident($text:literal);)+) => {
         const ALL: &[Mutation] =
-            &[$(Mutation { name: stringify!($name), wrong: concat!($($wrong),+), fate: Fate::$fate($text) }),+];
+            &[$(Mutation { name: stringify!($name), wrong: concat!($($wrong),+), expectation: Expectation::$expectation($text) }),+];
     };
 }
 
 include!("../../crates/sscc/src/mutants/list.rs");
 
-/// Runs the tests and prints a table.
+/// Runs the tests, prints a table of mutations, and returns the exit code.
 pub fn run(names: &[String]) -> ExitCode {
     match try_run(names) {
         Ok(true) => ExitCode::SUCCESS,
@@ -67,47 +67,49 @@ fn try_run(names: &[String]) -> Result<bool, String> {
                 "{} {} does not pass without any mutation: {}",
                 test.0,
                 test.1,
-                outcome.says()
+                outcome.description()
             ));
         }
     }
     let width = mutations.iter().map(|mutation| mutation.name.len()).max().unwrap_or(0);
     let mut survived = 0;
     for mutation in mutations.iter() {
-        let (is_fine, fate) = match mutation.fate {
-            Fate::Covered(reason) => (true, format!("covered: {reason}")),
-            Fate::CaughtBy(test) => {
+        let (is_fine, result) = match mutation.expectation {
+            Expectation::Covered(reason) => (true, format!("covered: {reason}")),
+            Expectation::CaughtBy(test) => {
                 let outcome = outcome(parts(test)?, Some(mutation.name))?;
-                let says = if outcome.is_caught() { String::new() } else { format!("{}: ", outcome.says()) };
-                (outcome.is_caught(), says + test)
+                let prefix =
+                    if outcome.is_caught() { String::new() } else { format!("{}: ", outcome.description()) };
+                (outcome.is_caught(), prefix + test)
             }
         };
         survived += usize::from(!is_fine);
-        println!("{:width$}  {fate}", mutation.name);
+        println!("{:width$}  {result}", mutation.name);
         if !is_fine {
             println!("{:width$}  {}", "", mutation.wrong.trim());
         }
     }
-    let covered = mutations.iter().filter(|mutation| matches!(mutation.fate, Fate::Covered(_))).count();
+    let covered =
+        mutations.iter().filter(|mutation| matches!(mutation.expectation, Expectation::Covered(_))).count();
     println!("\n{} caught, {covered} covered, {survived} survived", mutations.len() - covered - survived);
     Ok(survived == 0)
 }
 
-/// Target and name of a test.
+/// Splits an entry of the list into target and name of the test.
 fn parts(test: &'static str) -> Result<(&'static str, &'static str), String> {
-    test.split_once(' ').ok_or_else(|| format!("list.rs: '{test}' is no target and test"))
+    test.split_once(' ').ok_or_else(|| format!("list.rs: '{test}': expected a target and a test"))
 }
 
-/// All tests that are to catch something, each once.
+/// Returns the tests that must catch these mutations, each once.
 fn tests(mutations: &[&Mutation]) -> Result<BTreeSet<(&'static str, &'static str)>, String> {
-    let caught = mutations.iter().filter_map(|mutation| match mutation.fate {
-        Fate::CaughtBy(test) => Some(parts(test)),
-        Fate::Covered(_) => None,
+    let caught = mutations.iter().filter_map(|mutation| match mutation.expectation {
+        Expectation::CaughtBy(test) => Some(parts(test)),
+        Expectation::Covered(_) => None,
     });
     caught.collect()
 }
 
-/// Refuses mutations that no code of the core has. (Those that it has and that are not listed do not compile.)
+/// Returns an error if no code of the core has a mutation of the list. Code with an unlisted mutation does not compile.
 fn check_uses() -> Result<(), String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/sscc/src");
     let mut files = Vec::new();
@@ -127,7 +129,7 @@ fn check_uses() -> Result<(), String> {
     }
 }
 
-/// The files with code, without those of the mutations themselves.
+/// Adds the source files below a folder, without those of the module `mutants`.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -140,7 +142,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// `cargo test` for the core with all mutations. With all cases: few catch some of the mutations.
+/// Returns `cargo test` for the core with all mutations and with all random cases, since few cases catch some
+/// mutations.
 fn cargo_test(targets: impl IntoIterator<Item = &'static str>) -> Command {
     let mut command = cargo();
     command.args(["test", "--quiet", "--package", "sscc", "--features", "mutants"]);
@@ -164,10 +167,10 @@ fn build(tests: &BTreeSet<(&'static str, &'static str)>) -> Result<(), String> {
     }
 }
 
-/// How a single test went.
+/// The outcome of a single test.
 struct Outcome {
     tally: Tally,
-    /// Whether it ran wrong code.
+    /// Whether the test ran the wrong code.
     reached: bool,
 }
 
@@ -180,7 +183,7 @@ impl Outcome {
         self.tally == Tally { passed: 0, failed: 1 } && self.reached
     }
 
-    fn says(&self) -> &'static str {
+    fn description(&self) -> &'static str {
         match (self.tally, self.reached) {
             (Tally { passed: 0, failed: 0 }, _) => "NO SUCH TEST, or it did not run to its end",
             (Tally { failed: 0, .. }, false) => "NOT REACHED",

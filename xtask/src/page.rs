@@ -1,5 +1,5 @@
-//! `cargo xtask page`: builds the page from `viewer/` and holds it against the one that is checked in.
-//! `cargo xtask page --test` also runs its tests in a browser.
+//! `cargo xtask page`: builds the page from `viewer/`, and compares it with the one that is checked in. With `--test`
+//! it also runs the page's tests in a browser.
 
 use std::env;
 use std::fs;
@@ -7,11 +7,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-use crate::program::{cargo, passed_on};
+use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 
-/// Vite needs it (see `engines` in `viewer/package.json`).
-const NODE: (u32, u32) = (20, 19);
+/// The oldest Node that Vite supports (see `engines` in `viewer/package.json`).
+const MIN_NODE: (u32, u32) = (20, 19);
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -21,6 +21,7 @@ fn checked_in() -> PathBuf {
     root().join("crates/sscc-view/page/index.html")
 }
 
+/// Runs the task, and returns its exit code.
 pub fn run(arguments: &[String]) -> ExitCode {
     let write = match arguments {
         [] => false,
@@ -32,7 +33,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         }
         _ => {
             eprintln!(
-                "Usage: cargo xtask page [--write | --test]    (--write takes the page that was built)"
+                "Usage: cargo xtask page [--write | --test]    (--write replaces the page that is checked in)"
             );
             return ExitCode::from(2);
         }
@@ -40,7 +41,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let result = node()
         .and_then(|()| install())
         .and_then(|()| build())
-        .and_then(|built| if write { take(&built) } else { compare(&built) });
+        .and_then(|built| if write { replace(&built) } else { compare(&built) });
     match result {
         Ok(line) => {
             println!("{line}");
@@ -53,7 +54,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
 }
 
-/// Whether the page built from its sources is the one checked in, and all its tests in a browser.
+/// Tests that the sources build the page that is checked in, and runs the page's tests in a browser.
 pub fn test(log: &Path, is_command_built: bool) -> Tally {
     println!("== Page");
     if let Err(reason) = node().and_then(|()| install()) {
@@ -75,15 +76,16 @@ pub fn test(log: &Path, is_command_built: bool) -> Tally {
     tally
 }
 
-/// Whether Node is there and new enough.
+/// Checks that Node is installed and new enough.
 fn node() -> Result<(), String> {
     let output = Command::new("node").arg("--version").output();
-    let output = output.map_err(|_| format!("Node {}.{} or newer is not installed", NODE.0, NODE.1))?;
+    let output =
+        output.map_err(|_| format!("Node {}.{} or newer is not installed", MIN_NODE.0, MIN_NODE.1))?;
     let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
     let mut numbers = text.trim_start_matches('v').split('.').map_while(|n| n.parse::<u32>().ok());
     let version = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
-    if version < NODE {
-        return Err(format!("Node is {text}; {}.{} or newer is needed", NODE.0, NODE.1));
+    if version < MIN_NODE {
+        return Err(format!("Node is {text}; {}.{} or newer is needed", MIN_NODE.0, MIN_NODE.1));
     }
     Ok(())
 }
@@ -99,7 +101,7 @@ fn npm(arguments: &[&str]) -> Result<(), String> {
     }
 }
 
-/// Installs what the lock file names, once.
+/// Installs the packages of the lock file, if they are not installed.
 fn install() -> Result<(), String> {
     let viewer = root().join("viewer");
     let lock =
@@ -113,7 +115,7 @@ fn install() -> Result<(), String> {
     Ok(())
 }
 
-/// Checks types and style, and builds; answers with the file built.
+/// Checks types and style, and builds the page. Returns the path of the built file.
 fn build() -> Result<PathBuf, String> {
     npm(&["run", "--silent", "check"])?;
     npm(&["run", "--silent", "build"])?;
@@ -128,26 +130,26 @@ fn compare(built: &Path) -> Result<String, String> {
     let page = read(built)?;
     if read(&checked_in())? != page {
         return Err(
-            "crates/sscc-view/page/index.html is not what viewer/ builds; `cargo xtask page --write` \
-                    takes the built one"
+            "crates/sscc-view/page/index.html differs from the page that viewer/ builds; `cargo xtask page --write` \
+                    replaces it"
                 .into(),
         );
     }
-    Ok(format!("the page is what viewer/ builds: {} bytes", page.len()))
+    Ok(format!("the page is the one that viewer/ builds: {} bytes", page.len()))
 }
 
-fn take(built: &Path) -> Result<String, String> {
+fn replace(built: &Path) -> Result<String, String> {
     let page = read(built)?;
     fs::write(checked_in(), &page).map_err(|e| format!("{}: {e}", checked_in().display()))?;
     Ok(format!("written: crates/sscc-view/page/index.html ({} bytes)", page.len()))
 }
 
-/// Whether a Chromium is there; where none may be missing, Debian's is installed if that can be done.
+/// Checks that a Chromium is installed. With `install`, tries to install Debian's.
 fn chromium(install: bool) -> Result<(), String> {
     let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-    let there =
+    let is_installed =
         || env::var_os("SSCC_CHROMIUM").is_some() || places.iter().any(|place| Path::new(place).exists());
-    if there() {
+    if is_installed() {
         return Ok(());
     }
     let apt = |arguments: &[&str]| -> io::Result<bool> {
@@ -158,20 +160,20 @@ fn chromium(install: bool) -> Result<(), String> {
     if install {
         let installed = apt(&["-qq", "update"])
             .and_then(|_| apt(&["-qq", "install", "-y", "--no-install-recommends", "chromium"]));
-        if installed.is_ok_and(|ok| ok) && there() {
+        if installed.is_ok_and(|ok| ok) && is_installed() {
             return Ok(());
         }
     }
     Err("no Chromium found; install it, or name one in SSCC_CHROMIUM".into())
 }
 
-/// The tests in `viewer/tests`, with the command of this very build.
+/// Runs the tests in `viewer/tests` with the command of this build.
 fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
     let build = || cargo().args(["build", "--package", "sscc-cli"]).current_dir(root()).status();
     if !is_command_built && !build().is_ok_and(|status| status.success()) {
         return Err("the command cannot be built for the page's tests".into());
     }
-    // This task lies beside it.
+    // The command is in the folder of this program.
     let folder = env::current_exe().map_err(|e| e.to_string())?;
     let command = folder.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX));
     let mut tests = Command::new("npm");
@@ -181,7 +183,7 @@ fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
         .env("SSCC_COMMAND", command)
         .stdin(Stdio::null());
     let mut text = String::new();
-    let success = passed_on(&mut tests, |line| text.extend([line, "\n"]))
+    let success = run_and_forward(&mut tests, |line| text.extend([line, "\n"]))
         .map_err(|e| format!("npm cannot be run: {e}"))?;
     let mut tally = results(&text);
     if !success && tally.failed == 0 {
@@ -190,7 +192,8 @@ fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. What was skipped or cancelled did not pass.
+/// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. Skipped and cancelled tests count as
+/// failed.
 fn results(text: &str) -> Tally {
     let number = |line: &str, what: &str| line.strip_prefix(what)?.trim().parse::<u64>().ok();
     let count = |what: &str| text.lines().filter_map(|line| number(line, what)).sum::<u64>();

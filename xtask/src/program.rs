@@ -1,17 +1,17 @@
-//! Other programs that tasks run.
+//! Runs other programs for the tasks.
 
 use std::env;
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-/// The cargo that started this program.
+/// Returns the cargo that started this program.
 pub fn cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Runs a command, prints its standard output as it comes and calls `each` with every line. Returns whether the command
-/// succeeded.
-pub fn passed_on(command: &mut Command, mut each: impl FnMut(&str)) -> io::Result<bool> {
+/// Runs a command, forwards its standard output line by line, and calls `each` with every line. Returns whether the
+/// command succeeded.
+pub fn run_and_forward(command: &mut Command, mut each: impl FnMut(&str)) -> io::Result<bool> {
     let mut child = command.stdout(Stdio::piped()).spawn()?;
     if let Some(stdout) = child.stdout.take() {
         let mut out = io::stdout();

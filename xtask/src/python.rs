@@ -1,55 +1,56 @@
-//! `cargo xtask python`: builds the wheel of the Python package into a virtual environment inside the project, and
-//! runs its tests there.
+//! `cargo xtask python`: builds the wheel of the Python package, installs it into a virtual environment and runs the
+//! tests there.
 //!
-//! The environment is `python/.venv`; it is made anew when the requirements or the interpreter change. `SSCC_PYTHON`
-//! names the interpreter, else it is `python3`. Without one of version 3.11 or later, or without the packages (they are
-//! downloaded once), the tests are skipped.
+//! The environment is `python/.venv`. The task makes it anew when the requirements or the interpreter change.
+//! `SSCC_PYTHON` names the interpreter; the default is `python3`. The tests are skipped without an interpreter of
+//! version 3.11 or later, or without the packages, which are downloaded once.
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use crate::program::{cargo, passed_on};
+use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 
-const OLDEST: (u32, u32) = (3, 11);
+/// The oldest supported version of Python.
+const MIN_PYTHON: (u32, u32) = (3, 11);
 
-/// Runs the tests; arguments are passed on to pytest.
+/// Runs the tests with these arguments for pytest.
 pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
     let tally = test(&arguments, log.path(), false);
     log.conclude(tally)
 }
 
-/// Why there are no results.
-enum Stop {
-    /// What the tests need is not on this machine.
+/// The reason why there are no results.
+enum Failure {
+    /// Software that the tests need is missing.
     Missing(String),
-    /// Something is wrong with the package.
+    /// The package cannot be built or tested.
     Broken(String),
 }
 
-/// What the tests came to.
+/// Builds and tests the package, and returns the counts. Logs missing software as skipped tests.
 pub fn test(arguments: &[String], log: &Path, is_command_built: bool) -> Tally {
     println!("== Python package");
     match build_and_test(arguments, log, is_command_built) {
         Ok(tally) => tally,
-        Err(Stop::Missing(why)) => SkipLog::skip(log, "all tests of the Python package", &why),
-        Err(Stop::Broken(why)) => {
+        Err(Failure::Missing(why)) => SkipLog::skip(log, "all tests of the Python package", &why),
+        Err(Failure::Broken(why)) => {
             println!("error: {why}");
             Tally::BROKEN
         }
     }
 }
 
-fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> Result<Tally, Stop> {
+fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> Result<Tally, Failure> {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python");
-    let package = package.canonicalize().map_err(|error| Stop::Broken(format!("python/: {error}")))?;
+    let package = package.canonicalize().map_err(|error| Failure::Broken(format!("python/: {error}")))?;
     let python = environment(&package)?;
     let wheels = package.join(".venv/wheels");
     let _ = fs::remove_dir_all(&wheels);
-    // The profile of the other tests: what is compiled for them serves here, too.
+    // The profile of the other tests, so that dependencies are compiled once.
     let mut maturin = Command::new(&python);
     maturin.args(["-m", "maturin", "build", "--profile", "dev", "--interpreter"]).arg(&python);
     maturin.arg("--out").arg(&wheels).current_dir(&package);
@@ -65,14 +66,14 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
 
     let pytest = |python: &Path, tests: &[String]| {
         let mut pytest = Command::new(python);
-        // -P: what is installed is tested, not the sources beside the tests.
+        // -P: Python imports the installed package, not the sources beside the tests.
         pytest.args(["-P", "-m", "pytest"]).args(tests).current_dir(&package).env("SSCC_SKIP_LOG", log);
         if let Some(command) = command.as_ref().filter(|path| path.is_file()) {
             pytest.env("SSCC_COMMAND", command);
         }
         let mut tally = Tally::default();
-        let success = passed_on(&mut pytest, |line| tally.add_pytest(line))
-            .map_err(|error| Stop::Broken(format!("pytest cannot be run: {error}")))?;
+        let success = run_and_forward(&mut pytest, |line| tally.add_pytest(line))
+            .map_err(|error| Failure::Broken(format!("pytest cannot be run: {error}")))?;
         if !success && tally.failed == 0 {
             println!("error: pytest did not run to its end (see above)");
             tally.failed = 1;
@@ -83,54 +84,54 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     if !arguments.is_empty() {
         return Ok(tally);
     }
-    // Blender as a module is for one version of Python and of NumPy.
+    // A separate environment: Blender as a module needs one version of Python and of NumPy.
     tally += match environment(&package.join("blender")) {
         Ok(python) => {
             install(&python, &wheels)?;
             pytest(&python, &["blender/tests".to_owned()])?
         }
-        Err(Stop::Missing(why)) => SkipLog::skip(log, "all tests of the Blender add-on", &why),
+        Err(Failure::Missing(why)) => SkipLog::skip(log, "all tests of the Blender add-on", &why),
         Err(broken) => return Err(broken),
     };
     Ok(tally)
 }
 
 /// Installs the wheel into an environment.
-fn install(python: &Path, wheels: &Path) -> Result<(), Stop> {
+fn install(python: &Path, wheels: &Path) -> Result<(), Failure> {
     let mut install = pip(python);
     install.args(["install", "--quiet", "--no-deps", "--no-index", "--force-reinstall"]).args(files(wheels));
     succeed(&mut install, "the wheel cannot be installed")
 }
 
-/// The interpreter of the virtual environment, which is made if there is none for these requirements.
-fn environment(package: &Path) -> Result<PathBuf, Stop> {
+/// Returns the interpreter of the virtual environment. Makes the environment if none exists for these requirements.
+fn environment(package: &Path) -> Result<PathBuf, Failure> {
     let outside = env::var_os("SSCC_PYTHON").unwrap_or_else(|| "python3".into());
     let shown = outside.to_string_lossy().into_owned();
     let version =
         "import sys, platform; print(*sys.version_info[:2], platform.python_version(), sys.executable)";
-    let told = Command::new(&outside).args(["-c", version]).output();
-    let told = told.map_err(|error| Stop::Missing(format!("{shown}: {error}")))?;
-    let told = String::from_utf8_lossy(&told.stdout).trim().to_owned();
-    let mut numbers = told.split(' ').map(|word| word.parse::<u32>().unwrap_or(0));
-    if (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) < OLDEST {
-        let (major, minor) = OLDEST;
-        return Err(Stop::Missing(format!(
-            "{shown} is no Python {major}.{minor} or later; SSCC_PYTHON names one"
+    let version_text = Command::new(&outside).args(["-c", version]).output();
+    let version_text = version_text.map_err(|error| Failure::Missing(format!("{shown}: {error}")))?;
+    let version_text = String::from_utf8_lossy(&version_text.stdout).trim().to_owned();
+    let mut numbers = version_text.split(' ').map(|word| word.parse::<u32>().unwrap_or(0));
+    if (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) < MIN_PYTHON {
+        let (major, minor) = MIN_PYTHON;
+        return Err(Failure::Missing(format!(
+            "{shown} is not Python {major}.{minor} or later; name one in SSCC_PYTHON"
         )));
     }
 
     let requirements = package.join("requirements-test.txt");
     let wanted = fs::read_to_string(&requirements)
-        .map_err(|error| Stop::Broken(format!("{}: {error}", requirements.display())))?;
-    let (folder, stamp) = (package.join(".venv"), format!("{told}\n{wanted}"));
+        .map_err(|error| Failure::Broken(format!("{}: {error}", requirements.display())))?;
+    let (folder, stamp) = (package.join(".venv"), format!("{version_text}\n{wanted}"));
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let made_for = folder.join("made-for.txt");
     if fs::read_to_string(&made_for).is_ok_and(|made_for| made_for == stamp) && python.is_file() {
         return Ok(python);
     }
     println!("making {} (packages are downloaded once)", folder.display());
-    let missing = |stop| match stop {
-        Stop::Broken(why) => Stop::Missing(why),
+    let missing = |failure| match failure {
+        Failure::Broken(why) => Failure::Missing(why),
         missing => missing,
     };
     succeed(
@@ -141,7 +142,8 @@ fn environment(package: &Path) -> Result<PathBuf, Stop> {
     let mut install = pip(&python);
     install.args(["install", "--quiet", "--requirement"]).arg(&requirements);
     succeed(&mut install, "the packages that the tests need cannot be installed").map_err(missing)?;
-    fs::write(&made_for, stamp).map_err(|error| Stop::Broken(format!("{}: {error}", made_for.display())))?;
+    fs::write(&made_for, stamp)
+        .map_err(|error| Failure::Broken(format!("{}: {error}", made_for.display())))?;
     Ok(python)
 }
 
@@ -155,10 +157,10 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
 }
 
-fn succeed(command: &mut Command, failure: &str) -> Result<(), Stop> {
-    match passed_on(command, |_| {}) {
+fn succeed(command: &mut Command, failure: &str) -> Result<(), Failure> {
+    match run_and_forward(command, |_| {}) {
         Ok(true) => Ok(()),
-        Ok(false) => Err(Stop::Broken(format!("{failure} (see above)"))),
-        Err(error) => Err(Stop::Broken(format!("{failure}: {error}"))),
+        Ok(false) => Err(Failure::Broken(format!("{failure} (see above)"))),
+        Err(error) => Err(Failure::Broken(format!("{failure}: {error}"))),
     }
 }

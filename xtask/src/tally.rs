@@ -1,4 +1,4 @@
-//! What tests came to.
+//! Counts test results, and logs skipped tests.
 
 use std::env;
 use std::fs;
@@ -15,18 +15,18 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Nothing could be run.
+    /// The tally of tests that could not be run.
     pub const BROKEN: Self = Self { passed: 0, failed: 1 };
 
-    /// Adds a line `test result: ok. 3 passed; 0 failed; ...` of Rust's harness; others count nothing.
+    /// Adds a line `test result: ok. 3 passed; 0 failed; ...` of Rust's harness, and ignores all other lines.
     pub fn add_rust(&mut self, line: &str) {
         let Some(result) = line.strip_prefix("test result: ") else { return };
         self.passed += count(result, "passed");
         self.failed += count(result, "failed");
     }
 
-    /// Adds a line `3 passed, 1 skipped in 0.12s` of pytest; others count nothing. As in Rust's harness what is
-    /// skipped counts as passed: the log of skipped tests tells which these are.
+    /// Adds a line `3 passed, 1 skipped in 0.12s` of pytest, and ignores all other lines. Skipped tests count as
+    /// passed, as in Rust's harness; the log lists them.
     pub fn add_pytest(&mut self, line: &str) {
         let line = line.trim_matches(['=', ' ']);
         let ends_in_time =
@@ -46,16 +46,17 @@ impl AddAssign for Tally {
     }
 }
 
-/// The number before a word.
+/// Returns the number before a word.
 fn count(line: &str, what: &str) -> u64 {
     let words: Vec<&str> = line.split([' ', ';', ',']).filter(|word| !word.is_empty()).collect();
     words.windows(2).find(|w| w[1] == what).and_then(|w| w[0].parse().ok()).unwrap_or(0)
 }
 
-/// The file in which tests note that they were skipped; removed in the end.
+/// The file to which skipped tests add a line. [`SkipLog::conclude`] removes it.
 pub struct SkipLog(PathBuf);
 
 impl SkipLog {
+    /// Creates an empty log in the system's temporary folder.
     pub fn new() -> Self {
         let path = env::temp_dir().join(format!("sscc-skipped-{}.txt", process::id()));
         let _ = fs::remove_file(&path);
@@ -66,7 +67,7 @@ impl SkipLog {
         &self.0
     }
 
-    /// Says what is skipped, and why.
+    /// Prints and logs skipped tests with the reason.
     pub fn skip(log: &Path, what: &str, why: &str) -> Tally {
         println!("SKIPPED: {what}: {why}");
         let noted = fs::OpenOptions::new()
@@ -74,7 +75,7 @@ impl SkipLog {
             .create(true)
             .open(log)
             .and_then(|mut file| writeln!(file, "SKIPPED: {what}: {why}"));
-        // The log takes one from those that passed.
+        // `conclude` subtracts the lines of the log from the passed tests.
         if noted.is_ok() { Tally { passed: 1, failed: 0 } } else { Tally::BROKEN }
     }
 
@@ -83,7 +84,7 @@ impl SkipLog {
         env::var_os("SSCC_NO_SKIPS").is_some_and(|value| !value.is_empty())
     }
 
-    /// Prints what was skipped and, as the last line, `N passed, N failed`.
+    /// Prints the skipped tests and, as the last line, `N passed, N failed`. Returns the exit code.
     pub fn conclude(self, mut tally: Tally) -> ExitCode {
         let skipped = fs::read_to_string(&self.0).unwrap_or_default();
         let _ = fs::remove_file(&self.0);
@@ -95,7 +96,7 @@ impl SkipLog {
             println!("error: SSCC_NO_SKIPS is set, so skipped tests count as failed");
             tally.failed += skipped.len() as u64;
         }
-        // To the test harness they passed.
+        // The harness counts skipped tests as passed.
         tally.passed = tally.passed.saturating_sub(skipped.len() as u64);
         if !skipped.is_empty() {
             println!("{} skipped, named above", skipped.len());

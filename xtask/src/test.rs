@@ -1,17 +1,17 @@
-//! `cargo xtask test`: all tests of all crates, examples in the documentation included, then those of the Python package
-//! and of the page. With arguments for `cargo test` only those of the crates.
+//! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
+//! package and of the page. With arguments for `cargo test` it runs the tests of the crates only.
 //!
-//! Output is passed on as it comes. Then follow the tests that found their data missing, and as the last line
-//! `N passed, N failed`. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
+//! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
+//! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::program::{cargo, passed_on};
+use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 use crate::{page, python};
 
-/// Runs all tests; arguments are passed on to `cargo test`.
+/// Runs all tests; with arguments for `cargo test`, those of the crates only.
 pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
     let mut tally = cargo_test(&arguments, log.path());
@@ -26,7 +26,7 @@ fn cargo_test(arguments: &[String], log: &Path) -> Tally {
     let mut command = cargo();
     command.args(["test", "--workspace", "--no-fail-fast"]).args(arguments).env("SSCC_SKIP_LOG", log);
     let mut tally = Tally::default();
-    match passed_on(&mut command, |line| tally.add_rust(line)) {
+    match run_and_forward(&mut command, |line| tally.add_rust(line)) {
         Err(error) => {
             println!("error: cargo cannot be run: {error}");
             tally.failed += 1;

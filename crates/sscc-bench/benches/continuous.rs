@@ -1,9 +1,9 @@
-//! The cost of continuous queries beside discrete ones: `cargo bench -p sscc-bench --bench continuous` (paper, Table 2).
+//! Measures continuous queries beside discrete ones: `cargo bench -p sscc-bench --bench continuous` (paper, Table 2).
 //!
-//! For each model trajectories about the rest pose, `z_k(t) = a_k sin(w_k t) / k` with random a, w and phase, scaled so
-//! that the largest displacement of a vertex is a few percent of the AABB's half diagonal; one step is a sixtieth
-//! of a period of about one. All methods run on the same steps, one thread, and must list the same pairs.
-//! Arguments name the models (none: all). Real ones are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! Each model moves along trajectories about the rest pose, `z_k(t) = a_k sin(w_k t) / k` with random a, w and phase.
+//! They are scaled so that the largest displacement of a vertex is a few percent of half the AABB's diagonal. One step
+//! is 1/60 of a period of about one. All methods run on the same steps, on one thread, and must list the same pairs.
+//! Arguments name the models (none: all). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 mod models;
@@ -96,7 +96,7 @@ fn measure(case: &models::Case, certificates: &Certificates, share: f64) -> Resu
     Ok(())
 }
 
-/// The largest displacement of a vertex at some of the q, in units of half the diagonal of the AABB.
+/// Returns the largest displacement of a vertex at some of the q, in units of half the diagonal of the AABB.
 fn displacement(model: &ReducedModel, steps: &[Vec<f64>]) -> Result<f64> {
     let rest = model.mesh().rest_positions();
     let (lower, upper) = rest.iter().fold((rest[0], rest[0]), |(l, u), p| (l.min(*p), u.max(*p)));

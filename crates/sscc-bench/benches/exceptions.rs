@@ -1,8 +1,9 @@
-//! A face whose lips and lids touch at rest, certified without and with exceptions:
+//! Compares certificates without and with exceptions on a face whose lips and lids touch at rest:
 //! `cargo bench -p sscc-bench --bench exceptions` (needs `ict_face` in `SSCC_MODELS`, else in `../shared/models`).
 //!
-//! For its 12 published configurations and for the jaw alone: how many are certified by the root, apart from
-//! exceptions, and how many nodes and pairs of nodes a query opens. All answers must be equal.
+//! For the 12 published configurations of the face and for the jaw alone, the bench prints the number of configurations
+//! that the root certifies, apart from exceptions, and the nodes and node pairs that a query opens. All answers must be
+//! equal.
 #![allow(clippy::print_stdout)]
 
 mod models;
@@ -12,7 +13,7 @@ use sscc::{Certificates, CertifyOptions, Query};
 
 fn main() -> Result<()> {
     let Some((model, cases)) = models::face()? else {
-        println!("no ict_face among the models: nothing to measure");
+        println!("ict_face not found: set SSCC_MODELS to the folder of models");
         return Ok(());
     };
     let certify = |max_exceptions| {

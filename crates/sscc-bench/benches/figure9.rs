@@ -1,7 +1,7 @@
-//! The paper's Figure 9: how the root certificate of the spring shrinks as modes are added, under two metrics.
+//! Draws the paper's Figure 9: the root's radius of the spring over the number of modes, under two metrics.
 //! `cargo bench -p sscc-bench --bench figure9` prints a table and draws `docs/figure9.svg`.
 //!
-//! Both metrics are scaled so that the first mode's weight is 1: the root's radius is then the largest deformation
+//! Both metrics are scaled so that the first mode's weight is 1. The root's radius is then the largest deformation
 //! along the first mode alone that is proven free.
 #![allow(clippy::print_stdout)]
 
@@ -9,7 +9,7 @@ use std::error::Error;
 use std::fmt::Write;
 
 use sscc::{Certificates, CertifyOptions, Metric, Modes, ReducedModel};
-use sscc_modes::{Embedded, energy_metric, linear_modes, shapes::spring};
+use sscc_modes::{EmbeddedSurface, energy_metric, linear_modes, shapes::spring};
 use sscc_solid::Material;
 
 /// Any error ends the bench.
@@ -26,7 +26,7 @@ struct Row {
 
 fn main() -> Result<()> {
     let mesh = spring();
-    let body = Embedded::new(&mesh, None, Material::default(), &())?;
+    let body = EmbeddedSurface::new(&mesh, None, Material::default(), &())?;
     let found = linear_modes(body.solid(), &[], *RANKS.last().ok_or("ranks")?, &())?;
     let (all, eigenvalues) = (body.on_surface(&found.modes)?, found.eigenvalues());
     let first = all.displacements().iter().step_by(all.rank()).map(|u| u.length()).fold(0.0, f64::max);
@@ -52,11 +52,11 @@ fn main() -> Result<()> {
     Ok(sscc_io::write_whole(file.as_ref(), plot(&rows)?.as_bytes())?)
 }
 
-/// Both curves over the rank.
+/// Returns the plot of both curves over the rank.
 fn plot(rows: &[Row]) -> Result<String> {
     let (width, height, left, top) = (560.0, 340.0, 60.0, 50.0);
-    let highest = rows.iter().map(|r| r.energy.max(r.displacement)).fold(0.0, f64::max);
-    let lines = (highest / 5.0).ceil();
+    let max = rows.iter().map(|r| r.energy.max(r.displacement)).fold(0.0, f64::max);
+    let lines = (max / 5.0).ceil();
     let x = |rank: f64| left + (rank / 5.0).log2() / 4.0 * (width - left - 130.0);
     let y = |mm: f64| top + (1.0 - mm / (5.0 * lines)) * (height - top - 60.0);
     let mut svg = String::new();

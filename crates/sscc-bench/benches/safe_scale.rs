@@ -1,7 +1,8 @@
-//! The safe scale over the one by the root's radius: `cargo bench -p sscc-bench --bench safe_scale`.
+//! Measures the safe scale relative to the scale at the root's radius: `cargo bench -p sscc-bench --bench safe_scale`.
 //!
-//! For each model 1,000 random directions (`z_i = N(0,1) / i`, or every mode alike): this ratio, its time, and
-//! traditional queries just below the safe scale and at random smaller ones, which must list no pairs. Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! For each model the bench takes 1,000 random directions (`z_i = N(0,1) / i`, or `z_i = N(0,1)`), and prints this
+//! ratio and its time. Traditional queries just below the safe scale and at random smaller scales must list no pairs.
+//! Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 mod models;
@@ -35,8 +36,8 @@ fn measure(model: &models::Case, certificates: &Certificates) -> Result<()> {
         let decay = (direction % 2) as i32;
         let z: Vec<f64> =
             (0..model.model.rank()).map(|k| random.normal() / (1.0 + k as f64).powi(decay)).collect();
-        let way = scope.metric.unscaled(&z);
-        let at = |t: f64| -> Vec<f64> { scope.center.iter().zip(&way).map(|(c, d)| c + t * d).collect() };
+        let dir = scope.metric.unscaled(&z);
+        let at = |t: f64| -> Vec<f64> { scope.center.iter().zip(&dir).map(|(c, d)| c + t * d).collect() };
         let start = Instant::now();
         let scale = query.safe_scale(&at(1.0))?;
         times.push(start.elapsed().as_secs_f64() * 1e3);

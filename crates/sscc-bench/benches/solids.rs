@@ -1,9 +1,9 @@
-//! The cost of modes of solids: `cargo bench -p sscc-bench --bench solids`.
+//! Measures the computation of modes of solids: `cargo bench -p sscc-bench --bench solids`.
 //!
-//! Runs itself once for each row, so that the peak memory is that of one model. Time and peak memory from a surface to 30
-//! nonlinear modes, at the default resolution and over degrees of freedom, and the bunny's first ten frequencies in the
-//! default lattice against those in one twice as fine (that needs 20 GB; with `--quick` it is left out). Real models are
-//! taken from `SSCC_MODELS`, else from `../shared/models`.
+//! The bench runs itself once for each row, so that the peak memory is that of one model. It prints time and peak
+//! memory from a surface to 30 nonlinear modes, at the default resolution and over degrees of freedom. It compares the
+//! bunny's first ten frequencies in the default lattice with those in a lattice twice as fine (20 GB of memory;
+//! `--quick` omits this part). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
@@ -24,12 +24,12 @@ const CHILD: &str = "--child";
 /// The resolution of the default lattice.
 const DEFAULT: &str = "default";
 
-/// One model that was made.
+/// Cost and frequencies of one model.
 struct Run {
     degrees_of_freedom: u64,
     frequencies: Vec<f64>,
     seconds: f64,
-    /// None elsewhere than on Linux.
+    /// Peak memory (MB); None except on Linux.
     megabytes: Option<f64>,
 }
 
@@ -69,15 +69,15 @@ fn report(surface: &str, lattice: &str, modes: &str, run: &Run) {
     println!("| {surface} | {lattice} | {modes} | {degrees_of_freedom} | {seconds:.1} | {megabytes} |");
 }
 
-/// Makes a model in a process of its own.
+/// Computes a model in a process of its own.
 fn run(mesh: &Path, kind: &str, rank: usize, resolution: &str) -> Result<Run> {
     let mut command = Command::new(std::env::current_exe()?);
     command.arg(CHILD).arg(mesh).args([kind, &rank.to_string(), resolution]);
     let start = Instant::now();
     let output = command.output()?;
     let seconds = start.elapsed().as_secs_f64();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{} at {resolution} failed: {said}", mesh.display());
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{} at {resolution} failed: {error}", mesh.display());
     let text = String::from_utf8(output.stdout)?;
     let [degrees_of_freedom, bytes, frequencies] = text.lines().collect::<Vec<_>>()[..] else {
         return Err(format!("three lines were expected: {text}").into());
@@ -90,7 +90,7 @@ fn run(mesh: &Path, kind: &str, rank: usize, resolution: &str) -> Result<Run> {
     })
 }
 
-/// Makes a model and prints its degrees of freedom, the peak memory (bytes) and its frequencies, a line each.
+/// Computes a model. Prints its degrees of freedom, the peak memory (bytes) and its frequencies, one line each.
 fn make(mesh: &Path, kind: &str, rank: usize, resolution: &str) -> Result<()> {
     let peak = PeakMemory::start();
     let kind = if kind == "linear" { ModesKind::Linear } else { ModesKind::Nonlinear };

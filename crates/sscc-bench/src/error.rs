@@ -2,7 +2,7 @@
 
 use sscc_sim::SimError;
 
-/// A bench that could not be set up or measured.
+/// Error of a bench; its message is one line.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -15,27 +15,27 @@ pub enum Error {
         nearest: &'static str,
     },
     /// The model lacks the certificates of the column `paper`.
-    #[error("the model has no certificates as in the paper")]
+    #[error("the model has no certificates as in the paper: add them with CertifiedModel::with_paper")]
     NoPaperCertificates,
     /// The scene has several models.
-    #[error("the scene has {models} models; scenes of one model can be measured")]
+    #[error("the scene has {models} models: benches measure scenes of one model")]
     SeveralModels {
         /// Number of models.
         models: usize,
     },
-    /// The scene is over at once.
-    #[error("a scene of one step has nothing to measure")]
+    /// The scene has one step only.
+    #[error("the scene has one step only: benches need at least two")]
     NoMotion,
     /// A query failed, or the work was cancelled.
     #[error(transparent)]
     Core(#[from] sscc::Error),
-    /// A model or a simulation could not be made.
+    /// Error of a model or a simulation.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// The numbers of the page could not be written.
+    /// The data of the page cannot be written.
     #[error("the page cannot be made: {0}")]
     Page(#[from] serde_json::Error),
-    /// The thread of a simulation could not be started.
-    #[error("no thread can be started: {0}")]
+    /// The thread of a simulation cannot be started.
+    #[error("the thread of a simulation cannot be started: {0}")]
     Thread(#[from] rayon::ThreadPoolBuildError),
 }

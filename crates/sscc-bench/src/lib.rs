@@ -1,10 +1,11 @@
-//! Benches of sscc: what queries cost, by every method and beside the peer parry3d.
+//! Benches of sscc: the cost of queries by every method, compared with the peer parry3d.
 //!
-//! One process, one thread, the same q in the same order, the methods interleaved; each with its own cost of moving
-//! vertices and refitting; all must list the same pairs. `docs/benchmarks.md` explains how. A scenario measures one model
-//! after the other, and gives a record of each, which is one line of JSON.
+//! All methods run in one process and on one thread, interleaved, for the same q in the same order. The time of each
+//! method includes its own moving of vertices and refitting. All exact methods must list the same pairs.
+//! `docs/benchmarks.md` explains the measurement. A scenario measures one model after the other, and returns a record
+//! of each, which is one line of JSON.
 //!
-//! Long work is followed and cancelled by a [`sscc_sim::Watch`]. Nothing is printed.
+//! A [`sscc_sim::Watch`] follows and cancels long work. The crate prints nothing.
 
 mod error;
 mod measure;

@@ -1,4 +1,5 @@
-//! The paper's Tables 1 to 3 beside ours. Its times are those of a machine of 2009; ratios can be compared.
+//! Tables 1 to 3 of the paper beside our results. The paper's times are those of a machine of 2009; ratios can be
+//! compared.
 
 use sscc_sim::text::grouped;
 
@@ -21,11 +22,11 @@ struct Table1Row {
     name: &'static str,
     /// Seconds of precomputation.
     precomputation: f64,
-    /// Milliseconds of a step for collisions between objects.
+    /// Milliseconds per step for collisions between objects.
     inter: f64,
-    /// Milliseconds of a step for self-collisions by the traditional method.
+    /// Milliseconds per step for self-collisions by the traditional method.
     traditional: f64,
-    /// The same by the paper's method.
+    /// Milliseconds per step for self-collisions by the paper's method.
     certified: f64,
     /// Speed-up of detection.
     speedup: f64,
@@ -51,9 +52,9 @@ const TABLE_1: [Table1Row; 5] = [
 struct Table2Row {
     /// Discrete or continuous queries.
     name: &'static str,
-    /// Milliseconds of a step by the traditional method.
+    /// Milliseconds per step by the traditional method.
     traditional: f64,
-    /// Milliseconds of a step by the paper's method.
+    /// Milliseconds per step by the paper's method.
     certified: f64,
     /// Their ratio.
     speedup: f64,
@@ -65,9 +66,9 @@ const TABLE_2: [Table2Row; 2] = [
     Table2Row { name: "continuous", traditional: 2559.0, certified: 81.0, speedup: 31.6 },
 ];
 
-/// A row of Table 3: shares (percent) of the time of the simulation, as printed there.
+/// A row of Table 3: shares (percent) of the time of the simulation, as printed in the paper.
 struct Table3Row {
-    /// The method that finds self-collisions.
+    /// The method of self-collision detection.
     name: &'static str,
     /// Self-collisions.
     own: &'static str,
@@ -85,11 +86,11 @@ const TABLE_3: [Table3Row; 2] = [
     Table3Row { name: "certified", own: "42", dynamics: "51", ground: "6", penalty: "1" },
 ];
 
-/// The row of the paper below ours.
+/// Label of the paper's row below ours.
 const PAPER: &str = "    the paper";
 
 impl PaperTable {
-    /// The table as lines of text, with the records of its scenes.
+    /// Returns the table as lines of text, with the records of its scenes.
     pub fn lines(self, records: &[Record]) -> Vec<String> {
         match self {
             Self::One => table_1(records),

@@ -4,7 +4,7 @@ use sscc::Progress;
 
 use crate::error::Error;
 
-/// Stops here if the work was cancelled.
+/// Returns an error if `progress` cancels.
 pub fn check_cancelled(progress: &dyn Progress) -> Result<(), Error> {
     if progress.is_cancelled() { Err(sscc::Error::Cancelled.into()) } else { Ok(()) }
 }
@@ -17,12 +17,12 @@ pub struct Counter<'a> {
 }
 
 impl<'a> Counter<'a> {
-    /// Of `total` repetitions none is done.
+    /// Creates a counter of `total` repetitions.
     pub fn new(progress: &'a dyn Progress, total: usize) -> Self {
         Self { progress, done: 0, total }
     }
 
-    /// One more is done. An error if the work was cancelled.
+    /// Counts one repetition. Returns an error if the work was cancelled.
     pub fn count(&mut self) -> Result<(), Error> {
         self.done += 1;
         self.progress.report(self.done, self.total);

@@ -1,4 +1,4 @@
-//! Where the models of a bench come from, and who follows its progress.
+//! Setup of a bench: the sources of its models, and the observer of its progress.
 
 use std::path::Path;
 
@@ -6,27 +6,27 @@ use sscc_sim::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, Shape, St
 
 use crate::error::Error;
 
-/// What every scenario needs.
+/// Settings of all scenarios.
 #[derive(Clone, Copy)]
 pub struct Setup<'a> {
-    /// The folder of the real models; none: embedded shapes stand in.
+    /// Folder of the real models; none: embedded shapes replace them.
     pub models: Option<&'a Path>,
-    /// Where models, certificates and simulations are kept.
+    /// Cache of models, certificates and simulations.
     pub cache: &'a Cache,
-    /// Whether a spring of 4,000 triangles stands in for any model.
+    /// Whether a spring of 4,000 triangles replaces every model.
     pub is_quick: bool,
     /// Follows and cancels all work.
     pub watch: &'a dyn Watch,
 }
 
 impl Setup<'_> {
-    /// A model with both sets of certificates.
+    /// Returns a model with both sets of certificates.
     pub(crate) fn certified_model(&self, recipe: &Recipe) -> Result<CertifiedModel, Error> {
         if !self.is_quick {
             return self.make(recipe, self.models);
         }
         let mut model = self.make(&small_spring(), None)?;
-        model.note = Some("--quick: a spring of 4,000 triangles stands in for any model".into());
+        model.note = Some("--quick: a spring of 4,000 triangles replaces the model".into());
         Ok(model)
     }
 
@@ -36,7 +36,7 @@ impl Setup<'_> {
         Ok(model.with_paper(self.cache, self.watch)?)
     }
 
-    /// Measuring begins.
+    /// Reports that the measurement begins.
     pub(crate) fn begin_measuring(&self) {
         self.watch.begin(Stage::Comparison);
     }

@@ -1,11 +1,11 @@
-//! What was typed. What it means is told in [`commands`](crate::commands).
+//! Command-line arguments as typed, and the help texts. [`commands`](crate::commands) interprets the arguments.
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-/// A page of help with examples, one command a line. They are part of the template, so that they are never wrapped: what
-/// is copied from any terminal can be pasted into a shell. Everything else is wrapped at the terminal's width.
+/// The template of a help page with examples, one command a line. The examples are part of the template because clap
+/// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
 macro_rules! with_examples {
     ($($example:literal)+) => {
         concat!(
@@ -16,11 +16,10 @@ macro_rules! with_examples {
     };
 }
 
-/// Proven self-collision detection for deformable models.
+/// Exact self-collision detection for deformable triangle meshes.
 ///
-/// Certify a model (a triangle mesh with its deformation modes) once; from then on ask whether the deformed
-/// shape x = p + U q collides with itself. "Free" is proven; "colliding" lists exactly the intersecting pairs of
-/// triangles that share no vertex.
+/// A mesh deforms by modes: at q its shape is x = p + U q. `sscc certify` computes certificates once. `sscc check` then
+/// answers whether the shape collides with itself at q. For the guarantee see docs/guarantees.md in the repository.
 #[derive(Debug, Parser)]
 #[command(
     name = "sscc",
@@ -36,31 +35,31 @@ macro_rules! with_examples {
         130 interrupted."
 )]
 pub struct Cli {
-    /// What to do.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
+/// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Show what this does on an embedded spring: certify, animate, check every frame
+    /// Certify and animate an embedded spring, and check every frame by three methods
     Demo(Demo),
-    /// Give a mesh deformation modes, and write both as a model file
+    /// Compute deformation modes of a surface, a solid or an animation, and write a model file
     Modes(Modes),
-    /// Compute the certificates of a model, once
+    /// Compute the certificates of a model, and write them to a file
     Certify(Certify),
-    /// Tell whether the model collides with itself at q, and which triangles meet
+    /// Check whether a model collides with itself at q, and list the colliding triangle pairs
     Check(Check),
-    /// Try to prove certificates wrong
+    /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
-    /// Tell what is in a model, certificate, mesh or solid file
+    /// Show the contents of a model, certificate, mesh or solid file
     Info(Info),
-    /// Let the bodies of a scene move, fall and collide, and write their motion
+    /// Simulate the bodies of a scene with contact and friction, and write their motion
     Simulate(Simulate),
-    /// Measure queries by every method, and beside another library
+    /// Measure queries by every method, and by another library for comparison
     Bench(Bench),
-    /// Show a model on a page: drag its modes, see what collides and how far it is certified
+    /// Show a model in the browser: its modes, its collisions and its certified radii, live
     View(View),
 }
 
@@ -73,7 +72,7 @@ pub enum Command {
     )
 )]
 pub struct Demo {
-    /// Also write the spring, its model, its certificates and the animation into this folder
+    /// Also write the spring, its model, its certificates, the animation and a report to this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
@@ -90,35 +89,35 @@ pub struct Demo {
         "sscc modes bar.veg -o bar.model.safetensors --kind linear --rank 20 --fix box:-1,-1,-1,1,1,0"
     ),
     after_help = "\
-A closed surface is embedded in a lattice of cubes; parts that are close but apart along the shape are not glued. \
-Modes of solids are mass-orthonormal, and their metric is strain energy; without a solid (pca, or polynomial modes of \
-a surface) it is displacement."
+A closed surface is embedded in a lattice of cubes. The lattice keeps parts separate that are close in space but not \
+along the surface. Modes of solids are mass-orthonormal, and their default metric is energy. Modes without a solid \
+(pca, or polynomial modes of a surface) have the displacement metric."
 )]
 pub struct Modes {
     /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele);
-    /// for pca a folder of meshes with the same faces, the frames
+    /// for pca a folder of meshes with the same faces (the frames)
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Where the modes come from
+    /// How to compute the modes
     #[arg(long, value_enum)]
     pub kind: ModesKind,
-    /// Number of modes [default: 20 linear, 30 nonlinear, pca as many as explain 99.9% of the
-    /// variance]
+    /// Number of modes [default: 20 for linear, 30 for nonlinear; for pca as many as explain 99.9% of the variance]
     #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=500))]
     pub rank: Option<u32>,
-    /// Vertices that do not move: numbers from 0, as in 0,5,7; box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text)
-    /// [default: none, a free body without its rigid motions]
+    /// Vertices that do not move: numbers counted from 0, as in 0,5,7; box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers
+    /// (.npy, text) [default: none; the modes are those of a free body, without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
     /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of
-    /// youngs=E,poisson=NU,density=RHO; it overrides what a solid's file states [default: that, else
+    /// youngs=E,poisson=NU,density=RHO; it overrides the materials in a solid's file [default: those of the file, else
     /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
     pub material: Option<String>,
-    /// Cubes along the longest side of the lattice around a surface [default: for about 20,000 cubes in all]
+    /// Cubes along the longest side of the lattice around a surface [default: as many as make about 20,000 cubes in
+    /// all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub resolution: Option<u32>,
     #[command(flatten)]
@@ -130,17 +129,17 @@ pub struct Modes {
 pub enum ModesKind {
     /// The lowest natural vibrations of a solid (linear modal analysis)
     Linear,
-    /// A basis for large deformations, with their forces (modal derivatives)
+    /// A basis for large deformations (modal derivatives), with the reduced forces of the solid
     Nonlinear,
-    /// The 24 quadratic polynomials of the rest position, rigid motions taken out; with --resolution or --material also
-    /// the stiffness and forces of a solid
+    /// The 24 quadratic polynomials of the rest position without rigid motions; with --resolution or --material also
+    /// the stiffness and reduced forces of a solid
     Polynomial,
-    /// The mean and the principal components of an animation; q counts standard deviations
+    /// The mean and the principal components of an animation; a unit of q is one standard deviation
     Pca,
 }
 
 impl ModesKind {
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -151,7 +150,7 @@ impl ModesKind {
     }
 }
 
-/// A model by its files.
+/// The files of a model.
 #[derive(Debug, Args)]
 pub struct Model {
     /// The model: *.model.safetensors, a .glb or .gltf with morph targets, a complete .npz (mean, components,
@@ -162,43 +161,43 @@ pub struct Model {
     /// a folder of target meshes
     #[arg(long, value_name = "FILE")]
     pub modes: Option<PathBuf>,
-    /// The mesh of a glTF file with several (sscc info lists them)
+    /// The mesh of a glTF file that has several (sscc info lists them)
     #[arg(long, value_name = "NAME")]
     pub mesh_name: Option<String>,
 }
 
-/// How certificates are computed. All optional, so that contradictions to given certificates can be told.
+/// How to compute certificates. Each option may be absent, so a flag that contradicts given certificates can be
+/// refused.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Relative error allowed for the root's radius and others not much larger, between 0 and 1 [default: 0.1]
+    /// Relative error of the root's radius, and of other radii that are not much larger; between 0 and 1 [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
-    /// The metric: energy (of models that know their stiffness), displacement, mass, identity, or a file with M: its
+    /// The metric: energy (of models with a stiffness), displacement, mass, identity, or a file with the matrix M: its
     /// diagonal, one weight for each mode (.npy or text), or a dense symmetric one (.npy of shape r x r) [default: the
     /// model's]
     #[arg(long, value_name = "METRIC")]
     pub metric: Option<PathBuf>,
-    /// The q from which radii are measured: r numbers, or a file (.npy or text) [default: 0, the rest pose]
+    /// The centre, the q from which |z| is measured: r numbers, or a file (.npy or text) [default: 0, the rest pose]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub center: Option<String>,
-    /// What is asked of triangles that share a vertex [default: exclude]
+    /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
     #[arg(long, value_enum, value_name = "RULE")]
     pub neighbours: Option<Neighbours>,
-    /// Leave out, for good, the pairs that collide at rest
+    /// Ignore the pairs that collide at rest: they never count
     #[arg(long)]
     pub ignore_rest: bool,
-    /// Whether vertices of equal position and modes count as one, for adjacency only [default: on for STL and glTF]
+    /// Whether to weld vertices of equal position and modes, for adjacency only [default: on for STL and glTF]
     #[arg(long, value_enum, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub weld: Option<Switch>,
-    /// How many pairs that collide at the centre may be exceptions: left out of all radii and tested in every
-    /// query [default: half the number of triangles]
+    /// Maximum number of exceptions: pairs that collide at the centre, which no radius covers and every query tests
+    /// [default: half the number of triangles]
     #[arg(long, value_name = "N")]
     pub max_exceptions: Option<usize>,
-    /// Which certificates are stored [default: full; paper where check computes them for itself]
+    /// Which certificates to store [default: full; paper where check or view computes them]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
-    /// Memory for the pairs of nodes that the scheme full stores, in bytes for each triangle; a pair takes 8 [default:
-    /// 16]
+    /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 16]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
     #[command(flatten)]
@@ -214,30 +213,30 @@ pub enum Switch {
     Off,
 }
 
-/// Rules for triangles that share a vertex. Those that share an edge never count.
+/// Which pairs of triangles with a common vertex count. Triangles with a common edge never count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Neighbours {
-    /// They do not count
+    /// None
     Exclude,
-    /// Those that share just one vertex count where they meet beside it
+    /// Those with exactly one common vertex, where they have another common point
     IncludeOneVertex,
 }
 
-/// How much the program may use of the machine.
+/// The number of threads.
 #[derive(Debug, Args)]
 pub struct Threads {
-    /// Number of threads [default: all cores]; the result is the same for any number
+    /// Number of threads; the result does not depend on it [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 }
 
-/// Schemes of certificates.
+/// Which certificates a file stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Scheme {
-    /// A radius for every node of the hierarchy, and for each pair of the root's children
+    /// A radius for each node of the BVH, and for each pair of the root's children
     Paper,
-    /// Also the pairs of nodes that collide first, as many as the budget holds: queries are faster where the root's
-    /// certificate fails, the file is larger and takes longer to compute
+    /// Also the pair tree, the node pairs that collide first, as many as the budget holds: queries are faster where the
+    /// root's certificate fails, but the file is larger and takes longer to compute
     Full,
 }
 
@@ -257,8 +256,8 @@ pub struct Certify {
     /// The certificate file to write: *.sscc.safetensors
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Also draw what is certified (.png): the shape at the centre, and as far along each of the first four modes as
-    /// the root's radius reaches
+    /// Also draw the certified deformations (.png): the shape at the centre, and the shape at the root's radius along
+    /// each of the first four modes
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     #[command(flatten)]
@@ -290,22 +289,20 @@ pub struct Check {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
-    /// Ask about the way from each q of the trajectory to the next, every vertex on a straight line: which pairs meet,
-    /// and when (0: at the first q, 1: at the next). None is missed; one listed without need has come within 1e-12 of
-    /// its size
+    /// Answer continuous queries (CCD) from each q of the trajectory to the next, every vertex on a straight line, with
+    /// a time of impact from 0 to 1 for each pair; for the tolerance see docs/guarantees.md in the repository
     #[arg(long, conflicts_with_all = ["q", "pose"])]
     pub continuous: bool,
-    /// How to look for collisions; the answer is the same
+    /// The method of the search; all methods give the same answer
     #[arg(long, value_enum, default_value_t = Method::Certified)]
     pub method: Method,
-    /// List just one colliding pair of each q (with --continuous: the first to meet)
+    /// List one colliding pair of each q (with --continuous: the first to meet)
     #[arg(long, conflicts_with = "limit")]
     pub first: bool,
-    /// List at most so many colliding pairs of each q (with --continuous: the first to meet); then count is a lower
-    /// bound
+    /// List at most N colliding pairs of each q (with --continuous: the first to meet); the count is then a lower bound
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
-    /// Also write the shape at --q, with its colliding triangles marked: .ply (red) or .obj (in groups)
+    /// Also write the shape at --q with its colliding triangles marked: .ply (red) or .obj (in groups)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "first", "limit"])]
     pub pose: Option<PathBuf>,
     #[command(flatten)]
@@ -314,14 +311,14 @@ pub struct Check {
     pub json: Json,
 }
 
-/// Where to look.
+/// The configurations of the queries.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 pub struct At {
-    /// Reduced coordinates, one q in each row: .npy of shape (T, r), or (r)
+    /// Configurations, one q in each row: .npy of shape (T, r), or (r)
     #[arg(long, value_name = "FILE")]
     pub trajectory: Option<PathBuf>,
-    /// One q: r numbers
+    /// One configuration: r numbers
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', allow_hyphen_values = true)]
     pub q: Option<Vec<f64>>,
 }
@@ -329,16 +326,16 @@ pub struct At {
 /// Methods of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
-    /// Certificates, then lazily updated boxes
+    /// Certificates; where they fail, a traversal with BD-tree AABBs
     Certified,
-    /// Lazily updated boxes without certificates
+    /// A traversal with BD-tree AABBs, without certificates
     #[value(name = "bdtree")]
     BdTree,
-    /// All boxes refitted
+    /// A refit of all AABBs, then a traversal
     Traditional,
-    /// The same with normal cones and the contour test
+    /// As traditional, with normal cones and the contour test
     NormalCones,
-    /// Every pair of triangles
+    /// A test of every triangle pair
     BruteForce,
 }
 
@@ -349,7 +346,7 @@ pub enum Method {
         "sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --samples 2000"
     ),
     after_help = "\
-Exit codes: 0 nothing found, 1 a certificate promises too much, 2 error."
+Exit codes: 0 no violation, 1 a collision refutes a certificate, 2 error."
 )]
 pub struct Audit {
     #[command(flatten)]
@@ -357,10 +354,10 @@ pub struct Audit {
     /// The certificates to attack
     #[arg(long, value_name = "FILE")]
     pub certificates: PathBuf,
-    /// Number of configurations to try
+    /// Number of configurations to test
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: u32,
-    /// Start of the pseudo-random numbers: the same seed makes the same attacks
+    /// Seed of the pseudo-random numbers; the same seed gives the same configurations
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     #[command(flatten)]
@@ -397,29 +394,29 @@ pub struct Info {
         "sscc simulate my.toml --json"
     ),
     after_help = "\
-The folder gets trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, of scenes with sound, \
-sound.wav and sound_float.wav. A simulation that was stopped or killed goes on by the same command, to the same bits.\n\
-Scenes that come with the program: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.\n\
-Exit codes: 0 done, 2 error or the motion diverged (what was simulated until then is written), 130 interrupted."
+The command writes trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, for scenes with sound, \
+sound.wav and sound_float.wav. The same command resumes a simulation that was interrupted or killed, to the same bits.\n\
+Embedded scenes: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.\n\
+Exit codes: 0 done, 2 error or the motion diverges (the steps before are written), 130 interrupted."
 )]
 pub struct Simulate {
-    /// The scene: a .toml file, or the name of one that comes with the program
+    /// The scene: a .toml file, or the name of an embedded scene
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The folder to write to, made where it is missing [default: the scene's name]
+    /// The output folder, created if it is missing [default: the scene's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// How many steps to make from the beginning [default: those of the scene]
+    /// Number of steps from the beginning of the scene [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,
-    /// Begin again, whatever the folder holds
+    /// Begin again, and remove the files of an earlier simulation from the folder
     #[arg(long)]
     pub restart: bool,
     /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded
-    /// shapes stand in]
+    /// shapes replace them]
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
-    /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
+    /// The folder in which runs share models and certificates [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     #[command(flatten)]
@@ -438,39 +435,39 @@ pub struct Simulate {
         "sscc bench bunny128 --steps 50 --json"
     ),
     after_help = "\
-All methods answer the same questions by turns, on one thread, and must list the same pairs.\n\
+All methods answer the same queries, interleaved on one thread, and must list the same pairs.\n\
 Exit codes: 0 done, 2 error, or two exact methods differ."
 )]
 pub struct Bench {
-    /// What to measure; --list tells what there is
+    /// The scenario to measure (--list lists all)
     #[arg(value_name = "SCENARIO", required_unless_present = "list")]
     pub scenario: Option<String>,
     /// List the scenarios
     #[arg(long)]
     pub list: bool,
     /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded
-    /// shapes stand in]
+    /// shapes replace them]
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
-    /// Of scenes and kinetic: steps to measure, in 10 blocks spread evenly [default: 100, kinetic 20,000]
+    /// Scenes and kinetic: steps to measure, in 10 blocks spread evenly [default: 100, kinetic 20,000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,
-    /// Of amplitudes and growth: samples at each amplitude [default: 64, growth 20]
+    /// Amplitudes and growth: samples at each amplitude [default: 64, growth 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: Option<u32>,
-    /// Of amplitudes and growth: this model alone
+    /// Amplitudes and growth: measure this model only
     #[arg(long, value_name = "MODEL")]
     pub only: Option<String>,
-    /// Take a spring of 4,000 triangles for every model: whether all works, in seconds
+    /// Replace every model by a spring of 4,000 triangles, to test the bench in seconds
     #[arg(long)]
     pub quick: bool,
-    /// Of growth: also draw it
+    /// Growth: also plot the results
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Also write what was measured as a page, in one file; of scenes, amplitudes and growth
+    /// Scenes, amplitudes and growth: also write the results as a page in one file
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Where models and certificates are kept from one run to the next [default: sscc in the system's cache folder]
+    /// The folder in which runs share models and certificates [default: sscc in the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     #[command(flatten)]
@@ -487,7 +484,8 @@ pub struct Bench {
         "sscc view spring.model.safetensors --compare-metrics"
     ),
     after_help = "\
-The page is on this machine alone, at an address that nobody can guess, and works offline. It is there until Ctrl-C or SIGTERM.\n\
+The server listens on this machine only, and its address contains a random token. The page works offline. Ctrl-C or \
+SIGTERM stops the server.\n\
 The metric and the other options come from the certificates; a flag that contradicts them is refused."
 )]
 pub struct View {
@@ -496,14 +494,14 @@ pub struct View {
     /// Certificates of this model, from `sscc certify`; without them they are computed first
     #[arg(long, value_name = "FILE")]
     pub certificates: Option<PathBuf>,
-    /// The port of the address [default: any that is free]
+    /// Port of the address [default: a free port]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub port: Option<u16>,
-    /// Only print the address, and open no browser
+    /// Print the address only, and open no browser
     #[arg(long)]
     pub no_open: bool,
-    /// Of models that know their stiffness: also draw how far the root's certificate reaches under the energy and the
-    /// displacement metric, with ever more modes; certificates are computed for each of them first
+    /// Models with a stiffness: also plot the largest deformation that the root certifies under the energy and the
+    /// displacement metric, over the number of modes; certificates for each number are computed first
     #[arg(long)]
     pub compare_metrics: bool,
     #[command(flatten)]
@@ -513,7 +511,7 @@ pub struct View {
 /// The form of the result.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Json {
-    /// Print the result alone, as JSON
+    /// Print the result only, as JSON
     #[arg(long)]
     pub json: bool,
 }
@@ -535,7 +533,7 @@ mod tests {
         Cli::command().debug_assert();
     }
 
-    /// The examples of every page of help are commands that there are, with flags that there are.
+    /// Every example of the help pages is a valid command line.
     #[test]
     fn examples_are_parsed() {
         let mut command = Cli::command();

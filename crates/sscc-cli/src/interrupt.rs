@@ -1,6 +1,7 @@
-//! Interrupts: Ctrl-C (SIGINT) and SIGTERM. The first one asks the work at hand to stop, the second one ends the program.
+//! Handles interrupts: Ctrl-C (SIGINT) and SIGTERM. The first one cancels the running work, the second one ends the
+//! program.
 //!
-//! SIGHUP is left alone: `nohup` ignores it, and a handler would undo that.
+//! SIGHUP has no handler: `nohup` ignores the signal, and a handler would undo that.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
@@ -11,24 +12,25 @@ use signal_hook::flag;
 
 use crate::outcome::EXIT_INTERRUPTED;
 
-/// The one word for every interrupt, which is also that of [`sscc::Error::Cancelled`].
-const INTERRUPTED: &str = "interrupted";
+/// The message of every interrupt, the same as that of [`sscc::Error::Cancelled`].
+const MESSAGE: &str = "interrupted";
 
-static HAPPENED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+static INTERRUPTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// Listens from now on.
-pub fn listen() {
+/// Installs the signal handlers.
+pub fn install_handlers() {
     for signal in [SIGINT, SIGTERM] {
-        // In this order: only an interrupt that comes after another one finds the flag set. Without a handler the
-        // signal ends the program at once, which is safe too: files appear whole or not at all.
-        let _ = flag::register_conditional_shutdown(signal, EXIT_INTERRUPTED.into(), Arc::clone(&HAPPENED));
-        let _ = flag::register(signal, Arc::clone(&HAPPENED));
+        // In this order, only the second interrupt finds the flag set. If a handler cannot be installed, the signal
+        // ends the program at once. That is safe, too, because files appear whole or not at all.
+        let _ =
+            flag::register_conditional_shutdown(signal, EXIT_INTERRUPTED.into(), Arc::clone(&INTERRUPTED));
+        let _ = flag::register(signal, Arc::clone(&INTERRUPTED));
     }
 }
 
-/// Whether there was an interrupt.
-pub fn happened() -> bool {
-    HAPPENED.load(Ordering::Relaxed)
+/// Whether the program has received an interrupt.
+pub fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
 }
 
 /// Cancels queries on an interrupt.
@@ -38,21 +40,21 @@ impl sscc::Progress for Interrupt {
     fn report(&self, _done: usize, _total: usize) {}
 
     fn is_cancelled(&self) -> bool {
-        happened()
+        is_interrupted()
     }
 }
 
-/// Stops here if there was an interrupt.
+/// Returns an error if the program has received an interrupt.
 pub fn check() -> anyhow::Result<()> {
-    if happened() {
-        bail!(INTERRUPTED);
+    if is_interrupted() {
+        bail!(MESSAGE);
     }
     Ok(())
 }
 
-/// An error on one line. Of work that an interrupt stopped it is that word (and what follows it), not where the work
-/// was: that is the same for all commands.
+/// Returns an error as one line. For interrupted work the line has the root cause only, so that all commands print the
+/// same message.
 pub fn message(error: &anyhow::Error) -> String {
     let root = error.root_cause().to_string();
-    if root.starts_with(INTERRUPTED) { root } else { crate::output::one_line(&format!("{error:#}")) }
+    if root.starts_with(MESSAGE) { root } else { crate::output::one_line(&format!("{error:#}")) }
 }

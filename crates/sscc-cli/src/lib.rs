@@ -1,6 +1,6 @@
-//! The `sscc` command: certificates of a deformable model, and queries whether it collides with itself.
+//! The `sscc` command: computes certificates of deformable models, and answers self-collision queries.
 //!
-//! `args` has the typed arguments, `commands` their meaning. The exit code is decided here.
+//! `args` parses the arguments, `commands` executes them, and this file decides the exit code.
 
 mod args;
 mod commands;
@@ -17,21 +17,21 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use outcome::{EXIT_ERROR, EXIT_FOUND, EXIT_INTERRUPTED, Outcome};
+use outcome::{EXIT_ERROR, EXIT_FINDING, EXIT_INTERRUPTED, Outcome};
 
-/// The program: does what its arguments say.
+/// Runs the program, and returns its exit code.
 pub fn main() -> ExitCode {
     let cli = match args::Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage::report(&error),
     };
-    interrupt::listen();
+    interrupt::install_handlers();
     match commands::run(cli) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::Found) => ExitCode::from(EXIT_FOUND),
+        Ok(Outcome::Finding) => ExitCode::from(EXIT_FINDING),
         Err(error) => {
-            output::say(format_args!("error: {}", interrupt::message(&error)));
-            ExitCode::from(if interrupt::happened() { EXIT_INTERRUPTED } else { EXIT_ERROR })
+            output::write_stderr(format_args!("error: {}", interrupt::message(&error)));
+            ExitCode::from(if interrupt::is_interrupted() { EXIT_INTERRUPTED } else { EXIT_ERROR })
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Models, metrics and certificates by what was typed, with errors that name the file.
+//! Loads models, metrics and certificates as the arguments state. Errors name the file.
 
 use std::fs;
 use std::path::Path;
@@ -20,10 +20,10 @@ pub fn model(files: &args::Model) -> Result<LoadedModel> {
     Ok(sscc_io::load_model_with(&files.path, &options)?)
 }
 
-/// The metric that was asked for, if any.
-pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metric>> {
-    let Some(wanted) = wanted else { return Ok(None) };
-    let metric = match wanted.to_str() {
+/// Returns the metric of `--metric`; none without that flag.
+pub fn metric(model: &ReducedModel, typed: Option<&Path>) -> Result<Option<Metric>> {
+    let Some(typed) = typed else { return Ok(None) };
+    let metric = match typed.to_str() {
         Some("displacement") => Metric::displacement(model.mesh(), model.modes()),
         Some("mass") => Metric::mass(model.mesh(), model.modes()),
         Some("identity") => Metric::identity(model.rank()),
@@ -34,8 +34,8 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
             model.metric().kind().name()
         ),
         _ => {
-            let numbers = sscc_io::read_matrix(wanted).with_context(
-                || "--metric is neither displacement, mass, energy nor identity, so a file was looked for",
+            let numbers = sscc_io::read_matrix(typed).with_context(
+                || "--metric is none of energy, displacement, mass and identity, so it must be a file",
             )?;
             let rank = model.rank();
             let made = match (numbers.rows, numbers.columns) {
@@ -44,51 +44,51 @@ pub fn metric(model: &ReducedModel, wanted: Option<&Path>) -> Result<Option<Metr
                     Metric::from_matrix(MetricKind::Given, rank, &numbers.data)
                 }
                 (1, n) | (n, 1) => {
-                    let shown = wanted.display();
+                    let shown = typed.display();
                     let matrix = if n == rank * rank { " (a dense matrix must be a .npy)" } else { "" };
                     bail!("{shown}: the metric has {n} weights, the model has {rank} modes{matrix}")
                 }
                 (n, m) => {
-                    bail!("{}: the metric is {n} x {m}, the model has {rank} modes", wanted.display())
+                    bail!("{}: the metric is {n} x {m}, the model has {rank} modes", typed.display())
                 }
             };
-            made.with_context(|| wanted.display().to_string())?
+            made.with_context(|| typed.display().to_string())?
         }
     };
-    // Refused here rather than later, where the flag is no longer known.
-    metric.check(model.mesh(), model.modes()).with_context(|| format!("--metric {}", wanted.display()))?;
+    // Checked here, because later errors cannot name the flag.
+    metric.check(model.mesh(), model.modes()).with_context(|| format!("--metric {}", typed.display()))?;
     Ok(Some(metric))
 }
 
-/// The centre that was asked for, if any: numbers, else the name of a file.
+/// Returns the centre of `--center`, numbers or a file; none without that flag.
 fn center(model: &ReducedModel, typed: Option<&str>) -> Result<Option<Vec<f64>>> {
     let Some(typed) = typed else { return Ok(None) };
     let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
     let center = match numbers {
         Ok(numbers) => numbers,
         Err(_) => sscc_io::read_vector(Path::new(typed))
-            .with_context(|| "--center is no list of numbers, so a file was looked for")?,
+            .with_context(|| "--center is not a list of numbers, so it must be a file")?,
     };
     model.check_coordinates(&center).with_context(|| format!("--center {typed}"))?;
     Ok(Some(center))
 }
 
-/// Whether to weld where nothing was typed.
+/// Whether to weld without `--weld`.
 fn welds_by_default(files: &args::Model) -> bool {
     sscc_io::splits_vertices(&files.path)
 }
 
-/// Number of threads for what was typed.
+/// Returns the number of threads: that of `--threads`, else all cores.
 pub fn threads(typed: &args::Threads) -> usize {
     typed.threads.map_or_else(available_threads, |threads| threads as usize)
 }
 
-/// Bytes for each triangle that pairs of nodes may take; none where no flag speaks of it.
+/// Returns the budget of the pair tree in bytes for each triangle; none without `--scheme` and `--budget`.
 fn budget(typed: &args::Options) -> Result<Option<usize>> {
     let budget = typed.budget.map(|bytes| bytes as usize);
     Ok(match typed.scheme {
         Some(args::Scheme::Paper) => {
-            ensure!(budget.is_none(), "--scheme paper stores no pairs of nodes: leave --budget out");
+            ensure!(budget.is_none(), "--scheme paper stores no pair tree: leave --budget out");
             Some(0)
         }
         Some(args::Scheme::Full) => budget.or(Some(CertifyOptions::DEFAULT_BUDGET)),
@@ -96,7 +96,7 @@ fn budget(typed: &args::Options) -> Result<Option<usize>> {
     })
 }
 
-/// What was typed about computing certificates.
+/// Returns the options for computing certificates, with defaults for absent flags.
 pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<CertifyOptions> {
     Ok(CertifyOptions {
         epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
@@ -120,7 +120,7 @@ fn neighbours(typed: args::Neighbours) -> Neighbours {
     }
 }
 
-/// What was typed, for a query without certificates.
+/// Returns the scope of a query without certificates.
 pub fn scope(model: &ReducedModel, files: &args::Model, typed: &args::Options) -> Result<Scope> {
     let options = options(model, files, typed)?;
     let mut filter = options.filter;
@@ -143,8 +143,8 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
     computed.with_context(|| path.display().to_string())
 }
 
-/// Certificates for one run of a command that was given none: says so, and leaves out the pairs of nodes unless they
-/// were asked for, because a few queries do not make up for the time that they take.
+/// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree unless
+/// `--scheme` or `--budget` requests one: a few queries do not save the time that it takes to compute.
 pub fn certificates_now(
     model: &ReducedModel,
     files: &args::Model,
@@ -158,13 +158,13 @@ pub fn certificates_now(
     certify(model, &files.path, &options)
 }
 
-/// An error about a file, with its name. Errors of readers and writers have it already.
+/// Adds the file's name to an error. Errors of readers and writers contain it already.
 pub fn in_file(error: Error, path: &Path) -> Error {
     let is_named = error.is::<IoError>() || error.downcast_ref().and_then(SimError::file).is_some();
     if is_named { error } else { error.context(path.display().to_string()) }
 }
 
-/// Reads certificates, and refuses those of another model, or other than the options typed say.
+/// Reads certificates. Refuses those of another model, and flags that contradict them.
 pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) -> Result<Certificates> {
     let certificates = sscc_io::read_certificates(path)?;
     let name = || path.display().to_string();
@@ -181,7 +181,7 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
         let known = certificates.metric();
         ensure!(
             (metric.scales(), metric.dense_factor()) == (known.scales(), known.dense_factor()),
-            "{}: certified with another metric ({}) than --metric says; leave the flag out, or certify anew",
+            "{}: certified with another metric ({}) than --metric; leave the flag out, or certify anew",
             name(),
             known.kind().name()
         );
@@ -189,7 +189,7 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
     if let Some(center) = center(model, options.center.as_deref())? {
         ensure!(
             center == certificates.center(),
-            "{}: certified about another centre than --center says; leave the flag out, or certify anew",
+            "{}: certified about another centre than --center; leave the flag out, or certify anew",
             name()
         );
     }
@@ -206,8 +206,8 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
     let in_budget = |bytes: u32| has_tree && tree.bytes() <= (bytes as usize).saturating_mul(triangles);
     ensure!(
         of_scheme && options.budget.is_none_or(in_budget),
-        "{}: certified with {} bytes of pairs of nodes for {triangles} triangles, against --scheme or --budget; \
-         leave the flag out, or certify anew",
+        "{}: its pair tree of {} bytes for {triangles} triangles contradicts --scheme or --budget; leave the flag out, or \
+         certify anew",
         name(),
         tree.bytes()
     );
@@ -218,16 +218,16 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
     );
     let exceptions = certificates.exceptions().len();
     ensure!(
-        options.max_exceptions.is_none_or(|most| exceptions <= most),
-        "{}: certified with {exceptions} exceptions, more than --max-exceptions says; leave the flag out, or certify \
-         anew",
+        options.max_exceptions.is_none_or(|max| exceptions <= max),
+        "{}: certified with {exceptions} exceptions, more than --max-exceptions allows; leave the flag out, or \
+         certify anew",
         name()
     );
     Ok(certificates)
 }
 
-/// Refuses an output that would not do, before any long work: another ending, an input, a folder that cannot
-/// be written to.
+/// Refuses an unusable output before any long work: one with another ending, one that is an input, one in a folder
+/// that cannot be written to.
 pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()> {
     let shown = output.display();
     let file_name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -238,7 +238,7 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
     if let Ok(real) = fs::canonicalize(output) {
         let is_input = |input: &&Path| fs::canonicalize(input).is_ok_and(|input| input == real);
         ensure!(!inputs.iter().any(is_input), "{shown}: the output is an input; choose another name");
-        ensure!(real.is_file(), "{shown}: cannot be written: it is no file; choose another name");
+        ensure!(real.is_file(), "{shown}: cannot be written: it is not a file; choose another name");
     }
     check_writable(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
     Ok(())

@@ -1,4 +1,4 @@
-//! How far a simulation is, and how fast: a bar for people.
+//! The progress bar of a simulation, with its speed relative to real time.
 
 use std::cell::Cell;
 use std::io::{IsTerminal, stderr};
@@ -6,21 +6,22 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Between two looks at the clock.
-const PAUSE: Duration = Duration::from_millis(200);
+/// Time between two updates of the bar.
+const UPDATE_INTERVAL: Duration = Duration::from_millis(200);
 
-/// Shows steps done, and seconds simulated in each second that passes.
+/// Shows the steps done, and the simulated seconds per second of wall-clock time.
 pub struct Meter {
     bar: Option<ProgressBar>,
     /// Simulated seconds of a step.
     step: f64,
-    /// Steps that had been done before, and when it began.
+    /// Steps done before this run, and the time of the first report.
     start: Cell<Option<(usize, Instant)>>,
+    /// Steps done at the last update, and its time.
     shown: Cell<(usize, Instant)>,
 }
 
 impl Meter {
-    /// Visible where standard error is a terminal. A step lasts so many simulated seconds.
+    /// Creates a bar, visible if standard error is a terminal. `step`: simulated seconds of a step.
     pub fn new(step: f64) -> Self {
         let bar = stderr().is_terminal().then(|| {
             let style =
@@ -30,7 +31,7 @@ impl Meter {
         Self { bar, step, start: Cell::new(None), shown: Cell::new((0, Instant::now())) }
     }
 
-    /// So many steps are done; the first report says how many had been done before.
+    /// Shows that `done` of `total` steps are done. The first report has the steps done before this run.
     pub fn report(&self, done: usize, total: usize) {
         let Some(bar) = &self.bar else { return };
         let Some((first, begin)) = self.start.get() else {
@@ -39,7 +40,7 @@ impl Meter {
             return;
         };
         let (before, then) = self.shown.get();
-        if then.elapsed() < PAUSE {
+        if then.elapsed() < UPDATE_INTERVAL {
             return;
         }
         let speed = |steps: usize, since: Instant| steps as f64 * self.step / since.elapsed().as_secs_f64();

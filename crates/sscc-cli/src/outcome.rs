@@ -1,16 +1,16 @@
-//! Outcomes of commands and the exit codes of the program.
+//! The outcomes of commands, and the exit codes of the program.
 
 /// The outcome of a command that ran to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Done; `check`: every q is free.
+    /// The command is done; for `check`, every q is free.
     Done,
-    /// `check` found a collision, `audit` a violation.
-    Found,
+    /// `check` found a collision, or `audit` a violation.
+    Finding,
 }
 
-/// The exit code of [`Outcome::Found`].
-pub const EXIT_FOUND: u8 = 1;
+/// The exit code of [`Outcome::Finding`].
+pub const EXIT_FINDING: u8 = 1;
 
 /// The exit code of an error.
 pub const EXIT_ERROR: u8 = 2;

@@ -1,4 +1,4 @@
-//! Standard output: results only. Standard error: everything else. No panic when nobody reads them.
+//! Writes results to standard output, and all other text to standard error. A closed pipe causes no panic.
 
 use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, StdoutLock, Write};
@@ -8,66 +8,67 @@ use anyhow::Context;
 use serde::Serialize;
 pub use sscc_sim::text::{counted, duration, grouped, length, one_line};
 
-/// Standard output, by lines: at once when someone watches, else in blocks.
+/// Standard output: line by line to a terminal, else in blocks.
 ///
-/// When its reader leaves (`sscc ... | head`), what follows is dropped without an error: files are still to be written,
-/// and the exit code is that of the answers. A command that only prints asks [`Output::is_closed`], and stops.
+/// When its reader closes the pipe (`sscc ... | head`), later lines are dropped without an error, because the command
+/// may still have files to write, and its exit code does not depend on readers. A command that only prints stops when
+/// [`Output::is_closed`].
 pub struct Output {
     stdout: BufWriter<StdoutLock<'static>>,
-    watched: bool,
-    closed: bool,
+    is_terminal: bool,
+    is_closed: bool,
 }
 
 impl Output {
-    /// Takes standard output.
+    /// Locks standard output.
     pub fn new() -> Self {
         let stdout = io::stdout().lock();
-        Self { watched: stdout.is_terminal(), stdout: BufWriter::new(stdout), closed: false }
+        Self { is_terminal: stdout.is_terminal(), stdout: BufWriter::new(stdout), is_closed: false }
     }
 
     /// Whether standard output is a terminal.
-    pub fn is_watched(&self) -> bool {
-        self.watched
+    pub fn is_terminal(&self) -> bool {
+        self.is_terminal
     }
 
-    /// Whether the reader of standard output has left, as far as is known from what was written.
+    /// Whether a write has failed because the reader of standard output has closed the pipe.
     pub fn is_closed(&self) -> bool {
-        self.closed
+        self.is_closed
     }
 
     /// Writes one line of text.
     pub fn line(&mut self, text: impl Display) -> anyhow::Result<()> {
-        if self.closed {
+        if self.is_closed {
             return Ok(());
         }
         let written = writeln!(self.stdout, "{text}");
-        let written = written.and_then(|()| if self.watched { self.stdout.flush() } else { Ok(()) });
-        self.note_closed(written)
+        let written = written.and_then(|()| if self.is_terminal { self.stdout.flush() } else { Ok(()) });
+        self.check_pipe(written)
     }
 
     /// Writes one JSON object on a line of its own. Numbers that are not finite become `null`.
     pub fn json(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
-        self.line(serde_json::to_string(object).context("the result is no JSON")?)
+        self.line(serde_json::to_string(object).context("the result cannot be written as JSON")?)
     }
 
-    /// Writes what is still held back.
+    /// Writes buffered text.
     pub fn flush(&mut self) -> anyhow::Result<()> {
-        if self.closed {
+        if self.is_closed {
             return Ok(());
         }
         let written = self.stdout.flush();
-        self.note_closed(written)
+        self.check_pipe(written)
     }
 
-    /// Writes what is still held back, for the last time.
+    /// Writes buffered text, and closes the output.
     pub fn finish(mut self) -> anyhow::Result<()> {
         self.flush()
     }
 
-    fn note_closed(&mut self, written: io::Result<()>) -> anyhow::Result<()> {
+    fn check_pipe(&mut self, written: io::Result<()>) -> anyhow::Result<()> {
         match written {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => {
-                self.closed = true;
+                self.is_closed = true;
                 Ok(())
             }
             written => written.context("standard output cannot be written"),
@@ -75,17 +76,17 @@ impl Output {
     }
 }
 
-/// A line on standard error. Nobody need read it: where it cannot be written, it is dropped.
-pub fn say(text: impl Display) {
+/// Writes a line to standard error. If that fails, the line is dropped.
+pub fn write_stderr(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// A remark beside the result, on standard error.
+/// Writes a note about the result to standard error.
 pub fn note(text: impl Display) {
-    say(format_args!("note: {text}"));
+    write_stderr(format_args!("note: {text}"));
 }
 
-/// The name of a file without its folder.
+/// Returns the name of a file without its folder.
 pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,4 +1,4 @@
-//! A progress bar on standard error, for people, for work that takes more than a second.
+//! The progress bar on standard error, shown for work that takes more than a second.
 
 use std::io::{IsTerminal, stderr};
 use std::sync::OnceLock;
@@ -9,26 +9,26 @@ use sscc::Progress;
 
 use crate::interrupt;
 
-/// Work shorter than this shows no bar.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The bar appears after this time.
+const DELAY: Duration = Duration::from_secs(1);
 
-/// Shows progress, and stops the work on Ctrl-C.
+/// Shows progress, and cancels the work on an interrupt.
 pub struct Bar {
     message: &'static str,
     start: Instant,
-    visible: bool,
+    is_visible: bool,
     bar: OnceLock<ProgressBar>,
 }
 
 impl Bar {
-    /// A bar that appears when standard error is a terminal and the work takes long.
+    /// Creates a bar, which appears if standard error is a terminal and the work takes longer than [`DELAY`].
     pub fn new(message: &'static str) -> Self {
-        Self { message, start: Instant::now(), visible: stderr().is_terminal(), bar: OnceLock::new() }
+        Self { message, start: Instant::now(), is_visible: stderr().is_terminal(), bar: OnceLock::new() }
     }
 
-    /// The same, but only if `condition` holds.
+    /// Hides the bar unless `condition` holds.
     pub fn only_if(mut self, condition: bool) -> Self {
-        self.visible &= condition;
+        self.is_visible &= condition;
         self
     }
 
@@ -47,13 +47,13 @@ impl Bar {
 
 impl Progress for Bar {
     fn report(&self, done: usize, total: usize) {
-        if self.visible && self.start.elapsed() > PATIENCE {
+        if self.is_visible && self.start.elapsed() > DELAY {
             self.draw(done, total);
         }
     }
 
     fn is_cancelled(&self) -> bool {
-        interrupt::happened()
+        interrupt::is_interrupted()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Bars of work that has several stages, one after the other, and its notes.
+//! The progress bars and notes of work with several stages, such as a simulation.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -10,48 +10,48 @@ use crate::meter::Meter;
 use crate::output;
 use crate::progress::Bar;
 
-/// Shows the stage at work, and stops all of them on Ctrl-C.
+/// Shows the progress of the current stage, and cancels the work on an interrupt.
 #[derive(Default)]
 pub struct Stages {
-    shown: Mutex<Option<Shown>>,
+    indicator: Mutex<Option<Indicator>>,
 }
 
-enum Shown {
+enum Indicator {
     Bar(Bar),
     Meter(Meter),
 }
 
 impl Stages {
-    fn show(&self, shown: Option<Shown>) {
-        // The bar before it is cleared first.
-        let mut now = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        *now = None;
-        *now = shown;
+    fn show(&self, indicator: Option<Indicator>) {
+        let mut current = self.indicator.lock().unwrap_or_else(PoisonError::into_inner);
+        // Dropping the previous bar clears it from the screen.
+        *current = None;
+        *current = indicator;
     }
 }
 
 impl Progress for Stages {
     fn report(&self, done: usize, total: usize) {
-        match &*self.shown.lock().unwrap_or_else(PoisonError::into_inner) {
-            Some(Shown::Bar(bar)) => bar.report(done, total),
-            Some(Shown::Meter(meter)) => meter.report(done, total),
+        match &*self.indicator.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(Indicator::Bar(bar)) => bar.report(done, total),
+            Some(Indicator::Meter(meter)) => meter.report(done, total),
             None => {}
         }
     }
 
     fn is_cancelled(&self) -> bool {
-        interrupt::happened()
+        interrupt::is_interrupted()
     }
 }
 
 impl Watch for Stages {
     fn begin(&self, stage: Stage) {
         self.show(match stage {
-            Stage::Solid => Some(Shown::Bar(Bar::new("solid"))),
-            Stage::Modes => Some(Shown::Bar(Bar::new("modes"))),
-            Stage::Certificates => Some(Shown::Bar(Bar::new("certifying"))),
-            Stage::Steps { step } => Some(Shown::Meter(Meter::new(step))),
-            Stage::Comparison => Some(Shown::Bar(Bar::new("measuring"))),
+            Stage::Solid => Some(Indicator::Bar(Bar::new("solid"))),
+            Stage::Modes => Some(Indicator::Bar(Bar::new("modes"))),
+            Stage::Certificates => Some(Indicator::Bar(Bar::new("certifying"))),
+            Stage::Steps { step } => Some(Indicator::Meter(Meter::new(step))),
+            Stage::Comparison => Some(Indicator::Bar(Bar::new("measuring"))),
             _ => None,
         });
     }

@@ -1,17 +1,17 @@
-//! Refusals of the command line itself, in one line like every other error.
+//! Reports invalid command lines, on one line like every other error.
 
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 
 use crate::outcome::EXIT_ERROR;
-use crate::output::{one_line, say};
+use crate::output::{one_line, write_stderr};
 
-/// Prints help and version as they are, and anything wrong with the command line as one line.
+/// Prints help and version as they are, and an invalid command line as one line. Returns the exit code.
 pub fn report(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // Whoever closed the pipe has seen enough.
+            // A closed pipe is no error.
             let _ = error.print();
             ExitCode::SUCCESS
         }
@@ -20,13 +20,13 @@ pub fn report(error: &clap::Error) -> ExitCode {
             ExitCode::from(EXIT_ERROR)
         }
         _ => {
-            say(one_line(&shortened(&error.to_string())));
+            write_stderr(one_line(&shortened(&error.to_string())));
             ExitCode::from(EXIT_ERROR)
         }
     }
 }
 
-/// The cause and the tips, without the pages around them.
+/// Returns the cause and the tips of a clap error, without usage.
 fn shortened(text: &str) -> String {
     let kept: Vec<String> = text
         .split("\n\n")

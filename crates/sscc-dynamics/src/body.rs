@@ -1,4 +1,4 @@
-//! State, integrators and collision detection of one body.
+//! Body: state, integrators and self-collision detection.
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
@@ -62,9 +62,9 @@ impl Default for Start {
     }
 }
 
-/// A body of a [`World`](crate::World). The world position of a vertex is `R (p + U q - c) + x`, where c is the centre of mass of the
-/// rest pose, and R and x are the rigid motion. The equations neglect centrifugal forces on q and the change of the
-/// inertia by deformation.
+/// A body of a [`World`](crate::World). The world position of a vertex is `R (p + U q - c) + x`, where c is the centre
+/// of mass of the rest pose, and R and x are the rigid motion. The equations neglect centrifugal forces on q and the
+/// change of the inertia by deformation.
 pub struct Body<'a> {
     shape: &'a Shape,
     is_free: bool,
@@ -75,32 +75,38 @@ pub struct Body<'a> {
     pub(crate) a: Vec<f64>,
     /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,
-    /// Share of each mode in the slow mobility: see [`Mobility`](crate::contact::Mobility).
-    pub(crate) shares: Vec<f64>,
+    /// Weight of each mode in [`ModalInverseMass::slow_modes`](crate::contact::ModalInverseMass::slow_modes).
+    pub(crate) slow_weights: Vec<f64>,
     oscillator: Oscillator<'a>,
     detection: Detection,
     detector: Detector<'a>,
     pub(crate) posed: PosedShape<'a>,
     /// Colliding triangle pairs within the body, found by the last detection.
     pub(crate) pairs: Vec<Pair>,
+    /// Whether q was outside the certificate of the root in the last detection.
     pub(crate) root_failed: bool,
-    pub(crate) is_pushed: bool,
-    /// Energy that contacts have taken from the motion so far, less what they gave back: its share.
-    pub(crate) ledger: f64,
+    /// Whether an impulse has changed q or v since the last step.
+    pub(crate) has_impulse: bool,
+    /// Energy budget: the body's share of the energy that contacts have dissipated, less the energy that they have
+    /// returned.
+    pub(crate) energy_budget: f64,
 }
 
+/// Integrator of q.
 #[derive(Clone)]
 enum Oscillator<'a> {
     Linear(LinearOscillator),
     Nonlinear(NonlinearOscillator<'a>),
 }
 
-/// The middle of a step's turn is found by iterating, which is safe up to here.
-const MOST_TURN: f64 = 1.0;
+/// Maximum rotation in a step (rad). [`RigidMotion::advance`] iterates for the middle of the rotation; the iteration
+/// converges up to here.
+const MAX_STEP_ROTATION: f64 = 1.0;
 
+/// Query that detects self-collisions.
 enum Detector<'a> {
     Off,
-    Plain(Box<Query<'a>>),
+    Discrete(Box<Query<'a>>),
     Kinetic(Box<KineticQuery<'a>>),
 }
 
@@ -111,7 +117,7 @@ impl<'a> Body<'a> {
         shape: &'a Shape,
         start: &Start,
         options: &WorldOptions,
-        twin: Option<&Self>,
+        same_shape: Option<&Self>,
     ) -> Result<Self, DynamicsError> {
         let WorldOptions { step, gravity, contact, .. } = *options;
         let (model, certificates, r) = (shape.model(), shape.certificates(), shape.model().rank());
@@ -120,30 +126,31 @@ impl<'a> Body<'a> {
         model.check_coordinates(&q)?;
         model.check_coordinates(&v)?;
         let mut rigid = RigidMotion::new(*shape.mass())?;
-        let sound = |x: DVec3| x.is_finite();
-        let place = start.position.unwrap_or(shape.mass().center);
-        let turn = start.orientation.normalize();
-        if !(sound(place) && sound(start.velocity) && sound(start.spin) && turn.is_finite()) {
+        let position = start.position.unwrap_or(shape.mass().center);
+        let orientation = start.orientation.normalize();
+        let vectors = [position, start.velocity, start.spin];
+        if !(vectors.iter().all(|x| x.is_finite()) && orientation.is_finite()) {
             return Err(DynamicsError::Start);
         }
-        let turned = start.spin.length() * step;
-        if turned > MOST_TURN {
-            let what = "the angle by which a body's spin turns it in a step (rad)";
+        let rotation_angle = start.spin.length() * step;
+        if rotation_angle > MAX_STEP_ROTATION {
+            let what = "the rotation of a body by its spin in a step (rad)";
             return Err(DynamicsError::Option {
                 what,
-                value: turned,
+                value: rotation_angle,
                 range: "at most 1: take a smaller step",
             });
         }
-        (rigid.position, rigid.orientation) = (place, turn);
+        (rigid.position, rigid.orientation) = (position, orientation);
         if start.is_free {
             rigid.momentum = start.velocity * shape.mass().mass;
-            rigid.angular_momentum = turn * (shape.mass().inertia * (turn.inverse() * start.spin));
+            rigid.angular_momentum =
+                orientation * (shape.mass().inertia * (orientation.inverse() * start.spin));
         }
         let load = if start.is_free {
             vec![0.0; r]
         } else {
-            shape.moments().iter().map(|m| m.dot(turn.inverse() * gravity)).collect()
+            shape.moments().iter().map(|m| m.dot(orientation.inverse() * gravity)).collect()
         };
         let oscillator = match shape.elasticity() {
             Elasticity::Linear(stiffness) => {
@@ -160,19 +167,21 @@ impl<'a> Body<'a> {
         };
         let square = contact.rate() * contact.rate();
         let stiffness = shape.elasticity().stiffness().diagonal();
-        let shares = stiffness.map(|lambda| square / (square + lambda)).collect();
+        let slow_weights = stiffness.map(|lambda| square / (square + lambda)).collect();
         let method = match start.detection {
             Detection::Method(method) => method,
             _ => Method::Certified,
         };
-        let detector = match (start.detection, twin.map(|twin| (twin.detection, &twin.detector))) {
+        let detector = match (start.detection, same_shape.map(|other| (other.detection, &other.detector))) {
             (Detection::Off, _) => Detector::Off,
             (Detection::Kinetic, _) => Detector::Kinetic(Box::new(KineticQuery::new(model, certificates)?)),
-            (same, Some((other, Detector::Plain(query)))) if same == other => Detector::Plain(query.clone()),
-            _ => Detector::Plain(Box::new(Query::with_method(model, certificates, method)?)),
+            (own, Some((other, Detector::Discrete(query)))) if own == other => {
+                Detector::Discrete(query.clone())
+            }
+            _ => Detector::Discrete(Box::new(Query::with_method(model, certificates, method)?)),
         };
-        let posed = match twin {
-            Some(twin) => twin.posed.clone(),
+        let posed = match same_shape {
+            Some(other) => other.posed.clone(),
             None => PosedShape::new(model, certificates)?,
         };
         Ok(Self {
@@ -183,55 +192,55 @@ impl<'a> Body<'a> {
             v,
             a,
             load,
-            shares,
+            slow_weights,
             oscillator,
             detection: start.detection,
             detector,
             posed,
             pairs: Vec::new(),
             root_failed: false,
-            is_pushed: false,
-            ledger: 0.0,
+            has_impulse: false,
+            energy_budget: 0.0,
         })
     }
 
-    /// The shape, shared by all bodies that use it.
+    /// Returns the shape, shared by all bodies that use it.
     pub fn shape(&self) -> &'a Shape {
         self.shape
     }
 
-    /// Whether the body has rigid motion (false: it is held).
+    /// Returns whether the body has rigid motion (false: it is held).
     pub fn is_free(&self) -> bool {
         self.is_free
     }
 
-    /// Modal coordinates q (r numbers).
+    /// Returns the modal coordinates q (r numbers).
     pub fn q(&self) -> &[f64] {
         &self.q
     }
 
-    /// Rate of q (r numbers, 1/s).
+    /// Returns the rate of q (r numbers, 1/s).
     pub fn v(&self) -> &[f64] {
         &self.v
     }
 
-    /// Rigid motion of the body.
+    /// Returns the rigid motion of the body.
     pub fn rigid(&self) -> &RigidMotion {
         &self.rigid
     }
 
-    /// Pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
+    /// Returns the pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
     pub fn pose(&self) -> Pose {
         let rotation = self.rotation();
         Pose { rotation, translation: self.rigid.position - rotation * self.shape.mass().center }
     }
 
-    /// Pairs of the body's triangles that collided at the start of the last step.
+    /// Returns the pairs of the body's triangles that collided at the start of the last step.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// Kinetic and elastic energy, without the potential energy of gravity.
+    /// Returns kinetic and elastic energy, without the potential energy of gravity.
     pub fn energy(&self) -> f64 {
         let elastic = match &self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.energy(&self.q, &self.v),
@@ -240,23 +249,24 @@ impl<'a> Body<'a> {
         elastic + self.rigid.energy()
     }
 
-    /// Kinetic energy of rigid motion and vibration.
+    /// Returns the kinetic energy of rigid motion and vibration.
     pub fn kinetic_energy(&self) -> f64 {
         self.v.iter().map(|v| v * v / 2.0).sum::<f64>() + self.rigid.energy()
     }
 
-    /// Potential energy of the weight, and of the load on a held body.
+    /// Returns the potential energy of the weight, and of the load on a held body.
     pub fn potential(&self, gravity: DVec3) -> f64 {
         let load: f64 = self.load.iter().zip(&self.q).map(|(f, q)| f * q).sum();
         -self.shape.mass().mass * gravity.dot(self.rigid.position) - load
     }
 
-    /// Positions of the corners of a triangle, in axes of the rest pose.
+    /// Returns the positions of the corners of a triangle, in axes of the rest pose.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let model = self.shape.model();
         model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.q))
     }
 
+    /// Returns the rotation from axes of the rest pose to axes of the world.
     pub(crate) fn rotation(&self) -> DMat3 {
         DMat3::from_quat(self.rigid.orientation)
     }
@@ -266,7 +276,7 @@ impl<'a> Body<'a> {
         self.pairs.clear();
         let statistics = match &mut self.detector {
             Detector::Off => return Ok(()),
-            Detector::Plain(query) => {
+            Detector::Discrete(query) => {
                 self.pairs.extend_from_slice(query.discrete(&self.q)?);
                 query.statistics()
             }
@@ -288,12 +298,12 @@ impl<'a> Body<'a> {
     /// Advances the body by one step without contacts. Half of the impulse of the weight acts before and half after the
     /// displacement, which is exact for the position of the centre of mass.
     pub(crate) fn advance(&mut self, gravity: DVec3, step: f64) -> Result<(), DynamicsError> {
-        let was_pushed = std::mem::take(&mut self.is_pushed);
+        let had_impulse = std::mem::take(&mut self.has_impulse);
         match &self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.advance(&mut self.q, &mut self.v, &self.load),
             Oscillator::Nonlinear(oscillator) => {
-                if was_pushed {
-                    // Accelerations belong to the new v.
+                if had_impulse {
+                    // The stored acceleration belongs to the old v.
                     self.a = oscillator.acceleration(&self.q, &self.v, &self.load);
                 }
                 oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load)?;
@@ -308,8 +318,8 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Is to be told when q or v was changed.
-    pub(crate) fn was_pushed(&mut self) {
-        self.is_pushed = true;
+    /// Records that q or v was changed between steps. The next step then computes the acceleration again.
+    pub(crate) fn mark_impulse(&mut self) {
+        self.has_impulse = true;
     }
 }

@@ -4,15 +4,15 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DynamicsError {
-    /// A step of no length, of a negative one, or none at all.
-    #[error("a time step of {step:e} s: it must be positive and finite")]
+    /// The time step is not positive and finite.
+    #[error("the time step is {step:e} s: it must be positive and finite")]
     Step {
         /// The step (s).
         step: f64,
     },
     /// A damping coefficient is negative or not finite.
     #[error(
-        "damping with the coefficients {mass:e} (1/s) and {stiffness:e} (s): they must be finite and at least 0"
+        "the damping coefficients are {mass:e} (1/s) and {stiffness:e} (s): they must be finite and at least 0"
     )]
     Damping {
         /// Coefficient of the mass (1/s).
@@ -20,7 +20,7 @@ pub enum DynamicsError {
         /// Coefficient of the stiffness (s).
         stiffness: f64,
     },
-    /// A stiffness that no rest pose has.
+    /// The eigenvalue of a mode is negative or not finite.
     #[error("mode {mode} (counted from 0) has the stiffness {value:e}: it must be finite and at least 0")]
     Stiffness {
         /// Number of the mode, from 0.
@@ -33,7 +33,7 @@ pub enum DynamicsError {
     Coupled,
     /// Mass or inertia is not positive and finite.
     #[error(
-        "a mass of {mass:e} with the least moment of inertia {inertia:e}: both must be positive and finite"
+        "the mass is {mass:e} and the smallest minor of the inertia {inertia:e}: both must be positive and finite"
     )]
     Mass {
         /// Mass.
@@ -41,16 +41,16 @@ pub enum DynamicsError {
         /// Smallest leading minor of the inertia tensor; all must be positive.
         inertia: f64,
     },
-    /// Elasticity, moments or a state of another number of modes.
-    #[error("{found} modes where the model has {rank}")]
+    /// Elasticity, moments or eigenvalues have another number of modes than the model.
+    #[error("the data have {found} modes, the model has {rank}: use data of this model")]
     Rank {
         /// Modes given.
         found: usize,
         /// Modes of the model.
         rank: usize,
     },
-    /// A body cannot begin there.
-    #[error("a body's position, orientation, velocity and spin must be finite, its orientation not 0")]
+    /// Position, orientation or velocity of a body is not finite, or its orientation is 0.
+    #[error("position, orientation, velocity and spin of a body must be finite, and its orientation not 0")]
     Start,
     /// An option of the world, its contacts or its ground is outside its range.
     #[error("{what} is {value}: it must be {range}")]
@@ -62,7 +62,7 @@ pub enum DynamicsError {
         /// Allowed range.
         range: &'static str,
     },
-    /// A body that begins in another one, in itself or in the ground.
+    /// A body penetrates another one, itself or the ground at the start.
     #[error("body {body} (counted from 0) begins in {what} ({count} {unit}): move it, or deform it less")]
     Interpenetration {
         /// The body.
@@ -74,8 +74,10 @@ pub enum DynamicsError {
         /// Unit of the count: triangle pairs or vertices.
         unit: &'static str,
     },
-    /// A step of the nonlinear forces that has no solution within reach.
-    #[error("a step cannot be solved (energy {energy:e}): take a smaller one, or more damping")]
+    /// Newton's method does not converge in a step of the nonlinear forces.
+    #[error(
+        "Newton's method does not converge (energy {energy:e}): take a smaller time step, or more damping"
+    )]
     Unsolved {
         /// Energy of the body before the step.
         energy: f64,
@@ -92,8 +94,10 @@ pub enum DynamicsError {
         /// Kinetic energy of the body when the divergence was detected.
         energy: f64,
     },
-    /// A state of other bodies.
-    #[error("the state is of another world: {found} numbers where {expected} belong")]
+    /// The state does not fit the bodies of the world, or the modes of the sound bank.
+    #[error(
+        "a state of {found} numbers does not fit ({expected} numbers, then contacts): restore a state of the same bodies"
+    )]
     State {
         /// Count of numbers in the state.
         found: usize,

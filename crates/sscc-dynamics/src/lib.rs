@@ -38,7 +38,7 @@
 //!
 //! # Guarantees
 //!
-//! - **Determinism.** The bits are the same in every run, for any number of threads, for every exact method of
+//! - **Determinism.** A world has the same bits in every run, for any number of threads, for every exact method of
 //!   [`Detection`], and after a restart.
 //! - **Exact collisions.** Collisions within a body are those of [`sscc::Query`]. Collisions between bodies are those
 //!   of the f64 positions [`Body::pose`] applied to `p + U q`, down to pairs of triangles.
@@ -58,39 +58,40 @@
 //! mass-orthonormal, so generalised forces are accelerations of q.
 
 mod body;
-mod constrain;
+mod body_collisions;
 mod contact;
-mod contacts;
-mod crossing;
-mod depth;
-mod detect;
+mod contact_constraint;
+mod contact_geometry;
+mod contact_set;
+mod contact_solver;
+mod depth_field;
 mod error;
 mod ground;
-mod linear;
+mod ground_contacts;
+mod linear_oscillator;
 mod materials;
-mod near_ground;
 mod nearest_point;
-mod nonlinear;
-mod normals;
+mod nonlinear_oscillator;
 mod options;
-mod rigid;
+mod pseudonormals;
+mod rigid_motion;
+mod root_constraint;
 mod shape;
-mod solve;
 mod sound;
 mod state;
 mod step;
 mod world;
 
 pub use body::{Body, Detection, Start};
-pub use depth::{DepthField, SignedDistance};
-pub use detect::BodyPairs;
+pub use body_collisions::BodyPairs;
+pub use depth_field::{DepthField, SignedDistance};
 pub use error::{DynamicsError, Obstacle};
 pub use ground::Ground;
-pub use linear::{Damping, LinearOscillator};
+pub use linear_oscillator::{Damping, LinearOscillator};
 pub use materials::{MATERIALS, SoundMaterial};
-pub use nonlinear::NonlinearOscillator;
+pub use nonlinear_oscillator::NonlinearOscillator;
 pub use options::{ContactOptions, Response, WorldOptions};
-pub use rigid::RigidMotion;
+pub use rigid_motion::RigidMotion;
 pub use shape::Shape;
 pub use sound::SoundBank;
 pub use state::State;

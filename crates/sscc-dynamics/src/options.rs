@@ -16,7 +16,7 @@ pub struct ContactOptions {
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// Distance at which bodies in contact are held apart (model unit). None: a thousandth of the smallest body's
+    /// Distance that contacts keep between bodies (model unit). None: a thousandth of the smallest body's
     /// radius. A spring holds a resting body within this distance, so it stays free of collisions if the spring can
     /// bear the weight: `(2 pi frequency)^2 skin` must be well above the acceleration of gravity.
     pub skin: Option<f64>,
@@ -31,13 +31,13 @@ impl Default for ContactOptions {
 }
 
 impl ContactOptions {
-    /// Angular frequency (rad/s).
+    /// Returns the angular frequency (rad/s).
     pub fn rate(&self) -> f64 {
         std::f64::consts::TAU * self.frequency
     }
 
-    /// Coefficient of restitution for short steps: `exp(-zeta t)`, where t is the time, times the angular frequency, at
-    /// which the force of spring and damper ends.
+    /// Returns the coefficient of restitution for short steps: `exp(-zeta t)`, where t is the time, times the angular
+    /// frequency, at which the force of spring and damper ends.
     pub fn restitution(&self) -> f64 {
         let zeta = self.damping;
         // x'' + 2 zeta x' + x = 0 from x = 0, x' = 1; the contact ends when 2 zeta x' + x = 0.
@@ -103,23 +103,23 @@ impl WorldOptions {
         if !(self.step.is_finite() && self.step > 0.0) {
             return Err(DynamicsError::Step { step: self.step });
         }
-        let least = |what, value: f64, ok: bool, range| {
+        let check = |what, value: f64, ok: bool, range| {
             if value.is_finite() && ok { Ok(()) } else { Err(DynamicsError::Option { what, value, range }) }
         };
         let (contact, positive, natural) = (self.contact, "positive and finite", "finite and at least 0");
-        least("gravity", self.gravity.length(), true, "finite")?;
-        least("the frequency of contacts", contact.frequency, contact.frequency > 0.0, positive)?;
-        least("the damping of contacts", contact.damping, contact.damping >= 0.0, natural)?;
-        least("friction", contact.friction, contact.friction >= 0.0, natural)?;
+        check("gravity", self.gravity.length(), true, "finite")?;
+        check("the frequency of contacts", contact.frequency, contact.frequency > 0.0, positive)?;
+        check("the damping of contacts", contact.damping, contact.damping >= 0.0, natural)?;
+        check("friction", contact.friction, contact.friction >= 0.0, natural)?;
         let skin = contact.skin.unwrap_or(1.0);
-        least("the skin", skin, skin > 0.0, positive)?;
+        check("the skin", skin, skin > 0.0, positive)?;
         let rounds = contact.rounds as f64;
-        least("the number of rounds", rounds, rounds >= 1.0, "at least 1")?;
+        check("the number of rounds", rounds, rounds >= 1.0, "at least 1")?;
         if let Some(ground) = self.ground {
             let length = ground.normal.length();
-            least("the length of the ground's normal", length, (length - 1.0).abs() < 1e-9, "1")?;
-            least("the ground's height", ground.height, true, "finite")?;
-            least("the ground's friction", ground.friction, ground.friction >= 0.0, natural)?;
+            check("the length of the ground's normal", length, (length - 1.0).abs() < 1e-9, "1")?;
+            check("the ground's height", ground.height, true, "finite")?;
+            check("the ground's friction", ground.friction, ground.friction >= 0.0, natural)?;
         }
         Ok(())
     }

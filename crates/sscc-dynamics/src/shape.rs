@@ -1,4 +1,4 @@
-//! Data shared by all bodies of one shape.
+//! Shape: the data that all bodies of one kind share.
 
 use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
@@ -80,37 +80,37 @@ impl Shape {
         &self.model
     }
 
-    /// Certificates of the model.
+    /// Returns the certificates of the model.
     pub fn certificates(&self) -> &Certificates {
         &self.certificates
     }
 
-    /// Elastic forces.
+    /// Returns the elastic forces.
     pub fn elasticity(&self) -> &Elasticity {
         &self.elasticity
     }
 
-    /// Mass properties at rest.
+    /// Returns the mass properties at rest.
     pub fn mass(&self) -> &MassProperties {
         &self.mass
     }
 
-    /// Integral of each mode over the mass (r vectors).
+    /// Returns the integral of each mode over the mass (r vectors).
     pub fn moments(&self) -> &[DVec3] {
         &self.moments
     }
 
-    /// Material depth of the rest pose.
+    /// Returns the material depth of the rest pose.
     pub fn depth(&self) -> &DepthField {
         &self.depth
     }
 
-    /// Maximum distance of a vertex from the centre of mass, at rest (model unit).
+    /// Returns the maximum distance of a vertex from the centre of mass, at rest (model unit).
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Maximum displacement of a vertex by a unit of each mode (r numbers, model unit).
+    /// Returns the maximum displacement of a vertex by a unit of each mode (r numbers, model unit).
     pub fn reach(&self) -> &[f64] {
         &self.reach
     }

@@ -15,11 +15,14 @@ pub struct SoundBank {
     resonators: LinearOscillator,
     /// Modes of each vertex: x of all modes, then y, then z, in single precision.
     modes: Vec<f32>,
+    /// Loudness of each mode: root mean square of its normal displacement over the surface.
     weights: Vec<f64>,
     q: Vec<f64>,
     v: Vec<f64>,
-    struck: Vec<f32>,
-    silence: Vec<f64>,
+    /// Change of each rate by the impulses since the last sample.
+    pending: Vec<f32>,
+    /// Forces of a free vibration (zeros).
+    zero_forces: Vec<f64>,
 }
 
 impl SoundBank {
@@ -40,32 +43,32 @@ impl SoundBank {
             return Err(DynamicsError::Rank { found: eigenvalues.len(), rank: r });
         }
         let highest = std::f64::consts::PI * rate;
-        let heard: Vec<usize> = (0..r).filter(|k| eigenvalues[*k] < highest * highest).collect();
-        let eigenvalues: Vec<f64> = heard.iter().map(|k| eigenvalues[*k]).collect();
+        let audible: Vec<usize> = (0..r).filter(|k| eigenvalues[*k] < highest * highest).collect();
+        let eigenvalues: Vec<f64> = audible.iter().map(|k| eigenvalues[*k]).collect();
         let resonators = LinearOscillator::new(&eigenvalues, damping, 1.0 / rate)?;
-        let mut side_by_side = Vec::with_capacity(3 * vertices * heard.len());
+        let mut modes_by_axis = Vec::with_capacity(3 * vertices * audible.len());
         for v in 0..vertices as u32 {
             let own = modes.of_vertex(v);
             for axis in 0..3 {
-                side_by_side.extend(heard.iter().map(|k| own[*k][axis] as f32));
+                modes_by_axis.extend(audible.iter().map(|k| own[*k][axis] as f32));
             }
         }
         let (areas, normals) = (vertex_areas(mesh), vertex_normals(mesh));
-        let whole: f64 = areas.iter().sum();
+        let total_area: f64 = areas.iter().sum();
         let loudness = |k: &usize| {
             let square = |v: usize| areas[v] * modes.of_vertex(v as u32)[*k].dot(normals[v]).powi(2);
-            ((0..vertices).map(square).sum::<f64>() / whole).sqrt()
+            ((0..vertices).map(square).sum::<f64>() / total_area).sqrt()
         };
-        let weights: Vec<f64> = heard.iter().map(loudness).collect();
-        let zeros = vec![0.0; heard.len()];
+        let weights: Vec<f64> = audible.iter().map(loudness).collect();
+        let zeros = vec![0.0; audible.len()];
         Ok(Self {
             resonators,
-            modes: side_by_side,
+            modes: modes_by_axis,
             weights,
             q: zeros.clone(),
             v: zeros.clone(),
-            struck: vec![0.0; heard.len()],
-            silence: zeros,
+            pending: vec![0.0; audible.len()],
+            zero_forces: zeros,
         })
     }
 
@@ -76,7 +79,7 @@ impl SoundBank {
 
     /// Applies an impulse to the surface, in axes of the rest pose. It acts at the next sample.
     pub fn strike(&mut self, impulse: &Impulse) {
-        let r = self.struck.len();
+        let r = self.pending.len();
         for (v, weight) in impulse.vertices.iter().zip(impulse.weights) {
             if weight == 0.0 {
                 continue;
@@ -85,18 +88,18 @@ impl SoundBank {
             let own = &self.modes[3 * r * *v as usize..][..3 * r];
             let (x, rest) = own.split_at(r);
             let (y, z) = rest.split_at(r);
-            for (((struck, x), y), z) in self.struck.iter_mut().zip(x).zip(y).zip(z) {
-                *struck += x * force[0] + y * force[1] + z * force[2];
+            for (((pending, x), y), z) in self.pending.iter_mut().zip(x).zip(y).zip(z) {
+                *pending += x * force[0] + y * force[1] + z * force[2];
             }
         }
     }
 
     /// Advances the bank by one sample and returns the sample.
     pub fn sample(&mut self) -> f64 {
-        for (v, struck) in self.v.iter_mut().zip(&mut self.struck) {
-            *v += f64::from(std::mem::take(struck));
+        for (v, pending) in self.v.iter_mut().zip(&mut self.pending) {
+            *v += f64::from(std::mem::take(pending));
         }
-        self.resonators.advance(&mut self.q, &mut self.v, &self.silence);
+        self.resonators.advance(&mut self.q, &mut self.v, &self.zero_forces);
         self.v.iter().zip(&self.weights).map(|(v, w)| v * w).sum()
     }
 
@@ -116,7 +119,7 @@ impl SoundBank {
         }
         self.q.copy_from_slice(&state[..r]);
         self.v.copy_from_slice(&state[r..]);
-        self.struck.fill(0.0);
+        self.pending.fill(0.0);
         Ok(())
     }
 }
@@ -148,16 +151,16 @@ mod tests {
         SoundBank::new(&mesh, &modes, &eigenvalues, damping, 44_100.0).unwrap()
     }
 
-    fn blow(impulse: DVec3) -> Impulse {
+    fn impulse_at_a_triangle(impulse: DVec3) -> Impulse {
         Impulse { body: 0, vertices: [3, 4, 5], weights: [0.5, 0.25, 0.25], impulse }
     }
 
     #[test]
-    fn a_blow_rings_at_the_frequencies_and_dies_away() {
+    fn an_impulse_excites_the_frequencies_and_decays() {
         let mut damped = bank(Damping { mass: 10.0, stiffness: 0.0 });
         assert_eq!(damped.modes(), 2);
         assert_eq!(damped.sample(), 0.0);
-        damped.strike(&blow(DVec3::new(0.1, -0.2, 0.4)));
+        damped.strike(&impulse_at_a_triangle(DVec3::new(0.1, -0.2, 0.4)));
         let samples: Vec<f64> = (0..44_100).map(|_| damped.sample()).collect();
         let power = |hertz: f64, part: &[f64]| {
             let (mut re, mut im) = (0.0, 0.0);
@@ -183,9 +186,9 @@ mod tests {
     }
 
     #[test]
-    fn a_bank_goes_on_from_its_state() {
+    fn a_restored_bank_continues_with_the_same_samples() {
         let mut bank = bank(Damping::default());
-        bank.strike(&blow(DVec3::X));
+        bank.strike(&impulse_at_a_triangle(DVec3::X));
         for _ in 0..100 {
             bank.sample();
         }

@@ -15,31 +15,32 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground, whether it was pushed, ledger.
+/// Position, orientation, momentum, angular momentum, preload of the ground, whether an impulse acted, energy
+/// budget.
 const RIGID: usize = 13 + 3;
 
-/// Bodies, triangles, weights, normal, offset, slack, preload and age of a contact.
+/// Bodies, triangles, weights, normal, offset, maximum slip, preload and age of a contact.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
 
 impl World<'_> {
     /// Returns the current state.
     pub fn state(&self) -> State {
         let mut numbers = Vec::new();
-        for (body, near) in self.bodies.iter().zip(&self.near) {
+        for (body, ground) in self.bodies.iter().zip(&self.ground_contacts) {
             let rigid = &body.rigid;
             numbers.extend([&body.q, &body.v, &body.a].into_iter().flatten());
             numbers.extend(rigid.position.to_array());
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
-            numbers.extend([near.preload, f64::from(u8::from(body.is_pushed)), body.ledger]);
+            numbers.extend([ground.preload, f64::from(u8::from(body.has_impulse)), body.energy_budget]);
         }
         for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
             numbers.extend(contact.anchors.iter().map(|anchor| f64::from(anchor.triangle)));
             numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
             numbers.extend(contact.normal.to_array());
-            numbers.extend([contact.offset, contact.slack, contact.preload, f64::from(contact.age)]);
+            numbers.extend([contact.offset, contact.max_slip, contact.preload, f64::from(contact.age)]);
         }
         State { step: self.step, numbers }
     }
@@ -49,8 +50,8 @@ impl World<'_> {
     /// # Errors
     /// When the state does not fit the bodies or holds an invalid number; then the world is unchanged.
     pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
-        let own = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
-        let expected = self.bodies.iter().map(own).sum::<usize>();
+        let numbers_of = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
+        let expected = self.bodies.iter().map(numbers_of).sum::<usize>();
         let found = state.numbers.len();
         let (motion, contacts) = state.numbers.split_at(expected.min(found));
         let (contacts, rest) = contacts.as_chunks::<CONTACT>();
@@ -59,25 +60,25 @@ impl World<'_> {
         }
         let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
         let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
-        // The search for contacts needs them in the order of their keys.
+        // `ContactSet::update` requires contacts sorted by key.
         let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key());
-        if !in_order || !self.can_be(motion) {
+        if !in_order || !self.is_valid_motion(motion) {
             return Err(DynamicsError::State { found, expected });
         }
         self.step = state.step;
         let mut numbers = motion.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
-        for (body, near) in self.bodies.iter_mut().zip(&mut self.near) {
+        for (body, ground) in self.bodies.iter_mut().zip(&mut self.ground_contacts) {
             body.q.iter_mut().chain(&mut body.v).chain(&mut body.a).for_each(|x| *x = next());
             let rigid = &mut body.rigid;
             rigid.position = DVec3::from_array([(); 3].map(|()| next()));
             rigid.orientation = DQuat::from_array([(); 4].map(|()| next()));
             rigid.momentum = DVec3::from_array([(); 3].map(|()| next()));
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
-            near.forget();
-            near.preload = next();
-            body.is_pushed = next() != 0.0;
-            body.ledger = next();
+            ground.reset();
+            ground.preload = next();
+            body.has_impulse = next() != 0.0;
+            body.energy_budget = next();
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
@@ -87,8 +88,8 @@ impl World<'_> {
         Ok(())
     }
 
-    /// Whether orientations have the length 1, and ledgers are not negative.
-    fn can_be(&self, motion: &[f64]) -> bool {
+    /// Whether orientations have the length 1, and energy budgets are not negative.
+    fn is_valid_motion(&self, motion: &[f64]) -> bool {
         let mut at = 0;
         self.bodies.iter().all(|body| {
             let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
@@ -98,7 +99,7 @@ impl World<'_> {
         })
     }
 
-    /// A contact from its numbers; none where it names what does not exist.
+    /// Creates a contact from its numbers. None if a body, a triangle or the age is not a valid number.
     fn contact(&self, numbers: &[f64; CONTACT]) -> Option<Contact> {
         let index =
             |x: f64, count: usize| (x >= 0.0 && x < count as f64 && x.fract() == 0.0).then_some(x as u32);
@@ -116,7 +117,7 @@ impl World<'_> {
             anchors: [anchor(0)?, anchor(1)?],
             normal: DVec3::new(numbers[10], numbers[11], numbers[12]),
             offset: numbers[13],
-            slack: numbers[14],
+            max_slip: numbers[14],
             preload: numbers[15],
             age: index(numbers[16], u32::MAX as usize)?,
             ..Contact::default()

@@ -3,11 +3,12 @@
 use rayon::prelude::*;
 
 use crate::body::{Body, Start};
-use crate::constrain::constrain;
-use crate::contacts::Contacts;
-use crate::detect::Neighbours;
-use crate::near_ground::NearGround;
-use crate::solve::{GROUND, Solver, Source, Spring};
+use crate::body_collisions::BodyCollisions;
+use crate::contact_constraint::{GROUND, Source};
+use crate::contact_set::ContactSet;
+use crate::contact_solver::{ContactSolver, Spring};
+use crate::ground_contacts::GroundContacts;
+use crate::root_constraint::constrain_to_root;
 use crate::{
     BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions,
 };
@@ -17,28 +18,29 @@ use crate::{
 pub struct World<'a> {
     options: WorldOptions,
     pub(crate) bodies: Vec<Body<'a>>,
-    pub(crate) near: Vec<NearGround>,
-    neighbours: Neighbours,
-    pub(crate) contacts: Contacts,
-    solver: Solver,
-    start: Reference,
+    /// Contacts of each body with the ground.
+    pub(crate) ground_contacts: Vec<GroundContacts>,
+    body_collisions: BodyCollisions,
+    pub(crate) contacts: ContactSet,
+    solver: ContactSolver,
+    start: StartEnergy,
     pub(crate) step: u64,
     pub(crate) impulses: Vec<Impulse>,
 }
 
 /// Total energies of all bodies at the start. They bound the kinetic energy of later steps.
 #[derive(Clone, Copy, Debug, Default)]
-struct Reference {
+struct StartEnergy {
     energy: f64,
     potential: f64,
 }
 
-/// So many times the kinetic energy that can be is a divergence.
-const BLOW_UP: f64 = 4.0;
+/// A motion diverges when its kinetic energy exceeds the available energy by this factor.
+const MAX_ENERGY_RATIO: f64 = 4.0;
 
-/// How fast springs adapt to a load that lasts, beside their own rate. Fast enough to hold in a few seconds what
-/// rests, so slow that an impact hardly notices.
-const CREEP: f64 = 1.0 / 300.0;
+/// Rate at which preloads adapt, as a share of the angular frequency of contacts. Resting bodies are held after a few
+/// seconds, and impacts hardly change.
+const PRELOAD_ADAPTATION: f64 = 1.0 / 300.0;
 
 impl<'a> World<'a> {
     /// Creates a world without bodies.
@@ -50,11 +52,11 @@ impl<'a> World<'a> {
         Ok(Self {
             options,
             bodies: Vec::new(),
-            near: Vec::new(),
-            neighbours: Neighbours::default(),
-            contacts: Contacts::default(),
-            solver: Solver::default(),
-            start: Reference::default(),
+            ground_contacts: Vec::new(),
+            body_collisions: BodyCollisions::default(),
+            contacts: ContactSet::default(),
+            solver: ContactSolver::default(),
+            start: StartEnergy::default(),
             step: 0,
             impulses: Vec::new(),
         })
@@ -65,12 +67,12 @@ impl<'a> World<'a> {
     /// # Errors
     /// When the initial state is invalid: see [`Start`].
     pub fn add(&mut self, shape: &'a Shape, start: &Start) -> Result<usize, DynamicsError> {
-        let twin = self.bodies.iter().find(|body| std::ptr::eq(body.shape(), shape));
-        let body = Body::new(shape, start, &self.options, twin)?;
+        let same_shape = self.bodies.iter().find(|body| std::ptr::eq(body.shape(), shape));
+        let body = Body::new(shape, start, &self.options, same_shape)?;
         self.start.energy += body.energy();
         self.start.potential += body.potential(self.options.gravity);
         self.bodies.push(body);
-        self.near.push(NearGround::default());
+        self.ground_contacts.push(GroundContacts::default());
         Ok(self.bodies.len() - 1)
     }
 
@@ -102,7 +104,7 @@ impl<'a> World<'a> {
     /// Returns the energy that contacts have dissipated (heat), less the energy that they have returned; never
     /// negative.
     pub fn dissipated(&self) -> f64 {
-        self.bodies.iter().map(|body| body.ledger).sum()
+        self.bodies.iter().map(|body| body.energy_budget).sum()
     }
 
     /// Returns the impulses of the last step, in the order of contacts.
@@ -112,17 +114,17 @@ impl<'a> World<'a> {
 
     /// Returns the colliding bodies and their triangle pairs at the start of the last step.
     pub fn inter_pairs(&self) -> impl Iterator<Item = BodyPairs<'_>> {
-        self.neighbours.colliding()
+        self.body_collisions.colliding()
     }
 
-    /// Returns the skin: the distance at which bodies in contact are held apart (model unit).
+    /// Returns the skin: the distance that contacts keep between bodies (model unit).
     pub fn skin(&self) -> f64 {
         let smallest = || self.bodies.iter().map(|body| body.shape().radius()).fold(f64::INFINITY, f64::min);
         self.options.contact.skin.unwrap_or_else(|| 1e-3 * smallest())
     }
 
-    /// Checks that no body penetrates another one, the ground or itself. Self-collisions are rejected only with
-    /// [`Response::Contact`], where contacts would push surfaces that constraint at rest apart for ever.
+    /// Checks that no body penetrates another one, the ground or itself. Self-collisions are refused only with
+    /// [`Response::Contact`]: contacts would push on surfaces that touch at rest in every step.
     ///
     /// # Errors
     /// When a body penetrates; the error names the first one.
@@ -130,13 +132,13 @@ impl<'a> World<'a> {
         let refused =
             |body, what, count, unit| Err(DynamicsError::Interpenetration { body, what, count, unit });
         if self.options.response == Response::Contact {
-            self.detect_within()?;
+            self.detect_self_collisions()?;
             if let Some(body) = self.bodies.iter().position(|body| !body.pairs.is_empty()) {
                 return refused(body, Obstacle::Itself, self.bodies[body].pairs.len(), "pairs of triangles");
             }
         }
-        self.neighbours.update(&mut self.bodies)?;
-        if let Some(BodyPairs { bodies: [a, b], pairs }) = self.neighbours.colliding().next() {
+        self.body_collisions.update(&mut self.bodies)?;
+        if let Some(BodyPairs { bodies: [a, b], pairs }) = self.body_collisions.colliding().next() {
             return refused(b, Obstacle::Body(a), pairs.len(), "pairs of triangles");
         }
         if let Some(ground) = self.options.ground {
@@ -160,38 +162,46 @@ impl<'a> World<'a> {
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
         let mut counts = Counts::default();
         observer.enter(Phase::SelfCollision);
-        self.detect_within()?;
+        self.detect_self_collisions()?;
         for body in &self.bodies {
             counts.self_colliding += usize::from(!body.pairs.is_empty());
             counts.self_pairs += body.pairs.len();
             counts.root_failed += usize::from(body.root_failed);
         }
         observer.enter(Phase::InterObject);
-        self.neighbours.update(&mut self.bodies)?;
-        for met in self.neighbours.colliding() {
+        self.body_collisions.update(&mut self.bodies)?;
+        for found in self.body_collisions.colliding() {
             counts.colliding_bodies += 1;
-            counts.inter_pairs += met.pairs.len();
+            counts.inter_pairs += found.pairs.len();
         }
         observer.enter(Phase::Ground);
-        self.solver.touches.clear();
-        self.touch_ground()?;
-        counts.ground = self.solver.touches.len();
+        self.solver.constraints.clear();
+        self.add_ground_constraints()?;
+        counts.ground = self.solver.constraints.len();
         observer.enter(Phase::Penalty);
-        let (skin, creep, friction) = (self.skin(), self.creep(), self.options.contact.friction);
+        let (skin, preload_rate, friction) =
+            (self.skin(), self.preload_rate(), self.options.contact.friction);
         let within = self.options.response == Response::Contact;
-        let patience = 1.0 / (self.options.contact.frequency * self.options.step);
-        self.contacts.update(&self.bodies, within, &self.neighbours, skin, patience.max(2.0) as u32);
+        let max_age = 1.0 / (self.options.contact.frequency * self.options.step);
+        self.contacts.update(&self.bodies, within, &self.body_collisions, skin, max_age.max(2.0) as u32);
         counts.contacts = self.contacts.list.len();
-        self.contacts.touch(&self.bodies, skin, creep, friction, &mut self.solver.touches);
-        self.push();
+        self.contacts.add_constraints(
+            &self.bodies,
+            skin,
+            preload_rate,
+            friction,
+            &mut self.solver.constraints,
+        );
+        self.solve_contacts();
         observer.enter(Phase::Dynamics);
-        self.move_on()?;
+        self.integrate()?;
         observer.enter(Phase::Done);
         self.step += 1;
         Ok(counts)
     }
 
-    fn detect_within(&mut self) -> Result<(), DynamicsError> {
+    /// Detects self-collisions of all bodies.
+    fn detect_self_collisions(&mut self) -> Result<(), DynamicsError> {
         if self.options.response == Response::Constrain {
             return Ok(());
         }
@@ -201,58 +211,66 @@ impl<'a> World<'a> {
         }
     }
 
-    fn touch_ground(&mut self) -> Result<(), DynamicsError> {
+    /// Appends the constraints of contacts with the ground.
+    fn add_ground_constraints(&mut self) -> Result<(), DynamicsError> {
         let Some(ground) = self.options.ground else { return Ok(()) };
-        let (skin, creep) = (self.skin(), self.creep());
-        for (n, (body, near)) in self.bodies.iter_mut().zip(&mut self.near).enumerate() {
-            near.update(body, &ground, skin)?;
-            near.touch(n as u32, body, &ground, skin, creep, &mut self.solver.touches);
+        let (skin, preload_rate) = (self.skin(), self.preload_rate());
+        for (n, (body, contacts)) in self.bodies.iter_mut().zip(&mut self.ground_contacts).enumerate() {
+            contacts.update(body, &ground, skin)?;
+            let constraints = &mut self.solver.constraints;
+            contacts.add_constraints(n as u32, body, &ground, skin, preload_rate, constraints);
         }
         Ok(())
     }
 
     /// Share of the difference between half the skin and the gap by which preloads change in a step.
-    fn creep(&self) -> f64 {
-        (CREEP * self.options.contact.rate() * self.options.step).min(1.0)
+    fn preload_rate(&self) -> f64 {
+        (PRELOAD_ADAPTATION * self.options.contact.rate() * self.options.step).min(1.0)
     }
 
-    fn push(&mut self) {
+    /// Solves all constraints, and stores the impulses on the bodies.
+    fn solve_contacts(&mut self) {
         self.impulses.clear();
-        if self.solver.touches.is_empty() {
+        if self.solver.constraints.is_empty() {
             return;
         }
         let contact = &self.options.contact;
-        let (rate, damping, rounds) = (contact.rate(), contact.damping, contact.rounds);
-        let spring = Spring { rate, damping, step: self.options.step, rounds };
+        let (rate, damping, max_iterations) = (contact.rate(), contact.damping, contact.rounds);
+        let spring = Spring { rate, damping, step: self.options.step, max_iterations };
         self.solver.solve(&mut self.bodies, &self.contacts.list, &spring);
-        for touch in &self.solver.touches {
-            let impulse = touch.normal * touch.pressure + touch.drag;
+        for constraint in &self.solver.constraints {
+            let impulse = constraint.normal * constraint.normal_impulse + constraint.friction_impulse;
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
-                if touch.bodies[n] == GROUND {
+                if constraint.bodies[n] == GROUND {
                     continue;
                 }
-                // Within one body both points are told.
-                let body = &self.bodies[touch.bodies[n] as usize];
-                let turn =
-                    if touch.is_within() { glam::DQuat::IDENTITY } else { body.rigid.orientation.inverse() };
-                let (vertices, weights) = match touch.source {
+                // A contact within one body gives an impulse at each of its two points.
+                let number = constraint.bodies[n] as usize;
+                let body = &self.bodies[number];
+                let to_rest = if constraint.is_within() {
+                    glam::DQuat::IDENTITY
+                } else {
+                    body.rigid.orientation.inverse()
+                };
+                let (vertices, weights) = match constraint.source {
                     Source::Vertex(v) => ([v; 3], [1.0, 0.0, 0.0]),
                     Source::Contact(contact) => {
                         let anchor = &self.contacts.list[contact as usize].anchors[n];
                         (body.shape().model().mesh().faces()[anchor.triangle as usize], anchor.weights)
                     }
                 };
-                let impulse = turn * impulse * sign;
-                self.impulses.push(Impulse { body: touch.bodies[n] as usize, vertices, weights, impulse });
+                let impulse = to_rest * impulse * sign;
+                self.impulses.push(Impulse { body: number, vertices, weights, impulse });
             }
         }
     }
 
-    fn move_on(&mut self) -> Result<(), DynamicsError> {
+    /// Integrates the motion of all bodies over one step, and checks that it does not diverge.
+    fn integrate(&mut self) -> Result<(), DynamicsError> {
         let WorldOptions { gravity, step, response, .. } = self.options;
         let advance = |body: &mut Body<'a>| {
             body.advance(gravity, step)?;
-            if response == Response::Constrain { constrain(body) } else { Ok(()) }
+            if response == Response::Constrain { constrain_to_root(body) } else { Ok(()) }
         };
         let number = self.step;
         let diverged = |body, energy| DynamicsError::Diverged { step: number, body, energy };
@@ -279,7 +297,7 @@ impl<'a> World<'a> {
             potential += body.potential(gravity);
         }
         let available = self.start.energy + (self.start.potential - potential).max(0.0);
-        if kinetic.is_finite() && kinetic <= BLOW_UP * available {
+        if kinetic.is_finite() && kinetic <= MAX_ENERGY_RATIO * available {
             Ok(())
         } else {
             Err(diverged(fastest.0, fastest.1))
@@ -287,6 +305,7 @@ impl<'a> World<'a> {
     }
 }
 
+/// Returns the error of the first body that has one.
 fn first_error(results: Vec<Result<(), DynamicsError>>) -> Result<(), DynamicsError> {
     results.into_iter().collect()
 }

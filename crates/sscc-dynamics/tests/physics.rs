@@ -14,7 +14,7 @@ fn rubber() -> Material {
     Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }
 
-/// No weight, no ground.
+/// A world without gravity and ground.
 fn space(step: f64) -> WorldOptions {
     WorldOptions { step, gravity: DVec3::ZERO, ground: None, ..WorldOptions::default() }
 }
@@ -78,7 +78,7 @@ fn a_large_vibration_keeps_its_energy_within_bounds() {
 }
 
 #[test]
-fn bodies_that_hit_each_other_keep_their_momenta() {
+fn colliding_bodies_conserve_momenta() {
     for large in [false, true] {
         let shape = elastic(&block([3, 2, 1], 0.1, rubber()), 6, large, &[]);
         let contact = ContactOptions { friction: 0.7, ..ContactOptions::default() };
@@ -109,7 +109,7 @@ fn bodies_that_hit_each_other_keep_their_momenta() {
         assert!(most <= energy * if large { 1.002 } else { 1.0 + 1e-9 }, "{energy} to {most}");
         assert!(world.dissipated() > 0.02 * energy, "{} of {energy}", world.dissipated());
         let apart = world.bodies()[1].rigid().position - world.bodies()[0].rigid().position;
-        assert!(apart.length() > 0.5, "they flew apart: {apart}");
+        assert!(apart.length() > 0.5, "distance at the end: {apart}");
     }
 }
 
@@ -133,7 +133,7 @@ fn clapping<'a>(shape: &'a Shape, options: WorldOptions, damping: Damping) -> Wo
 }
 
 #[test]
-fn a_body_that_hits_itself_keeps_momenta_and_ends_free() {
+fn a_self_collision_conserves_momenta_and_ends() {
     for large in [false, true] {
         let shape = elastic(&fork(6, 0.1, rubber()), 8, large, &[]);
         let damping = Damping { mass: 0.3, stiffness: 1e-4 };
@@ -146,16 +146,16 @@ fn a_body_that_hits_itself_keeps_momenta_and_ends_free() {
             last = counts.self_pairs;
             assert!(world.energy() + world.dissipated() <= energy * if large { 1.002 } else { 1.0 + 1e-9 });
         }
-        assert_eq!(momenta(&world), before, "no impulse within a body moves it as a whole");
-        assert!(colliding > 3, "it clapped: {colliding}");
-        assert_eq!(last, 0, "nothing collides at rest");
+        assert_eq!(momenta(&world), before, "impulses within a body do not change its momenta");
+        assert!(colliding > 3, "colliding steps: {colliding}");
+        assert_eq!(last, 0, "pairs at the end");
         assert!(world.energy() < 0.01 * energy, "{} of {energy}", world.energy());
         assert!(world.dissipated() > 0.01 * energy);
     }
 }
 
 #[test]
-fn a_ball_bounces_as_its_spring_and_damper_say() {
+fn a_ball_bounces_with_the_coefficient_of_restitution() {
     let shape = rigid(octahedron(0.5), 2.0);
     for damping in [0.0, 0.1, 0.3, 1.0, 2.0] {
         let contact =
@@ -178,7 +178,7 @@ fn a_ball_bounces_as_its_spring_and_damper_say() {
 }
 
 #[test]
-fn what_rests_far_away_changes_no_bounce() {
+fn distant_resting_bodies_change_no_bounce() {
     let ball = rigid(octahedron(0.5), 2.0);
     let block = rigid(block([8, 1, 8], 0.1, Material::default()).boundary().unwrap().mesh, 3.0);
     let contact = ContactOptions { damping: 0.1, skin: Some(1e-3), ..ContactOptions::default() };
@@ -204,7 +204,7 @@ fn what_rests_far_away_changes_no_bounce() {
 }
 
 #[test]
-fn a_block_slides_as_far_as_friction_lets_it() {
+fn the_sliding_distance_follows_from_friction() {
     let shape = rigid(block([1, 1, 1], 0.4, Material::default()).boundary().unwrap().mesh, 3.0);
     let (speed, friction) = (2.0, 0.4);
     let ground = Some(Ground { friction, ..Ground::default() });
@@ -218,9 +218,9 @@ fn a_block_slides_as_far_as_friction_lets_it() {
             world.advance(&mut ()).unwrap();
         }
         let rigid = world.bodies()[0].rigid();
-        let way = (rigid.position - from).dot(velocity);
+        let distance = (rigid.position - from).dot(velocity);
         let expected = speed * speed / (2.0 * friction * 9.81);
-        assert!((way / expected - 1.0).abs() < 0.02, "step {step}: {way}, not {expected}");
+        assert!((distance / expected - 1.0).abs() < 0.02, "step {step}: {distance}, not {expected}");
         assert!(rigid.momentum.length() < 0.05 * step / 1e-3 && rigid.position.y > 0.2, "{rigid:?}");
     }
 }
@@ -259,11 +259,11 @@ fn a_stack_comes_to_rest_without_interpenetration_and_gains_no_energy() {
         }
     }
     let places: Vec<DVec3> = world.bodies().iter().map(|body| body.rigid().position).collect();
-    assert!(places[2].y > 0.48, "they are still on top of each other: {places:?}");
+    assert!(places[2].y > 0.48, "the top body has not fallen: {places:?}");
 }
 
 #[test]
-fn a_held_body_hangs_as_its_weight_bends_it() {
+fn a_held_body_sags_to_its_static_deflection() {
     let solid = block([5, 1, 1], 0.1, rubber());
     let fixed: Vec<u32> =
         (0..solid.vertices().len() as u32).filter(|v| solid.vertices()[*v as usize].x == 0.0).collect();
@@ -286,7 +286,7 @@ fn a_held_body_hangs_as_its_weight_bends_it() {
 }
 
 #[test]
-fn a_constrained_body_stays_where_the_root_proves_it_free() {
+fn a_constrained_body_stays_within_the_root_radius() {
     let shape = elastic(&fork(6, 0.1, rubber()), 8, false, &[]);
     let options = WorldOptions { response: Response::Constrain, ..space(1e-3) };
     let mut world = clapping(&shape, options, Damping::default());
@@ -304,7 +304,7 @@ fn a_constrained_body_stays_where_the_root_proves_it_free() {
 }
 
 #[test]
-fn a_constrained_body_goes_on_from_its_state() {
+fn a_constrained_body_continues_from_its_state_with_the_same_bits() {
     let shape = elastic(&fork(6, 0.1, rubber()), 8, true, &[]);
     let options = WorldOptions { response: Response::Constrain, ..space(1e-3) };
     let run = |stop: Option<usize>| {

@@ -37,7 +37,7 @@ fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
 }
 
 #[test]
-fn pairs_between_bodies_are_those_of_all_triangles() {
+fn pairs_between_bodies_equal_brute_force() {
     let shapes = shapes();
     let mut world = heap(&shapes, Detection::Certified);
     let (mut met, mut apart) = (0, 0);
@@ -100,12 +100,12 @@ fn faces_that_touch_are_in_contact() {
 }
 
 #[test]
-fn a_world_goes_on_from_its_state_and_threads_do_not_matter() {
+fn states_are_the_same_after_a_restart_and_for_any_number_of_threads() {
     let shapes = shapes();
     let run = |threads: usize, detection: Detection, stop: Option<usize>| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let (mut world, mut pushes) = (heap(&shapes, detection), 0);
+            let (mut world, mut impulses) = (heap(&shapes, detection), 0);
             for step in 0..500 {
                 if stop == Some(step) {
                     let state = world.state();
@@ -114,13 +114,13 @@ fn a_world_goes_on_from_its_state_and_threads_do_not_matter() {
                     assert_eq!(world.state(), state);
                 }
                 world.advance(&mut ()).unwrap();
-                pushes += world.impulses().len();
+                impulses += world.impulses().len();
             }
-            (world.state(), world.energy().to_bits(), pushes, world.impulses().to_vec())
+            (world.state(), world.energy().to_bits(), impulses, world.impulses().to_vec())
         })
     };
     let expected = run(1, Detection::Certified, None);
-    assert!(expected.2 > 1000, "they are in contact: {}", expected.2);
+    assert!(expected.2 > 1000, "impulses: {}", expected.2);
     assert!(run(2, Detection::Certified, None) == expected);
     assert!(run(1, Detection::Kinetic, None) == expected);
     for step in [1, 100, 333, 480] {
@@ -155,8 +155,8 @@ fn states_of_other_worlds_are_refused() {
     // duplicated.
     let modes = shapes[0].model().rank();
     let contact = &state.numbers[other.numbers.len()..][..17];
-    let mut turned = contact.to_vec();
-    turned[2] = 0.0; // the first triangle of the first body
+    let mut earlier = contact.to_vec();
+    earlier[2] = 0.0; // the first triangle of the first body
     let with = |change: &dyn Fn(&mut Vec<f64>)| {
         let mut damaged = state.clone();
         change(&mut damaged.numbers);
@@ -166,7 +166,7 @@ fn states_of_other_worlds_are_refused() {
         with(&|numbers| numbers[2 * modes + 15] = -1e-3),
         with(&|numbers| numbers[2 * modes + 3] += 1.0),
         with(&|numbers| numbers.extend(contact)),
-        with(&|numbers| numbers.extend(&turned)),
+        with(&|numbers| numbers.extend(&earlier)),
     ] {
         assert!(matches!(world.restore(&damaged), Err(DynamicsError::State { .. })));
     }
@@ -175,7 +175,7 @@ fn states_of_other_worlds_are_refused() {
 }
 
 #[test]
-fn bodies_that_begin_in_something_are_refused() {
+fn bodies_that_penetrate_at_the_start_are_refused() {
     let shapes = shapes();
     let with = |starts: &[Start]| {
         let mut world = World::new(WorldOptions::default()).unwrap();
@@ -200,20 +200,23 @@ fn bodies_that_begin_in_something_are_refused() {
         query.first(&q).unwrap().map(|_| q)
     });
     let start = Start { q: folded.unwrap(), ..Start::default() };
-    let begun = |response| {
+    let check_start = |response| {
         let mut world =
             World::new(WorldOptions { ground: None, response, ..WorldOptions::default() }).unwrap();
         world.add(&shapes[1], &start).unwrap();
         world.check_start()
     };
-    let error = begun(Response::Contact).unwrap_err();
+    let error = check_start(Response::Contact).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 0, what: Obstacle::Itself, .. }));
     // Bodies without a contact response may begin in self-collision.
-    assert_eq!((begun(Response::Ignore).is_ok(), begun(Response::Constrain).is_ok()), (true, true));
+    assert_eq!(
+        (check_start(Response::Ignore).is_ok(), check_start(Response::Constrain).is_ok()),
+        (true, true)
+    );
 }
 
 #[test]
-fn options_and_starts_that_cannot_be_are_refused() {
+fn invalid_options_and_starts_are_refused() {
     let shapes = shapes();
     let refused = |options: WorldOptions| World::new(options).err().map(|error| error.to_string());
     let fine = WorldOptions::default();

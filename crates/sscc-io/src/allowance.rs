@@ -3,36 +3,37 @@
 //! A compressed entry expands up to 1032 times, and a glTF file may refer to the same numbers in any number of targets.
 //! Real files stay far below this limit: compressed modes shrink 1 to 3 times, and sparse blendshapes about 50 times.
 
-/// Times the bytes read that may be decoded from them ...
-const GROWTH: u64 = 100;
+/// Maximum ratio of decoded bytes to bytes read, beyond [`BASE_BYTES`].
+const MAX_GROWTH: u64 = 100;
 
-/// ... beside what any file may take.
-const SMALL: u64 = 64 << 20;
+/// Bytes that may be decoded from a file of any size.
+const BASE_BYTES: u64 = 64 << 20;
 
 /// Number of bytes that may still be decoded from a file.
 #[derive(Debug)]
 pub(crate) struct Allowance {
-    left: u64,
-    all: u64,
+    remaining: u64,
+    total: u64,
 }
 
 impl Allowance {
-    /// For that many bytes read, and no more than `most` in any case.
-    pub fn new(read: u64, most: u64) -> Self {
-        let all = read.saturating_mul(GROWTH).saturating_add(SMALL).min(most);
-        Self { left: all, all }
+    /// Creates the allowance of a file with `read` bytes, at most `max`.
+    pub fn new(read: u64, max: u64) -> Self {
+        let total = read.saturating_mul(MAX_GROWTH).saturating_add(BASE_BYTES).min(max);
+        Self { remaining: total, total }
     }
 
-    /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if more is taken than is left.
+    /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if that exceeds the
+    /// remaining bytes.
     pub fn take(&mut self, count: u64, size: u64) -> Result<(), String> {
-        match count.checked_mul(size).and_then(|bytes| self.left.checked_sub(bytes)) {
-            Some(left) => {
-                self.left = left;
+        match count.checked_mul(size).and_then(|bytes| self.remaining.checked_sub(bytes)) {
+            Some(remaining) => {
+                self.remaining = remaining;
                 Ok(())
             }
             None => Err(format!(
                 "its numbers would take more than {} MiB of memory, too much for a file of this size",
-                self.all >> 20
+                self.total >> 20
             )),
         }
     }
@@ -43,10 +44,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_than_all_is_taken() {
+    fn no_more_than_the_total_is_taken() {
         let mut allowance = Allowance::new(10, u64::MAX);
         assert!(allowance.take(u64::MAX, 2).is_err());
-        assert!(allowance.take(SMALL / 8, 8).is_ok());
+        assert!(allowance.take(BASE_BYTES / 8, 8).is_ok());
         assert!(allowance.take(125, 8).is_ok());
         assert!(allowance.take(1, 1).is_err());
         assert!(allowance.take(0, 8).is_ok());

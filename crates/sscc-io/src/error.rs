@@ -164,7 +164,7 @@ pub(crate) fn cut(text: &str, longest: usize) -> String {
     let mut line = String::new();
     for c in text.chars().take(longest) {
         match c {
-            '\'' | '"' => line.push(c), // our own quotes stay as they are
+            '\'' | '"' => line.push(c), // quotes of the message are not escaped
             _ => line.extend(c.escape_debug()),
         }
     }

@@ -1,4 +1,4 @@
-//! Files read whole and written whole.
+//! Reading and atomic writing of whole files.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -9,17 +9,17 @@ use crate::{FormatError, IoError};
 
 /// Reads a whole file.
 ///
-/// Pipes and devices are refused: they have no size that could bound what is read from them.
+/// Pipes and devices are rejected, because they have no size that bounds the bytes read.
 ///
 /// # Errors
-/// When there is no such file, it is no regular file, it is empty, does not fit into memory, or the system
-/// refuses.
+/// When the file does not exist, is not a regular file, is empty, does not fit into memory, or the system reports an
+/// error.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
     let refused = |cause: io::Error| match cause.kind() {
         ErrorKind::NotFound => IoError::NotFound { path: path.to_owned() },
         _ => IoError::System { path: path.to_owned(), action: "read", cause },
     };
-    // Looked at before it is opened: opening a pipe would wait for a writer.
+    // The check comes before opening: opening a pipe waits for a writer.
     let metadata = fs::metadata(path).map_err(refused)?;
     check_regular(path, &metadata)?;
     let mut bytes = Vec::new();
@@ -27,7 +27,7 @@ pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
         .ok()
         .and_then(|len| bytes.try_reserve_exact(len).ok())
         .ok_or_else(|| refused(io::Error::from(ErrorKind::OutOfMemory)))?;
-    // No more than the size seen: a file that grows meanwhile is cut there, and its reader refuses the cut.
+    // At most the size from above is read. If the file grows meanwhile, it is truncated there, and its parser fails.
     File::open(path).map_err(refused)?.take(metadata.len()).read_to_end(&mut bytes).map_err(refused)?;
     if bytes.is_empty() {
         return Err(FormatError::whole("the file is empty").of(path));
@@ -35,12 +35,12 @@ pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
     Ok(bytes)
 }
 
-/// Writes a whole file: beside the target first, then renamed over it, so that nothing half-written ever
-/// appears under its name, and an old file stays as it is until the new one is complete.
+/// Writes a whole file atomically: to a temporary file in the same folder, which is then renamed. An old file stays
+/// unchanged until the new one is complete.
 ///
 /// # Errors
-/// When the directory cannot be written to, the target is no regular file, or the system refuses. The
-/// target is then as it was, and nothing is left beside it.
+/// When the folder is not writable, the target is not a regular file, or the system reports an error. The target is then
+/// unchanged, and no temporary file remains.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     let refused = |cause| IoError::System { path: path.to_owned(), action: "written", cause };
     // A rename over /dev/null would replace the device.
@@ -50,18 +50,18 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
         Err(error) => return Err(refused(error)),
     }
     let directory = folder(path);
-    // Removed when dropped before the rename, on every way out.
-    let mut beside = PartFile::create_in(directory).map_err(refused)?;
-    beside.write(bytes).map_err(refused)?;
-    beside.rename(path).map_err(refused)?;
-    // The rename itself should outlive a power cut too; not every system lets a directory be opened.
+    // Dropping it before the rename removes it.
+    let mut part = PartFile::create_in(directory).map_err(refused)?;
+    part.write(bytes).map_err(refused)?;
+    part.rename(path).map_err(refused)?;
+    // Makes the rename durable. Some systems cannot open directories.
     if let Ok(directory) = File::open(directory) {
         let _ = directory.sync_all();
     }
     Ok(())
 }
 
-/// Refuses a path at which there is nothing.
+/// Returns an error if the path does not exist.
 pub(crate) fn check_exists(path: &Path) -> Result<(), IoError> {
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Err(IoError::NotFound { path: path.to_owned() }),
@@ -69,7 +69,7 @@ pub(crate) fn check_exists(path: &Path) -> Result<(), IoError> {
     }
 }
 
-/// The refusal of a file whose ending no reader of `what` knows. A file that does not exist is refused as missing.
+/// Returns the error for a file whose ending no reader of `what` supports, or for a missing file.
 pub(crate) fn unsupported(path: &Path, what: &'static str, supported: &'static str) -> IoError {
     match check_exists(path) {
         Err(missing) => missing,
@@ -77,12 +77,12 @@ pub(crate) fn unsupported(path: &Path, what: &'static str, supported: &'static s
     }
 }
 
-/// The ending of a file name, in lower case, without its dot.
+/// Returns the ending of a file name, in lower case, without its dot.
 pub(crate) fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// The folder of a file.
+/// Returns the folder of a file, `.` if the path has none.
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -90,10 +90,10 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Whether files can be written to a folder: before long work whose result is for it.
+/// Checks that files can be written to a folder, before long work whose result goes there.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the system when a file cannot be created.
 pub fn check_writable(folder: &Path) -> io::Result<()> {
     PartFile::create_in(folder).map(drop)
 }
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn written_files_are_whole_and_alone() {
+    fn writing_leaves_only_the_target() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.bin");
         write_whole(&path, b"first").unwrap();
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_is_named() {
+    fn errors_name_missing_empty_and_irregular_files() {
         let directory = tempfile::tempdir().unwrap();
         let message = |path: &Path| read_whole(path).unwrap_err().to_string();
         assert!(message(directory.path()).ends_with("is a directory, a file was expected"));

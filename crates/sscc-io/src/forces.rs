@@ -38,7 +38,7 @@ pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> 
     let [rank, sizes @ ..] = header.as_chunks::<4>().0 else { unreachable!("16 bytes are four of 4") };
     let rank = usize::try_from(i32::from_le_bytes(*rank)).unwrap_or_default();
     if rank == 0 {
-        return Err(FormatError::new(Place::Byte(0), "a rank of 0 or less: is this a .cub file?"));
+        return Err(FormatError::new(Place::Byte(0), "the rank is 0 or less: is this a .cub file?"));
     }
     let expected = [1, 2, 3].map(|degree| monomials::count(rank, degree));
     for (i, (size, expected)) in sizes.iter().zip(expected).enumerate() {
@@ -72,7 +72,7 @@ pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> 
 mod tests {
     use super::*;
 
-    /// A header, then the numbers from 1 on, but 2 twice: so the linear part of rank 2 is symmetric.
+    /// A header, then the numbers from 1 on with 2 repeated, so that the linear part of rank 2 is symmetric.
     fn file(header: [i32; 4], values: usize) -> Vec<u8> {
         let header = header.iter().flat_map(|n| n.to_le_bytes());
         let value = |i: usize| if i < 2 { i + 1 } else { i };
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_follow_each_other() {
+    fn coefficients_are_split_by_degree() {
         let forces = parse_reduced_forces(&file([2, 2, 3, 4], 18)).unwrap();
         assert_eq!((forces.rank(), forces.linear().entries()), (2, &[1.0, 2.0, 2.0, 3.0][..]));
         assert_eq!(forces.quadratic(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
@@ -88,10 +88,10 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_place() {
         let message = |bytes: &[u8]| parse_reduced_forces(bytes).unwrap_err().to_string();
-        assert_eq!(message(&file([0, 0, 0, 0], 0)), "byte 0: a rank of 0 or less: is this a .cub file?");
-        assert!(message(&file([-2, 2, 3, 4], 18)).contains("a rank of 0 or less"));
+        assert_eq!(message(&file([0, 0, 0, 0], 0)), "byte 0: the rank is 0 or less: is this a .cub file?");
+        assert!(message(&file([-2, 2, 3, 4], 18)).contains("the rank is 0 or less"));
         assert_eq!(message(&file([2, 2, 4, 4], 18)), "byte 8: 4 monomials of degree 2: rank 2 has 3");
         assert!(message(&file([i32::MAX; 4], 18)).starts_with("byte 8: 2147483647 monomials of degree 2"));
         assert!(message(&file([1000, 1000, 500_500, 167_167_000], 18)).contains("but 144 follow"));
@@ -106,9 +106,10 @@ mod tests {
         );
         let mut asymmetric = file([2, 2, 3, 4], 18);
         asymmetric[24..32].copy_from_slice(&2.1_f64.to_le_bytes());
-        let said = message(&asymmetric);
+        let message = message(&asymmetric);
         assert!(
-            said.starts_with("byte 16: the stiffness is 2e0 at row 1, column 0 (counted from 0), but 2.1e0")
+            message
+                .starts_with("byte 16: the stiffness is 2e0 at row 1, column 0 (counted from 0), but 2.1e0")
         );
         assert_eq!(read_reduced_forces(Path::new("a.U")).unwrap_err().to_string(), "a.U: not found");
         let directory = tempfile::tempdir().unwrap();
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truncation_and_any_extra_is_refused() {
+    fn truncations_and_extra_bytes_are_rejected() {
         let bytes = file([2, 2, 3, 4], 18);
         for len in 0..bytes.len() {
             assert!(parse_reduced_forces(&bytes[..len]).is_err(), "{len}");

@@ -1,4 +1,4 @@
-//! Readers and writers of sscc: meshes, solids, modes, glTF, arrays and sealed containers.
+//! Readers and writers of sscc: meshes, solids, modes, glTF, arrays and containers.
 //!
 //! [`load_model`] loads a model from files of any supported format. [`load_model_with`] also returns the names of morph
 //! targets, the variances and the default pose of a glTF file. Containers ([`container`]) store models and

@@ -65,7 +65,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
     let format = ending(path);
     let is_gltf = matches!(format.as_str(), "glb" | "gltf");
     if options.mesh_name.is_some() && !is_gltf {
-        return Err(refused("only a glTF file has meshes to choose from: leave out --mesh-name"));
+        return Err(refused("only a glTF file can have several meshes: leave out --mesh-name"));
     }
     match (format.as_str(), options.modes) {
         ("safetensors", None) => {
@@ -89,7 +89,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         (_, None) => {
             // A missing or malformed mesh is reported before missing modes.
             read_mesh(path)?;
-            Err(refused("a mesh has no modes: add --modes FILE, or make some first: sscc modes"))
+            Err(refused("a mesh has no modes: add --modes FILE, or compute modes with sscc modes"))
         }
         (_, Some(modes_path)) => {
             let mesh = read_mesh(path)?;
@@ -106,7 +106,7 @@ pub fn splits_vertices(path: &Path) -> bool {
     matches!(ending(path).as_str(), "stl" | "glb" | "gltf")
 }
 
-/// Builds the model; `at` is the file of the error if mesh and modes do not fit.
+/// Builds the model. `at` is the file to name in the error if mesh and modes do not fit.
 fn assemble(
     at: &Path,
     mesh: TriMesh,
@@ -149,7 +149,7 @@ mod tests {
         let message = |path: &Path, modes: Option<&Path>| load_model(path, modes).unwrap_err().to_string();
         assert!(
             message(&mesh, None)
-                .ends_with("a.obj: a mesh has no modes: add --modes FILE, or make some first: sscc modes")
+                .ends_with("a.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes")
         );
         assert!(message(&model, Some(&modes)).ends_with("has its own modes: leave out --modes"));
         assert!(message(&directory.path().join("b.obj"), None).ends_with("b.obj: not found"));
@@ -195,7 +195,7 @@ mod tests {
             load_model_with(&path(name), &options).unwrap_err().to_string()
         };
         let npz = message("a.npz", LoadOptions::default());
-        assert!(npz.contains("a.npz: there is no array of mean"), "{npz}");
+        assert!(npz.contains("a.npz: the archive has no array named mean"), "{npz}");
         let named = message("a.obj", LoadOptions::new(None, Some("x")));
         assert!(named.ends_with("leave out --mesh-name"), "{named}");
         for own in ["a.npz", "b.glb", "b.gltf"] {

@@ -65,9 +65,9 @@ fn parse_rows(bytes: &[u8]) -> Result<Rows, FormatError> {
     match *array.shape() {
         [rows, columns] if rows > 0 && columns > 0 => Ok(Rows { rows, columns, data: array.to_c_order() }),
         [columns] if columns > 0 => Ok(Rows { rows: 1, columns, data: array.to_c_order() }),
-        ref other => {
-            Err(FormatError::whole(format!("shape {other:?}: (T, r) or (r) was expected, not empty")))
-        }
+        ref other => Err(FormatError::whole(format!(
+            "shape {other:?}: (T, r) or (r) was expected, without empty axes"
+        ))),
     }
 }
 
@@ -75,7 +75,9 @@ fn parse_vector(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
     let array = npy::parse(bytes)?;
     match *array.shape() {
         [length] if length > 0 => Ok(array.to_c_order()),
-        ref other => Err(FormatError::whole(format!("shape {other:?}: (r) was expected, not empty"))),
+        ref other => {
+            Err(FormatError::whole(format!("shape {other:?}: (r) was expected, without an empty axis")))
+        }
     }
 }
 
@@ -86,7 +88,7 @@ fn parse_text(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
             values.push(number(word, line)?);
         }
     }
-    if values.is_empty() { Err(FormatError::whole("there are no numbers in it")) } else { Ok(values) }
+    if values.is_empty() { Err(FormatError::whole("the file has no numbers")) } else { Ok(values) }
 }
 
 #[cfg(test)]
@@ -101,7 +103,9 @@ mod tests {
         let rows = read_rows(&path).unwrap();
         assert_eq!((rows.rows, rows.columns), (2, 3));
         assert_eq!(rows.iter().collect::<Vec<_>>(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
-        assert!(read_vector(&path).unwrap_err().to_string().ends_with("(r) was expected, not empty"));
+        assert!(
+            read_vector(&path).unwrap_err().to_string().ends_with("(r) was expected, without an empty axis")
+        );
         npy::write_npy(&path, &[3], &[1.0, 2.0, 3.0]).unwrap();
         assert_eq!(read_rows(&path).unwrap(), Rows { rows: 1, columns: 3, data: vec![1.0, 2.0, 3.0] });
         assert_eq!(read_vector(&path).unwrap(), [1.0, 2.0, 3.0]);
@@ -124,7 +128,7 @@ mod tests {
         assert_eq!(parse_text(b"1 2e-3 # weights\r\n\n-4\n").unwrap(), [1.0, 2e-3, -4.0]);
         assert_eq!(parse_text(b"1\nx").unwrap_err().to_string(), "line 2: 'x' is not a number");
         assert_eq!(parse_text(b"1\nnan").unwrap_err().to_string(), "line 2: 'nan' is not a finite number");
-        assert_eq!(parse_text(b" # \n").unwrap_err().to_string(), "there are no numbers in it");
+        assert_eq!(parse_text(b" # \n").unwrap_err().to_string(), "the file has no numbers");
         assert_eq!(parse_text(b"1 \xff").unwrap_err().to_string(), "line 1: not UTF-8 text");
     }
 }

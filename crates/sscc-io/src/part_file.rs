@@ -1,23 +1,23 @@
-//! Files that are written beside their target and then take its place.
+//! Temporary files beside a target, which replace it by renaming.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
-/// Other processes and threads have names of their own or are skipped, so a few tries are enough.
-const TRIES: u32 = 10_000;
+/// Maximum number of names to try. Names contain the process id, so collisions are rare.
+const MAX_ATTEMPTS: u32 = 10_000;
 
-/// A new file that is removed when it is dropped, unless it has been renamed.
+/// New file that is removed on drop unless it was renamed.
 pub(crate) struct PartFile {
     path: PathBuf,
     file: Option<File>,
 }
 
 impl PartFile {
-    /// Creates it in a folder, under a name that nothing there has.
+    /// Creates the file in a folder, with an unused name.
     pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
-        for number in 0..TRIES {
+        for number in 0..MAX_ATTEMPTS {
             let path = folder.join(format!(".sscc-{}-{number}.part", process::id()));
             match File::create_new(&path) {
                 Ok(file) => return Ok(Self { path, file: Some(file) }),
@@ -31,16 +31,16 @@ impl PartFile {
         ))
     }
 
-    /// Writes all bytes, to the disk.
+    /// Writes all bytes and flushes them to the disk.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         let Some(file) = &mut self.file else { return Ok(()) };
         file.write_all(bytes)?;
         file.sync_all()
     }
 
-    /// Takes the place of `target`.
+    /// Renames the file to `target`, which is replaced if it exists.
     pub(crate) fn rename(mut self, target: &Path) -> io::Result<()> {
-        // Closed first: some systems do not rename open files.
+        // Some systems cannot rename open files.
         self.file = None;
         fs::rename(&self.path, target)?;
         self.path.clear();
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn many_at_once_have_names_of_their_own() {
+    fn concurrent_files_have_different_names() {
         let folder = tempfile::tempdir().unwrap();
         let write = |number: u8| {
             let mut part = PartFile::create_in(folder.path()).unwrap();
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_left_of_one_that_is_dropped() {
+    fn a_dropped_file_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let (first, second) =
             (PartFile::create_in(folder.path()).unwrap(), PartFile::create_in(folder.path()).unwrap());

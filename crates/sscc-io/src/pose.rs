@@ -49,7 +49,7 @@ fn check(path: &Path, mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -
     } else if colliding.len() != faces {
         format!("{} marks for {faces} triangles", colliding.len())
     } else if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
-        format!("the position of vertex {vertex} is not finite")
+        format!("the position of vertex {vertex} (counted from 0) is not finite")
     } else {
         return Ok(());
     };
@@ -57,8 +57,8 @@ fn check(path: &Path, mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -
 }
 
 fn obj(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> String {
-    // Writing to a String never fails. Debug prints the shortest decimal that reads back equal, with an exponent where
-    // this is shorter.
+    // Writing to a String never fails. `{:?}` prints the shortest decimal that parses to the same number, with an
+    // exponent where that is shorter.
     let mut text = String::new();
     for p in positions {
         let _ = writeln!(text, "v {:?} {:?} {:?}", p.x, p.y, p.z);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn invalid_poses_are_rejected() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("pose.ply");
         let message = |positions: &[DVec3], marks: &[bool]| {
@@ -128,7 +128,7 @@ mod tests {
         };
         assert!(message(&[DVec3::ZERO; 3], &MARKS).ends_with("pose.ply: 3 positions for 4 vertices"));
         assert!(message(&[DVec3::ZERO; 4], &[true; 3]).ends_with("3 marks for 4 triangles"));
-        assert!(message(&[DVec3::NAN; 4], &MARKS).ends_with("vertex 0 is not finite"));
+        assert!(message(&[DVec3::NAN; 4], &MARKS).ends_with("vertex 0 (counted from 0) is not finite"));
         assert!(write_ply_pose(&path, &mesh(), &[], &MARKS).is_err());
         assert!(!path.exists());
         write_ply_pose(&path, &mesh(), &[DVec3::ONE; 4], &MARKS).unwrap();
@@ -137,7 +137,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn positions_read_back_bit_for_bit(values in prop::array::uniform12(-1e60..1e60), small in -1.0..1.0) {
+        fn positions_round_trip_bit_for_bit(values in prop::array::uniform12(-1e60..1e60), small in -1.0..1.0) {
             let mut values = values;
             values[5] = small;
             values[6] *= 1e-90;

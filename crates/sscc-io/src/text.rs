@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_have_numbers_and_any_ending() {
+    fn lines_are_numbered_and_have_any_ending() {
         let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\r\nb\n\nc").unwrap().collect();
         assert_eq!(lines, [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")]);
         assert!(Lines::new(b"\xff\xfev\0").is_err());

@@ -1,11 +1,11 @@
-//! Random bytes, and good files with random damage, into every parser: an error or a result, never a panic.
+//! Random bytes and damaged files for every parser: each returns a result or an error, and never panics.
 
 #![allow(clippy::unwrap_used)]
 
 use std::io::Write;
 
 use proptest::prelude::*;
-use sscc_io::container::{CERTIFICATES, MODEL, Sealed, certificates_from_bytes, model_from_bytes};
+use sscc_io::container::{CERTIFICATES, Container, MODEL, certificates_from_bytes, model_from_bytes};
 use sscc_io::mesh::{obj, off, ply, stl};
 use sscc_io::modes::{array, vega};
 use sscc_io::{gltf, npy, npz};
@@ -30,7 +30,7 @@ fn parse_all(bytes: &[u8]) {
     one_line(&model_from_bytes(bytes));
     one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
-        one_line(&Sealed::parse(bytes, kind));
+        one_line(&Container::parse(bytes, kind));
     }
 }
 
@@ -41,7 +41,7 @@ fn one_line<T>(result: &Result<T, sscc_io::FormatError>) {
     }
 }
 
-/// Small good files: what is close to right goes furthest into a parser.
+/// Small valid files. Damaged copies reach deeper into a parser than random bytes.
 fn seeds() -> Vec<Vec<u8>> {
     let ply = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         element face 1\nproperty list uchar int vertex_index\nend_header\n";
@@ -90,7 +90,7 @@ fn npz(method: zip::CompressionMethod) -> Vec<u8> {
 }
 
 #[test]
-fn seeds_are_good() {
+fn seeds_are_valid() {
     let seeds = seeds();
     assert!(obj::parse(&seeds[0]).is_ok() && off::parse(&seeds[1]).is_ok());
     assert!(ply::parse(&seeds[2]).is_ok() && ply::parse(&seeds[3]).is_ok());
@@ -101,7 +101,7 @@ fn seeds_are_good() {
     assert!(npz::parse_model(&seeds[10]).is_ok() && npz::parse_model(&seeds[11]).is_ok());
 }
 
-/// Numbers and names of a good glTF file exchanged: what a parser of JSON lets through.
+/// A valid glTF file with exchanged numbers, which is still valid JSON.
 fn swapped_gltf() -> impl Strategy<Value = String> {
     let numbers = prop::sample::select(vec![
         "0",
@@ -117,7 +117,7 @@ fn swapped_gltf() -> impl Strategy<Value = String> {
         "18446744073709551615",
     ]);
     prop::collection::vec((any::<prop::sample::Index>(), numbers), 1..5).prop_map(|changes| {
-        // Words of digits and the text between them take turns.
+        // Words of digits alternate with the text between them.
         let mut words: Vec<String> = Vec::new();
         for c in GLTF.chars() {
             match words.last_mut() {

@@ -1,4 +1,5 @@
-//! Damaged and random volumetric meshes and reduced forces: an error or a sound mesh, and little memory.
+//! Random and damaged volumetric meshes and reduced forces: each parser returns a valid mesh or an error, with little
+//! memory.
 
 #![allow(clippy::unwrap_used)]
 
@@ -8,7 +9,7 @@ use sscc_io::solid::{gmsh, medit, tetgen, vega};
 use sscc_io::{FormatError, parse_reduced_forces};
 use sscc_solid::VolumeMesh;
 
-/// The promises of every mesh.
+/// Checks the guarantees of every mesh, and that errors have one line.
 fn check(result: Result<VolumeMesh, FormatError>) {
     match result {
         Ok(mesh) => {
@@ -45,7 +46,7 @@ fn parse_all(bytes: &[u8]) {
 const NODE: &[u8] = b"4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n";
 const ELE: &[u8] = b"1 4 1\n0 0 1 2 3 5\n";
 
-/// Small good files.
+/// Small valid files.
 fn seeds() -> Vec<Vec<u8>> {
     let points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
     let medit = "MeshVersionFormatted 1\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTriangles 1\n\
@@ -81,7 +82,7 @@ fn seeds() -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn seeds_are_good() {
+fn seeds_are_valid() {
     let seeds = seeds();
     let meshes = [
         medit::parse(&seeds[0]),
@@ -143,7 +144,7 @@ proptest! {
         parse_all(&bytes[..len]);
     }
 
-    /// Numbers exchanged by others: what damage of single bytes seldom reaches.
+    /// Exchanged numbers, which damage of single bytes seldom produces.
     #[test]
     fn exchanged_numbers(
         seed in 0_usize..7,
@@ -162,13 +163,13 @@ proptest! {
     }
 }
 
-/// The most memory in use at once while this runs, in bytes.
+/// Returns the peak memory of a function in bytes.
 fn peak(run: impl FnOnce()) -> u64 {
     measure(run).bytes_max
 }
 
 #[test]
-fn claimed_counts_take_nothing() {
+fn declared_counts_allocate_nothing() {
     for count in ["1000000000", "9223372036854775807", "18446744073709551615"] {
         for seed in seeds() {
             let Ok(text) = String::from_utf8(seed) else { continue };
@@ -183,7 +184,7 @@ fn claimed_counts_take_nothing() {
             }
         }
     }
-    // Each byte of the binary file set to the largest: counts among them.
+    // Each byte of the binary file, also of its counts, is set to 255.
     let binary = seeds().swap_remove(4);
     for at in 0..binary.len() {
         let mut bytes = binary.clone();
@@ -194,9 +195,9 @@ fn claimed_counts_take_nothing() {
     assert!(peak(|| assert!(parse_reduced_forces(&huge).is_err())) < 10_000);
 }
 
-/// Long files of the shortest lines that mean something, and much work for few bytes.
+/// Long files with the shortest valid lines use little memory per byte.
 #[test]
-fn long_files_grow_little() {
+fn long_files_use_little_memory() {
     let many = |text: &str| text.repeat(100_000);
     let numbered =
         |text: &str| -> String { (0..100_000).map(|i| text.replace('@', &i.to_string())).collect() };
@@ -209,7 +210,7 @@ fn long_files_grow_little() {
         format!("{start}*SET t\n{}", many("1,")),
         format!("{start}{}", numbered("*SET @\n")),
         format!("{start}{}", numbered("*MATERIAL @\nENU,1,1,0\n")),
-        // Each of many regions names a large set.
+        // Many regions refer to one large set.
         format!("{start}*SET t\n{}\n{}", many("1,"), many("*REGION\nt,a\n")),
         format!("{start}{}", many("*REGION\nallElements,a\n")),
         format!("{groups}$PhysicalNames\n100000\n{}", numbered("3 @ \"\"\n")),

@@ -1,4 +1,4 @@
-//! What hostile files may take in memory: a multiple of their size, never what they claim.
+//! Memory for hostile files: a multiple of their size, independent of declared counts.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,7 +6,7 @@ use allocation_counter::measure;
 use sscc_io::mesh::stl;
 use sscc_io::{gltf, npy, npz};
 
-/// The most memory in use at once while this runs, in bytes.
+/// Returns the peak memory of a function in bytes.
 fn peak(run: impl FnOnce()) -> u64 {
     measure(run).bytes_max
 }
@@ -20,7 +20,7 @@ fn gltf_text(accessors: &str, meshes: &str) -> String {
 }
 
 #[test]
-fn claimed_counts_take_nothing() {
+fn declared_counts_allocate_nothing() {
     let accessor = r#"{"bufferView":0,"componentType":5126,"count":4000000000,"type":"VEC3"}"#;
     let zeros = r#"{"componentType":5126,"count":4000000000,"type":"VEC3"}"#;
     let mesh = r#"{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":0}]}]}"#;
@@ -37,7 +37,7 @@ fn claimed_counts_take_nothing() {
 }
 
 #[test]
-fn json_grows_little() {
+fn json_uses_little_memory() {
     let base = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
     let many = |item: &str| vec![item; 100_000].join(",");
     let primitive = r#"{"attributes":{"POSITION":0}}"#;
@@ -56,7 +56,7 @@ fn json_grows_little() {
     }
 }
 
-/// A deflated entry that grows a thousandfold is refused by the size it states, before it is unpacked.
+/// A deflated entry that grows a thousandfold is rejected by its declared size, before it is unpacked.
 #[test]
 fn bombs_are_not_unpacked() {
     use std::io::Write;
@@ -67,10 +67,10 @@ fn bombs_are_not_unpacked() {
     writer.write_all(&vec![0; 100_000_000]).unwrap();
     let bomb = writer.finish().unwrap().into_inner();
     assert!(peak(|| assert!(npz::parse_model(&bomb).is_err())) < 100_000);
-    // With a small size in its place it is cut there.
+    // With a small declared size, unpacking stops at that size.
     let size = 100_000_000_u32.to_le_bytes();
     let at = bomb.windows(4).rposition(|w| w == size).unwrap();
-    let mut lie = bomb;
-    lie[at..at + 4].copy_from_slice(&1000_u32.to_le_bytes());
-    assert!(peak(|| assert!(npz::parse_model(&lie).is_err())) < 300_000);
+    let mut false_size = bomb;
+    false_size[at..at + 4].copy_from_slice(&1000_u32.to_le_bytes());
+    assert!(peak(|| assert!(npz::parse_model(&false_size).is_err())) < 300_000);
 }

@@ -1,4 +1,4 @@
-//! Meshes and modes as they are found in the world, against what is known of them.
+//! Real meshes and modes: their sizes and properties match known values.
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
@@ -34,8 +34,8 @@ fn unused_vertices_are_kept() {
     }
 }
 
-/// Closed meshes enclose a positive volume when every fan keeps the winding of its polygon, and each directed
-/// edge then occurs once.
+/// Every fan keeps the winding of its polygon: closed meshes enclose a positive volume, and each directed edge occurs
+/// once.
 #[test]
 fn fans_keep_the_winding() {
     let Some(folder) = models("fans_keep_the_winding") else { return };
@@ -83,7 +83,7 @@ fn modal_matrices_fit_their_meshes() {
     let (vega_mesh, vega_modes) = (folder.join("vega_A/A.obj"), folder.join("vega_A/A.URendering.float"));
     let (model, _) = load_model(&vega_mesh, Some(&vega_modes)).unwrap();
     assert_eq!(model.rank(), 20);
-    // Ten vertices are fixed: their rows are zero but for rounding; the next smallest moves by 0.04.
+    // Ten vertices are fixed, with rows of 0 up to rounding; every other vertex moves by at least 0.04.
     let is_fixed = |v: &u32| model.modes().of_vertex(*v).iter().all(|u| u.length() < 1e-12);
     let fixed = (0..575).filter(is_fixed).count();
     assert_eq!(fixed, 10);
@@ -97,7 +97,7 @@ fn modal_matrices_fit_their_meshes() {
         message.ends_with("the modes are for 575 vertices, the mesh has 14062: are they of another mesh?")
     );
 
-    // Modes vary smoothly along edges: any other reading of the layout would not.
+    // Modes vary smoothly along edges; a wrong layout would not.
     for k in 0..model.rank() {
         let of = |v: u32| model.modes().of_vertex(v)[k];
         let (mut along, mut whole) = (0.0, 0.0);
@@ -142,7 +142,7 @@ fn morph_targets_have_their_known_sizes() {
             let faces = &model.mesh.faces()[p.triangles.start as usize..p.triangles.end as usize];
             assert!(faces.as_flattened().iter().all(|v| p.vertices.contains(v)));
         }
-        // Vertices that were split along seams move together.
+        // Vertices split along seams have the same modes.
         let mut seen = std::collections::BTreeMap::new();
         for (p, v) in
             model.primitives.iter().enumerate().flat_map(|(i, p)| p.vertices.clone().map(move |v| (i, v)))
@@ -160,10 +160,13 @@ fn morph_targets_have_their_known_sizes() {
     assert_eq!(loaded.default_q, Some(vec![0.0; 3]));
     let message =
         |name| load_model_with(&robot, &LoadOptions::new(None, Some(name))).unwrap_err().to_string();
-    assert!(message("Torso").ends_with("the mesh 'Torso' has no morph targets; 'Head' have morph targets"));
+    assert!(
+        message("Torso")
+            .ends_with("the mesh 'Torso' has no morph targets; meshes with morph targets: 'Head'")
+    );
 }
 
-/// Single vertices as unpacked by hand with another tool: position, and displacement of the last target.
+/// Single vertices, extracted with another tool: position, and displacement of the last target.
 #[test]
 fn morph_targets_are_those_of_the_files() {
     let Some(folder) = models("morph_targets_are_those_of_the_files") else { return };

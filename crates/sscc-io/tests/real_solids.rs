@@ -1,4 +1,4 @@
-//! Volumetric meshes and reduced forces as they are found in the world, against what is known of them.
+//! Real volumetric meshes and reduced forces: their sizes and properties match known values.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,8 +29,8 @@ fn real_solids_have_their_known_sizes() {
     assert_eq!(dragon.tets()[0], [0, 18, 2, 1]); // the line: 1 1 19 3 2
 }
 
-/// The tetrahedra of this file fill the bunny's convex hull. Those that its listed surface parts from the outside have
-/// the volume that the mesh of triangles encloses.
+/// The tetrahedra of this file fill the convex hull of the bunny. The tetrahedra within its listed surface have the
+/// volume that the triangle mesh encloses.
 #[test]
 fn the_listed_surface_encloses_the_bunny() {
     let Some(folder) = models("the_listed_surface_encloses_the_bunny") else { return };
@@ -47,7 +47,7 @@ fn the_listed_surface_encloses_the_bunny() {
     let listed: BTreeSet<_> = bunny.surface().iter().copied().map(sorted).collect();
     assert!(listed.len() == 6_966 && listed.iter().all(|face| faces.contains_key(face)));
     assert!(faces.values().all(|tets| tets.len() <= 2));
-    // From the hull inwards, through all faces that are not listed.
+    // Flood fill from the hull through all faces that are not listed.
     let mut outside = vec![false; bunny.tets().len()];
     let hull = |(face, tets): (&[u32; 3], &Vec<usize>)| tets.len() == 1 && !listed.contains(face);
     let mut next: Vec<_> = faces.iter().filter(|f| hull(*f)).map(|(_, tets)| tets[0]).collect();
@@ -73,7 +73,7 @@ fn reduced_forces_of_a_real_body() {
     let forces = read_reduced_forces(&folder.join("vega_A/A.cub")).unwrap();
     let (r, linear, quadratic) = (forces.rank(), forces.linear().entries(), forces.quadratic());
     assert_eq!((r, linear.len(), quadratic.len(), forces.cubic().len()), (20, 400, 4200, 30_800));
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     let scale = largest(linear);
     // Symmetric, and positive definite: Cholesky's diagonal stays above 0.
     let mut lower = linear.to_vec();

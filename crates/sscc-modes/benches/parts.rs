@@ -1,5 +1,4 @@
-//! What queries and certificates are made of, on the embedded elastic spring: `cargo bench -p sscc-modes --bench
-//! parts`.
+//! Bench of the parts of queries and certificates, on the elastic spring: `cargo bench -p sscc-modes --bench parts`.
 
 use divan::{Bencher, black_box};
 use glam::DVec3;
@@ -10,21 +9,21 @@ use sscc::{
 use sscc_modes::shapes::elastic_spring;
 use std::sync::LazyLock;
 
-/// The spring (16,000 triangles, 20 linear modes) and its certificates.
+/// Spring (16,000 triangles, 20 linear modes) with its certificates.
 static SPRING: LazyLock<(ReducedModel, Certificates)> = LazyLock::new(|| {
     let model = elastic_spring(&()).expect("the embedded spring").model;
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).expect("certificates");
     (model, certificates)
 });
 
-/// Norms of q over the root's radius: certified by the root, by pairs of nodes, and with collisions.
+/// Norms of q relative to the root's radius: certified by the root, certified by node pairs, and with collisions.
 const NORMS: [f64; 3] = [0.5, 2.0, 8.0];
 
 fn main() {
     divan::main();
 }
 
-/// A q of that norm over the root's radius.
+/// Returns a q of this norm, relative to the root's radius.
 fn q_at(norm: f64) -> Vec<f64> {
     let (model, certificates) = &*SPRING;
     let z: Vec<f64> = (0..model.rank()).map(|k| (1.0 + 2.0 * k as f64).sin() / (1.0 + k as f64)).collect();
@@ -56,17 +55,17 @@ fn continuous(bencher: Bencher, norm: f64) {
     bencher.bench_local(|| query.continuous(black_box(&q_t0), &q_t1).expect("a valid q").len());
 }
 
-/// Small steps to and fro.
+/// A sequence of small steps forward and back.
 #[divan::bench(args = NORMS)]
 fn kinetic(bencher: Bencher, norm: f64) {
     let (model, certificates) = &*SPRING;
     let steps: Vec<Vec<f64>> = (0..64).map(|i| q_at(norm * (1.0 + 1e-4 * f64::from(i)))).collect();
-    let way: Vec<&Vec<f64>> = steps.iter().chain(steps.iter().rev()).collect();
+    let sequence: Vec<&Vec<f64>> = steps.iter().chain(steps.iter().rev()).collect();
     let mut query = KineticQuery::new(model, certificates).expect("its own certificates");
     let mut next = 0;
     bencher.bench_local(|| {
-        next = (next + 1) % way.len();
-        query.discrete(way[next]).expect("a valid q").len()
+        next = (next + 1) % sequence.len();
+        query.discrete(sequence[next]).expect("a valid q").len()
     });
 }
 
@@ -77,7 +76,7 @@ fn certify(bencher: Bencher) {
         .bench_local(|| Certificates::compute(model, &CertifyOptions::default(), &()).expect("certificates"));
 }
 
-/// Two triangles a tenth apart, one over the other.
+/// Two parallel triangles at a distance of 0.1.
 fn triangles() -> [[DVec3; 3]; 2] {
     [0.0, 0.1].map(|z| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z))
 }
@@ -88,7 +87,7 @@ fn triangle_triangle(bencher: Bencher) {
     bencher.bench_local(|| intersect_triangle_triangle(black_box(&a), black_box(&b)));
 }
 
-/// One passes through the other.
+/// A triangle that passes through another one.
 #[divan::bench]
 fn moving_triangles(bencher: Bencher) {
     let [a, b] = triangles();

@@ -1,27 +1,28 @@
-//! Modes of springs from soft to stiff, light to heavy and small to large: `cargo bench -p sscc-modes --bench scales`.
+//! Bench of modes of springs from soft to stiff, light to heavy and small to large: `cargo bench -p sscc-modes --bench
+//! scales`.
 //!
-//! Frequencies go as `sqrt(E / density) / size`. This is checked: the bench fails where one of them is off by more than
-//! 1e-8 of itself. It prints the worst error, and the processor time over that of the default material, measured in
-//! turns: at most 1.3 is expected. With `--quick` the small spring alone.
+//! Frequencies scale as `sqrt(E / density) / size`. The bench fails if a relative error exceeds 1e-8. It prints the maximum
+//! error, and the processor time relative to the default material, with interleaved repetitions; at most 1.3 is expected.
+//! `--quick` uses only the small spring.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
 
 use cpu_time::ProcessTime;
 use sscc::TriMesh;
-use sscc_modes::{Embedded, linear_modes, shapes::spring_of};
+use sscc_modes::{EmbeddedSurface, linear_modes, shapes::spring_of};
 use sscc_solid::{Material, PartialMaterial};
 
-/// Powers of ten by which stiffness, density and size are multiplied.
+/// Exponents of the factors (powers of ten) of stiffness, density and size.
 const POWERS: [i32; 6] = [-6, -4, -2, 2, 4, 6];
 
-/// The error allowed for a frequency, as a share of it.
-const ERROR: f64 = 1e-8;
+/// Maximum relative error of a frequency.
+const MAX_ERROR: f64 = 1e-8;
 
-/// Each is measured so often, and the fastest counts.
+/// Number of repetitions; the fastest counts.
 const REPETITIONS: usize = 3;
 
-/// Rings and vertices around the wire, cubes along the spring, and numbers of modes.
+/// Size of a spring: rings and vertices of each, cubes along the spring, and numbers of modes.
 struct Spring {
     name: &'static str,
     rings: [usize; 2],
@@ -34,13 +35,13 @@ const SPRINGS: [Spring; 2] = [
     Spring { name: "default", rings: [500, 16], cells: 30, ranks: &[20, 100, 200] },
 ];
 
-/// What is changed about a spring.
+/// Scaled properties of a spring.
 const CHANGES: [&str; 3] = ["stiffness", "density", "size"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let quick = std::env::args().any(|arg| arg == "--quick");
     println!(
-        "| spring | degrees of freedom | modes | changed | by 10^ | worst error of a frequency | processor time, s | over the default's |"
+        "| spring | degrees of freedom | modes | changed | by 10^ | maximum relative error of frequencies | processor time, s | relative to the default |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for spring in SPRINGS.iter().take(if quick { 1 } else { SPRINGS.len() }) {
@@ -55,26 +56,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Measures a spring beside that of the default material and size.
+/// Measures a scaled spring and the default one, interleaved.
 fn compare(spring: &Spring, rank: usize, changed: &str, power: i32) -> Result<(), Box<dyn Error>> {
     let factor = 10.0_f64.powi(power);
-    let usual = Material::default();
-    let mut known = PartialMaterial::from(usual);
+    let default_material = Material::default();
+    let mut known = PartialMaterial::from(default_material);
     let (size, expected) = match changed {
         "stiffness" => {
-            known.youngs_modulus = Some(usual.youngs_modulus() * factor);
+            known.youngs_modulus = Some(default_material.youngs_modulus() * factor);
             (1.0, factor.sqrt())
         }
         "density" => {
-            known.density = Some(usual.density() * factor);
+            known.density = Some(default_material.density() * factor);
             (1.0, 1.0 / factor.sqrt())
         }
         _ => (factor, 1.0 / factor),
     };
     let material = Material::new(&known)?;
-    let (mut default, mut found) = (Measured::default(), Measured::default());
+    let (mut default, mut found) = (Measurement::default(), Measurement::default());
     for _ in 0..REPETITIONS {
-        default.repeat(spring, rank, usual, 1.0)?;
+        default.repeat(spring, rank, default_material, 1.0)?;
         found.repeat(spring, rank, material, size)?;
     }
     let error = |(a, b): (&f64, &f64)| (a / (b * expected) - 1.0).abs();
@@ -86,27 +87,30 @@ fn compare(spring: &Spring, rank: usize, changed: &str, power: i32) -> Result<()
         found.seconds,
         found.seconds / default.seconds
     );
-    if worst > ERROR {
-        return Err(format!("a frequency is off by {worst:e} of itself").into());
+    if worst > MAX_ERROR {
+        return Err(format!(
+            "a frequency has the relative error {worst:e}: at most {MAX_ERROR:e} is allowed"
+        )
+        .into());
     }
     Ok(())
 }
 
-/// What was found, and how long it took in the fastest repetition (s of processor time).
-struct Measured {
+/// Frequencies, and the processor time (s) of the fastest repetition.
+struct Measurement {
     freedom: usize,
     frequencies: Vec<f64>,
     seconds: f64,
 }
 
-impl Default for Measured {
+impl Default for Measurement {
     fn default() -> Self {
         Self { freedom: 0, frequencies: Vec::new(), seconds: f64::INFINITY }
     }
 }
 
-impl Measured {
-    /// Once more.
+impl Measurement {
+    /// Runs one repetition.
     fn repeat(
         &mut self,
         spring: &Spring,
@@ -118,7 +122,7 @@ impl Measured {
         let positions = mesh.rest_positions().iter().map(|p| *p * size).collect();
         let mesh = TriMesh::new(positions, mesh.faces().to_vec())?;
         let start = ProcessTime::now();
-        let body = Embedded::new(&mesh, Some(spring.cells), material, &())?;
+        let body = EmbeddedSurface::new(&mesh, Some(spring.cells), material, &())?;
         let found = linear_modes(body.solid(), &[], rank, &())?;
         self.seconds = self.seconds.min(start.elapsed().as_secs_f64());
         self.freedom = 3 * body.solid().vertices().len();

@@ -7,12 +7,12 @@ use sscc_solid::Solid;
 
 use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
-use crate::eigen::tall::{add_product, inner, product};
-use crate::eigen::{Lowest, lowest_modes};
+use crate::eigen::tall_matrix::{add_product, inner, product};
+use crate::eigen::{LowestModes, lowest_modes};
 use crate::sparse::{BlockSparse, FIXED};
 
-/// Directions in which fixed vertices hold less than this share of the others are free: rounding.
-const HELD: f64 = 1e-10;
+/// Maximum eigenvalue of the constraints by fixed vertices that counts as 0. Motions with such eigenvalues are free.
+const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Solid with optional fixed vertices, and its matrices at rest.
 pub(crate) struct Body<'a> {
@@ -31,6 +31,8 @@ pub(crate) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
+    /// Assembles the matrices of a solid with fixed vertices.
+    ///
     /// # Errors
     /// When a fixed vertex does not exist, or all are fixed.
     pub fn new(solid: &'a Solid, fixed: &[u32]) -> Result<Self, ModesError> {
@@ -57,7 +59,7 @@ impl<'a> Body<'a> {
     }
 
     /// Computes the `count` lowest vibrations, without rigid motions.
-    pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<Lowest, ModesError> {
+    pub fn lowest(&self, count: usize, progress: &dyn Progress) -> Result<LowestModes, ModesError> {
         lowest_modes(&self.stiffness, &self.mass, &self.free, self.rigid.as_ref(), count, progress)
     }
 
@@ -71,7 +73,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The diagonal of the solid's bounding box (model unit).
+    /// Returns the diagonal of the solid's bounding box (model unit).
     pub fn diagonal(&self) -> f64 {
         let vertices = self.solid.vertices();
         let low = vertices.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
@@ -111,7 +113,7 @@ impl<'a> Body<'a> {
         let held =
             Mat::from_fn(6, 6, |i, j| fixed.iter().map(|p| motion(*p, i).dot(motion(*p, j))).sum::<f64>());
         let (values, vectors) = symmetric_eigen(held.as_ref())?;
-        let allowed: Vec<usize> = (0..6).filter(|k| values[*k] <= HELD).collect();
+        let allowed: Vec<usize> = (0..6).filter(|k| values[*k] <= RANK_TOLERANCE).collect();
         let motions = Mat::from_fn(3 * self.free.len(), allowed.len(), |row, column| {
             (0..6).map(|k| motion(self.free[row / 3], k)[row % 3] * vectors[(k, allowed[column])]).sum()
         });
@@ -119,20 +121,20 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Returns an M-orthonormal basis of the columns: the `most` directions of the largest mass, without those of less than
-/// `least` times the largest.
+/// Returns an M-orthonormal basis of the columns: at most `max_count` directions of the largest mass, without those below
+/// `tolerance` times the largest.
 pub(crate) fn m_orthonormal(
     mass: &BlockSparse,
     mut x: Mat<f64>,
-    least: f64,
-    most: usize,
+    tolerance: f64,
+    max_count: usize,
 ) -> Result<Mat<f64>, ModesError> {
     for _ in 0..2 {
         if x.ncols() == 0 {
-            break; // faer decomposes no empty matrix
+            break; // faer cannot decompose an empty matrix
         }
-        let turn = whitening(mass, &x, least, most)?;
-        x = product(x.as_ref(), turn.as_ref());
+        let transform = whitening(mass, &x, tolerance, max_count)?;
+        x = product(x.as_ref(), transform.as_ref());
     }
     Ok(x)
 }
@@ -142,18 +144,18 @@ pub(crate) fn m_orthonormal(
 pub(crate) fn whitening(
     mass: &BlockSparse,
     x: &Mat<f64>,
-    least: f64,
-    most: usize,
+    tolerance: f64,
+    max_count: usize,
 ) -> Result<Mat<f64>, ModesError> {
     let gram = inner(x.as_ref(), mass.multiply(x.as_ref()).as_ref());
     let (values, vectors) = symmetric_eigen(gram.as_ref())?;
     let size = values.len();
     let kept: Vec<usize> =
-        (0..size).rev().filter(|k| values[*k] > least * values[size - 1]).take(most).collect();
+        (0..size).rev().filter(|k| values[*k] > tolerance * values[size - 1]).take(max_count).collect();
     Ok(Mat::from_fn(size, kept.len(), |i, j| vectors[(i, kept[j])] / values[kept[j]].sqrt()))
 }
 
-/// Stiffness and mass of the free vertices.
+/// Assembles stiffness and mass of the free vertices.
 fn assemble(solid: &Solid, rows: &[u32], free: usize) -> (BlockSparse, BlockSparse) {
     let elements: Vec<Vec<u32>> = (0..solid.element_count())
         .map(|index| solid.element(index).vertices.iter().map(|v| rows[*v as usize]).collect())

@@ -11,11 +11,11 @@ use crate::eigen::fix_signs;
 
 /// Maximum eigenvalue, relative to the largest, that counts as 0. Rounding leaves about 1e-14 of a rigid motion, of
 /// either sign, which must not become the smallest positive weight.
-const ZERO_SHARE: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Modes with a diagonal stiffness: see [`diagonalize`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Diagonalized {
+pub struct DiagonalModes {
     /// `U' = U Q` (3V x r).
     pub modes: Modes,
     /// The diagonal of `Lambda`, one for each mode (energy per q squared), ascending, none negative.
@@ -29,9 +29,9 @@ pub struct Diagonalized {
 /// shapes: `p + U q = p + U' q'` for `q = Q q'`, up to rounding. Certificates of a model with the new modes hold
 /// exactly for its own positions.
 ///
-/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), say from
-/// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over
-/// single modes, so that a diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
+/// `stiffness` is the reduced stiffness matrix `K~ = U'KU` at q = 0 (energy per q squared), for example from
+/// [`reduced_stiffness`](crate::reduced_stiffness). In the new modes the elastic energy is a sum over single modes, so a
+/// diagonal metric can measure it: see [`energy_metric`](crate::energy_metric).
 ///
 /// The signs are unique: the largest component of each column of `Q` is positive, the first one of equals. Equal
 /// eigenvalues permit any orthonormal basis of their space. The same input gives the same bits on one processor; other
@@ -72,7 +72,7 @@ pub struct Diagonalized {
 /// # Errors
 /// When the stiffness has another rank or an eigenvalue below -1e-12 of the largest, or an entry of the new modes is
 /// out of range.
-pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized, ModesError> {
+pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<DiagonalModes, ModesError> {
     let rank = modes.rank();
     if stiffness.rank() != rank {
         return Err(ModesError::StiffnessRank { found: stiffness.rank(), rank });
@@ -80,10 +80,10 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized,
     let (mut eigenvalues, rotation) = eigen(rank, &stiffness.symmetrised())?;
     let largest = eigenvalues.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for x in &mut eigenvalues {
-        if *x < -ZERO_SHARE * largest {
+        if *x < -ZERO_TOLERANCE * largest {
             return Err(ModesError::StiffnessIndefinite { eigenvalue: *x, largest });
         }
-        if *x <= ZERO_SHARE * largest {
+        if *x <= ZERO_TOLERANCE * largest {
             *x = 0.0;
         }
     }
@@ -93,7 +93,7 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<Diagonalized,
             new.iter_mut().zip(row).for_each(|(sum, x)| *sum += *u * *x);
         }
     }
-    Ok(Diagonalized { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
+    Ok(DiagonalModes { modes: Modes::new(rank, displacements)?, eigenvalues, rotation })
 }
 
 /// Returns the eigenvalues of a stiffness, ascending. For mass-orthonormal modes they are squared natural angular

@@ -1,16 +1,16 @@
-//! The energy metric and the filter of its weights (paper, section 6).
+//! Energy metric, and a filter for its weights (paper, section 6).
 
 use sscc::{Metric, MetricKind};
 
 use crate::ModesError;
 
-/// The paper's `ell` for [`filter_eigenvalues`]: weights end up within a factor of 100 of the smallest.
+/// The paper's `ell` for [`filter_eigenvalues`]: filtered weights are at most 100 times the smallest.
 pub const DEFAULT_ELL: f64 = 100.0;
 
-/// Moderates the weights of very stiff modes, which would else dominate `|z|` and weaken certificates:
-/// `lambda -> (1 / lambda + 1 / (ell lambda_min))^-1`, where `lambda_min` is the smallest positive
-/// eigenvalue. Soft modes hardly change (`lambda_min` itself by a factor of `ell / (ell + 1)`), and nothing
-/// exceeds `ell lambda_min`. The order is kept, and 0 stays 0. The paper takes [`DEFAULT_ELL`].
+/// Limits the weights of very stiff modes, which would dominate `|z|` and weaken certificates:
+/// `lambda -> (1 / lambda + 1 / (ell lambda_min))^-1`, where `lambda_min` is the smallest positive eigenvalue. Soft modes
+/// hardly change (`lambda_min` itself by a factor of `ell / (ell + 1)`), and no result exceeds `ell lambda_min`. The order
+/// is preserved, and 0 stays 0. The paper uses [`DEFAULT_ELL`].
 ///
 /// # Errors
 /// When an eigenvalue or `ell` is not finite, an eigenvalue is negative, or `ell` is not positive.
@@ -18,11 +18,11 @@ pub fn filter_eigenvalues(eigenvalues: &[f64], ell: f64) -> Result<Vec<f64>, Mod
     if !(ell.is_finite() && ell > 0.0) {
         return Err(ModesError::Ell { value: ell });
     }
-    let Some(least) = smallest_positive(eigenvalues)? else {
+    let Some(smallest) = smallest_positive(eigenvalues)? else {
         return Ok(vec![0.0; eigenvalues.len()]);
     };
-    let ceiling = ell * least;
-    // The formula, with the smaller of the two taken out: no quotient overflows.
+    let ceiling = ell * smallest;
+    // The formula with the smaller value factored out, so that no quotient overflows.
     let filter = |x: f64| match (x.min(ceiling), x.max(ceiling)) {
         (small, large) if small > 0.0 => small / (1.0 + small / large),
         _ => 0.0,
@@ -30,23 +30,23 @@ pub fn filter_eigenvalues(eigenvalues: &[f64], ell: f64) -> Result<Vec<f64>, Mod
     Ok(eigenvalues.iter().map(|x| filter(*x)).collect())
 }
 
-/// The diagonal metric `M = Lambda / 2` for modes in which the stiffness is diagonal: `|z|^2 = q'Mq` is
-/// the linear elastic strain energy at q, if q is in the coordinates of
-/// [`Diagonalized::modes`](crate::Diagonalized). With filtered eigenvalues it is less for stiff modes.
+/// Returns the diagonal metric `M = Lambda / 2` for modes with a diagonal stiffness: `|z|^2 = q'Mq` is the linear elastic
+/// strain energy at q, for q in the coordinates of [`DiagonalModes::modes`](crate::DiagonalModes). With filtered
+/// eigenvalues it is smaller for stiff modes.
 ///
-/// A metric needs positive weights, so a mode without energy (eigenvalue 0: a rigid motion) gets the smallest
-/// weight of the others, or 1 if no mode has energy. `|z|^2` is then more than the energy where such a mode
-/// takes part. Certificates hold under any metric.
+/// A metric needs positive weights. A mode without energy (eigenvalue 0: a rigid motion) therefore gets the smallest
+/// weight of the others, or 1 if no mode has energy; `|z|^2` then exceeds the energy for motions with this mode.
+/// Certificates hold under any metric.
 ///
 /// # Errors
 /// When there are no eigenvalues, or one is negative, not finite, or so small that its half is 0.
 pub fn energy_metric(eigenvalues: &[f64]) -> Result<Metric, ModesError> {
-    let fill = smallest_positive(eigenvalues)?.map_or(1.0, |least| least / 2.0);
+    let fill = smallest_positive(eigenvalues)?.map_or(1.0, |smallest| smallest / 2.0);
     let weights: Vec<f64> = eigenvalues.iter().map(|x| if *x > 0.0 { x / 2.0 } else { fill }).collect();
     Ok(Metric::from_weights(MetricKind::Energy, &weights)?)
 }
 
-/// The smallest positive eigenvalue; none if all are 0.
+/// Returns the smallest positive eigenvalue; None if all are 0.
 ///
 /// # Errors
 /// When one is negative or not finite.

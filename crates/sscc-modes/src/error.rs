@@ -11,14 +11,14 @@ pub enum ModesError {
     #[error(
         "the surface (radius {radius:e}) is too small beside its distance {distance:e} from the origin: move it closer"
     )]
-    Lost {
+    TooFarFromOrigin {
         /// Root mean square distance of the surface from its centroid (model unit).
         radius: f64,
         /// Root mean square distance of the surface from the origin (model unit).
         distance: f64,
     },
     /// The stiffness has another number of modes.
-    #[error("the stiffness is of {found} modes, not of {rank}: pass U'KU of these modes")]
+    #[error("the stiffness has {found} modes, but the model has {rank}: pass U'KU of these modes")]
     StiffnessRank {
         /// Modes of the stiffness.
         found: usize,
@@ -27,7 +27,7 @@ pub enum ModesError {
     },
     /// The stiffness has a negative eigenvalue.
     #[error(
-        "the stiffness has the eigenvalue {eigenvalue:e} (largest magnitude {largest:e}): none may be negative; take it where the model is at rest"
+        "the stiffness has the eigenvalue {eigenvalue:e} (largest magnitude {largest:e}): none may be negative; compute it at rest"
     )]
     StiffnessIndefinite {
         /// The lowest eigenvalue.
@@ -43,26 +43,26 @@ pub enum ModesError {
         /// Its number of rows.
         rows: usize,
     },
-    /// A mass, a stiffness or a product of them is no double-precision number any more.
+    /// A mass, a stiffness or a product of them is beyond double precision.
     #[error(
-        "the mass or the stiffness leaves the range of numbers (1e-308 to 1e308): take units in which size, density and Young's modulus are nearer to 1"
+        "the mass or the stiffness leaves the range of numbers (1e-308 to 1e308): use units in which size, density and Young's modulus are closer to 1"
     )]
     OutOfRange,
     /// Not all vibrations converged.
     #[error("{}", unconverged(*.converged, *.wanted, *.ratio, *.is_rounding))]
     Unconverged {
-        /// The vibrations that reached it.
+        /// Number of converged vibrations.
         converged: usize,
-        /// Those looked for: a few more than were asked for.
+        /// Number of vibrations in the search: a few more than requested.
         wanted: usize,
-        /// The highest frequency looked for over the lowest.
+        /// Highest frequency of the search over the lowest.
         ratio: f64,
         /// Whether the rounding errors of the lowest vibration are larger than the error allowed for the highest.
         is_rounding: bool,
     },
     /// Rounding hides the number of vibrations, so one may be missing.
     #[error(
-        "rounding hides whether a vibration was missed: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; take elements and materials that differ less, or larger elements"
+        "rounding hides whether a vibration was missed: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; use elements and materials that differ less, or larger elements"
     )]
     Uncounted {
         /// The largest entry on the diagonal of the stiffness over the smallest.
@@ -72,7 +72,7 @@ pub enum ModesError {
     },
     /// A basis for large deformations could not be computed. Not known to happen.
     #[error(
-        "the modal derivatives could be computed to {residual:.0e} of their forces only, which rounding explains where elements or materials differ much: take linear modes, or elements and materials that differ less"
+        "the modal derivatives have a relative residual of {residual:.0e}, because rounding is large where elements or materials differ much: use linear modes, or elements and materials that differ less"
     )]
     Derivatives {
         /// The largest residual, as a share of the force.
@@ -89,7 +89,7 @@ pub enum ModesError {
         value: f64,
     },
     /// The parameter `ell` of the filter is not positive and finite.
-    #[error("ell is {value:e}: it must be positive and finite; the paper takes 100")]
+    #[error("ell is {value:e}: it must be positive and finite; the paper uses 100")]
     Ell {
         /// Its value.
         value: f64,
@@ -110,35 +110,35 @@ pub enum ModesError {
     },
     /// More modes were requested than the body has.
     #[error(
-        "{asked} modes were asked for, but the body has {available}: ask for fewer, or take a finer mesh"
+        "{requested} modes were requested, but the body has {available}: request fewer, or use a finer mesh"
     )]
     TooManyModes {
-        /// Modes asked for.
-        asked: usize,
+        /// Number of requested modes.
+        requested: usize,
         /// Degrees of freedom, without fixed vertices and rigid motions.
         available: usize,
     },
     /// More nonlinear modes were requested than the limit.
     #[error(
-        "{asked} nonlinear modes were asked for: their forces have rank^4 coefficients; ask for at most {most}"
+        "{requested} nonlinear modes were requested, but their forces have rank^4 coefficients: request at most {max}"
     )]
     NonlinearRank {
-        /// Modes asked for.
-        asked: usize,
-        /// The most there may be.
-        most: usize,
+        /// Number of requested modes.
+        requested: usize,
+        /// Maximum number of modes.
+        max: usize,
     },
     /// A diagonal entry of the stiffness is not positive.
     #[error(
         "the stiffness is not positive at free vertex {vertex} (counted from 0): check the elements and materials around it"
     )]
     NotDefinite {
-        /// The vertex at which that was noticed, from 0, fixed vertices not counted.
+        /// Vertex of the pivot, from 0, fixed vertices not counted.
         vertex: usize,
     },
     /// Parts are connected by less than a face.
     #[error(
-        "the body has {found} motions that cost no energy, a connected one has {expected}: parts hang together by an edge or a vertex only, or by nothing (join them, or fix more vertices); or the body is so slender, or its materials so unlike, that rounding hides its lowest vibrations (take larger elements)"
+        "the body has {found} motions without energy, but a connected body has {expected}: parts share only an edge, a vertex or nothing (join them, or fix more vertices), or rounding hides the lowest vibrations of a very slender body or very different materials (use larger elements)"
     )]
     Mechanism {
         /// Motions found.
@@ -148,7 +148,7 @@ pub enum ModesError {
     },
     /// The number of modes found is not the number that exist. Not known to happen.
     #[error(
-        "{found} modes were found where {counted} were counted: ask for a few more or fewer, or check the mesh for tiny elements"
+        "the search found {found} modes where {counted} exist: request a few more or fewer, or check the mesh for tiny elements"
     )]
     MissedModes {
         /// Modes found below some eigenvalue.
@@ -157,11 +157,11 @@ pub enum ModesError {
         counted: usize,
     },
     /// Not enough memory for the factor of the stiffness.
-    #[error("the stiffness of this body is too large for the memory: take a coarser mesh, or fewer cubes")]
+    #[error("the stiffness of this body does not fit into memory: use a coarser mesh, or fewer cubes")]
     Memory,
     /// The surface has a hole, or its triangles are not oriented consistently.
     #[error(
-        "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes; vertices of exactly equal position are one already), and orient its triangles alike"
+        "the edge from vertex {from} to vertex {to} (counted from 0) has {forward} triangles in this direction and {backward} in the other: close the surface (fill its holes; vertices of exactly equal position already count as one), and orient its triangles alike"
     )]
     OpenEdge {
         /// The vertex at one end, from 0.
@@ -174,7 +174,9 @@ pub enum ModesError {
         backward: usize,
     },
     /// The surface encloses no volume.
-    #[error("the surface encloses no volume: a lattice needs the surface of a solid, thicker than rounding")]
+    #[error(
+        "the surface encloses no volume: use the surface of a solid that is thicker than rounding errors"
+    )]
     NoVolume,
     /// The surface collides with itself at rest, so its inside is ambiguous.
     #[error(
@@ -187,16 +189,16 @@ pub enum ModesError {
         b: u32,
     },
     /// The number of lattice cells is 0 or too large.
-    #[error("{cells} cells along the longest side: for this surface it must be 1 to {most}")]
+    #[error("{cells} cells along the longest side were requested: for this surface, use 1 to {max}")]
     Resolution {
-        /// Cells asked for.
+        /// Number of requested cells.
         cells: usize,
-        /// The most for this surface.
-        most: usize,
+        /// Maximum for this surface.
+        max: usize,
     },
     /// A part of the surface lies inside the solid, or is inside out.
     #[error(
-        "the part of the surface with triangle {triangle} (counted from 0) lies inside the solid or is inside out: remove it, or turn its triangles over (outward, and for a hollow towards its middle)"
+        "the part of the surface with triangle {triangle} (counted from 0) lies inside the solid or is inside out: remove it, or reverse its triangles (outward, and for a cavity inward)"
     )]
     Nested {
         /// A triangle of that part, from 0.
@@ -205,7 +207,7 @@ pub enum ModesError {
     /// The solid has several components.
     #[error("the solid is in {count} separate pieces: make a lattice for each, or join them")]
     Pieces {
-        /// How many pieces there are.
+        /// Number of pieces.
         count: usize,
     },
     /// An animation has fewer than two frames.
@@ -237,19 +239,19 @@ pub enum ModesError {
         vertex: usize,
     },
     /// All frames are equal.
-    #[error("all {frames} frames are equal, up to rounding: give frames that differ")]
+    #[error("all {frames} frames are equal, up to rounding: use frames that differ")]
     StillFrames {
         /// Number of frames.
         frames: usize,
     },
     /// More components were requested than the frames have.
     #[error(
-        "{asked} components were asked for, but the frames differ in {available} independent ways: ask for at most that many"
+        "{requested} components were requested, but the frames have {available} independent directions: request at most that many"
     )]
     TooManyComponents {
-        /// Components asked for.
-        asked: usize,
-        /// Components there are.
+        /// Number of requested components.
+        requested: usize,
+        /// Number of independent components.
         available: usize,
     },
     /// Error of the crate `sscc-solid`.
@@ -260,15 +262,15 @@ pub enum ModesError {
     Core(#[from] sscc::Error),
 }
 
-/// Why vibrations did not converge.
+/// Returns the message for vibrations that did not converge.
 fn unconverged(converged: usize, wanted: usize, ratio: f64, is_rounding: bool) -> String {
     let found = format!("{converged} of {wanted} vibrations converged");
     match is_rounding {
         true => format!(
-            "{found}: the highest is about {ratio:.0} times as fast as the lowest, so that rounding in the lowest hides it; ask for fewer modes"
+            "{found}: the highest frequency is about {ratio:.0} times the lowest, so rounding hides it; request fewer modes"
         ),
         false => format!(
-            "{found} in the steps that usually are enough, which is not known to happen: please report it; another number of modes may help"
+            "{found} within the maximum number of steps, which is not known to happen: please report it; another number of modes may help"
         ),
     }
 }

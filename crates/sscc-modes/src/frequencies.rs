@@ -7,7 +7,7 @@ use sscc_solid::Stiffness;
 use crate::{ModesError, stiffness_eigenvalues};
 
 /// Maximum eigenvalue, relative to the largest entry, that counts as 0; rounding leaves that much.
-const ROUNDING: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Returns the natural frequencies (Hz) of mass-orthonormal modes: in the order of the modes if the stiffness is
 /// diagonal, else ascending.
@@ -36,7 +36,7 @@ pub fn mode_frequencies(stiffness: &Stiffness) -> Option<Vec<f64>> {
 }
 
 fn roots(eigenvalues: &[f64], stiffness: &Stiffness) -> Option<Vec<f64>> {
-    let noise = ROUNDING * stiffness.largest();
+    let noise = ZERO_TOLERANCE * stiffness.largest();
     eigenvalues.iter().map(|x| (*x >= -noise).then(|| x.max(0.0).sqrt() / TAU)).collect()
 }
 
@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(mode_frequencies(&stiffness(&[2.0, -1.0, -1.0, 2.0])), None);
         let dense = of(&[2.0, -1.0, -1.0, 2.0]).unwrap();
         assert!((dense[0] * TAU - 1.0).abs() < 1e-12 && (dense[1] * TAU - 3.0_f64.sqrt()).abs() < 1e-12);
-        // A rigid motion's 0 is rounded to either side; a buckled body is something else.
+        // Rounding gives the 0 of a rigid motion either sign; the eigenvalues of a buckled body are far below 0.
         assert_eq!(of(&[-1e-14, 0.0, 0.0, 1.0]).unwrap()[0], 0.0);
         let buckled = of(&[1.0, 2.0, 2.0, 1.0]).unwrap_err();
         assert!(matches!(buckled, ModesError::StiffnessIndefinite { .. }), "{buckled}");

@@ -2,10 +2,11 @@
 //!
 //! - [`polynomial_modes`]: displacements that are quadratic polynomials of the rest position (paper,
 //!   section 7), for any surface, without a material or a solid mesh;
-//! - [`diagonalize`]: modes rotated so that a given stiffness becomes diagonal (paper, section 6), with
-//!   [`reduced_stiffness`] before it, and [`filter_eigenvalues`] and [`energy_metric`] after it;
+//! - [`diagonalize`]: modes rotated so that a given stiffness becomes diagonal (paper, section 6), after
+//!   [`reduced_stiffness`], and before [`filter_eigenvalues`] and [`energy_metric`];
+//! - [`EmbeddedSurface`], [`linear_modes`], [`nonlinear_modes`], [`polynomial_solid_modes`]: modes of elastic solids;
 //! - [`pca_modes`]: the principal components of an animation;
-//! - [`shapes`]: example meshes made in code, so that nothing has to be downloaded.
+//! - [`shapes`]: example meshes that are computed, so that no download is needed.
 //!
 //! A model in two lines, for a first try or a test:
 //!
@@ -22,7 +23,7 @@
 //! # }
 //! ```
 //!
-//! Modes of other programs do not need this crate: [`sscc::Modes`] takes any matrix. With the stiffness of the solid,
+//! Modes from other programs do not need this crate: [`sscc::Modes`] takes any matrix. With the stiffness of the solid,
 //! the example at [`diagonalize`] gives a model whose metric is strain energy.
 //!
 //! All results have the same bits on every machine: sums have a fixed order, and sines and cosines come from `libm`.
@@ -34,13 +35,13 @@ mod cancel;
 mod diagonalize;
 mod eigen;
 mod elasticity;
-mod embedded;
+mod embedded_surface;
 mod energy;
 mod error;
 mod frequencies;
 mod lattice;
 mod nonlinear;
-mod orthonormal;
+mod orthonormal_basis;
 mod pca;
 mod polynomial;
 pub mod shapes;
@@ -48,8 +49,8 @@ mod sparse;
 mod stiffness;
 mod vibration;
 
-pub use diagonalize::{Diagonalized, diagonalize, stiffness_eigenvalues};
-pub use embedded::Embedded;
+pub use diagonalize::{DiagonalModes, diagonalize, stiffness_eigenvalues};
+pub use embedded_surface::EmbeddedSurface;
 pub use energy::{DEFAULT_ELL, energy_metric, filter_eigenvalues};
 pub use error::ModesError;
 pub use frequencies::{mode_frequencies, natural_frequencies};

@@ -1,4 +1,4 @@
-//! Modal derivatives, and the basis that they and the linear modes give (Barbic and James 2005).
+//! Basis of linear modes and modal derivatives for large deformations (Barbic and James 2005).
 //!
 //! Linear modes alone do not represent large bends; modal derivatives add the terms of second order. They solve `K d_ij
 //! = -(H : x_i) x_j`, where H is the second derivative of the forces. Modes are scaled by their amplitude `q_i = a
@@ -12,8 +12,8 @@ use sscc::Progress;
 use crate::ModesError;
 use crate::body::{Body, m_orthonormal};
 use crate::cancel::check_cancelled;
-use crate::eigen::Lowest;
-use crate::eigen::tall::{inner, product};
+use crate::eigen::LowestModes;
+use crate::eigen::tall_matrix::{inner, product};
 use crate::elasticity::second_derivatives;
 
 /// Linear modes per mode of the basis: 20 for r = 30, as in the paper's models.
@@ -25,18 +25,18 @@ const AMPLITUDE: f64 = 0.2;
 /// Right-hand sides solved at once.
 const BATCH: usize = 32;
 
-/// The residual of a derivative, as a share of its right-hand side. A derivative is only a direction that a basis
-/// should have: the principal components that are left out are larger by far.
-const SOLVED: f64 = 1e-4;
+/// Maximum residual of a derivative, relative to its right-hand side. Derivatives are only directions for the basis: the
+/// omitted principal components are much larger.
+const RESIDUAL_TOLERANCE: f64 = 1e-4;
 
-/// Refinements at most. One is usual: each gains a factor of 1,000 and more.
-const REFINEMENTS: usize = 30;
+/// Maximum number of refinements. One is usual, because each gains a factor of at least 1,000.
+const MAX_REFINEMENTS: usize = 30;
 
-/// The columns that span the basis (free vertices), M-orthonormal.
+/// Computes M-orthonormal columns that span the basis (on free vertices).
 pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let available = 3 * body.stiffness.rows() - body.rigid.ncols();
     if rank > available {
-        return Err(ModesError::TooManyModes { asked: rank, available });
+        return Err(ModesError::TooManyModes { requested: rank, available });
     }
     let linear = linear_count(rank).min(available);
     let lowest = body.lowest(linear, progress)?;
@@ -45,31 +45,32 @@ pub(crate) fn basis(body: &Body, rank: usize, progress: &dyn Progress) -> Result
     let first = body.on_all(lowest.vectors.col_as_slice(0));
     let farthest = first.iter().map(|u| u.length()).fold(0.0, f64::max);
     let amplitude = AMPLITUDE * body.diagonal() / farthest;
-    let likely: Vec<f64> = lowest.eigenvalues.iter().map(|x| amplitude * lowest.eigenvalues[0] / x).collect();
+    let amplitudes: Vec<f64> =
+        lowest.eigenvalues.iter().map(|x| amplitude * lowest.eigenvalues[0] / x).collect();
     let mut all = Mat::zeros(lowest.vectors.nrows(), linear + derivatives.ncols());
     let mut scaled = |to: usize, scale: f64, from: &[f64]| {
         all.col_as_slice_mut(to).iter_mut().zip(from).for_each(|(to, from)| *to = scale * from);
     };
-    for (i, q) in likely.iter().enumerate() {
+    for (i, q) in amplitudes.iter().enumerate() {
         scaled(i, *q, lowest.vectors.col_as_slice(i));
     }
     let pairs = (0..linear).flat_map(|i| (i..linear).map(move |j| (i, j)));
     for (k, (i, j)) in pairs.enumerate() {
-        // The term of second order: q_i q_j d_ij for i < j, half of it for i = j.
+        // The term of second order is q_i q_j d_ij for i < j, and half of it for i = j.
         let share = if i == j { 0.5 } else { 1.0 };
-        scaled(linear + k, share * likely[i] * likely[j], derivatives.col_as_slice(k));
+        scaled(linear + k, share * amplitudes[i] * amplitudes[j], derivatives.col_as_slice(k));
     }
     drop(derivatives);
     principal(body, all, rank)
 }
 
-/// The number of linear modes: with their derivatives at least `rank` directions.
+/// Returns the number of linear modes; with their derivatives they give at least `rank` directions.
 fn linear_count(rank: usize) -> usize {
     ((rank as f64 * LINEAR_SHARE).round() as usize).max(2).min(rank.max(1))
 }
 
-/// The modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
-fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
+/// Computes the modal derivatives of all pairs i <= j, M-orthogonal to rigid motions.
+fn derivatives(body: &Body, lowest: &LowestModes, progress: &dyn Progress) -> Result<Mat<f64>, ModesError> {
     let count = lowest.eigenvalues.len();
     let fields: Vec<_> = (0..count).map(|k| body.on_all(lowest.vectors.col_as_slice(k))).collect();
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i..count).map(move |j| (i, j))).collect();
@@ -88,10 +89,10 @@ fn derivatives(body: &Body, lowest: &Lowest, progress: &dyn Progress) -> Result<
     Ok(all)
 }
 
-/// Solves `K x = f` beside the rigid motions, with the factor of `K + s M`: in the lowest modes directly, in the rest
-/// by refinement, which gains a factor of `s / (lambda + s)` each time.
-fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
-    // Rigid motions carry no elastic force: f - M R R'f.
+/// Solves `K x = f` without rigid motions, with the factor of `K + s M`: directly in the lowest modes, and by refinement
+/// in the rest, where each step gains a factor of `s / (lambda + s)`.
+fn solve(body: &Body, lowest: &LowestModes, mut right: Mat<f64>) -> Result<Mat<f64>, ModesError> {
+    // Rigid motions have no elastic force, so their part is removed: f - M R R'f.
     if body.rigid.ncols() > 0 {
         let along = inner(body.rigid.as_ref(), right.as_ref());
         let carried = product(body.rigid.as_ref(), along.as_ref());
@@ -101,7 +102,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
     let mut x = Mat::zeros(right.nrows(), right.ncols());
     let mut residual = right.clone();
     let mut worst = f64::INFINITY;
-    for _ in 0..REFINEMENTS {
+    for _ in 0..MAX_REFINEMENTS {
         let mut coefficients = inner(lowest.vectors.as_ref(), residual.as_ref());
         for k in 0..coefficients.ncols() {
             for (c, lambda) in coefficients.col_as_slice_mut(k).iter_mut().zip(&lowest.eigenvalues) {
@@ -114,7 +115,7 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
         x += low + high;
         body.without_rigid(&mut x);
         residual = &right - body.stiffness.multiply(x.as_ref());
-        if (0..right.ncols()).all(|k| norm(&residual, k) <= SOLVED * norm(&right, k)) {
+        if (0..right.ncols()).all(|k| norm(&residual, k) <= RESIDUAL_TOLERANCE * norm(&right, k)) {
             return Ok(x);
         }
         worst = (0..right.ncols()).map(|k| norm(&residual, k) / norm(&right, k)).fold(0.0, f64::max);
@@ -122,11 +123,11 @@ fn solve(body: &Body, lowest: &Lowest, mut right: Mat<f64>) -> Result<Mat<f64>, 
     Err(ModesError::Derivatives { residual: worst })
 }
 
-/// The `rank` directions of the most mass among the columns.
+/// Returns the `rank` directions of the largest mass in the span of the columns.
 fn principal(body: &Body, all: Mat<f64>, rank: usize) -> Result<Mat<f64>, ModesError> {
     let basis = m_orthonormal(&body.mass, all, 1e-15, rank)?;
     match basis.ncols() {
-        found if found < rank => Err(ModesError::TooManyModes { asked: rank, available: found }),
+        found if found < rank => Err(ModesError::TooManyModes { requested: rank, available: found }),
         _ => Ok(basis),
     }
 }

@@ -9,11 +9,11 @@ use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::diagonalize::eigen;
 
-/// Without a rank, as many components as explain this share of the variance.
-const EXPLAINED: f64 = 0.999;
+/// Default share of the variance that the components explain.
+const EXPLAINED_SHARE: f64 = 0.999;
 
 /// Minimum variance of a component, relative to the largest: products of frames leave about 1e-15 for each frame.
-const ZERO_SHARE: f64 = 1e-12;
+const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Number of rows of frames, or vertices, per task.
 const CHUNK: usize = 1 << 12;
@@ -28,7 +28,7 @@ pub struct Pca {
     pub modes: Modes,
     /// The standard deviation along each unit direction (model unit; n - 1 in the denominator).
     pub deviations: Vec<f64>,
-    /// Which share of the whole variance each mode explains.
+    /// Share of the total variance that each mode explains.
     pub shares: Vec<f64>,
 }
 
@@ -40,12 +40,12 @@ pub struct Pca {
 /// of its vertices. `rank`: how many components; none: as many as explain 99.9% of the variance. There are fewer than
 /// frames.
 ///
-/// By the eigenvectors of the Gram matrix (frames x frames). The same input gives the same bits again, but other
-/// processors may round differently. Vertices that coincide in all frames still do in all modes.
+/// Computes the eigenvectors of the Gram matrix (frames x frames). The same input gives the same bits, but other
+/// processors may round differently. Vertices that coincide in all frames coincide in all modes.
 ///
 /// # Errors
 /// When there are fewer than two frames, one has another number of vertices or a position out of range, all are equal,
-/// or fewer independent directions exist than were asked for; when `progress` cancels.
+/// or fewer independent directions exist than requested; when `progress` cancels.
 pub fn pca_modes(
     mesh: &TriMesh,
     frames: &[Vec<DVec3>],
@@ -55,7 +55,7 @@ pub fn pca_modes(
     let vertices = mesh.rest_positions().len();
     check(frames, vertices)?;
     let count = frames.len() as f64;
-    // Relative to the first frame: the mean of equal positions is that position, to the last bit.
+    // Sums relative to the first frame give the mean of equal positions exactly.
     let mean = |v: usize| {
         let sum: DVec3 = frames.iter().map(|frame| frame[v] - frames[0][v]).sum();
         frames[0][v] + sum / count
@@ -64,13 +64,15 @@ pub fn pca_modes(
     let (mut variances, vectors, noise) = components(&mesh.used_vertices(), frames, &mean, progress)?;
     variances.reverse();
     let total: f64 = variances.iter().map(|x| x.max(0.0)).sum();
-    let least = (ZERO_SHARE * variances[0]).max(noise);
-    let available = variances.iter().take(frames.len() - 1).take_while(|x| **x > least).count();
+    let threshold = (ZERO_TOLERANCE * variances[0]).max(noise);
+    let available = variances.iter().take(frames.len() - 1).take_while(|x| **x > threshold).count();
     let rank = match rank {
         _ if available == 0 => return Err(ModesError::StillFrames { frames: frames.len() }),
-        Some(asked) if asked > available => return Err(ModesError::TooManyComponents { asked, available }),
-        Some(asked) => asked,
-        None => explaining(EXPLAINED * total, &variances[..available]),
+        Some(requested) if requested > available => {
+            return Err(ModesError::TooManyComponents { requested, available });
+        }
+        Some(requested) => requested,
+        None => explaining(EXPLAINED_SHARE * total, &variances[..available]),
     };
     variances.truncate(rank);
 
@@ -111,8 +113,8 @@ fn check(frames: &[Vec<DVec3>], vertices: usize) -> Result<(), ModesError> {
     Ok(())
 }
 
-/// The eigenvalues, ascending, and eigenvectors (T x T, row-major, in columns) of the frames' Gram matrix about their
-/// mean, and what rounding of positions can leave in an eigenvalue.
+/// Returns the eigenvalues, ascending, and eigenvectors (T x T, row-major, in columns) of the frames' Gram matrix about
+/// their mean, and a bound of the rounding error that positions leave in an eigenvalue.
 fn components(
     used: &[u32],
     frames: &[Vec<DVec3>],
@@ -147,7 +149,7 @@ fn components(
         .collect();
     check_cancelled(progress)?;
     let (values, vectors) = eigen(count, &whole)?;
-    // A position is rounded by half a unit in the last place; so is the mean.
+    // Positions and the mean are each rounded by half a unit in the last place.
     let reach = used.iter().fold(0.0_f64, |m, v| m.max(mean[*v as usize].abs().max_element()));
     let rounding = f64::EPSILON * reach;
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))

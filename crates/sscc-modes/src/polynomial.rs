@@ -1,23 +1,22 @@
 //! Quadratic polynomial modes (paper, section 7; Witkin and Welch 1990).
 //!
-//! Each component of a displacement is a quadratic polynomial of the rest position: 10 monomials times
-//! 3 components are 30 fields. The 6 infinitesimal rigid motions among them are taken out, which
-//! leaves 24. Such modes vary smoothly even across narrow gaps, so they bring few self-collisions.
+//! Each component of a displacement is a quadratic polynomial of the rest position: 10 monomials times 3 components give
+//! 30 fields. Without the 6 infinitesimal rigid motions, 24 remain. These modes vary smoothly even across narrow gaps, so
+//! they cause few self-collisions.
 //!
-//! The work is done on scalars: the monomials are made orthonormal first, so that the quadratic
-//! ones, times each axis, are modes at once. Only the linear fields need a second, tiny basis
-//! (12 numbers each), in which the rigid motions come first.
+//! The computation uses scalars: the monomials are made orthonormal first, so the quadratic ones, times each axis, are
+//! already modes. Only the linear fields need a second, small basis (12 numbers each), which starts with the rigid motions.
 
 use glam::DVec3;
 use sscc::{Modes, TriMesh, vertex_areas};
 
 use crate::ModesError;
-use crate::orthonormal::OrthonormalBasis;
+use crate::orthonormal_basis::OrthonormalBasis;
 
-/// The constant and the linear monomials.
+/// Constant and linear monomials.
 const LINEAR: [fn(DVec3) -> f64; 4] = [|_| 1.0, |p| p.x, |p| p.y, |p| p.z];
 
-/// The quadratic monomials.
+/// Quadratic monomials.
 const QUADRATIC: [fn(DVec3) -> f64; 6] =
     [|p| p.x * p.x, |p| p.y * p.y, |p| p.z * p.z, |p| p.y * p.z, |p| p.z * p.x, |p| p.x * p.y];
 
@@ -38,27 +37,26 @@ const STRAINS: [[DVec3; 3]; 6] = [
     [DVec3::Y, DVec3::X, DVec3::ZERO],
 ];
 
-/// How far rounded positions may be from the positions meant, as a share of their magnitude: 8 roundings.
+/// Maximum rounding error of positions, relative to their magnitude: 8 roundings.
 const POSITION_NOISE: f64 = 4.0 * f64::EPSILON;
 
-/// The displacement fields that are quadratic polynomials of the rest position, rigid motions
-/// taken out, as modes of the whole mesh (vertices that no face uses move with the polynomial too).
+/// Computes the displacement fields that are quadratic polynomials of the rest position, without rigid motions, as modes
+/// of the mesh. Unused vertices move with the polynomials, too.
 ///
-/// The modes are orthonormal over the surface: `sum_v area_v U_vi . U_vj = 1` if i = j, else 0, where
-/// `area_v` is a third of the area of each triangle at vertex v ([`vertex_areas`]). So an entry has the
-/// unit 1 / length, and q the unit length squared: a q of a small fraction of the squared size of
-/// the shape is a small deformation. Under the same inner product every mode is orthogonal to the
-/// 6 infinitesimal rigid motions, and together they span all 30 fields.
+/// The modes are orthonormal over the surface: `sum_v area_v U_vi . U_vj` is 1 if i = j, else 0, where `area_v` is a
+/// third of the area of the triangles at vertex v ([`vertex_areas`]). An entry has the unit 1 / length and q the unit
+/// length squared, so a q much smaller than the squared size of the shape is a small deformation. Under the same inner
+/// product every mode is orthogonal to the 6 infinitesimal rigid motions; together they span all 30 fields.
 ///
-/// Order: the linear fields first (stretch along x, y, z, shear in yz, zx, xy), then the monomials
-/// xx, yy, zz, yz, zx, xy times each of the three axes; each is made orthogonal to all before it.
+/// The linear fields come first (stretch along x, y, z, shear in yz, zx, xy), then the monomials xx, yy, zz, yz, zx, xy
+/// times each of the three axes. Each is made orthogonal to all before it.
 ///
-/// A general surface has exactly 24 modes. One whose vertices satisfy a quadratic equation has
-/// fewer independent fields, hence fewer modes: 21 on a sphere, 12 in a plane, 3 for a single triangle.
+/// A general surface has exactly 24 modes. A surface whose vertices satisfy a quadratic equation has fewer independent
+/// fields, hence fewer modes: 21 on a sphere, 12 in a plane, 3 for a single triangle.
 ///
 /// # Errors
-/// When the surface has no area, is lost in the rounding of its positions, or a mode entry is out of range
-/// (surfaces smaller than about 1e-60, or an unused vertex that far away).
+/// When the surface has no area, is too far from the origin for the rounding of its positions, or a mode entry is out of
+/// range (surfaces smaller than about 1e-60, or an unused vertex relatively as far away).
 pub fn polynomial_modes(mesh: &TriMesh) -> Result<Modes, ModesError> {
     let Surface { weights, area, points, noise, .. } = Surface::new(mesh)?;
     let values = |monomial: fn(DVec3) -> f64| points.iter().map(|p| monomial(*p)).collect();
@@ -92,15 +90,15 @@ pub fn polynomial_modes(mesh: &TriMesh) -> Result<Modes, ModesError> {
     Ok(Modes::new(rank, displacements)?)
 }
 
-/// A surface in coordinates in which it has its centroid at 0 and size 1.
+/// Surface in coordinates with its centroid at 0 and size 1.
 struct Surface {
-    /// Each vertex's share of the area; their sum is 1.
+    /// Share of the area of each vertex; the sum is 1.
     weights: Vec<f64>,
-    /// The whole area (model unit squared).
+    /// Total area (model unit squared).
     area: f64,
     /// Centred and scaled rest positions: the weighted mean of `|p|^2` is 1.
     points: Vec<DVec3>,
-    /// How far points may be off by rounding of the rest positions.
+    /// Maximum error of points by rounding of the rest positions.
     noise: f64,
 }
 
@@ -113,7 +111,7 @@ impl Surface {
             return Err(ModesError::NoArea);
         }
         weights.iter_mut().for_each(|w| *w /= area);
-        // Relative to one corner: far from the origin the centroid would lose digits.
+        // Sums relative to one corner keep the digits of the centroid far from the origin.
         let near = rest[mesh.faces()[0][0] as usize];
         let mut centroid = DVec3::ZERO;
         for (w, p) in weights.iter().zip(rest) {
@@ -124,20 +122,20 @@ impl Surface {
         let distance = mean_square(&weights, rest).sqrt();
         let noise = POSITION_NOISE * distance / radius;
         if noise.is_nan() || noise >= 0.25 {
-            return Err(ModesError::Lost { radius, distance });
+            return Err(ModesError::TooFarFromOrigin { radius, distance });
         }
         points.iter_mut().for_each(|p| *p /= radius);
         Ok(Self { weights, area, points, noise })
     }
 }
 
-/// The weighted mean of `|p|^2`, over the points of positive weight.
+/// Returns the weighted mean of `|p|^2` over the points of positive weight.
 fn mean_square(weights: &[f64], points: &[DVec3]) -> f64 {
     weights.iter().zip(points).map(|(w, p)| w * p.length_squared()).sum()
 }
 
-/// The linear fields without the rigid motions, orthonormal: for each field the vectors `c` of
-/// `sum_i c[i] scalar_i`. `scalars` holds the constant and the linear ones, `coordinates` x, y and z.
+/// Returns the linear fields without rigid motions, orthonormal: the vectors `c` of `sum_i c[i] scalar_i` for each field.
+/// `scalars` has the constant and the linear scalars, `coordinates` x, y and z.
 fn strain_fields(scalars: &OrthonormalBasis, coordinates: [Vec<f64>; 3], noise: f64) -> Vec<Vec<DVec3>> {
     let count = scalars.vectors().len();
     // p = sum_i along[i] scalar_i

@@ -8,34 +8,33 @@ use sscc_solid::{Elasticity, ReducedForces, Solid, Stiffness};
 use crate::body::{Body, whitening};
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
-use crate::eigen::tall::{inner, product};
+use crate::eigen::tall_matrix::{inner, product};
 use crate::elasticity::reduced_forces;
 use crate::{DEFAULT_ELL, ModesError, energy_metric, filter_eigenvalues, nonlinear};
 
 /// Modes of a solid's vertices with identity mass and diagonal stiffness at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidModes {
-    /// One displacement for each vertex of the solid and each mode; mass-orthonormal (1 / root of mass). Fixed
-    /// vertices do not move.
+    /// Modes of the solid's vertices, mass-orthonormal (1 / root of mass). Fixed vertices do not move.
     pub modes: Modes,
-    /// The elastic forces. The stiffness at rest is diagonal.
+    /// Elastic forces. The stiffness at rest is diagonal.
     pub elasticity: Elasticity,
 }
 
 impl SolidModes {
-    /// The stiffness of each mode, ascending: its angular frequency (1/s), squared. For linear modes these are natural
-    /// frequencies, for others an upper bound of them.
+    /// Returns the stiffness of each mode, ascending: its squared angular frequency (1/s^2). Linear modes have natural
+    /// frequencies, other modes upper bounds of them.
     pub fn eigenvalues(&self) -> Vec<f64> {
         self.elasticity.stiffness().diagonal().collect()
     }
 
-    /// Frequencies (Hz, if the material is in SI units).
+    /// Returns the frequency of each mode (Hz, if the material is in SI units).
     pub fn frequencies(&self) -> Vec<f64> {
         self.eigenvalues().iter().map(|x| x.sqrt() / std::f64::consts::TAU).collect()
     }
 
-    /// Strain energy as the metric of a model with these modes (paper, section 6). Natural frequencies are weighted as
-    /// they are; those of other modes may be very high, and are filtered.
+    /// Returns the strain energy as a metric for these modes (paper, section 6). Frequencies of modes that are not linear
+    /// may be very high, so their weights are filtered.
     ///
     /// # Errors
     /// When an eigenvalue is negative or so small that its half is 0.
@@ -48,14 +47,14 @@ impl SolidModes {
     }
 }
 
-/// The `rank` lowest vibrations of a solid: `K x = lambda M x` (linear modal analysis; paper, section 6). Rigid motions
-/// that the `fixed` vertices allow are left out: six of a free body.
+/// Computes the `rank` lowest vibrations of a solid: `K x = lambda M x` (linear modal analysis; paper, section 6),
+/// without the rigid motions that the `fixed` vertices permit (six for a free body).
 ///
 /// The inertia of `K - sigma M` counts the eigenvalues below the last one, so none is missing.
 ///
 /// # Errors
-/// When a fixed vertex does not exist, all are fixed, there are fewer modes, parts of the body hang together by an edge
-/// or a vertex only, memory is short, or the work is cancelled.
+/// When a fixed vertex does not exist, all are fixed, the body has fewer modes, parts of the body share only an edge or a
+/// vertex, memory is short, or the work is cancelled.
 pub fn linear_modes(
     solid: &Solid,
     fixed: &[u32],
@@ -69,9 +68,9 @@ pub fn linear_modes(
     Ok(SolidModes { modes: from_columns(&columns)?, elasticity })
 }
 
-/// A basis of rank `rank` for large deformations, with its reduced St. Venant-Kirchhoff forces (Barbic and James 2005;
-/// the paper's nonlinear models): linear modes and their modal derivatives, of which a mass-weighted principal
-/// component analysis takes the strongest directions. In the end rotated such that the stiffness at rest is diagonal.
+/// Computes a basis of rank `rank` for large deformations, with its reduced St. Venant-Kirchhoff forces (Barbic and James
+/// 2005; the paper's nonlinear models): the strongest directions of linear modes and their modal derivatives, by a
+/// mass-weighted principal component analysis. The basis is rotated so that the stiffness at rest is diagonal.
 ///
 /// # Errors
 /// As [`linear_modes`].
@@ -84,17 +83,17 @@ pub fn nonlinear_modes(
     if rank == 0 {
         return Err(sscc::Error::RankZero.into());
     }
-    if rank > MOST_NONLINEAR {
-        return Err(ModesError::NonlinearRank { asked: rank, most: MOST_NONLINEAR });
+    if rank > MAX_NONLINEAR_RANK {
+        return Err(ModesError::NonlinearRank { requested: rank, max: MAX_NONLINEAR_RANK });
     }
     let body = Body::new(solid, fixed)?;
     let basis = nonlinear::basis(&body, rank, progress)?;
-    // The basis has no rigid motions, so low eigenvalues are those of soft directions.
-    let (turn, eigenvalues) = rotation(&body, &basis, 0.0)?;
+    // The basis has no rigid motions, so low eigenvalues belong to soft directions.
+    let (transform, eigenvalues) = rotation(&body, &basis, 0.0)?;
     if eigenvalues.len() < rank {
-        return Err(ModesError::TooManyModes { asked: rank, available: eigenvalues.len() });
+        return Err(ModesError::TooManyModes { requested: rank, available: eigenvalues.len() });
     }
-    let vectors = product(basis.as_ref(), turn.as_ref());
+    let vectors = product(basis.as_ref(), transform.as_ref());
     let columns: Vec<Vec<DVec3>> = (0..rank).map(|k| body.on_all(vectors.col_as_slice(k))).collect();
     let modes = from_columns(&columns)?;
     let forces = reduced_forces(solid, &modes, progress)?;
@@ -104,14 +103,15 @@ pub fn nonlinear_modes(
 /// Polynomial modes of a solid and of a surface that moves with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolynomialModes {
-    /// Those of the solid's vertices, with their forces.
+    /// Modes of the solid's vertices, with their forces.
     pub solid: SolidModes,
     /// The same modes for the vertices of the surface.
     pub surface: Modes,
 }
 
-/// The quadratic polynomial modes of a free solid and of a surface that moves with it (paper, section 7), rotated such
-/// that mass is the identity and the stiffness diagonal (section 6). Rigid motions are left out: 24 modes remain, fewer for small solids.
+/// Computes the quadratic polynomial modes of a free solid and of a surface that moves with it (paper, section 7),
+/// rotated so that the mass is the identity and the stiffness diagonal (section 6). Without rigid motions 24 modes
+/// remain, fewer for small solids.
 ///
 /// # Errors
 /// As [`linear_modes`].
@@ -126,18 +126,18 @@ pub fn polynomial_solid_modes(
     let high = vertices.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
     let (centre, size) = ((low + high) * 0.5, (high - low).max_element());
     let fields = |points: &[DVec3]| {
-        Mat::from_fn(3 * points.len(), 3 * POLYNOMIALS, |row, k| {
+        Mat::from_fn(3 * points.len(), 3 * MONOMIALS, |row, k| {
             let p = (points[row / 3] - centre) / size;
             let scalars =
                 [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y];
             if k % 3 == row % 3 { scalars[k / 3] } else { 0.0 }
         })
     };
-    let (turn, eigenvalues) = rotation(&body, &fields(vertices), RIGID)?;
+    let (transform, eigenvalues) = rotation(&body, &fields(vertices), RIGID_TOLERANCE)?;
     let on = |points: &[DVec3]| {
-        let fields = product(fields(points).as_ref(), turn.as_ref());
+        let fields = product(fields(points).as_ref(), transform.as_ref());
         let column = |k| fields.col_as_slice(k).chunks_exact(3).map(DVec3::from_slice).collect();
-        from_columns(&(0..turn.ncols()).map(column).collect::<Vec<_>>())
+        from_columns(&(0..transform.ncols()).map(column).collect::<Vec<_>>())
     };
     let (modes, surface) = (on(vertices)?, on(surface.rest_positions())?);
     let forces = reduced_forces(solid, &modes, progress)?;
@@ -145,23 +145,23 @@ pub fn polynomial_solid_modes(
     Ok(PolynomialModes { solid, surface })
 }
 
-/// Forces of which the linear part is exactly the diagonal that it is but for rounding.
+/// Replaces the linear part of forces, which is diagonal up to rounding, by the exact diagonal.
 fn nonlinear_elasticity(forces: ReducedForces, eigenvalues: &[f64]) -> Result<Elasticity, ModesError> {
     Ok(Elasticity::Nonlinear(forces.with_linear(Stiffness::from_diagonal(eigenvalues)?)?))
 }
 
-/// The most modes for large deformations: memory grows with the fourth power (the cubic terms) and with the number of
-/// pairs of modes (their derivatives); by count, about 4 GB at the default resolution.
-const MOST_NONLINEAR: usize = 100;
+/// Maximum number of modes for large deformations. Memory grows with the fourth power (cubic terms) and with the number
+/// of pairs of modes (derivatives): about 4 GB at the default resolution, by calculation.
+const MAX_NONLINEAR_RANK: usize = 100;
 
-/// Monomials of degree 2 or less in three variables.
-const POLYNOMIALS: usize = 10;
+/// Number of monomials of degree 2 or less in three variables.
+const MONOMIALS: usize = 10;
 
-/// Eigenvalues of at most this share of the largest belong to rigid motions.
-const RIGID: f64 = 1e-11;
+/// Maximum eigenvalue of a rigid motion, relative to the largest.
+const RIGID_TOLERANCE: f64 = 1e-11;
 
-/// The matrix T for which the columns of `X T` are M-orthonormal and their stiffness is diagonal, and that diagonal.
-/// Dependent columns fall away, and motions whose stiffness is at most the share `rigid` of the largest.
+/// Returns the matrix T for which the columns of `X T` are M-orthonormal with a diagonal stiffness, and that diagonal.
+/// Dependent columns are removed, and motions whose stiffness is at most `rigid` times the largest.
 fn rotation(body: &Body, basis: &Mat<f64>, rigid: f64) -> Result<(Mat<f64>, Vec<f64>), ModesError> {
     let orthonormal = whitening(&body.mass, basis, 1e-13, basis.ncols())?;
     let stiffness = inner(basis.as_ref(), body.stiffness.multiply(basis.as_ref()).as_ref());
@@ -170,12 +170,12 @@ fn rotation(body: &Body, basis: &Mat<f64>, rigid: f64) -> Result<(Mat<f64>, Vec<
     let size = values.len();
     let kept: Vec<usize> = (0..size).filter(|k| values[*k] > rigid * values[size - 1]).collect();
     let vectors = Mat::from_fn(size, kept.len(), |i, j| vectors[(i, kept[j])]);
-    let mut turn = product(orthonormal.as_ref(), vectors.as_ref());
-    fix_signs(&mut turn);
-    Ok((turn, kept.into_iter().map(|k| values[k]).collect()))
+    let mut transform = product(orthonormal.as_ref(), vectors.as_ref());
+    fix_signs(&mut transform);
+    Ok((transform, kept.into_iter().map(|k| values[k]).collect()))
 }
 
-/// Modes from one field for each.
+/// Returns modes from one displacement field each.
 fn from_columns(columns: &[Vec<DVec3>]) -> Result<Modes, ModesError> {
     let vertices = columns.first().map_or(0, Vec::len);
     let displacements = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn the_linear_part_of_reduced_forces_is_the_diagonal_of_the_eigenvalues() {
+    fn the_linear_part_of_reduced_forces_is_diagonal() {
         let solid = bar();
         let surface = solid.boundary().unwrap().mesh;
         let nonlinear = nonlinear_modes(&solid, &[0, 1, 2, 3], 8, &()).unwrap();

@@ -1,4 +1,4 @@
-//! Diagonalized modes: accurate, complete, and the same shapes.
+//! Diagonalization is accurate and complete, and preserves shapes.
 
 #[allow(dead_code)] // other tests use the rest
 mod common;
@@ -10,10 +10,10 @@ use matrix::{
     diagonal, difference, numbers, product, random_modes, stiffness, times, transpose, with_spectrum,
 };
 use sscc::{Metric, Modes, ReducedModel};
-use sscc_modes::{Diagonalized, diagonalize, stiffness_eigenvalues};
+use sscc_modes::{DiagonalModes, diagonalize, stiffness_eigenvalues};
 
-/// Diagonalizes random modes and checks what holds for every stiffness with these eigenvalues.
-fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagonalized {
+/// Diagonalizes modes and checks the properties of every stiffness with these eigenvalues.
+fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> DiagonalModes {
     let n = modes.rank();
     let stiffness = stiffness(n, entries);
     let found = diagonalize(modes, &stiffness).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -21,7 +21,7 @@ fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagon
     let largest = spectrum.iter().fold(0.0_f64, |m, x| m.max(*x));
     let tolerance = 1e-12 * largest;
 
-    // Compared as a whole list, so that an eigenvalue missed or found twice would show.
+    // Comparing whole lists detects missing and repeated eigenvalues.
     let mut spectrum = spectrum.to_vec();
     spectrum.sort_by(f64::total_cmp);
     assert!(found.eigenvalues.is_sorted(), "{name}");
@@ -37,7 +37,7 @@ fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagon
     let residual = difference(&product(n, entries, q), &product(n, q, &diagonal(&found.eigenvalues)));
     assert!(residual <= tolerance, "{name}: residual {residual:e}");
 
-    // U' Q' = U: no shape is lost.
+    // U' Q' = U, so all shapes remain.
     for v in 0..modes.vertices() as u32 {
         for (j, wanted) in modes.of_vertex(v).iter().enumerate() {
             let row = &q[j * n..][..n];
@@ -56,7 +56,7 @@ fn check(name: &str, modes: &Modes, entries: &[f64], spectrum: &[f64]) -> Diagon
 #[test]
 fn spectra_of_many_kinds_and_ranks() {
     let mut random = Random(1);
-    // From 128 on the decomposition takes another way.
+    // faer uses divide and conquer from 128 rows on.
     for n in [1, 2, 3, 4, 5, 7, 16, 24, 33, 64, 127, 128, 129, 161] {
         let modes = random_modes(&mut random, 9, n);
         let spectra: [(&str, Vec<f64>); 7] = [
@@ -81,7 +81,7 @@ fn spectra_of_many_kinds_and_ranks() {
 
 #[test]
 fn chains_and_grids_with_exact_entries() {
-    // A free grid of m x m unit springs: many eigenvalues are double, one is 0.
+    // A free grid of m x m unit springs has many double eigenvalues and one that is 0.
     let m = 12;
     let chain = |i: usize, j: usize| match i.abs_diff(j) {
         0 => f64::from(u8::from(i > 0) + u8::from(i + 1 < m)),
@@ -115,18 +115,18 @@ fn rank_1_and_diagonal_matrices_are_exact() {
     let mut random = Random(4);
     let modes = random_modes(&mut random, 5, 1);
     let found = diagonalize(&modes, &stiffness(1, &[7.3])).unwrap();
-    assert_eq!(found, Diagonalized { modes, eigenvalues: vec![7.3], rotation: vec![1.0] });
+    assert_eq!(found, DiagonalModes { modes, eigenvalues: vec![7.3], rotation: vec![1.0] });
 
     let modes = random_modes(&mut random, 5, 3);
     let found = diagonalize(&modes, &stiffness(3, &diagonal(&[3.0, 7.0, 1.0]))).unwrap();
     assert_eq!(found.eigenvalues, [1.0, 3.0, 7.0]);
     assert_eq!(found.rotation, [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
-    let nothing = diagonalize(&modes, &stiffness(3, &[0.0; 9])).unwrap();
-    assert_eq!((nothing.eigenvalues, nothing.rotation), (vec![0.0; 3], diagonal(&[1.0; 3])));
+    let zero = diagonalize(&modes, &stiffness(3, &[0.0; 9])).unwrap();
+    assert_eq!((zero.eigenvalues, zero.rotation), (vec![0.0; 3], diagonal(&[1.0; 3])));
 }
 
 #[test]
-fn units_change_nothing_but_the_unit() {
+fn results_scale_with_the_unit() {
     let mut random = Random(5);
     let modes = random_modes(&mut random, 5, 6);
     let entries = with_spectrum(&mut random, &[0.0, 1.0, 2.0, 2.0, 30.0, 400.0]);
@@ -141,7 +141,7 @@ fn units_change_nothing_but_the_unit() {
 }
 
 #[test]
-fn the_same_bits_again() {
+fn results_are_reproducible() {
     let mut random = Random(6);
     for n in [5, 60, 140] {
         let modes = random_modes(&mut random, 5, n);
@@ -157,7 +157,7 @@ fn the_same_bits_again() {
 }
 
 #[test]
-fn equally_large_components_give_the_sign_to_the_first() {
+fn the_first_of_equal_components_decides_the_sign() {
     let found =
         diagonalize(&random_modes(&mut Random(7), 2, 2), &stiffness(2, &[2.0, -1.0, -1.0, 2.0])).unwrap();
     let half = 0.5_f64.sqrt();
@@ -165,7 +165,7 @@ fn equally_large_components_give_the_sign_to_the_first() {
 }
 
 #[test]
-fn positions_stay_where_they_are() {
+fn positions_are_preserved() {
     let mut random = Random(8);
     let mesh = bumpy(1);
     let modes = random_modes(&mut random, mesh.rest_positions().len(), 12);

@@ -1,4 +1,4 @@
-//! The energy metric measures energy; the filter is the paper's formula.
+//! The energy metric measures strain energy, and the filter is the paper's formula.
 
 #[allow(dead_code)] // other tests use the rest
 mod common;
@@ -40,21 +40,21 @@ fn modes_without_energy_get_the_smallest_weight() {
 }
 
 #[test]
-fn the_filter_is_the_formula() {
+fn the_filter_matches_the_formula() {
     let mut random = Random(2);
     for ell in [0.5, 1.0, 3.0, DEFAULT_ELL, 1e6] {
         let mut eigenvalues: Vec<f64> = (0..200).map(|_| 10_f64.powf(6.0 * random.number())).collect();
         eigenvalues.sort_by(f64::total_cmp);
-        let least = eigenvalues[0];
+        let smallest = eigenvalues[0];
         let filtered = filter_eigenvalues(&eigenvalues, ell).unwrap();
         for (x, y) in eigenvalues.iter().zip(&filtered) {
-            let wanted = 1.0 / (1.0 / x + 1.0 / (ell * least));
+            let wanted = 1.0 / (1.0 / x + 1.0 / (ell * smallest));
             assert!((y / wanted - 1.0).abs() < 1e-15, "{x} {y} {wanted}");
-            assert!(*y <= ell * least && y <= x, "{x} {y}");
+            assert!(*y <= ell * smallest && y <= x, "{x} {y}");
         }
         assert!(filtered.is_sorted());
     }
-    // Order and length are those given; zeros are not the smallest eigenvalue.
+    // Order and length are unchanged; zeros do not count as the smallest eigenvalue.
     let filtered = filter_eigenvalues(&[400.0, 0.0, 4.0], 100.0).unwrap();
     assert!(difference(&filtered, &[200.0, 0.0, 4.0 / 1.01]) < 1e-13, "{filtered:?}");
     assert_eq!(filter_eigenvalues(&[0.0, 0.0], 100.0).unwrap(), [0.0, 0.0]);
@@ -62,15 +62,15 @@ fn the_filter_is_the_formula() {
 }
 
 #[test]
-fn the_filter_survives_the_ends_of_the_range() {
+fn the_filter_does_not_overflow() {
     let filtered = filter_eigenvalues(&[1e-310, 1.0, 1e308], 100.0).unwrap();
     assert!(difference(&filtered, &[1e-310, 1e-308, 1e-308]) < 1e-309, "{filtered:?}");
-    // ell lambda_min overflows: nothing is moderated.
+    // ell lambda_min overflows, so no weight is limited.
     assert_eq!(filter_eigenvalues(&[1e307, 1e308], 100.0).unwrap(), [1e307, 1e308]);
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_eigenvalues_are_rejected() {
     for value in [f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-300] {
         let eigenvalues = [1.0, value, f64::NAN];
         let wanted = ModesError::Eigenvalue { index: 1, value };
@@ -89,7 +89,7 @@ fn what_is_refused() {
     assert!(matches!(vanishing, ModesError::Core(sscc::Error::MetricWeight { .. })), "{vanishing}");
 }
 
-/// Unit springs along the edges of a surface: `K u`, each edge counted once for each triangle at it.
+/// Computes `K u` of unit springs along the edges of a surface, one for each triangle at an edge.
 fn springs(mesh: &TriMesh, u: &[f64], force: &mut [f64]) {
     force.fill(0.0);
     let p = mesh.rest_positions();
@@ -106,8 +106,8 @@ fn springs(mesh: &TriMesh, u: &[f64], force: &mut [f64]) {
 }
 
 #[test]
-fn a_free_body_from_stiffness_to_answers() {
-    // The 6 rigid motions, and mixed up with them the 24 polynomial modes.
+fn a_free_body_from_stiffness_to_queries() {
+    // The 6 rigid motions, and the 24 polynomial modes mixed with them.
     let mesh = bumpy(3);
     let polynomial = polynomial_modes(&mesh).unwrap();
     let mut random = Random(3);
@@ -133,7 +133,7 @@ fn a_free_body_from_stiffness_to_answers() {
     let certificates =
         Certificates::compute(&model, &CertifyOptions { epsilon: 0.5, ..Default::default() }, &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
-    // A rigid motion within the certificate is free by one comparison.
+    // One comparison certifies a rigid motion within the root's radius.
     let mut q = vec![0.0; 30];
     q[0] = 1e-6;
     assert!(query.discrete(&q).unwrap().is_empty());

@@ -1,4 +1,4 @@
-//! The embedded hare and serpent are the meshes they promise to be.
+//! The hare and the serpent have the documented properties.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -23,12 +23,15 @@ fn closed_spheres_oriented_outward() {
     for mesh in [&*HARE, &*SERPENT] {
         let vertices = mesh.rest_positions().len();
         assert_eq!(mesh.used_vertices().len(), vertices);
-        let right = edges(mesh);
-        assert_eq!(right.len(), 3 * mesh.faces().len(), "no edge twice in one direction");
-        assert!(right.keys().all(|(a, b)| right.contains_key(&(*b, *a))), "no edge with one triangle only");
-        assert_eq!(vertices + mesh.faces().len() - right.len() / 2, 2, "Euler characteristic of a sphere");
+        let face_of = edges(mesh);
+        assert_eq!(face_of.len(), 3 * mesh.faces().len(), "no edge twice in one direction");
+        assert!(
+            face_of.keys().all(|(a, b)| face_of.contains_key(&(*b, *a))),
+            "no edge with one triangle only"
+        );
+        assert_eq!(vertices + mesh.faces().len() - face_of.len() / 2, 2, "Euler characteristic of a sphere");
 
-        // The faces around each vertex are one ring: walking from face to face meets all of them.
+        // The faces around each vertex form one ring: going from face to face visits all of them.
         let mut valence = vec![0; vertices];
         for v in mesh.faces().iter().flatten() {
             valence[*v as usize] += 1;
@@ -36,7 +39,7 @@ fn closed_spheres_oriented_outward() {
         for [a, b, _] in mesh.faces() {
             let (mut at, mut steps) = (*b, 0);
             loop {
-                at = opposite(mesh, right[&(*a, at)], *a, at);
+                at = opposite(mesh, face_of[&(*a, at)], *a, at);
                 steps += 1;
                 if at == *b {
                     break;
@@ -47,7 +50,7 @@ fn closed_spheres_oriented_outward() {
 
         let (mut reached, mut open) = (vec![false; vertices], vec![0_u32]);
         let mut neighbours = vec![Vec::new(); vertices];
-        right.keys().for_each(|(a, b)| neighbours[*a as usize].push(*b));
+        face_of.keys().for_each(|(a, b)| neighbours[*a as usize].push(*b));
         while let Some(v) = open.pop() {
             if !std::mem::replace(&mut reached[v as usize], true) {
                 open.extend(&neighbours[v as usize]);
@@ -71,8 +74,8 @@ fn no_self_collision_at_rest() {
     }
 }
 
-/// Two faces with one common corner meet elsewhere exactly if the side opposite that corner of one meets the other:
-/// what they have in common is convex and holds the corner, so it ends on such a side.
+/// Two faces with one common corner meet elsewhere exactly if the opposite edge of one of them meets the other face: the
+/// intersection is convex and contains the corner, so it ends on such an edge.
 #[test]
 fn faces_with_a_common_corner_meet_only_there() {
     for mesh in [&*HARE, &*SERPENT] {
@@ -85,9 +88,9 @@ fn faces_with_a_common_corner_meet_only_there() {
         for (v, faces) in around.iter().enumerate() {
             for (a, b) in faces.iter().flat_map(|a| faces.iter().map(move |b| (*a, *b))) {
                 if a.iter().filter(|v| b.contains(v)).count() == 1 {
-                    let side: Vec<u32> = a.into_iter().filter(|w| *w as usize != v).collect();
+                    let edge: Vec<u32> = a.into_iter().filter(|w| *w as usize != v).collect();
                     assert!(
-                        !intersect_triangle_triangle(&at([side[0], side[1], side[1]]), &at(b)),
+                        !intersect_triangle_triangle(&at([edge[0], edge[1], edge[1]]), &at(b)),
                         "{a:?} {b:?}"
                     );
                     tested += 1;
@@ -99,19 +102,19 @@ fn faces_with_a_common_corner_meet_only_there() {
 }
 
 #[test]
-fn faces_with_a_common_side_do_not_fold_and_are_not_slivers() {
-    for (mesh, least_cosine, least_height) in [(&*HARE, 0.4, 0.2), (&*SERPENT, 0.9, 0.15)] {
+fn faces_do_not_fold_and_are_not_slivers() {
+    for (mesh, min_cosine, min_height) in [(&*HARE, 0.4, 0.2), (&*SERPENT, 0.9, 0.15)] {
         let normals: Vec<DVec3> = corners(mesh).map(|[a, b, c]| (b - a).cross(c - a).normalize()).collect();
-        let right = edges(mesh);
-        let cosine = right
+        let face_of = edges(mesh);
+        let cosine = face_of
             .iter()
-            .map(|((a, b), face)| normals[*face].dot(normals[right[&(*b, *a)]]))
+            .map(|((a, b), face)| normals[*face].dot(normals[face_of[&(*b, *a)]]))
             .fold(1.0, f64::min);
-        assert!(cosine > least_cosine, "{cosine}");
+        assert!(cosine > min_cosine, "{cosine}");
         for [a, b, c] in corners(mesh) {
             let longest = (b - a).length().max((c - b).length()).max((a - c).length());
             let height = (b - a).cross(c - a).length() / longest;
-            assert!(height > least_height * longest, "{a} {b} {c}: {}", height / longest);
+            assert!(height > min_height * longest, "{a} {b} {c}: {}", height / longest);
         }
     }
 }
@@ -130,7 +133,7 @@ fn the_serpent_nearly_touches_itself_in_many_places() {
     for pair in rings.windows(2) {
         arc.push(arc[arc.len() - 1] + pair[0].0.distance(pair[1].0));
     }
-    // Half a turn of the narrowest coil is 0.55: nearer along the body than 0.5 is the same coil.
+    // Half a turn of the narrowest coil has length 0.55, so points within 0.5 along the body are on the same coil.
     let gap_of = |i: usize| {
         let others = (0..rings.len()).filter(|j| (arc[i] - arc[*j]).abs() > 0.5);
         others
@@ -139,17 +142,17 @@ fn the_serpent_nearly_touches_itself_in_many_places() {
             / rings[i].1
     };
     let gaps: Vec<f64> = (0..rings.len()).map(gap_of).collect();
-    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!((0.1..0.2).contains(&least), "{least}");
-    let near = gaps.iter().filter(|g| **g < 0.5).count();
-    assert!(near > 500, "{near} of {} rings", gaps.len());
-    let places = gaps.windows(3).filter(|g| g[1] < 0.3 && g[1] < g[0] && g[1] <= g[2]).count();
-    assert!(places >= 15, "{places}");
+    let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((0.1..0.2).contains(&smallest), "{smallest}");
+    let close = gaps.iter().filter(|g| **g < 0.5).count();
+    assert!(close > 500, "{close} of {} rings", gaps.len());
+    let minima = gaps.windows(3).filter(|g| g[1] < 0.3 && g[1] < g[0] && g[1] <= g[2]).count();
+    assert!(minima >= 15, "{minima}");
 }
 
-/// The same numbers on every machine: a hash of all bits, so a change of the shapes shows as well.
+/// A hash of all bits detects changes of the shapes and differences between machines.
 #[test]
-fn the_same_bits_everywhere() {
+fn shapes_have_the_same_bits_on_every_machine() {
     assert_eq!(hash(&HARE), 0x3287_4db3_26b5_c9d2, "{:#018x}", hash(&HARE));
     assert_eq!(hash(&SERPENT), 0x01c7_4e45_88cc_bda1, "{:#018x}", hash(&SERPENT));
     assert_eq!(*HARE, shapes::hare());
@@ -166,14 +169,14 @@ fn corners(mesh: &TriMesh) -> impl Iterator<Item = [DVec3; 3]> {
     mesh.faces().iter().map(|f| f.map(|v| mesh.rest_positions()[v as usize]))
 }
 
-/// For each edge in its direction, the face to the left.
+/// Returns the face to the left of each directed edge.
 fn edges(mesh: &TriMesh) -> HashMap<(u32, u32), usize> {
     let sides =
         |(face, [a, b, c]): (usize, &[u32; 3])| [((*a, *b), face), ((*b, *c), face), ((*c, *a), face)];
     mesh.faces().iter().enumerate().flat_map(sides).collect()
 }
 
-/// The corner of a face besides a and b.
+/// Returns the corner of a face other than a and b.
 fn opposite(mesh: &TriMesh, face: usize, a: u32, b: u32) -> u32 {
     mesh.faces()[face].into_iter().find(|v| *v != a && *v != b).expect("three corners")
 }

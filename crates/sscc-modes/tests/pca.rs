@@ -1,4 +1,4 @@
-//! Principal components of animations that are known to be of low rank.
+//! Principal components of animations of known low rank.
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,7 +12,7 @@ use sscc_modes::{Pca, pca_modes};
 
 const VERTICES: usize = 40;
 
-/// A strip of triangles; its last vertex is used by none.
+/// A strip of triangles; no triangle uses its last vertex.
 fn strip() -> TriMesh {
     let positions = (0..VERTICES).map(|i| DVec3::new(i as f64, (i % 2) as f64, 0.0)).collect();
     let faces = (0..VERTICES as u32 - 3).map(|i| [i, i + 1, i + 2]).collect();
@@ -39,7 +39,7 @@ fn frames() -> Vec<Vec<DVec3>> {
         .to_vec()
 }
 
-/// The coordinates of a frame: modes are orthogonal, with their deviations as lengths.
+/// Returns the coordinates of a frame: modes are orthogonal, and their lengths are the deviations.
 fn coordinates(pca: &Pca, frame: &[DVec3]) -> Vec<f64> {
     let rank = pca.modes.rank();
     let dot = |k: usize| -> f64 {
@@ -50,7 +50,7 @@ fn coordinates(pca: &Pca, frame: &[DVec3]) -> Vec<f64> {
 }
 
 #[test]
-fn known_components_are_found() {
+fn known_components_are_recovered() {
     for rank in [None, Some(2)] {
         let pca = pca_modes(&strip(), &frames(), rank, &()).unwrap();
         assert_eq!((pca.modes.rank(), pca.mesh.faces()), (2, strip().faces()));
@@ -92,7 +92,7 @@ fn every_frame_is_recovered_from_all_components() {
     assert_eq!(pca_modes(&strip(), &frames, Some(8), &()).unwrap(), pca);
     assert_eq!(
         pca_modes(&strip(), &frames, Some(9), &()).unwrap_err().to_string(),
-        "9 components were asked for, but the frames differ in 8 independent ways: ask for at most that many"
+        "9 components were requested, but the frames have 8 independent directions: request at most that many"
     );
 }
 
@@ -110,7 +110,7 @@ fn the_range_of_numbers_does_not_matter() {
 }
 
 #[test]
-fn frames_without_components_are_refused() {
+fn frames_without_components_are_rejected() {
     let message =
         |frames: &[Vec<DVec3>], rank| pca_modes(&strip(), frames, rank, &()).unwrap_err().to_string();
     let frame = frames().remove(0);
@@ -120,7 +120,7 @@ fn frames_without_components_are_refused() {
         message(&[frame.clone(), frame.clone(), frame.clone()], Some(1))
             .starts_with("all 3 frames are equal")
     );
-    // Only a vertex that no face uses moves; or nothing but the last bit does.
+    // Only an unused vertex moves, or only the last bit of a coordinate.
     let mut unused = frame.clone();
     unused[VERTICES - 1] += DVec3::ONE;
     assert!(message(&[frame.clone(), unused], None).starts_with("all 2 frames are equal"));
@@ -135,5 +135,5 @@ fn frames_without_components_are_refused() {
     nan[5].z = f64::NAN;
     assert!(message(&[frame.clone(), nan], None).starts_with("vertex 5 of frame 1 (counted from 0)"));
     assert!(message(&frames(), Some(0)).contains("no modes"));
-    assert!(message(&frames(), Some(3)).contains("differ in 2 independent ways"));
+    assert!(message(&frames(), Some(3)).contains("have 2 independent directions"));
 }

@@ -1,4 +1,4 @@
-//! Polynomial modes: how many, orthonormal, free of rigid motions, complete, and stable.
+//! Polynomial modes are orthonormal, complete and reproducible, without rigid motions.
 
 mod common;
 
@@ -12,7 +12,7 @@ fn dot(areas: &[f64], f: impl Fn(usize) -> DVec3, g: impl Fn(usize) -> DVec3) ->
     areas.iter().enumerate().map(|(v, area)| area * f(v).dot(g(v))).sum()
 }
 
-/// Checks what holds for every surface; gives the number of modes.
+/// Checks the properties for every surface; returns the number of modes.
 fn check(name: &str, mesh: &TriMesh) -> usize {
     let modes = polynomial_modes(mesh).unwrap_or_else(|e| panic!("{name}: {e}"));
     let areas = vertex_areas(mesh);
@@ -32,16 +32,16 @@ fn check(name: &str, mesh: &TriMesh) -> usize {
         for axis in DVec3::AXES {
             let rotation = |v: usize| axis.cross(p[v] - centre);
             let size = dot(&areas, rotation, rotation).sqrt();
-            let turned = dot(&areas, mode(i), rotation) / size;
+            let rotated = dot(&areas, mode(i), rotation) / size;
             let shifted = dot(&areas, mode(i), |_| axis) / total.sqrt();
-            assert!(turned.abs() < 1e-11 && shifted.abs() < 1e-12, "{name}: {i}: {turned:e} {shifted:e}");
+            assert!(rotated.abs() < 1e-11 && shifted.abs() < 1e-12, "{name}: {i}: {rotated:e} {shifted:e}");
         }
     }
     check_complete(name, mesh, &modes, centre);
     modes.rank()
 }
 
-/// Every quadratic field is a sum of rigid motions and modes.
+/// Checks that every quadratic field is a sum of rigid motions and modes.
 fn check_complete(name: &str, mesh: &TriMesh, modes: &Modes, centre: DVec3) {
     let areas = vertex_areas(mesh);
     let p: Vec<DVec3> = mesh.rest_positions().iter().map(|p| *p - centre).collect();
@@ -57,7 +57,7 @@ fn check_complete(name: &str, mesh: &TriMesh, modes: &Modes, centre: DVec3) {
             .collect();
         let mut rest = field.clone();
         let norm = dot(&areas, |v| field[v], |v| field[v]).sqrt();
-        // Many sweeps of single projections: the rigid motions are not orthogonal to one another.
+        // Many sweeps of projections are needed, because the rigid motions are not orthogonal to each other.
         for _ in 0..200 {
             for k in 0..6 + modes.rank() {
                 let basis = |v: usize| match k {
@@ -87,13 +87,13 @@ fn general_surfaces_have_24_modes() {
 }
 
 #[test]
-fn special_surfaces_have_fewer() {
+fn special_surfaces_have_fewer_modes() {
     let tilt = |p: DVec3| DVec3::new(0.6 * p.x - 0.3 * p.y, 0.8 * p.y + 0.1 * p.x, 0.7 * p.x + 0.2 * p.y);
     assert_eq!(check("plane", &plane()), 12);
     assert_eq!(check("tilted plane", &moved(&plane(), tilt)), 12);
     let far = moved(&plane(), |p| tilt(p) + DVec3::new(1e6, -2e6, 3e6));
     assert_eq!(polynomial_modes(&far).unwrap().rank(), 12);
-    // xx + yy + zz is constant on the sphere: three fields fewer.
+    // xx + yy + zz is constant on the sphere, which removes three fields.
     assert_eq!(check("sphere", &sphere()), 21);
     let corners = vec![DVec3::new(0.3, 0.1, 2.0), DVec3::new(1.0, 0.2, 1.0), DVec3::new(-0.4, 1.5, 0.0)];
     assert_eq!(check("triangle", &TriMesh::new(corners, vec![[0, 1, 2]]).unwrap()), 3);
@@ -112,7 +112,7 @@ fn stretch_and_shear_come_first() {
         |p| DVec3::new(p.z, 0.0, p.x),
         |p| DVec3::new(p.y, p.x, 0.0),
     ];
-    // On a cube the six are orthogonal to one another and to rotations: the modes are these very fields.
+    // On a cube the six fields are orthogonal to each other and to rotations, so they are the modes up to scale.
     let at = p.iter().position(|p| *p == DVec3::ONE).unwrap();
     for (k, field) in linear.into_iter().enumerate() {
         let factor = modes.of_vertex(at as u32)[k].length() / field(DVec3::ONE).length();
@@ -149,26 +149,26 @@ fn unused_vertices_follow_the_polynomial() {
     assert_eq!(more.displacements()[..used * 24], *modes.displacements());
     assert_eq!(more.of_vertex(used as u32), modes.of_vertex(3));
 
-    // So far away that its displacement leaves the range of numbers: refused by name, no panic.
+    // A vertex so far away that its displacement is out of range gives an error with its number.
     positions[used + 1] = DVec3::splat(1e60);
     let refused = polynomial_modes(&TriMesh::new(positions, mesh.faces().to_vec()).unwrap());
     assert!(matches!(refused, Err(ModesError::Core(Error::ModeEntry { vertex, .. })) if vertex == used + 1));
 }
 
 #[test]
-fn surfaces_without_area_or_lost_in_rounding_are_refused() {
+fn surfaces_without_area_or_too_far_from_the_origin_are_rejected() {
     let flat = |p: DVec3| DVec3::new(p.x, 0.0, 0.0);
     assert_eq!(polynomial_modes(&moved(&bumpy(1), flat)), Err(ModesError::NoArea));
     assert_eq!(polynomial_modes(&moved(&bumpy(1), |_| DVec3::ONE)), Err(ModesError::NoArea));
     let far = polynomial_modes(&moved(&bumpy(1), |p| p + DVec3::splat(1e15)));
-    assert!(matches!(far, Err(ModesError::Lost { .. })), "{far:?}");
-    // A surface whose triangles are all nearly on one line still has modes, and none is NaN.
+    assert!(matches!(far, Err(ModesError::TooFarFromOrigin { .. })), "{far:?}");
+    // A surface with all triangles nearly on one line still has modes without NaN.
     let line = polynomial_modes(&moved(&bumpy(1), |p| DVec3::new(p.x, p.x * 0.7 + 1e-14 * p.y, p.x * 0.1)));
     assert!(line.unwrap().rank() >= 1);
 }
 
 #[test]
-fn the_same_bits_every_time() {
+fn modes_have_the_same_bits_on_every_machine() {
     let mesh = spring();
     let modes = polynomial_modes(&mesh).unwrap();
     assert_eq!(modes, polynomial_modes(&mesh).unwrap());

@@ -1,17 +1,17 @@
-//! Modes of soft and stiff, light and heavy, small and large bodies: frequencies go as `sqrt(E / density) / size`.
+//! Frequencies scale as `sqrt(E / density) / size`, from soft to stiff, light to heavy and small to large bodies.
 
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc_modes::shapes::spring_of;
-use sscc_modes::{Embedded, SolidModes, linear_modes, nonlinear_modes};
+use sscc_modes::{EmbeddedSurface, SolidModes, linear_modes, nonlinear_modes};
 use sscc_solid::{Material, PartialMaterial, Solid};
 
-/// What Young's modulus, density and size are multiplied by.
+/// Factors of Young's modulus, density and size.
 type Factors = [f64; 3];
 
-/// How much higher frequencies are then.
+/// Returns the expected factor of frequencies.
 fn expected([youngs, density, size]: Factors) -> f64 {
     (youngs / density).sqrt() / size
 }
@@ -24,19 +24,20 @@ fn scaled([youngs, density, _]: Factors) -> Material {
     Material::new(&known).unwrap()
 }
 
-/// A coarse spring in a coarse lattice: so many modes that faer divides and conquers (128 rows).
+/// Returns the frequencies of a coarse spring in a coarse lattice, with enough modes for faer's divide and conquer (128
+/// rows).
 fn spring(factors: Factors, rank: usize) -> Vec<f64> {
     let mesh = spring_of(120, 6);
     let positions = mesh.rest_positions().iter().map(|p| *p * factors[2]).collect();
     let mesh = TriMesh::new(positions, mesh.faces().to_vec()).unwrap();
-    let body = Embedded::new(&mesh, Some(10), scaled(factors), &()).unwrap();
+    let body = EmbeddedSurface::new(&mesh, Some(10), scaled(factors), &()).unwrap();
     linear_modes(body.solid(), &[], rank, &()).unwrap().frequencies()
 }
 
 #[test]
 fn frequencies_scale_over_twelve_orders_of_magnitude() {
     let usual = spring([1.0; 3], 60);
-    // Steel, and factors from a millionth to a million, one at a time.
+    // Steel, a small body, and factors from 1e-6 to 1e6, one at a time.
     let mut cases = vec![[2e5, 7.85, 1.0], [1.0, 1.0, 0.01]];
     for at in 0..3 {
         for factor in [1e-6, 1e6] {
@@ -53,7 +54,7 @@ fn frequencies_scale_over_twelve_orders_of_magnitude() {
     }
 }
 
-/// A bar of 1 x 0.2 x 0.1 times its size.
+/// Returns a bar of 1 x 0.2 x 0.1 times its size.
 fn bar(factors: Factors) -> Solid {
     let (cells, corners) = ([12, 3, 2], [[0, 0], [1, 0], [1, 1], [0, 1]]);
     let index = |p: [usize; 3]| (p[0] + 13 * (p[1] + 4 * p[2])) as u32;
@@ -69,10 +70,9 @@ fn bar(factors: Factors) -> Solid {
     Solid::uniform(vertices, vec![], cubes, scaled(factors)).unwrap()
 }
 
-/// Factors that are powers of four round nothing, so that nothing but a tolerance that is not relative can change the
-/// result.
+/// Factors that are powers of four cause no rounding, so only an absolute tolerance can change the result.
 #[test]
-fn powers_of_four_change_no_bit() {
+fn powers_of_four_scale_results_exactly() {
     let modes = |factors: Factors, rank: usize| {
         let bar = bar(factors);
         (linear_modes(&bar, &[], 60, &()).unwrap(), nonlinear_modes(&bar, &[], rank, &()).unwrap())

@@ -1,4 +1,4 @@
-//! The embedded spring is the mesh it promises to be.
+//! The spring has the documented properties.
 
 use std::collections::HashMap;
 
@@ -49,7 +49,7 @@ fn outward_and_of_the_right_size() {
     let mesh = spring();
     let p = mesh.rest_positions();
     let volume: f64 = corners(&mesh).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
-    // The polygon of 16 corners in a circle of the tube's radius, times the length of the centreline.
+    // Area of the 16-gon in a circle of the tube's radius, times the length of the centreline.
     let rings: Vec<DVec3> =
         p.chunks_exact(AROUND).map(|ring| ring.iter().sum::<DVec3>() / AROUND as f64).collect();
     let length: f64 = (0..rings.len()).map(|i| (rings[i] - rings[(i + 1) % rings.len()]).length()).sum();
@@ -74,17 +74,17 @@ fn neighbouring_coils_are_one_tube_radius_apart() {
     let mesh = spring();
     let p = mesh.rest_positions();
     let rings = p.len() / AROUND;
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     for (i, a) in p.iter().enumerate() {
         for (j, b) in p.iter().enumerate().skip(i) {
             let along = (j - i) / AROUND;
-            // 16 rings are 12 tube radii of arc: closer than that is the same coil.
+            // 16 rings are 12 tube radii of arc; closer vertices are on the same coil.
             if (16..=rings - 16).contains(&along) {
-                least = least.min(a.distance_squared(*b));
+                smallest = smallest.min(a.distance_squared(*b));
             }
         }
     }
-    let gap = least.sqrt() / TUBE_RADIUS;
+    let gap = smallest.sqrt() / TUBE_RADIUS;
     assert!((0.9..1.15).contains(&gap), "{gap} tube radii");
 }
 
@@ -93,17 +93,17 @@ fn no_self_intersection_at_rest() {
     let mesh = spring();
     let (tested, intersecting) = self_intersections(&mesh);
     assert_eq!(intersecting, 0);
-    assert!(tested > 2_000, "{tested} pairs had overlapping boxes");
+    assert!(tested > 2_000, "{tested} pairs had overlapping AABBs");
 
-    // The test sees intersections where there are some: one half of the spring folded onto the other.
+    // The test finds intersections in a spring with one half folded onto the other.
     let folded = mesh.rest_positions().iter().map(|p| DVec3::new(p.x.abs(), p.y, p.z)).collect();
     let (_, intersecting) = self_intersections(&TriMesh::new(folded, mesh.faces().to_vec()).unwrap());
     assert!(intersecting > 100, "{intersecting}");
 }
 
-/// The same numbers on every machine: sums of all bits, so a change of the shape shows as well.
+/// A hash of all bits detects changes of the shape and differences between machines.
 #[test]
-fn the_same_bits_everywhere() {
+fn the_spring_has_the_same_bits_on_every_machine() {
     let mesh = spring();
     let hash = mesh
         .rest_positions()
@@ -118,7 +118,7 @@ fn corners(mesh: &TriMesh) -> impl Iterator<Item = [DVec3; 3]> {
     mesh.faces().iter().map(|f| f.map(|v| mesh.rest_positions()[v as usize]))
 }
 
-/// The number of pairs of non-adjacent triangles with overlapping boxes, and how many of them intersect.
+/// Returns the number of pairs of non-adjacent triangles with overlapping AABBs, and how many of them intersect.
 fn self_intersections(mesh: &TriMesh) -> (usize, usize) {
     let faces: Vec<[DVec3; 3]> = corners(mesh).collect();
     let boxes: Vec<(DVec3, DVec3)> =
@@ -128,8 +128,8 @@ fn self_intersections(mesh: &TriMesh) -> (usize, usize) {
     let (mut tested, mut intersecting) = (0, 0);
     for (at, &i) in order.iter().enumerate() {
         for &j in order[at + 1..].iter().take_while(|j| boxes[**j].0.z <= boxes[i].1.z) {
-            let apart = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
-            if !apart && !mesh.are_adjacent(i as u32, j as u32) {
+            let is_disjoint = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
+            if !is_disjoint && !mesh.are_adjacent(i as u32, j as u32) {
                 tested += 1;
                 let meet = edges_meet(faces[i], faces[j]) || edges_meet(faces[j], faces[i]);
                 intersecting += usize::from(meet);
@@ -139,8 +139,8 @@ fn self_intersections(mesh: &TriMesh) -> (usize, usize) {
     (tested, intersecting)
 }
 
-/// Whether an edge of `a` meets the triangle `b`, touching included. Signs are exact; a segment in the
-/// plane of the triangle may count as meeting it even when it does not.
+/// Whether an edge of `a` meets the triangle `b`, touching included. Signs are exact. A segment in the plane of the
+/// triangle may be reported although it does not meet the triangle.
 fn edges_meet(a: [DVec3; 3], b: [DVec3; 3]) -> bool {
     let side = |p: DVec3, q: DVec3, r: DVec3, s: DVec3| {
         let [p, q, r, s] = [p, q, r, s].map(|x| Coord3D { x: x.x, y: x.y, z: x.z });

@@ -1,4 +1,4 @@
-//! Reduced stiffness matrices: right when made here, and refused when they cannot be one.
+//! Reduced stiffness matrices are correct and symmetric, and invalid ones are rejected.
 
 #[allow(dead_code)] // other tests use the rest
 mod common;
@@ -12,7 +12,7 @@ use sscc_modes::{ModesError, diagonalize, reduced_stiffness};
 use sscc_solid::SolidError;
 
 #[test]
-fn a_reduced_stiffness_is_symmetric_and_right() {
+fn a_reduced_stiffness_is_symmetric_and_correct() {
     let mut random = Random(9);
     let modes = random_modes(&mut random, 4, 5);
     let full = with_spectrum(&mut random, &(1..=12).map(f64::from).collect::<Vec<_>>());
@@ -24,26 +24,29 @@ fn a_reduced_stiffness_is_symmetric_and_right() {
         let wanted = dot(&column(at / 5), &times(&full, &column(at % 5)));
         assert!((x - wanted).abs() < 1e-12, "{at}: {x} {wanted}");
     }
-    let crooked = reduced_stiffness(&modes, |u, force| {
+    let asymmetric = reduced_stiffness(&modes, |u, force| {
         force.fill(0.0);
         force[0] = u[1];
     });
-    assert!(matches!(crooked, Err(ModesError::Solid(SolidError::StiffnessAsymmetric { .. }))), "{crooked:?}");
-    let broken = reduced_stiffness(&modes, |_, force| force.fill(f64::NAN));
     assert!(
-        matches!(broken, Err(ModesError::Solid(SolidError::StiffnessEntry { row: 0, column: 0, .. }))),
-        "{broken:?}"
+        matches!(asymmetric, Err(ModesError::Solid(SolidError::StiffnessAsymmetric { .. }))),
+        "{asymmetric:?}"
+    );
+    let nan = reduced_stiffness(&modes, |_, force| force.fill(f64::NAN));
+    assert!(
+        matches!(nan, Err(ModesError::Solid(SolidError::StiffnessEntry { row: 0, column: 0, .. }))),
+        "{nan:?}"
     );
 }
 
 #[test]
-fn rounding_is_allowed_and_evened_out() {
+fn asymmetry_by_rounding_is_removed() {
     let modes = random_modes(&mut Random(10), 2, 2);
     let found = diagonalize(&modes, &stiffness(2, &[2.0, 1.0 + 1e-12, 1.0 - 1e-12, 2.0])).unwrap();
     assert_eq!(found, diagonalize(&modes, &stiffness(2, &[2.0, 1.0, 1.0, 2.0])).unwrap());
-    for slightly in [1e-13, -1e-13] {
+    for noise in [1e-13, -1e-13] {
         assert_eq!(
-            diagonalize(&modes, &stiffness(2, &diagonal(&[slightly, 1.0]))).unwrap().eigenvalues,
+            diagonalize(&modes, &stiffness(2, &diagonal(&[noise, 1.0]))).unwrap().eigenvalues,
             [0.0, 1.0]
         );
     }
@@ -52,7 +55,7 @@ fn rounding_is_allowed_and_evened_out() {
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_matrices_are_rejected() {
     let modes = random_modes(&mut Random(11), 2, 2);
     let error = |entries: &[f64]| {
         let error = diagonalize(&modes, &stiffness(2, entries)).unwrap_err();
@@ -69,7 +72,7 @@ fn what_is_refused() {
     assert!(matches!(error(&[1.0, 2.0, 2.0, 1.0]), ModesError::StiffnessIndefinite { .. }));
     assert!(matches!(error(&[-1.0, 0.0, 0.0, -2.0]), ModesError::StiffnessIndefinite { .. }));
 
-    // Rotated, these entries of modes leave the range.
+    // The rotated entries of these modes are out of range.
     let huge = Modes::from_matrix(1, 2, |_, _| sscc::limits::LARGEST).unwrap();
     let error = diagonalize(&huge, &stiffness(2, &[2.0, -1.0, -1.0, 2.0])).unwrap_err();
     assert!(matches!(error, ModesError::Core(sscc::Error::ModeEntry { .. })), "{error}");

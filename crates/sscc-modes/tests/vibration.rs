@@ -1,4 +1,4 @@
-//! Natural vibrations against closed forms, and bodies that have none.
+//! Natural vibrations match closed forms, and bodies without a spectrum are rejected.
 
 #![allow(clippy::unwrap_used)]
 
@@ -17,7 +17,7 @@ const STEEL: Material = {
     }
 };
 
-/// A bar of cubes from the origin.
+/// Returns a bar of cubes from the origin.
 fn bar(size: DVec3, cells: [usize; 3], material: Material) -> Solid {
     let [nx, ny, nz] = cells;
     let index = |x: usize, y: usize, z: usize| (x + (nx + 1) * (y + (ny + 1) * z)) as u32;
@@ -39,7 +39,7 @@ fn bar(size: DVec3, cells: [usize; 3], material: Material) -> Solid {
     Solid::uniform(vertices, vec![], cubes, material).unwrap()
 }
 
-/// The same, each cube cut into six tetrahedra.
+/// Returns the same bar with each cube split into six tetrahedra.
 fn bar_of_tets(size: DVec3, cells: [usize; 3], material: Material) -> Solid {
     let solid = bar(size, cells, material);
     let paths = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
@@ -47,14 +47,14 @@ fn bar_of_tets(size: DVec3, cells: [usize; 3], material: Material) -> Solid {
     Solid::uniform(solid.vertices().to_vec(), tets, vec![], material).unwrap()
 }
 
-/// Bending and longitudinal frequencies (Hz) of a slender bar of length 1, by the root of its bending equation.
-fn closed_forms(root: f64, thickness: f64) -> f64 {
+/// Returns the bending frequency (Hz) of a slender bar of length 1, from the root of its bending equation.
+fn bending_frequency(root: f64, thickness: f64) -> f64 {
     root * root / TAU * (STEEL.youngs_modulus() * thickness * thickness / 12.0 / STEEL.density()).sqrt()
 }
 
 #[test]
-fn bars_sound_as_closed_forms_say() {
-    // Slender, so that shear and rotary inertia lower the first bending frequency by 0.6% (free), 0.2% (clamped) only.
+fn frequencies_of_bars_match_closed_forms() {
+    // Shear and rotary inertia lower the first bending frequency of this slender bar by 0.6% (free) or 0.2% (clamped).
     let thickness = 0.05;
     let size = DVec3::new(1.0, thickness, thickness);
     let longitudinal = (STEEL.youngs_modulus() / STEEL.density()).sqrt();
@@ -67,13 +67,13 @@ fn bars_sound_as_closed_forms_say() {
                 .collect();
             let modes = linear_modes(&solid, &fixed, 10, &()).unwrap();
             let found = modes.frequencies();
-            // Equal bending along y and z: twice the same frequency.
+            // Bending along y and z has the same frequency.
             assert!((found[0] / found[1] - 1.0).abs() < 1e-6, "{found:?}");
-            errors.push(found[0] / closed_forms(root, thickness) - 1.0);
+            errors.push(found[0] / bending_frequency(root, thickness) - 1.0);
             let nearest = found.iter().map(|f| (f / (axial * longitudinal) - 1.0).abs()).fold(1.0, f64::min);
             assert!(nearest < 2e-3, "axial: {nearest}");
         }
-        // Cubes are too stiff in bending, by the square of their size: 22%, 5.3%, 1%.
+        // Cubes are too stiff in bending, with an error proportional to the square of their size: 22%, 5.3%, 1%.
         let [one, two, four] = errors[..] else { panic!() };
         assert!(
             one < 0.25 && two < 0.07 && two < one / 3.0 && four < two / 3.0 && four > -0.01,
@@ -94,7 +94,7 @@ fn tetrahedra_and_cubes_agree() {
 }
 
 #[test]
-fn the_nonlinear_basis_holds_the_lowest_modes() {
+fn the_nonlinear_basis_contains_the_lowest_modes() {
     let solid = bar(DVec3::new(1.0, 0.2, 0.1), [12, 3, 2], Material::default());
     let fixed: Vec<u32> =
         (0..solid.vertices().len() as u32).filter(|v| solid.vertices()[*v as usize].x == 0.0).collect();
@@ -112,17 +112,17 @@ fn the_nonlinear_basis_holds_the_lowest_modes() {
 }
 
 #[test]
-fn bodies_without_a_spectrum_are_refused() {
+fn bodies_without_a_spectrum_are_rejected() {
     let material = Material::default();
     let cube = bar(DVec3::ONE, [1, 1, 1], material);
-    // A second cube that shares an edge (corners 6 and 5) only: a hinge. And one that shares nothing.
+    // A second cube that shares only an edge (corners 6 and 5) is a hinge; another one shares nothing.
     for (shared, expected) in [(true, 7), (false, 12)] {
         let mut vertices = cube.vertices().to_vec();
         let start = vertices.len() as u32;
         vertices.extend(cube.vertices().iter().map(|p| *p + DVec3::new(1.0, 0.0, 1.0)));
         let mut second = cube.cubes()[0].map(|v| v + start);
         if shared {
-            // Its lower left edge is the upper right edge of the first.
+            // Its lower left edge is the upper right edge of the first cube.
             let [_, b, c, ..] = [4, 5, 6, 7].map(|k| cube.cubes()[0][k]);
             second[0] = b;
             second[3] = c;
@@ -144,12 +144,12 @@ fn bodies_without_a_spectrum_are_refused() {
     );
     assert_eq!(
         linear_modes(&cube, &[], 19, &()).unwrap_err(),
-        ModesError::TooManyModes { asked: 19, available: 18 }
+        ModesError::TooManyModes { requested: 19, available: 18 }
     );
     assert_eq!(linear_modes(&cube, &[], 18, &()).unwrap().eigenvalues().len(), 18);
     assert!(matches!(nonlinear_modes(&cube, &[], 19, &()), Err(ModesError::TooManyModes { .. })));
     assert_eq!(nonlinear_modes(&cube, &[], 0, &()), Err(ModesError::Core(sscc::Error::RankZero)));
-    let many = ModesError::NonlinearRank { asked: 101, most: 100 };
+    let many = ModesError::NonlinearRank { requested: 101, max: 100 };
     assert_eq!(nonlinear_modes(&cube, &[], 101, &()), Err(many));
 }
 
@@ -163,9 +163,9 @@ fn one_free_vertex_has_three_modes() {
     assert!(linear_modes(&tet, &[0, 1, 2], 4, &()).is_err());
 }
 
-/// A bar of which one half is stiffer and heavier than the other beyond all measure.
+/// A bar with one half stiffer and heavier by a factor of 1e14 gives an error with the cause.
 #[test]
-fn a_count_that_rounding_hides_is_told_with_its_cause() {
+fn an_uncertain_count_is_an_error_with_its_cause() {
     let one = bar(DVec3::new(5.0, 1.0, 1.0), [30, 5, 5], Material::default());
     let usual = Material::default();
     let (youngs_modulus, density) = (Some(1e14 * usual.youngs_modulus()), Some(1e14 * usual.density()));

@@ -1,4 +1,4 @@
-//! Errors of models, scenes and simulations: one line each, with the file, the place and the cause.
+//! Errors of models, scenes and simulations: one line each, which names the file, the place and the cause.
 
 use std::fmt::Display;
 use std::io;
@@ -12,26 +12,26 @@ use sscc_solid::{MaterialError, SolidError};
 /// The result of a function of this crate.
 pub(crate) type Result<T, E = SimError> = std::result::Result<T, E>;
 
-/// Something that could not be read, made, simulated or written.
+/// Error of a model, a scene, a simulation or a file; its message is one line.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// The core refused, or the caller's progress cancelled.
+    /// Error of the core, or cancellation by the caller's progress.
     #[error(transparent)]
     Core(#[from] sscc::Error),
-    /// No modes could be made.
+    /// Error of the computation of modes.
     #[error(transparent)]
     Modes(#[from] ModesError),
-    /// A solid or its material was refused.
+    /// Error of a solid or its material.
     #[error(transparent)]
     Solid(#[from] SolidError),
-    /// A world of bodies was refused.
+    /// Error of a world of bodies.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
-    /// A file could not be read, understood or written.
+    /// Error of a file: it cannot be read or written, or its content is invalid.
     #[error(transparent)]
     File(#[from] IoError),
-    /// The system refused.
+    /// Error of the operating system.
     #[error("{place}: {cause}")]
     System {
         /// The file or folder.
@@ -39,14 +39,14 @@ pub enum SimError {
         /// The system's error.
         cause: io::Error,
     },
-    /// A scene file is wrong at a line.
+    /// A scene file has an error in a line.
     #[error("{}: line {line}: {cause}", path.display())]
     Scene {
         /// The scene file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The error.
         cause: String,
     },
     /// A request that cannot be fulfilled.
@@ -54,7 +54,7 @@ pub enum SimError {
     Refused {
         /// The file, the key or the part at fault.
         place: String,
-        /// What is wrong, and the way out.
+        /// The error, and the way out.
         cause: String,
     },
     /// Another error, with its place.
@@ -65,10 +65,10 @@ pub enum SimError {
         /// The error there.
         error: Box<SimError>,
     },
-    /// A motion left the range of numbers.
+    /// A motion diverged.
     #[error(
         "step {step} ({time:.4} s): the motion of body {body} (counted from 0) diverges (energy {energy:.3e} J){cause}; \
-         take more steps in a second, or more damping"
+         use more steps per second, or more damping"
     )]
     Diverged {
         /// The step.
@@ -83,25 +83,25 @@ pub enum SimError {
         cause: String,
     },
     /// A simulation was cancelled; its states until then are kept.
-    #[error("interrupted after {steps} steps; the same command goes on from there")]
+    #[error("interrupted after {steps} steps; the same command continues from there")]
     Interrupted {
         /// States in the folder.
         steps: usize,
     },
     /// A simulation ended early; its states until then are kept.
-    #[error("{failure}; what was simulated until then is in {}{}", folder.display(), in_parentheses(unwritten))]
+    #[error("{failure}; the states until then are in {}{}", folder.display(), in_parentheses(unwritten))]
     EndedEarly {
-        /// Why it ended.
+        /// Cause of the end.
         failure: Box<SimError>,
         /// The folder of its files.
         folder: PathBuf,
-        /// Why some file was not written.
+        /// Error of a file that was not written.
         unwritten: Option<Box<SimError>>,
     },
 }
 
 impl SimError {
-    /// Refuses a request: the part at fault, and what is wrong with it.
+    /// Returns a [`SimError::Refused`] with the part at fault and the cause.
     pub fn refused(place: impl Display, cause: impl Into<String>) -> Self {
         Self::Refused { place: place.to_string(), cause: cause.into() }
     }
@@ -110,12 +110,12 @@ impl SimError {
         Self::System { place: path.display().to_string(), cause }
     }
 
-    /// This error with its place; a cancellation stays as it is.
+    /// Returns this error with a place. A cancellation is returned unchanged.
     pub fn at(self, place: impl Into<String>) -> Self {
         if self.is_cancelled() { self } else { Self::At { place: place.into(), error: Box::new(self) } }
     }
 
-    /// Whether the caller's progress cancelled.
+    /// Whether the error is a cancellation by the caller's progress.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Self::Core(error)
@@ -126,7 +126,7 @@ impl SimError {
         }
     }
 
-    /// The error of a file, where that is the cause.
+    /// Returns the error of a file if that is the cause.
     pub fn file(&self) -> Option<&IoError> {
         match self {
             Self::File(error) => Some(error),
@@ -135,7 +135,7 @@ impl SimError {
         }
     }
 
-    /// Whether the system refused.
+    /// Whether the cause is an error of the operating system.
     pub fn is_system(&self) -> bool {
         match self {
             Self::System { .. } => true,
@@ -155,11 +155,12 @@ impl From<MaterialError> for SimError {
     }
 }
 
-/// Adds the place to errors; a cancellation stays as it is.
+/// Adds a place to errors; cancellations stay unchanged.
 pub(crate) trait At<T> {
+    /// Adds a place.
     fn at(self, place: impl FnOnce() -> String) -> Result<T, SimError>;
 
-    /// As [`At::at`]; errors of readers and writers name their file already.
+    /// Adds a file as the place, except to errors of readers and writers, which name their file already.
     fn in_file(self, path: &Path) -> Result<T, SimError>;
 }
 
@@ -176,7 +177,7 @@ impl<T, E: Into<SimError>> At<T> for Result<T, E> {
     }
 }
 
-/// The system's refusals, with the file.
+/// Adds the file to errors of the operating system.
 pub(crate) trait InSystem<T> {
     fn system(self, path: &Path) -> Result<T, SimError>;
 }

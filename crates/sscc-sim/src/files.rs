@@ -1,4 +1,4 @@
-//! The files of a simulation beside its states.
+//! Names and removal of the files that a simulation writes beside its states.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{InSystem, Result};
 
-/// The files that a simulation writes into its folder, in this order.
+/// Files that a simulation writes into its folder, in this order.
 pub const OUTPUT_FILES: [&str; 7] = [
     "summary.json",
     "report.html",
@@ -17,12 +17,12 @@ pub const OUTPUT_FILES: [&str; 7] = [
     "sound_float.wav",
 ];
 
-/// Removes the files of an earlier simulation, so that none of them is taken for one of the new simulation.
+/// Removes the files of an earlier simulation, so that a user cannot mistake them for files of the new one.
 pub fn remove_outputs(folder: &Path) -> Result<()> {
     OUTPUT_FILES.iter().try_for_each(|name| remove_file(&folder.join(name)))
 }
 
-/// Removes a file, if it is there.
+/// Removes a file if it exists.
 pub fn remove_file(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error).system(path),

@@ -30,7 +30,7 @@ mod watch;
 pub use error::SimError;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
-    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIALS_ARE_FREE, SolidFacts, SolidSource,
+    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,
     elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model,
 };
 pub use nearest::nearest;

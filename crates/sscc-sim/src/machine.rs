@@ -4,7 +4,7 @@ use std::env::consts::{ARCH, OS};
 use std::fs;
 use std::thread;
 
-/// Processor, cores, memory, system and compiler, as far as they are known.
+/// Returns processor, cores, memory, system and compiler in one line, without those that are unknown.
 pub fn machine_description() -> String {
     let processor = line_of("/proc/cpuinfo", "model name").unwrap_or_else(|| format!("{ARCH} processor"));
     let cores = available_threads();
@@ -19,22 +19,22 @@ pub fn machine_description() -> String {
     parts.join(", ")
 }
 
-/// Threads that this machine runs at once.
+/// Returns the number of threads that this machine runs at once; 1 if the system does not report it.
 pub fn available_threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// The most memory of this process since a moment (Linux).
+/// Peak memory of this process since [`PeakMemory::start`] (Linux).
 pub struct PeakMemory(());
 
 impl PeakMemory {
-    /// Starts now; none where the system does not tell.
+    /// Starts the measurement. None if the system cannot reset its peak.
     pub fn start() -> Option<Self> {
         // Resets the peak of the kernel (proc(5), clear_refs).
         fs::write("/proc/self/clear_refs", "5").ok().map(|()| Self(()))
     }
 
-    /// The most bytes in memory since [`PeakMemory::start`].
+    /// Returns the peak memory (bytes) since [`PeakMemory::start`].
     pub fn bytes(self) -> Option<u64> {
         line_of("/proc/self/status", "VmHWM").and_then(|text| kibibytes(&text))
     }

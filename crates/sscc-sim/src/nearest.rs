@@ -1,11 +1,11 @@
 //! The nearest known name to a mistyped one.
 
-/// The name with the fewest edits away; the first of several, and none where there are no names.
+/// Returns the name with the smallest edit distance to `typed`, the first of several. None without names.
 pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names.into_iter().min_by_key(|name| edits(typed, name))
 }
 
-/// The number of characters to insert, delete or replace (Levenshtein).
+/// Returns the number of characters to insert, delete or replace (Levenshtein distance).
 fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

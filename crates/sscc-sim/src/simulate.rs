@@ -1,4 +1,4 @@
-//! A simulation from the name of its scene to its states.
+//! Runs a simulation: from the name of its scene to its states.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,16 +12,16 @@ use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, run, tradition
 use crate::scenes::{Scene, read_scene};
 use crate::watch::Watch;
 
-/// A simulation that is requested.
+/// Request for a simulation.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// A scene file, or the name of a scene that comes with the program.
     pub scene: PathBuf,
     /// The folder to write to; none: the scene's name.
     pub out: Option<PathBuf>,
-    /// How many steps to make from the beginning; none: those of the scene.
+    /// Number of steps from the beginning; none: that of the scene.
     pub steps: Option<usize>,
-    /// Begin again, whatever the folder holds.
+    /// Whether to begin again, even if the folder has a checkpoint.
     pub restart: bool,
     /// The folder of the real models; none: the one that the environment variable `SSCC_MODELS` names, if any.
     pub models: Option<PathBuf>,
@@ -31,8 +31,9 @@ pub struct Request {
     pub threads: Option<usize>,
 }
 
-/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the files
-/// of the result. A motion that diverges and a cancellation are no errors but the result's failure: its states are kept.
+/// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the
+/// files of the result. Divergence and cancellation are not errors: [`FinishedRun::failure`] holds them, and the states
+/// are kept.
 ///
 /// # Errors
 /// When the scene or a model cannot be read, the folder cannot be written to, or no step was made.
@@ -52,6 +53,7 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
     pool.install(|| finish(scene, models.as_deref(), &cache, folder, steps, request.restart, watch))
 }
 
+/// Prepares and simulates a scene, then sums up its states.
 fn finish(
     scene: Scene,
     models: Option<&Path>,
@@ -70,7 +72,7 @@ fn finish(
         return Err(failure).at(in_scene);
     }
     let summary = Summary::new(&scene, &prepared, &history, processor_seconds);
-    // Not after a cancellation; and states that diverged may be out of range.
+    // A cancellation skips the comparison. So does a failure: states that diverged may be out of range.
     let traditional = match &failure {
         None => traditional_costs(&scene, &prepared, &history, watch),
         Some(_) => Ok(Vec::new()),
@@ -83,26 +85,26 @@ fn finish(
     Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure })
 }
 
-/// Makes a folder, and refuses one that cannot be written to before any long work.
+/// Makes a folder if it does not exist, and checks that it can be written to. Callers do this before long work.
 ///
 /// # Errors
-/// When the system refuses.
+/// When the folder cannot be made or written to.
 pub fn make_folder(folder: &Path) -> Result<(), SimError> {
     let make = || {
         fs::create_dir_all(folder)?;
         check_writable(folder)
     };
     make().map_err(|cause| SimError::System {
-        place: format!("{}: no folder that can be written to", folder.display()),
+        place: format!("{}: cannot write to this folder", folder.display()),
         cause,
     })
 }
 
-/// The folder that is named after the scene.
+/// Returns the folder that is named after the scene.
 fn own_folder(path: &Path, name: &str) -> Result<PathBuf> {
     let folder = PathBuf::from(name);
     if name.is_empty() || name.starts_with('.') || folder.is_file() {
-        let cause = "no folder can have the scene's name; choose one by --out";
+        let cause = "the scene's name cannot be the name of a folder; choose a folder with --out";
         return Err(SimError::refused(path.display(), cause));
     }
     Ok(folder)

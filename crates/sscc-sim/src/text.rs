@@ -1,8 +1,9 @@
-//! Numbers and names for people.
+//! Formats numbers and names for people.
 
 use std::fmt::Write as _;
 
-/// Text on one line, whatever is in it: errors name files, and files may have any name.
+/// Returns text with control characters escaped, so that it is one line. Errors name files, and names of files may have
+/// line breaks.
 pub fn one_line(text: &str) -> String {
     let mut line = String::with_capacity(text.len());
     for c in text.chars() {
@@ -15,7 +16,7 @@ pub fn one_line(text: &str) -> String {
     line
 }
 
-/// A radius or a length for people: four digits, "unlimited" where it is infinite.
+/// Formats a radius or a length with four digits; "unlimited" if it is infinite.
 pub fn length(value: f64) -> String {
     match value {
         0.0 => "0".into(),
@@ -28,7 +29,7 @@ pub fn length(value: f64) -> String {
     }
 }
 
-/// A number with its noun: "1 pair", "2 pairs".
+/// Formats a number with its noun: "1 pair", "2 pairs".
 pub fn counted(count: impl Into<u64>, noun: &str) -> String {
     match count.into() {
         1 => format!("1 {noun}"),
@@ -36,7 +37,7 @@ pub fn counted(count: impl Into<u64>, noun: &str) -> String {
     }
 }
 
-/// A number in groups of three digits.
+/// Formats a number in groups of three digits: "1,234,567".
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -49,7 +50,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// A time for people, from microseconds.
+/// Formats a time, given in microseconds, with a fitting unit.
 pub fn duration(microseconds: f64) -> String {
     match microseconds {
         t if t < 1.0 => format!("{:.0} ns", t * 1e3),

@@ -1,10 +1,10 @@
-//! How a caller follows a simulation: its progress stage by stage, and remarks on the way.
+//! Callbacks by which a caller follows a simulation: stages, progress and notes.
 
 use sscc::Progress;
 
 use crate::SimError;
 
-/// The stage of a long job.
+/// Stage of long work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -25,19 +25,19 @@ pub enum Stage {
 
 /// [`Progress`] of work that has several stages. Cancels all of them.
 pub trait Watch: Progress {
-    /// A stage begins: from now on progress is reported of it.
+    /// Called when a stage begins. Later progress is that of this stage.
     fn begin(&self, stage: Stage);
 
-    /// A remark that is no error, in one line, such as that a damaged file of the cache was made anew.
+    /// Receives a note: one line that is no error, for example that a damaged file of the cache was computed again.
     fn note(&self, note: &str);
 }
 
-/// Stops here when `progress` says so.
+/// Returns an error if `progress` cancels.
 pub(crate) fn check_cancelled(progress: &dyn Progress) -> Result<(), SimError> {
     if progress.is_cancelled() { Err(sscc::Error::Cancelled.into()) } else { Ok(()) }
 }
 
-/// Neither shows nor stops anything.
+/// Ignores all calls and never cancels.
 impl Watch for () {
     fn begin(&self, _stage: Stage) {}
 

@@ -1,4 +1,4 @@
-//! Simulations in this process: several at once, cancelled ones that continue, and what is refused.
+//! Tests of simulations in one process: concurrent runs, continuation after cancellation, and errors.
 
 #![allow(clippy::unwrap_used)]
 
@@ -39,8 +39,8 @@ fn ring() -> String {
     let mut text = String::new();
     for (i, j) in (0..around).flat_map(|i| (0..across).map(move |j| (i, j))) {
         let (u, v) = (TAU * f64::from(i) / f64::from(around), TAU * f64::from(j) / f64::from(across));
-        let far = 1.0 + 0.3 * v.cos();
-        let _ = writeln!(text, "v {} {} {}", far * u.cos(), far * u.sin(), 0.3 * v.sin());
+        let radius = 1.0 + 0.3 * v.cos();
+        let _ = writeln!(text, "v {} {} {}", radius * u.cos(), radius * u.sin(), 0.3 * v.sin());
     }
     let at = |i: i32, j: i32| 1 + (i % around) * across + j % across;
     for (i, j) in (0..around).flat_map(|i| (0..across).map(move |j| (i, j))) {
@@ -50,7 +50,7 @@ fn ring() -> String {
     text
 }
 
-/// The scene with its ring, and the models that are made once for all tests.
+/// Folder of the scene and its ring, with the models that all tests share.
 static SHARED: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
@@ -74,7 +74,7 @@ fn request(out: &Path) -> Request {
     request_in(SHARED.path(), out)
 }
 
-/// Cancels once so many steps are done, and records the stages.
+/// Cancels after a number of steps, and records stages and notes.
 struct Watched {
     cancel_at: usize,
     done: AtomicUsize,
@@ -128,7 +128,7 @@ fn written(run: FinishedRun) -> Result<Vec<Vec<u8>>, SimError> {
 }
 
 #[test]
-fn two_at_once_neither_disturb_nor_cancel_each_other() {
+fn concurrent_simulations_are_independent() {
     let folders = [(); 3].map(|()| tempfile::tempdir().unwrap());
     let alone = written(simulate(&request(folders[0].path()), &()).unwrap()).unwrap();
     let begin = Barrier::new(2);
@@ -149,7 +149,7 @@ fn two_at_once_neither_disturb_nor_cancel_each_other() {
     assert!(written(whole).unwrap() == alone);
     let refused = written(cancelled).unwrap_err();
     assert!(refused.is_cancelled());
-    assert_eq!(refused.to_string(), "interrupted after 100 steps; the same command goes on from there");
+    assert_eq!(refused.to_string(), "interrupted after 100 steps; the same command continues from there");
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn a_cancelled_simulation_continues_to_the_same_bits() {
         let watched = Watched::cancelling_at(at);
         let run = simulate(&request, &watched).unwrap();
         assert_eq!((run.history.len(), run.failure.is_some()), (states, at < 400));
-        // What takes long was made before, by the first simulation.
+        // The first simulation has computed modes and certificates.
         let stages = watched.stages.into_inner().unwrap();
         assert!(!stages.contains(&Stage::Certificates) && !stages.contains(&Stage::Modes), "{stages:?}");
         assert_eq!(stages.last() == Some(&Stage::Comparison), at > 400);
@@ -217,6 +217,6 @@ fn refusals_name_the_file_and_the_way_out() {
     assert_eq!(named, format!("{}: no folder of models; leave out --models", models.display()));
     let file = folder.path().join("bad.toml");
     let error = refused(Request { out: Some(file.clone()), ..request(folder.path()) });
-    let start = format!("{}: no folder that can be written to: ", file.display());
+    let start = format!("{}: cannot write to this folder: ", file.display());
     assert!(error.is_system() && error.to_string().starts_with(&start), "{error}");
 }

@@ -74,7 +74,7 @@ mod tests {
     use crate::Material;
 
     #[test]
-    fn the_boundary_of_a_cube_and_a_tetrahedron_is_closed() {
+    fn the_boundary_of_a_cube_is_closed_and_overlaps_are_rejected() {
         let corners =
             [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
         let mut vertices: Vec<DVec3> = corners.iter().map(|c| DVec3::from_array(c.map(f64::from))).collect();
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_of_the_solid_become_those_of_its_boundary() {
+    fn modes_of_the_solid_are_restricted_to_its_boundary() {
         // Four tetrahedra within a larger one: vertex 4 is inside.
         let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [1, 1, 1]];
         let vertices = corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec();
@@ -119,7 +119,7 @@ mod tests {
         let found = boundary.on_surface(&modes).unwrap();
         assert_eq!(found, Modes::from_matrix(4, 2, |row, k| (2 * row + k) as f64).unwrap());
         let few = Modes::from_matrix(3, 1, |row, _| row as f64).unwrap();
-        let refused = SolidError::Core(sscc::Error::VertexCount { modes: 3, mesh: 4 });
-        assert_eq!(boundary.on_surface(&few), Err(refused));
+        let rejected = SolidError::Core(sscc::Error::VertexCount { modes: 3, mesh: 4 });
+        assert_eq!(boundary.on_surface(&few), Err(rejected));
     }
 }

@@ -10,7 +10,7 @@ pub enum SolidError {
     #[error("the mesh has no vertices")]
     NoVertices,
     /// The number of vertices exceeds 32-bit indices.
-    #[error("{count} vertices are more than 32-bit indices can name")]
+    #[error("the mesh has {count} vertices: 32-bit indices allow at most 2^32 - 1; use a coarser mesh")]
     TooManyVertices {
         /// Number of vertices.
         count: usize,
@@ -20,7 +20,7 @@ pub enum SolidError {
     NoElements,
     /// The material indices do not fit the elements.
     #[error(
-        "{found} material numbers for {elements} elements: each element needs one, of a material that is there"
+        "the mesh has {found} material numbers for {elements} elements: give each element the number of an existing material"
     )]
     ElementMaterials {
         /// Number of elements.
@@ -96,7 +96,7 @@ pub enum SolidError {
     },
     /// A cube is flat or inverted at some point.
     #[error(
-        "cube {cube} (counted from 0) is flat or inverted at a corner: its corners go around its lower face, then around its upper one"
+        "cube {cube} (counted from 0) is flat or inverted at a corner: list its corners around its lower face, then around its upper one"
     )]
     InvertedCube {
         /// The cube, from 0.
@@ -104,7 +104,7 @@ pub enum SolidError {
     },
     /// A face belongs to more than two elements.
     #[error(
-        "the face of vertices {face:?} (counted from 0) belongs to more than two elements: some overlap; mesh the solid anew"
+        "the face of vertices {face:?} (counted from 0) belongs to more than two elements, so elements overlap: mesh the solid anew"
     )]
     OverlappingElements {
         /// Its vertices.
@@ -114,7 +114,9 @@ pub enum SolidError {
     #[error(transparent)]
     Material(#[from] MaterialError),
     /// The size of the stiffness does not fit the number of modes.
-    #[error("the stiffness has {found} entries, {rank} modes need {rank} x {rank}: pass U'KU of these modes")]
+    #[error(
+        "the stiffness has {found} entries, but {rank} modes need {rank} x {rank}: pass U'KU of these modes"
+    )]
     StiffnessLength {
         /// Entries given.
         found: usize,
@@ -148,7 +150,7 @@ pub enum SolidError {
         mirrored: f64,
     },
     /// The number of coefficients does not fit the rank.
-    #[error("the forces have {found} coefficients of degree {degree}, rank {rank} needs {expected}")]
+    #[error("the forces have {found} coefficients of degree {degree}, but rank {rank} needs {expected}")]
     ForceLength {
         /// 2 or 3.
         degree: usize,

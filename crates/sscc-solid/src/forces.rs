@@ -103,7 +103,7 @@ impl ReducedForces {
                     let q_ab = q[a] * q[b];
                     let coefficients = &cubic[at..][..r - b];
                     at += r - b;
-                    // Shared by the derivatives with respect to a and b.
+                    // The derivatives with respect to a and b share this sum.
                     let ab = dot(coefficients, &q[b..]);
                     row[b..].iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += c * q_ab);
                     row[a] += ab * q[b];
@@ -144,11 +144,11 @@ impl ReducedForces {
         let mut worst = 0.0_f64;
         // The coefficient of monomial m in d f_i / d q_j is (m_j + 1) times that of m q_j in f_i.
         let coefficient = |i: usize, j: usize, m: &[usize]| {
-            let mut with = m.to_vec();
-            with.push(j);
-            with.sort_unstable();
-            let times = with.iter().filter(|k| **k == j).count();
-            times as f64 * part[i * count + monomials::place(r, &with)]
+            let mut product = m.to_vec();
+            product.push(j);
+            product.sort_unstable();
+            let power = product.iter().filter(|k| **k == j).count();
+            power as f64 * part[i * count + monomials::place(r, &product)]
         };
         for m in monomials::all(r, degree - 1) {
             for i in 0..r {
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn coefficients_that_do_not_fit_are_refused() {
+    fn invalid_coefficients_are_rejected() {
         let new = |quadratic: Vec<f64>, cubic: Vec<f64>| {
             ReducedForces::new(Stiffness::from_diagonal(&[1.0; 2]).unwrap(), quadratic, cubic)
         };

@@ -75,7 +75,7 @@ mod tests {
     use crate::{Material, PartialMaterial};
 
     #[test]
-    fn a_box_has_its_closed_forms() {
+    fn mass_properties_of_a_box_match_closed_forms() {
         let corner = |k: usize| {
             DVec3::new((k & 1) as f64 * 2.0, (k >> 1 & 1) as f64 * 3.0, (k >> 2 & 1) as f64 * 4.0) + 10.0
         };

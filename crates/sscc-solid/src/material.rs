@@ -151,7 +151,7 @@ const fn or(number: Option<f64>, default: f64) -> f64 {
     }
 }
 
-/// NaN is not positive.
+/// Whether a density or a modulus is in range; false for NaN.
 const fn is_positive(x: f64) -> bool {
     x >= 1e-60 && x <= 1e60
 }
@@ -164,7 +164,7 @@ mod tests {
         PartialMaterial { youngs_modulus: Some(5.0), density: Some(7.0), poisson_ratio: None };
 
     #[test]
-    fn missing_numbers_are_the_other_material_s_then_the_default_ones() {
+    fn missing_properties_come_from_the_other_material_then_from_the_default() {
         let given = PartialMaterial { youngs_modulus: Some(3.0), ..PartialMaterial::default() };
         let both = Material::new(&given.or(&SOFT)).unwrap();
         assert_eq!((both.density(), both.youngs_modulus(), both.poisson_ratio()), (7.0, 3.0, 0.4));
@@ -173,22 +173,22 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_no_material_has_are_refused() {
-        let refused = |known: PartialMaterial| Material::new(&known).unwrap_err().to_string();
-        for (value, said) in [(0.0, "0e0"), (-1.0, "-1e0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
-            let density = refused(PartialMaterial { density: Some(value), ..SOFT });
-            assert_eq!(density, format!("density is {said}: it must be above 0 (1e-60 to 1e60)"));
-            let youngs = refused(PartialMaterial { youngs_modulus: Some(value), ..SOFT });
-            assert!(youngs.starts_with(&format!("Young's modulus is {said}: ")), "{youngs}");
+    fn properties_out_of_range_are_rejected() {
+        let rejected = |known: PartialMaterial| Material::new(&known).unwrap_err().to_string();
+        for (value, shown) in [(0.0, "0e0"), (-1.0, "-1e0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+            let density = rejected(PartialMaterial { density: Some(value), ..SOFT });
+            assert_eq!(density, format!("density is {shown}: it must be above 0 (1e-60 to 1e60)"));
+            let youngs = rejected(PartialMaterial { youngs_modulus: Some(value), ..SOFT });
+            assert!(youngs.starts_with(&format!("Young's modulus is {shown}: ")), "{youngs}");
         }
         for value in [0.5, -1.0, f64::NAN] {
-            let poisson = refused(PartialMaterial { poisson_ratio: Some(value), ..SOFT });
+            let poisson = rejected(PartialMaterial { poisson_ratio: Some(value), ..SOFT });
             assert!(poisson.ends_with("it must be above -0.9999 and below 0.4999"), "{poisson}");
         }
     }
 
     #[test]
-    fn known_numbers_are_shown() {
+    fn known_properties_are_displayed() {
         assert_eq!(SOFT.to_string(), "youngs=5e0 density=7");
         let default = PartialMaterial::from(Material::DEFAULT).to_string();
         assert_eq!(default, "youngs=1e6 poisson=0.4 density=1000");

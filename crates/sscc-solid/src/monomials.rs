@@ -19,12 +19,12 @@ pub fn count(rank: usize, degree: usize) -> usize {
 /// Returns the index of the monomial with these ascending indices among those of its degree.
 pub fn place(rank: usize, indices: &[usize]) -> usize {
     let mut place = 0;
-    let mut least = 0;
+    let mut first = 0;
     for (at, index) in indices.iter().enumerate() {
         let left = indices.len() - at - 1;
         // Monomials with a smaller index here: the indices that follow start at that index.
-        place += (least..*index).map(|k| count(rank - k, left)).sum::<usize>();
-        least = *index;
+        place += (first..*index).map(|k| count(rank - k, left)).sum::<usize>();
+        first = *index;
     }
     place
 }
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_monomial_is_at_its_place() {
+    fn place_is_the_index_in_all_monomials() {
         for (rank, degree) in [(1, 3), (3, 1), (4, 2), (5, 3), (4, 4)] {
             let all = all(rank, degree);
             assert_eq!(all.len(), count(rank, degree));
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn a_count_that_no_number_holds_is_the_largest() {
+    fn counts_that_overflow_saturate() {
         assert_eq!(count(usize::MAX, 1), usize::MAX);
         assert_eq!(count(usize::MAX >> 24, 3), usize::MAX);
         assert_eq!(count(usize::MAX, 2), usize::MAX);

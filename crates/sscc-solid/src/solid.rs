@@ -6,8 +6,8 @@ use sscc::limits;
 use crate::element::{Element, cube_is_inverted};
 use crate::{Material, SolidError};
 
-/// A tetrahedron whose volume is below this share of its longest edge cubed is flat: its stiffness would be rounding.
-const FLAT: f64 = 1e-10;
+/// Minimum of six times the volume of a tetrahedron over its longest edge cubed. Below it, the stiffness is rounding.
+const MIN_RELATIVE_VOLUME: f64 = 1e-10;
 
 /// Elastic solid: tetrahedra and hexahedra ("cubes") of positive volume, each with a material. Every vertex belongs to
 /// an element.
@@ -74,6 +74,8 @@ impl Solid {
             .checked()
     }
 
+    /// Checks all data, and orients the tetrahedra.
+    ///
     /// # Errors
     /// As [`Solid::new`].
     fn checked(mut self) -> Result<Self, SolidError> {
@@ -160,7 +162,7 @@ fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
         let longest = (0..4).flat_map(|i| (0..i).map(move |j| p[i].distance(p[j]))).fold(0.0, f64::max);
         let volume = sixfold_volume(p);
         // NaN (an overflow) is flat, too.
-        if volume.is_nan() || volume.abs() <= FLAT * longest * longest * longest {
+        if volume.is_nan() || volume.abs() <= MIN_RELATIVE_VOLUME * longest * longest * longest {
             return Err(SolidError::FlatTet { tet, corners: *corners });
         }
         if volume < 0.0 {
@@ -187,33 +189,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_solid_is_refused() {
+    fn invalid_solids_are_rejected() {
         let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         let corners = vec![p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(0., 0., 1.), p(1., 1., 1.)];
         let good = Material::default();
-        let made = |vertices: &[DVec3], tets: Vec<[u32; 4]>| {
+        let message = |vertices: &[DVec3], tets: Vec<[u32; 4]>| {
             Solid::uniform(vertices.to_vec(), tets, vec![], good).unwrap_err().to_string()
         };
-        assert!(made(&corners, vec![]).contains("no element"));
-        assert!(made(&corners, vec![[0, 1, 2, 9]]).contains("names vertex 9"));
+        assert!(message(&corners, vec![]).contains("no element"));
+        assert!(message(&corners, vec![[0, 1, 2, 9]]).contains("names vertex 9"));
         assert!(
-            made(&corners, vec![[0, 1, 2, 3]])
+            message(&corners, vec![[0, 1, 2, 3]])
                 .contains("vertex 4 (counted from 0) of the solid belongs to no element")
         );
         assert!(
-            made(&corners, vec![[0, 1, 2, 3], [1, 2, 3, 4], [1, 2, 4, 3]]).contains("is inverted, one of 1")
+            message(&corners, vec![[0, 1, 2, 3], [1, 2, 3, 4], [1, 2, 4, 3]])
+                .contains("is inverted, one of 1")
         );
         let flat = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(1., 1., 1e-14)];
         assert!(
-            made(&flat, vec![[0, 1, 2, 3]])
+            message(&flat, vec![[0, 1, 2, 3]])
                 .contains("tetrahedron 0 (counted from 0, vertices [0, 1, 2, 3]) is flat")
         );
         let nan = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.), p(f64::NAN, 1., 1.)];
         assert!(
-            made(&nan, vec![[0, 1, 2, 3]])
+            message(&nan, vec![[0, 1, 2, 3]])
                 .contains("vertex 3 (counted from 0) of the solid has a coordinate")
         );
-        // All volumes are negative: another convention.
+        // If all volumes are negative, the file uses the opposite convention.
         assert!(Solid::uniform(corners[..4].to_vec(), vec![[0, 2, 1, 3]], vec![], good).is_ok());
         let corners =
             [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
@@ -221,8 +224,8 @@ mod tests {
         let cube = vec![[0, 1, 2, 3, 4, 5, 6, 7]];
         assert!(Solid::uniform(corners.clone(), vec![], cube.clone(), good).is_ok());
         for wrong in [vec![], vec![[1.0; 8]; 2], vec![[-0.1; 8]], vec![[f64::NAN; 8]], vec![[1.5; 8]]] {
-            let refused = Solid::filled(corners.clone(), cube.clone(), wrong, good);
-            assert_eq!(refused.unwrap_err(), SolidError::Fill { cubes: 1 });
+            let rejected = Solid::filled(corners.clone(), cube.clone(), wrong, good);
+            assert_eq!(rejected.unwrap_err(), SolidError::Fill { cubes: 1 });
         }
         corners.swap(0, 7);
         let twisted = Solid::uniform(corners, vec![], cube, good);

@@ -6,10 +6,10 @@ use crate::SolidError;
 
 /// Maximum difference of mirrored entries of a symmetric matrix, relative to the largest entry. Sums over millions of
 /// vertices, in any order, leave about 1e-11; mistakes leave far more.
-const SYMMETRY_SHARE: f64 = 1e-9;
+const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
 /// Maximum off-diagonal entry of a diagonal matrix, relative to the largest entry; rounding leaves that much.
-const DIAGONAL_SHARE: f64 = 1e-12;
+const DIAGONAL_TOLERANCE: f64 = 1e-12;
 
 /// The reduced stiffness `K~ = U'KU` of modes U (r x r): symmetric up to rounding, entries within [`sscc::limits`].
 ///
@@ -40,7 +40,7 @@ impl Stiffness {
         let largest = stiffness.largest();
         for (row, column) in (0..rank).flat_map(|row| (0..row).map(move |column| (row, column))) {
             let [entry, mirrored] = [stiffness.at(row, column), stiffness.at(column, row)];
-            if (entry - mirrored).abs() > SYMMETRY_SHARE * largest {
+            if (entry - mirrored).abs() > SYMMETRY_TOLERANCE * largest {
                 return Err(SolidError::StiffnessAsymmetric { row, column, entry, mirrored });
             }
         }
@@ -75,7 +75,7 @@ impl Stiffness {
 
     /// Whether the modes are uncoupled: off-diagonal entries are rounding.
     pub fn is_diagonal(&self) -> bool {
-        let noise = DIAGONAL_SHARE * self.largest();
+        let noise = DIAGONAL_TOLERANCE * self.largest();
         let is_off = |(at, x): (usize, &f64)| at % (self.rank + 1) != 0 && x.abs() > noise;
         !self.entries.iter().enumerate().any(is_off)
     }
@@ -106,31 +106,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_matrix_that_is_no_stiffness_is_refused() {
-        let refused = |rank, entries: &[f64]| {
+    fn invalid_matrices_are_rejected() {
+        let rejected = |rank, entries: &[f64]| {
             let error = Stiffness::new(rank, entries.to_vec()).unwrap_err();
             assert!(!error.to_string().contains('\n'), "{error}");
             error
         };
-        assert_eq!(refused(0, &[]), SolidError::Core(sscc::Error::RankZero));
+        assert_eq!(rejected(0, &[]), SolidError::Core(sscc::Error::RankZero));
         for length in [0, 1, 2, 3, 5, 9] {
             let entries = vec![1.0; length];
-            assert_eq!(refused(2, &entries), SolidError::StiffnessLength { found: length, rank: 2 });
+            assert_eq!(rejected(2, &entries), SolidError::StiffnessLength { found: length, rank: 2 });
         }
-        assert_eq!(refused(usize::MAX, &[]), SolidError::StiffnessLength { found: 0, rank: usize::MAX });
+        assert_eq!(rejected(usize::MAX, &[]), SolidError::StiffnessLength { found: 0, rank: usize::MAX });
         for value in [f64::INFINITY, f64::NEG_INFINITY, 1e61] {
             let entry = SolidError::StiffnessEntry { row: 0, column: 1, value };
-            assert_eq!(refused(2, &[1.0, value, 0.0, 1.0]), entry);
+            assert_eq!(rejected(2, &[1.0, value, 0.0, 1.0]), entry);
         }
-        let nan = refused(2, &[1.0, 0.0, f64::NAN, 1.0]);
+        let nan = rejected(2, &[1.0, 0.0, f64::NAN, 1.0]);
         assert!(matches!(nan, SolidError::StiffnessEntry { row: 1, column: 0, value } if value.is_nan()));
         let (entry, mirrored) = (0.5 + 1e-8, 0.5);
         let asymmetric = SolidError::StiffnessAsymmetric { row: 1, column: 0, entry, mirrored };
-        assert_eq!(refused(2, &[1.0, mirrored, entry, 1.0]), asymmetric);
+        assert_eq!(rejected(2, &[1.0, mirrored, entry, 1.0]), asymmetric);
     }
 
     #[test]
-    fn rounding_is_kept_but_not_in_the_mean() {
+    fn rounding_is_kept_in_entries_and_removed_in_the_mean() {
         let rounded = vec![2.0, 0.5, 0.5 + 1e-12, 3.0];
         let stiffness = Stiffness::new(2, rounded.clone()).unwrap();
         assert_eq!(stiffness.entries(), rounded);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_is_one_up_to_rounding() {
+    fn a_matrix_is_diagonal_up_to_rounding() {
         let diagonal = Stiffness::from_diagonal(&[1.0, 4.0]).unwrap();
         assert_eq!(diagonal.entries(), [1.0, 0.0, 0.0, 4.0]);
         assert!(diagonal.is_diagonal() && diagonal.diagonal().eq([1.0, 4.0]));

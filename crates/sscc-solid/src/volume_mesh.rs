@@ -37,7 +37,7 @@ impl VolumeMesh {
     ///
     /// # Errors
     /// When there is no vertex or no element, an index is out of range, a coordinate is beyond [`sscc::limits`], an
-    /// element or a face names a vertex twice, an element is there twice, or an element has no material.
+    /// element or a face names a vertex twice, an element is duplicated, or an element has no material.
     pub fn new(parts: VolumeMeshParts) -> Result<Self, SolidError> {
         let VolumeMeshParts { vertices, tets, cubes, surface, materials, element_material } = &parts;
         if vertices.is_empty() {
@@ -97,7 +97,7 @@ impl VolumeMesh {
         &self.parts.surface
     }
 
-    /// The materials that the file names.
+    /// Returns the materials that the file names.
     pub fn materials(&self) -> &[NamedMaterial] {
         &self.parts.materials
     }
@@ -167,27 +167,27 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_are_no_mesh_are_refused() {
-        let refused = |change: &dyn Fn(&mut VolumeMeshParts)| {
+    fn invalid_parts_are_rejected() {
+        let rejected = |change: &dyn Fn(&mut VolumeMeshParts)| {
             let mut parts = parts();
             change(&mut parts);
             VolumeMesh::new(parts).unwrap_err()
         };
         assert!(VolumeMesh::new(parts()).is_ok());
-        assert_eq!(refused(&|p| p.vertices.clear()), SolidError::NoVertices);
-        assert_eq!(refused(&|p| p.tets.clear()), SolidError::NoElements);
-        assert_eq!(refused(&|p| p.vertices[3].y = f64::NAN), SolidError::Vertex { vertex: 3 });
-        assert_eq!(refused(&|p| p.vertices[0].x = 2e60), SolidError::Vertex { vertex: 0 });
+        assert_eq!(rejected(&|p| p.vertices.clear()), SolidError::NoVertices);
+        assert_eq!(rejected(&|p| p.tets.clear()), SolidError::NoElements);
+        assert_eq!(rejected(&|p| p.vertices[3].y = f64::NAN), SolidError::Vertex { vertex: 3 });
+        assert_eq!(rejected(&|p| p.vertices[0].x = 2e60), SolidError::Vertex { vertex: 0 });
         let index = |index| SolidError::ElementIndex { index, vertices: 5 };
-        assert_eq!(refused(&|p| p.tets[1][2] = 5), index(5));
-        assert_eq!(refused(&|p| p.surface[0][2] = u32::MAX), index(u32::MAX));
-        assert_eq!(refused(&|p| p.tets[1][2] = 1), SolidError::RepeatedCorner { index: 1 });
+        assert_eq!(rejected(&|p| p.tets[1][2] = 5), index(5));
+        assert_eq!(rejected(&|p| p.surface[0][2] = u32::MAX), index(u32::MAX));
+        assert_eq!(rejected(&|p| p.tets[1][2] = 1), SolidError::RepeatedCorner { index: 1 });
         let same = SolidError::SameCorners { kind: "tetrahedra", first: 0, second: 1 };
-        assert_eq!(refused(&|p| p.tets[1] = [3, 1, 0, 2]), same);
+        assert_eq!(rejected(&|p| p.tets[1] = [3, 1, 0, 2]), same);
         assert_eq!(same.to_string(), "tetrahedra 0 and 1 (counted from 0) have the same corners");
         let materials = |found| SolidError::ElementMaterials { elements: 2, found };
-        assert_eq!(refused(&|p| p.element_material.truncate(1)), materials(1));
-        assert_eq!(refused(&|p| p.element_material[1] = 1), materials(2));
+        assert_eq!(rejected(&|p| p.element_material.truncate(1)), materials(1));
+        assert_eq!(rejected(&|p| p.element_material[1] = 1), materials(2));
         let other = VolumeMesh::new(parts()).unwrap().with_materials(vec![], vec![0, 0]);
         assert_eq!(other.unwrap_err(), materials(2));
     }

@@ -1,4 +1,4 @@
-//! How far two moving triangles are apart at one time.
+//! Exact distance of two moving triangles at one time.
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -10,7 +10,7 @@ use crate::polynomial::Root;
 /// A point or a vector, in exact arithmetic.
 type Vector = [BigRational; 3];
 
-/// The squared distance of two moving triangles at time `t`, exactly: 0 where they have a point in common.
+/// Returns the exact squared distance of two moving triangles at time `t`; 0 if they have a common point.
 ///
 /// # Panics
 /// When a corner or `t` is not finite.
@@ -19,15 +19,15 @@ pub fn squared_distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> BigRa
         return BigRational::zero();
     }
     let (x, y) = (at(x, t), at(y, t));
-    let mut least: Option<BigRational> = None;
+    let mut minimum: Option<BigRational> = None;
     let mut consider = |squared: Option<BigRational>| {
         if let Some(squared) = squared
-            && least.as_ref().is_none_or(|least| squared < *least)
+            && minimum.as_ref().is_none_or(|minimum| squared < *minimum)
         {
-            least = Some(squared);
+            minimum = Some(squared);
         }
     };
-    // Of disjoint triangles one of these pairs of features has the closest points.
+    // One of these pairs of features contains the closest points of disjoint triangles.
     for i in 0..3 {
         consider(vertex_face(&x[i], &y));
         consider(vertex_face(&y[i], &x));
@@ -39,13 +39,13 @@ pub fn squared_distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> BigRa
             consider(edge_edge(edges));
         }
     }
-    least.expect("vertices have a distance")
+    minimum.expect("vertices have a distance")
 }
 
-/// The distance of two moving triangles at time `t`, rounded from the exact square.
+/// Returns the distance of two moving triangles at time `t`, rounded from the exact square.
 pub fn distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> f64 {
     let squared = squared_distance(x, y, t);
-    // Squares of small numbers have no double near them: the root is taken of the number times a power of four.
+    // The square of a small number may underflow in f64, so it is first multiplied by a power of four.
     let four = BigRational::from_integer(4.into());
     let (mut scaled, mut halvings) = (squared, 0);
     while !scaled.is_zero() && scaled < BigRational::one() {
@@ -56,7 +56,7 @@ pub fn distance(x: &MovingTriangle, y: &MovingTriangle, t: f64) -> f64 {
     (0..halvings).fold(root, |root, _| root / 2.0)
 }
 
-/// The squared distance to the plane of a face, where the foot of the perpendicular lies within the face.
+/// Returns the squared distance to the plane of a face, if the foot of the perpendicular lies within the face.
 fn vertex_face(p: &Vector, [a, b, c]: &[Vector; 3]) -> Option<BigRational> {
     let n = cross(&minus(b, a), &minus(c, a));
     let squared = dot(&n, &n);
@@ -70,7 +70,7 @@ fn vertex_face(p: &Vector, [a, b, c]: &[Vector; 3]) -> Option<BigRational> {
     inside.then(|| &height * &height / squared)
 }
 
-/// The squared distance to the line of an edge, where the foot of the perpendicular lies within the edge.
+/// Returns the squared distance to the line of an edge, if the foot of the perpendicular lies within the edge.
 fn vertex_edge(p: &Vector, [a, b]: [&Vector; 2]) -> Option<BigRational> {
     let (e, d) = (minus(b, a), minus(p, a));
     let (squared, along) = (dot(&e, &e), dot(&e, &d));
@@ -78,7 +78,7 @@ fn vertex_edge(p: &Vector, [a, b]: [&Vector; 2]) -> Option<BigRational> {
     inside.then(|| dot(&d, &d) - &along * &along / squared)
 }
 
-/// The squared distance of the lines of two edges, where their closest points lie within both.
+/// Returns the squared distance of the lines of two edges, if their closest points lie within both.
 fn edge_edge([[a, b], [c, d]]: [[&Vector; 2]; 2]) -> Option<BigRational> {
     let (e, f, r) = (minus(b, a), minus(d, c), minus(c, a));
     let n = cross(&e, &f);
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(of(face.map(|p| p + DVec3::new(3.0, 0.0, 0.0))), 2.0);
         assert_eq!(of(face.map(|p| p + DVec3::new(4.0, 0.0, 4.0))), 5.0);
         assert_eq!(of(face.map(|p| p + DVec3::new(0.25, 0.25, 0.0))), 0.0);
-        // Two edges crosswise, and one that pierces the face.
+        // Two crossing edges at a distance, and an edge that pierces the face.
         let [a, b] = [DVec3::new(0.2, -0.5, 3.0), DVec3::new(0.2, 0.5, 3.0)];
         assert_eq!(of([a, b, a + DVec3::Z]), 3.0);
         assert_eq!(

@@ -1,10 +1,11 @@
-//! The first contact of two moving triangles in exact arithmetic: the slow oracle of tests and benches.
+//! First contact of two moving triangles in exact arithmetic: a slow oracle for tests and benches.
 //!
-//! Two hulls meet exactly when some of the corners of one and some of the other, at most five together, form a Radon
-//! partition: their homogeneous coordinates have exactly one linear dependency, and it is positive on the one
-//! side and negative on the other. One of five corners is stable, so when they first meet (after time 0) it is one of
-//! at most four, which are then in one plane: the time is a root of a determinant of those corners. Where that
-//! vanishes all the time, it is a root of a smaller one. So it is enough to try time 0 and all these roots.
+//! Two hulls meet exactly when some corners of one and some of the other, at most five in all, form a Radon partition:
+//! their homogeneous coordinates have exactly one linear dependency, which is positive on one side and negative on the
+//! other. A partition of five corners is stable under small motions. So a first contact after time 0 has a partition of
+//! at most four corners, which are then in one plane, and its time is a root of a determinant of these corners. If that
+//! determinant vanishes at all times, the time is a root of a smaller one. The oracle therefore tries time 0 and all
+//! these roots.
 
 use crate::partition::{corners, meet_at, minor, subsets};
 use crate::polynomial::{Polynomial, Root};
@@ -12,7 +13,7 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use sscc::MovingTriangle;
 
-/// The exact time at which they first have a point in common, if they do in [0, 1]. Touching counts.
+/// Returns the exact time in [0, 1] at which the triangles first have a common point, or none. Touching counts.
 ///
 /// # Panics
 /// When a corner is not finite.

@@ -1,4 +1,4 @@
-//! Support of tests and benches: exact oracles, real models, and the number of random cases.
+//! Support for tests and benches: exact oracles, real models, and the number of random cases.
 
 mod cases;
 mod distance;

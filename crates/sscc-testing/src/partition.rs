@@ -1,4 +1,4 @@
-//! Radon partitions of the corners of two triangles: two hulls meet exactly when there is one.
+//! Radon partitions of the corners of two triangles; the triangles meet exactly when a partition exists.
 
 use glam::DVec3;
 use num_rational::BigRational;
@@ -7,10 +7,10 @@ use sscc::MovingTriangle;
 
 use crate::polynomial::{Polynomial, Root};
 
-/// The corners of x, then of y: homogeneous coordinates, linear in t.
+/// Homogeneous coordinates of the corners of x, then of y, each linear in t.
 pub(crate) type Corners = [[Polynomial; 4]; 6];
 
-/// The corners of both triangles as polynomials in time.
+/// Returns the corners of both triangles as polynomials in time.
 pub(crate) fn corners(x: &MovingTriangle, y: &MovingTriangle) -> Corners {
     let of = |p: DVec3, q: DVec3| -> [Polynomial; 4] {
         let exact = |x: f64| BigRational::from_float(x).expect("corners are finite");
@@ -20,9 +20,9 @@ pub(crate) fn corners(x: &MovingTriangle, y: &MovingTriangle) -> Corners {
     std::array::from_fn(|i| if i < 3 { of(x.t0[i], x.t1[i]) } else { of(y.t0[i - 3], y.t1[i - 3]) })
 }
 
-/// Whether a Radon partition of at most `most` corners exists at that time.
-pub(crate) fn meet_at(corners: &Corners, time: &Root, most: usize) -> bool {
-    (2..=most).any(|size| {
+/// Whether a Radon partition of at most `max_size` corners exists at that time.
+pub(crate) fn meet_at(corners: &Corners, time: &Root, max_size: usize) -> bool {
+    (2..=max_size).any(|size| {
         subsets(6, size).any(|set| {
             let both = set[0] < 3 && set[size - 1] >= 3;
             both && is_partition(corners, &set, time)
@@ -33,12 +33,12 @@ pub(crate) fn meet_at(corners: &Corners, time: &Root, most: usize) -> bool {
 /// Whether the corners of a set have, at that time, exactly one linear dependency, positive on x, negative on y.
 fn is_partition(corners: &Corners, set: &[usize], time: &Root) -> bool {
     for rows in subsets(4, set.len() - 1) {
-        // By Cramer's rule the only dependency within these rows, unless it is 0.
+        // By Cramer's rule this is the only dependency within these rows, unless it is 0.
         let dependency: Vec<Polynomial> = (0..set.len())
-            .map(|leave| {
-                let others: Vec<usize> = set.iter().copied().filter(|&v| v != set[leave]).collect();
+            .map(|omitted| {
+                let others: Vec<usize> = set.iter().copied().filter(|&v| v != set[omitted]).collect();
                 let minor = minor(corners, &others, &rows);
-                if leave % 2 == 0 { minor } else { minor.negated() }
+                if omitted % 2 == 0 { minor } else { minor.negated() }
             })
             .collect();
         let signs: Vec<i8> = dependency.iter().map(|p| time.sign(p)).collect();
@@ -59,7 +59,7 @@ fn is_partition(corners: &Corners, set: &[usize], time: &Root) -> bool {
     false
 }
 
-/// The determinant of some corners and as many rows.
+/// Returns the determinant of the given corners and as many rows.
 pub(crate) fn minor(corners: &Corners, set: &[usize], rows: &[usize]) -> Polynomial {
     if set.is_empty() {
         return Polynomial::new(vec![BigRational::one()]);
@@ -73,7 +73,7 @@ pub(crate) fn minor(corners: &Corners, set: &[usize], rows: &[usize]) -> Polynom
     sum
 }
 
-/// All ascending subsets of `0 .. n` of that size.
+/// Returns all subsets of `0 .. n` of this size, each ascending.
 pub(crate) fn subsets(n: usize, size: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..1_usize << n)
         .filter(move |bits| bits.count_ones() as usize == size)

@@ -7,20 +7,20 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Polynomial(Vec<BigRational>);
 
-/// The only root of a polynomial in an interval, or a rational number.
+/// Root of a polynomial, stored as the only root in an interval, or a rational number.
 #[derive(Clone, Debug)]
 pub struct Root {
-    /// Without repeated roots.
+    /// A polynomial without repeated roots.
     of: Polynomial,
-    /// Neither end is a root, unless they are the same.
+    /// Neither end is a root, unless both ends are equal.
     interval: [BigRational; 2],
 }
 
-/// Counts roots by Sturm's theorem.
-struct Chain(Vec<Polynomial>);
+/// Sturm chain of a polynomial.
+struct SturmChain(Vec<Polynomial>);
 
-impl Chain {
-    /// The number of different roots in an interval without its lower end.
+impl SturmChain {
+    /// Returns the number of distinct roots in an interval without its lower end (Sturm's theorem).
     fn count(&self, ends: &[BigRational; 2]) -> usize {
         let [lower, upper] = ends.each_ref().map(|x| {
             let signs: Vec<i8> = self.0.iter().map(|p| sign(&p.at(x))).filter(|s| *s != 0).collect();
@@ -78,7 +78,7 @@ impl Polynomial {
         Self::new(self.0.iter().enumerate().skip(1).map(scaled).collect())
     }
 
-    /// Quotient and remainder.
+    /// Returns quotient and remainder.
     fn divided(&self, by: &Self) -> (Self, Self) {
         let mut rest = self.0.clone();
         let mut quotient = vec![BigRational::zero(); (self.0.len() + 1).saturating_sub(by.0.len())];
@@ -104,17 +104,16 @@ impl Polynomial {
         self.divided(&self.greatest_common_divisor(&self.derivative())).0
     }
 
-    /// Its Sturm chain.
-    fn chain(&self) -> Chain {
+    fn chain(&self) -> SturmChain {
         let mut chain = vec![self.clone(), self.derivative()];
         while !chain[chain.len() - 1].is_zero() {
             let rest = chain[chain.len() - 2].divided(&chain[chain.len() - 1]).1;
             chain.push(rest.negated());
         }
-        Chain(chain)
+        SturmChain(chain)
     }
 
-    /// All different roots in [0, 1], each in an interval shorter than 2^-48.
+    /// Returns all distinct roots in [0, 1], each in an interval shorter than 2^-48.
     pub(crate) fn roots(&self) -> Vec<Root> {
         let of = self.without_repeated_roots();
         let chain = of.chain();
@@ -147,13 +146,13 @@ impl Root {
         Self { of: Polynomial::new(vec![]), interval: [x.clone(), x] }
     }
 
-    /// The same in an interval that is so many times halved.
+    /// Halves the interval `times` times.
     fn refined(mut self, times: usize) -> Self {
         for _ in 0..times {
             let [lower, upper] = &self.interval;
             let middle = (lower + upper) / two();
             let signs = [lower, &middle].map(|x| sign(&self.of.at(x)));
-            // A simple root: the sign changes there. Ends stay off it.
+            // The root is simple, so the sign changes there. The ends stay off the root.
             match signs[0] * signs[1] {
                 0 => self.interval = [middle.clone(), middle],
                 1 => self.interval[0] = middle,
@@ -163,23 +162,23 @@ impl Root {
         self
     }
 
-    /// Not above it.
+    /// Returns a lower bound of the root.
     pub fn lower(&self) -> &BigRational {
         &self.interval[0]
     }
 
-    /// Not below it, and less than 2^-48 above the lower one.
+    /// Returns an upper bound of the root, less than 2^-48 above the lower bound.
     pub fn upper(&self) -> &BigRational {
         &self.interval[1]
     }
 
-    /// The exact sign of a polynomial at this root.
+    /// Returns the exact sign of a polynomial at this root.
     pub(crate) fn sign(&self, p: &Polynomial) -> i8 {
         let [lower, upper] = &self.interval;
         if p.is_zero() || lower == upper {
             return sign(&p.at(lower));
         }
-        // Clear cases: the interval is shorter than 1e-14, doubles are precise to 1e-16.
+        // Floating-point filter: the interval is shorter than 1e-14, and doubles are precise to 1e-16.
         let double = |x: &BigRational| x.to_f64().expect("a rational number has a double near it");
         let x = double(lower);
         let (mut value, mut size) = (0.0, 0.0);

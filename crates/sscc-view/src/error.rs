@@ -8,14 +8,14 @@ pub enum ViewError {
     #[error(transparent)]
     Core(#[from] sscc::Error),
     /// The page computes in single precision.
-    #[error("the model's numbers are beyond what a page can show (1e30): choose another unit")]
+    #[error("the model has numbers beyond 1e30, the range of the page: choose another unit")]
     Range,
     /// A request names data that do not exist, or has invalid values.
     #[error("{0}")]
     Request(String),
-    /// A file that is shown as a report is none.
-    #[error("it is no report of sscc: {0}")]
-    NoReport(String),
+    /// A file is not a report.
+    #[error("not a report of sscc: {0}")]
+    NotAReport(String),
     /// An error of the operating system.
     #[error(transparent)]
     System(#[from] std::io::Error),
@@ -30,12 +30,12 @@ pub enum ViewError {
     /// Data cannot be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
-    /// A picture that cannot be encoded.
+    /// A picture cannot be encoded.
     #[cfg(feature = "picture")]
     #[error("the picture cannot be encoded: {0}")]
     Picture(#[from] png::EncodingError),
     /// The operating system has no random numbers for the token.
     #[cfg(feature = "server")]
-    #[error("the system gives no random numbers: {0}")]
+    #[error("the operating system provides no random numbers: {0}")]
     Random(getrandom::Error),
 }

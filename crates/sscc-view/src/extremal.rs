@@ -4,10 +4,10 @@ use serde::Serialize;
 use sscc::Certificates;
 
 /// The paper shows the first four modes, in the positive and the negative direction.
-const MODES: usize = 4;
+const MAX_MODES: usize = 4;
 
-/// Scale that keeps q inside the root's radius in spite of rounding.
-const INSIDE: f64 = 1.0 - 1e-9;
+/// Factor that keeps q inside the root's radius in spite of rounding.
+const SHRINK: f64 = 1.0 - 1e-9;
 
 /// A q just inside the root's radius, along one mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,8 +28,8 @@ pub fn extremal(certificates: &Certificates) -> Vec<Extremal> {
         let mut unit = vec![0.0; center.len()];
         unit[k] = 1.0;
         let mut q = center.to_vec();
-        q[k] += sign * INSIDE * radius / certificates.metric().norm(&unit);
+        q[k] += sign * SHRINK * radius / certificates.metric().norm(&unit);
         Extremal { name: format!("mode {} {}", k + 1, if sign > 0.0 { "+" } else { "-" }), q }
     };
-    (0..center.len().min(MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).collect()
+    (0..center.len().min(MAX_MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).collect()
 }

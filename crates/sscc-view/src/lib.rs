@@ -1,10 +1,10 @@
 //! The page of sscc: its data ([`Scene`], [`Arrays`]), reports in one file ([`Report`], [`simulation_report`],
 //! [`Animation`]), and the answers of a live page by native queries ([`Live`]).
 //!
-//! The page is one HTML file that needs no other, built from the folder `viewer/` and kept in `page/`. A report holds its
-//! data in the file; a live page requests them. Both use the same JSON and the same arrays. The server of live pages is
-//! behind the cargo feature `server`: programs that only write reports link no HTTP parser. Pictures of certified
-//! deformations (`Picture`) are behind the feature `picture`.
+//! The page is one HTML file that loads no other file, built from the folder `viewer/` and kept in `page/`. A report
+//! has its data in the file; a live page requests them. Both use the same JSON and the same arrays. The cargo feature
+//! `server` adds the server of live pages: programs that only write reports link no HTTP parser. The feature `picture`
+//! adds pictures of certified deformations (`Picture`).
 
 mod animation_report;
 mod arrays;

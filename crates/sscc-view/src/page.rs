@@ -5,7 +5,7 @@ use serde::Serialize;
 /// The page as built from `viewer/`: one HTML file.
 pub const PAGE: &str = include_str!("../page/index.html");
 
-/// Where the data of a report goes: in live pages it stays as it is.
+/// Start and end of the element with the data of a report; empty in live pages.
 const BEFORE: &str = "<script type=\"application/json\" id=\"sscc-report\">";
 const AFTER: &str = "</script>";
 
@@ -18,7 +18,7 @@ pub(crate) fn with_data(data: &impl Serialize) -> serde_json::Result<String> {
     Ok(with_json(&serde_json::to_string(data)?))
 }
 
-/// Returns the JSON in a page; `None` if the page has no element for data.
+/// Returns the JSON in a page; `None` if the page has no such element.
 pub(crate) fn json_in(page: &str) -> Option<&str> {
     let (_head, rest) = page.split_once(BEFORE)?;
     Some(rest.split_once(AFTER)?.0)
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_has_a_place_for_data() {
+    fn the_page_has_one_element_for_data() {
         let whole = format!("{BEFORE}null{AFTER}");
         assert_eq!(PAGE.matches(&whole).count(), 1);
         assert_eq!(PAGE.matches(BEFORE).count(), 1);
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_ends_the_element() {
+    fn text_in_the_data_cannot_end_the_element() {
         let page = with_data(&"a</script><script>alert(1)</script><!--").unwrap();
         let data = page.split_once(BEFORE).unwrap().1.split_once(AFTER).unwrap().0;
         assert_eq!(serde_json::from_str::<String>(data).unwrap(), "a</script><script>alert(1)</script><!--");

@@ -29,16 +29,17 @@ impl Report {
     ///
     /// # Errors
     /// If `html` contains no report.
-    pub fn shown_anew(html: &str) -> Result<String, ViewError> {
-        let json = json_in(html).ok_or_else(|| ViewError::NoReport("it has no data".into()))?;
-        let _: Shape = serde_json::from_str(json).map_err(|error| ViewError::NoReport(error.to_string()))?;
+    pub fn rebuild(html: &str) -> Result<String, ViewError> {
+        let json = json_in(html).ok_or_else(|| ViewError::NotAReport("it has no data".into()))?;
+        let _: ReportKeys =
+            serde_json::from_str(json).map_err(|error| ViewError::NotAReport(error.to_string()))?;
         Ok(with_json(json))
     }
 }
 
-/// The keys of a report. They show that a text is the JSON of a report, without building its values.
+/// The keys of a report. Parsing them checks that a text is the JSON of a report, without building its values.
 #[derive(Deserialize)]
-struct Shape {
+struct ReportKeys {
     #[serde(rename = "scene")]
     _scene: IgnoredAny,
     #[serde(rename = "arrays")]

@@ -116,7 +116,7 @@ impl ModelScene {
         let rest = model.mesh().rest_positions();
         let (min, max) = bounds(rest);
         let (limits, rank) = (limits(model, (max - min).length()), model.rank());
-        let farthest = limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * LARGEST_SLIDERS;
+        let farthest = limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * MAX_SLIDER_SCALE;
         let modes = model.modes().displacements();
         if !rest.iter().chain(modes).all(|v| fits(*v)) || farthest > f64::from(f32::MAX) {
             return Err(ViewError::Range);
@@ -173,12 +173,12 @@ fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
     fastest.into_iter().map(limit).map(|x| if x.is_finite() && x > 0.0 { x } else { 1.0 }).collect()
 }
 
-/// The page may go so many times farther than its sliders.
-const LARGEST_SLIDERS: f64 = 1e6;
+/// The page may show displacements up to this multiple of its sliders' range.
+const MAX_SLIDER_SCALE: f64 = 1e6;
 
-/// Far enough from the largest single precision number that sums over modes stay finite.
-const LARGEST: f64 = 1e30;
+/// Largest coordinate and displacement on the page. Sums over modes then stay finite in single precision.
+const MAX_COORDINATE: f64 = 1e30;
 
 fn fits(v: DVec3) -> bool {
-    v.abs().max_element() <= LARGEST
+    v.abs().max_element() <= MAX_COORDINATE
 }

@@ -47,22 +47,22 @@
 //! | question | method |
 //! | --- | --- |
 //! | Which triangles collide at q? | [`Query::discrete`] |
-//! | Does any pair? | [`Query::first`], which stops at the first pair |
-//! | At most n of them? | [`Query::discrete_at_most`] |
-//! | How many? | [`Query::count`] |
-//! | The same for many q? | [`Query::batch`], on all cores |
+//! | Does any pair of triangles collide at q? | [`Query::first`], which stops at the first pair |
+//! | Which pairs collide at q, at most n? | [`Query::discrete_at_most`] |
+//! | How many pairs collide at q? | [`Query::count`] |
+//! | Which triangles collide at each of many q? | [`Query::batch`], on all cores |
 //! | How much did that cost, and did the root's certificate hold? | [`Query::statistics`] |
 //! | Which collide between one q and another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
 //! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
 //! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
 //! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
 //! | Which positions do vertices have at q? | [`ReducedModel::positions`] |
-//! | The same without certificates, for models that change often? | [`Query::without_certificates`] |
-//! | The same by another method, for comparison? | [`Query::with_method`], [`Method`] |
+//! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |
+//! | Which triangles collide at q, by another method? | [`Query::with_method`], [`Method`], for comparison |
 //! | Do the certificates hold under attack, and how tight are they? | [`audit()`] |
 //! | Do shapes in the world collide with each other? | [`PosedShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
-//! | Do two moving triangles, and when? | [`impact_triangle_triangle`] |
+//! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
 //! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh. Above it a
 //! query costs at most about as much as refitting all boxes.
@@ -72,8 +72,8 @@
 //! Touching counts. Triangles that share a vertex always touch, so the contact filter ([`ContactFilter`]) decides which pairs
 //! count:
 //!
-//! - [`Neighbours`]: triangles that share a vertex never count; or those that share exactly one count if they have another
-//!   point in common.
+//! - [`Neighbours`]: by default triangles that share a vertex never count. Optionally, triangles that share exactly
+//!   one vertex count if they have another point in common.
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
 //!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide.
 //! - *Ignored* pairs never count.
@@ -239,10 +239,10 @@
 //! | --- | --- |
 //! | 3, hierarchy | [`hierarchy`] |
 //! | 3 and 4, Algorithm 1 | `query/certified_traversal.rs`, for the pair tree `query/pair_tree_traversal.rs`; BD-tree AABBs in `detect/bd_tree.rs` |
-//! | 5.1, two triangles | `bounds/triangle_pair.rs`, `bounds/separating_direction.rs`, `bounds/affine.rs` |
+//! | 5.1, two triangles | `bounds/pair_refiner.rs`, `bounds/separating_direction.rs`, `bounds/affine_bound.rs` |
 //! | 5.2, nodes and precomputation | `bounds/node_pair.rs`, `certificates/build/` |
 //! | 6, scaling | [`Metric`] |
-//! | 7, continuous queries | `query/swept.rs`, `geometry/ccd/` |
+//! | 7, continuous queries | `query/continuous.rs`, `geometry/ccd/` |
 //! | 7, collisions between objects | [`PosedShape`] |
 
 #[macro_use]
@@ -255,16 +255,16 @@ mod detect;
 mod error;
 mod filter;
 mod geometry;
-mod heap;
 pub mod hierarchy;
 pub mod limits;
+mod min_heap;
 mod model;
 mod posed;
 mod progress;
 mod query;
 #[cfg(test)]
 mod test_models;
-mod threads;
+mod thread_pool;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{

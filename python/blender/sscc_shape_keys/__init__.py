@@ -1,4 +1,4 @@
-"""Self-collisions of meshes with shape keys: proven free, or marked in the viewport while sliders move."""
+"""Blender add-on: proves that a mesh with shape keys has no self-collisions, or marks the colliding faces."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ bl_info = {
     "version": (0, 1, 0),
     "blender": (4, 2, 0),
     "location": "3D Viewport > Sidebar > sscc",
-    "description": "Proves that a mesh with shape keys is free of self-collisions, or marks where",
+    "description": "Proves that a mesh with shape keys has no self-collisions, or marks the colliding faces",
     "category": "Mesh",
 }
 

@@ -59,7 +59,7 @@ class SSCC_OT_select(bpy.types.Operator):
             return {"CANCELLED"}
         mesh = context.object.data
         mesh.vertices.foreach_set("select", [False] * len(mesh.vertices))
-        # Edges stay as they are: Blender 5.0 crashes on those of meshes that `from_pydata` has made.
+        # Edges keep their selection: Blender 5.0 crashes on the edges of meshes from `from_pydata`.
         chosen = [False] * len(mesh.polygons)
         for polygon in status.polygons:
             chosen[polygon] = True
@@ -69,7 +69,7 @@ class SSCC_OT_select(bpy.types.Operator):
 
 
 class SSCC_PT_panel(bpy.types.Panel):
-    """What may be said of the active mesh now"""
+    """Whether the active mesh is free of self-collisions"""
 
     bl_label = "Self-collisions"
     bl_idname = "SSCC_PT_panel"
@@ -109,7 +109,7 @@ def _draw_mark() -> None:
 
 @bpy.app.handlers.persistent
 def _changed(*_: object) -> None:
-    """Something moved: the sidebars say anew what may be said. The viewports are drawn anew by Blender."""
+    """Redraws the sidebars after a change. Blender redraws the viewports itself."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
@@ -126,10 +126,10 @@ def register() -> None:
         bpy.utils.register_class(cls)
     bpy.types.Scene.sscc_ignore_rest = bpy.props.BoolProperty(
         name="Ignore Collisions of the Basis",
-        description="Pairs of faces that collide in the basis, such as closed lips, are never reported",
+        description="Never report pairs of faces that collide in the basis, such as closed lips",
     )
     bpy.types.Scene.sscc_mark = bpy.props.BoolProperty(
-        name="Mark in Viewport", description="Draw the faces that collide in red", default=True
+        name="Mark in Viewport", description="Draw the colliding faces in red", default=True
     )
     for handler in HANDLERS:
         handler.append(_changed)

@@ -1,7 +1,7 @@
-"""Certificates by fingerprint, and what may be said of an object now.
+"""Certificates by fingerprint, and the status of an object.
 
-Certificates are found by the content of mesh and keys, read anew each time that something is said. So nothing that was
-said of one shape can be on show for another one; and what is undone is certified again at once.
+A fingerprint covers the content of mesh and keys. Each status reads the content again and looks up its certificates by
+fingerprint. So a status never belongs to another shape, and a shape after an undo is certified again at once.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ import sscc
 from . import shape as shapes
 from .shape import Unsupported
 
-#: So many shapes are remembered.
-REMEMBERED = 8
+#: Certificates of at most this many shapes are kept.
+MAX_CERTIFIED = 8
 
-#: Names the fingerprint of what was certified last on the object itself, so that it is known that there was something.
+#: Property of an object: the fingerprint that was certified last. Uncertified objects have no such property.
 CERTIFIED = "sscc_certified"
 
 
 @dataclass(frozen=True)
 class Certified:
-    """Certificates, and how their triangles belong to the mesh."""
+    """Certificates, and the vertices and polygons of their triangles."""
 
     certificates: sscc.Certificates
-    faces: np.ndarray  #: (F, 3) vertices of the triangles
-    polygons: np.ndarray  #: (F) of which polygon each is
+    faces: np.ndarray  #: (F, 3) vertex numbers of the triangles
+    polygons: np.ndarray  #: (F) polygon of each triangle
 
 
 @dataclass(frozen=True)
 class Status:
-    """What is said of an object: ``kind`` is free, colliding, changed, uncertified or unsupported."""
+    """The status of an object. ``kind`` is free, colliding, changed, uncertified or unsupported."""
 
     kind: str
     text: str
-    polygons: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))  #: colliding ones, ascending
-    corners: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))  #: of colliding triangles, three each
+    polygons: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))  #: colliding polygons, ascending
+    corners: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))  #: of the colliding triangles, three each
 
 
 _known: OrderedDict[tuple[bytes, bool], Certified] = OrderedDict()
@@ -51,7 +51,7 @@ def forget() -> None:
 
 
 def certify(obj: bpy.types.Object, ignore_rest: bool, progress: object = False) -> Certified:
-    """Certifies the shape of an object as it is now. Raises `Unsupported`, or what sscc refuses."""
+    """Certifies the current shape of an object. Raises `Unsupported` and the errors of `sscc.Model` and `certify`."""
     shapes.check(obj)
     shape = shapes.read(obj)
     faces, polygons = shapes.triangles(obj, shape)
@@ -60,14 +60,14 @@ def certify(obj: bpy.types.Object, ignore_rest: bool, progress: object = False) 
     certified = Certified(certificates, faces, polygons)
     fingerprint = shape.fingerprint()
     _known[fingerprint, ignore_rest] = certified
-    while len(_known) > REMEMBERED:
+    while len(_known) > MAX_CERTIFIED:
         _known.popitem(last=False)
     obj[CERTIFIED] = fingerprint.hex()
     return certified
 
 
 def status(obj: bpy.types.Object | None, ignore_rest: bool) -> Status:
-    """What may be said of an object now."""
+    """Returns the status of an object at the current values of its keys."""
     try:
         shapes.check(obj)
         shape = shapes.read(obj)
@@ -76,7 +76,7 @@ def status(obj: bpy.types.Object | None, ignore_rest: bool) -> Status:
     certified = _known.get((shape.fingerprint(), ignore_rest))
     if certified is None:
         if CERTIFIED in obj:
-            return Status("changed", "changed since it was certified, or not in this session: certify again")
+            return Status("changed", "changed, or certified in another session: certify again")
         return Status("uncertified", "not certified yet")
     _known.move_to_end((shape.fingerprint(), ignore_rest))
     certificates = certified.certificates
@@ -86,11 +86,11 @@ def status(obj: bpy.types.Object | None, ignore_rest: bool) -> Status:
     except ValueError as refusal:
         return Status("unsupported", str(refusal))
     ignored = len(certificates.ignored)
-    beside = f", apart from {ignored} pairs that collide in the basis" if ignored else ""
+    ignoring = f", apart from {ignored} pairs that collide in the basis" if ignored else ""
     if len(pairs) == 0:
-        return Status("free", f"free (proven){beside}")
+        return Status("free", f"free (proven){ignoring}")
     triangles = np.unique(pairs)
     polygons = np.unique(certified.polygons[triangles])
     corners = certificates.model.positions(q)[certified.faces[triangles].reshape(-1)]
-    text = f"{len(polygons)} faces collide ({len(pairs)} pairs of triangles){beside}"
+    text = f"{len(polygons)} faces collide ({len(pairs)} pairs of triangles){ignoring}"
     return Status("colliding", text, polygons, corners)

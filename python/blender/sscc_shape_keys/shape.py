@@ -1,7 +1,7 @@
-"""What the shape of a mesh with shape keys is: basis + sum of value_k (key_k - the key that it is relative to).
+"""The shape of a mesh with shape keys: basis + sum over k of value_k (key_k - relative_key_k).
 
-This is how Blender evaluates relative keys: the differences are those of the stored keys, whatever the values of others
-are. Blender adds in single precision, certificates speak of the sum in double precision.
+Blender evaluates relative keys in this way. The differences are those of the stored keys, independent of the values of
+other keys. Blender adds in single precision; certificates are about the sum in double precision.
 """
 
 from __future__ import annotations
@@ -14,21 +14,21 @@ import numpy as np
 
 
 class Unsupported(Exception):
-    """Why nothing can be said of an object as it is now, and what to do."""
+    """The current state of an object is not supported. The message says how to change it."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """All that certificates depend on."""
+    """The data on which certificates depend."""
 
     basis: np.ndarray  #: (V, 3) float32
     keys: np.ndarray  #: (K, V, 3) float32, without the basis
-    relative: np.ndarray  #: (K) int64: to which key each is relative, -1 for the basis
+    relative: np.ndarray  #: (K) int64: index of the relative key of each key, -1 for the basis
     loops: np.ndarray  #: vertices of all polygons' corners
-    starts: np.ndarray  #: where each polygon begins among them
+    starts: np.ndarray  #: index in `loops` of the first corner of each polygon
 
     def fingerprint(self) -> bytes:
-        """A hash of everything: the same only for the same shape."""
+        """Returns a hash of all arrays. Different shapes have different hashes."""
         digest = hashlib.blake2b(digest_size=32)
         for array in (self.basis, self.keys, self.relative, self.loops, self.starts):
             digest.update(f"{array.dtype} {array.shape} ".encode())
@@ -36,13 +36,13 @@ class Shape:
         return digest.digest()
 
     def modes(self) -> np.ndarray:
-        """What each key adds: (V, 3, K) float64."""
+        """Returns the displacements of each key, (V, 3, K) float64."""
         references = np.concatenate([self.keys, self.basis[None]]).astype(float)[self.relative]
         return np.moveaxis(self.keys.astype(float) - references, 0, -1)
 
 
 def check(obj: bpy.types.Object | None) -> None:
-    """Refuses objects whose shape on the screen is not that of their keys."""
+    """Raises `Unsupported` if the shape on the screen is not the shape of the keys."""
     if obj is None or obj.type != "MESH":
         raise Unsupported("select a mesh")
     mesh = obj.data
@@ -63,7 +63,7 @@ def check(obj: bpy.types.Object | None) -> None:
 
 
 def read(obj: bpy.types.Object) -> Shape:
-    """The shape as it is stored now."""
+    """Returns the stored shape."""
     mesh = obj.data
     blocks = list(mesh.shape_keys.key_blocks)
     count = len(mesh.vertices)
@@ -84,14 +84,14 @@ def read(obj: bpy.types.Object) -> Shape:
 
 
 def values(obj: bpy.types.Object) -> np.ndarray:
-    """How far each key is on: what its slider says, 0 where it is muted."""
+    """Returns the value of each key; 0 for muted keys."""
     keys = obj.data.shape_keys
     blocks = [block for block in keys.key_blocks if block != keys.reference_key]
     return np.array([0.0 if block.mute else block.value for block in blocks])
 
 
 def triangles(obj: bpy.types.Object, shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    """The triangles into which Blender cuts the polygons of the basis, and of which polygon each is."""
+    """Returns the triangles into which Blender cuts the polygons of the basis, and the polygon of each triangle."""
     mesh = obj.data.copy()
     try:
         mesh.vertices.foreach_set("co", shape.basis.reshape(-1))

@@ -1,4 +1,4 @@
-"""The Blender add-on, in Blender's own Python module."""
+"""The Blender add-on, tested in Blender as a Python module."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def jaws() -> Any:
     obj.shape_key_add(name="Basis")
     for name, move in [("Close", 0 * x - 2), ("Lift", 0 * x + 0.5), ("Tilt", 0.4 * x)]:
         key = obj.shape_key_add(name=name, from_mix=False)
-        key.value = 0  # which some versions begin with, and others with 1
+        key.value = 0  # the initial value is 0 in some versions, 1 in others
         for vertex, dz in enumerate(move, 49):
             key.points[vertex].co.z += dz
     return obj
 
 
 def status(obj: Any) -> proof.Status:
-    """What the panel would show; the panel itself must show the same."""
+    """Returns the status, after a check that the panel shows it."""
     shown: list[str] = []
 
     class Layout:
@@ -71,7 +71,7 @@ def status(obj: Any) -> proof.Status:
 
 
 def evaluated(obj: Any) -> np.ndarray:
-    """Where Blender puts the vertices."""
+    """The positions of the vertices by Blender."""
     found = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     positions = np.empty((len(found.vertices), 3), np.float32)
     found.vertices.foreach_get("co", positions.reshape(-1))
@@ -110,8 +110,8 @@ def test_colliding_faces_follow_the_sliders() -> None:
     assert status(obj).kind == "free"
 
 
-def test_the_shape_is_blenders() -> None:
-    """Keys relative to others, muted ones, negative and large values: the positions of the model are Blender's."""
+def test_positions_equal_those_of_blender() -> None:
+    """For keys relative to other keys, muted keys, and negative and large values."""
     obj = jaws()
     keys(obj)["Tilt"].relative_key = keys(obj)["Lift"]
     keys(obj)["Lift"].relative_key = keys(obj)["Close"]
@@ -131,7 +131,7 @@ def test_the_shape_is_blenders() -> None:
 
 
 def edits(obj: Any) -> dict[str, Any]:
-    """Edits after which nothing may be claimed, and how each is undone."""
+    """Edits after which there must be no answer, each with its undo."""
     key, basis = keys(obj)["Close"], keys(obj)["Basis"]
 
     def move(point: Any, by: float) -> None:
@@ -172,7 +172,7 @@ def edits(obj: Any) -> dict[str, Any]:
     }
 
 
-def test_no_claim_outlives_an_edit() -> None:
+def test_an_edit_invalidates_the_certificates() -> None:
     obj = jaws()
     assert bpy.ops.sscc.certify() == {"FINISHED"}
     for name, (edit, undo) in edits(obj).items():
@@ -184,11 +184,11 @@ def test_no_claim_outlives_an_edit() -> None:
             assert "certify again" in found.text
         assert bpy.ops.sscc.select.poll() and found.polygons.size == 0
         undo()
-    # Everything is as it was: what was proven then still is.
+    # The shape is the certified one again.
     assert status(obj).kind == "free"
 
 
-def test_a_deleted_vertex_changes_the_shape() -> None:
+def test_deleting_a_vertex_invalidates_the_certificates() -> None:
     obj = jaws()
     assert bpy.ops.sscc.certify() == {"FINISHED"}
     import bmesh
@@ -204,7 +204,7 @@ def test_a_deleted_vertex_changes_the_shape() -> None:
     assert status(obj).kind == "free"
 
 
-def test_muted_keys_count_as_zero_and_undone_ones_again() -> None:
+def test_muted_keys_count_as_zero() -> None:
     obj = jaws()
     assert bpy.ops.sscc.certify() == {"FINISHED"}
     close, lift = keys(obj)["Close"], keys(obj)["Lift"]
@@ -218,7 +218,7 @@ def test_muted_keys_count_as_zero_and_undone_ones_again() -> None:
     assert status(obj).kind == "free"
 
 
-def test_values_beyond_the_sliders_are_answered_as_they_are() -> None:
+def test_values_beyond_the_sliders_have_answers() -> None:
     obj = jaws()
     assert bpy.ops.sscc.certify() == {"FINISHED"}
     close = keys(obj)["Close"]
@@ -234,7 +234,7 @@ def test_values_beyond_the_sliders_are_answered_as_they_are() -> None:
     assert evaluated(obj)[49, 2] == pytest.approx(-4)
 
 
-def test_what_collides_in_the_basis_can_be_ignored() -> None:
+def test_collisions_of_the_basis_can_be_ignored() -> None:
     obj = jaws()
     for point in list(keys(obj)["Basis"].points)[49:]:
         point.co.z -= 1
@@ -250,7 +250,7 @@ def test_what_collides_in_the_basis_can_be_ignored() -> None:
     assert found.kind == "free" and "apart from" in found.text
 
 
-def test_what_cannot_be_certified_says_why() -> None:
+def test_unsupported_objects_state_the_reason() -> None:
     assert status(None).text == "select a mesh"
     with pytest.raises(RuntimeError, match="select a mesh"):
         bpy.ops.sscc.certify()
@@ -263,8 +263,8 @@ def test_what_cannot_be_certified_says_why() -> None:
         bpy.ops.sscc.select()
 
 
-def test_polygons_are_cut_as_blender_cuts_them() -> None:
-    """An L-shaped polygon: a fan from its first corner would leave it."""
+def test_triangles_are_those_of_blender() -> None:
+    """For an L-shaped polygon: a fan from its first corner would leave the polygon."""
     mesh = bpy.data.meshes.new("L")
     mesh.from_pydata([(0, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (1, 2, 0), (0, 2, 0)], [], [(2, 3, 4, 5, 0, 1)])
     obj = bpy.data.objects.new("L", mesh)

@@ -1,4 +1,4 @@
-"""The motion that the page saves, and that of a simulation, opened in Blender."""
+"""The motion exported by the page and the animation of a simulation, imported into Blender."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMAND = os.environ.get("SSCC_COMMAND")
 pytestmark = pytest.mark.skipif(not COMMAND, reason="SSCC_COMMAND names no sscc command")
 
 SECONDS = [0.0, 0.25, 0.5, 1.0]
-# Weights of animators lie in [0, 1]; those of modes have any sign and size.
+# Weights of morph targets are usually in [0, 1]; q has any sign and size.
 Q = np.array([[0, 0, 0], [0.5, -2, 11], [-1, 0.25, -40], [0.125, 3, 7]], float)
 
 
@@ -43,18 +43,18 @@ def address(tmp_path: Path) -> Iterator[str]:
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
     (tmp_path / "tube.obj").write_text("\n".join(lines) + "\n")
     np.save(tmp_path / "modes.npy", modes)
-    asked = [str(COMMAND), "view", str(tmp_path / "tube.obj"), "--modes", str(tmp_path / "modes.npy"), "--no-open"]
-    with subprocess.Popen(asked, stdout=subprocess.PIPE, text=True) as server:
+    command = [str(COMMAND), "view", str(tmp_path / "tube.obj"), "--modes", str(tmp_path / "modes.npy"), "--no-open"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         assert server.stdout is not None
         yield server.stdout.readline().strip()
         server.terminate()
 
 
-def test_blender_moves_every_vertex_as_we_do(address: str, tmp_path: Path) -> None:
+def test_blender_shows_every_vertex_at_its_position(address: str, tmp_path: Path) -> None:
     page, token = address.split("/?token=")
     body = json.dumps({"q": Q.tolist(), "times": SECONDS}).encode()
-    asked = urllib.request.Request(f"{page}/api/glb", body, {"X-Sscc-Token": token})
-    with urllib.request.urlopen(asked) as answer:
+    request = urllib.request.Request(f"{page}/api/glb", body, {"X-Sscc-Token": token})
+    with urllib.request.urlopen(request) as answer:
         (tmp_path / "motion.glb").write_bytes(answer.read())
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -99,11 +99,11 @@ shake = [40, -50, 60]
 def test_blender_keeps_all_weights_of_a_simulation(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SCENE)
     out = tmp_path / "out"
-    asked = [str(COMMAND), "simulate", str(tmp_path / "scene.toml"), "--out", str(out), "--cache", str(tmp_path)]
-    subprocess.run(asked, check=True, capture_output=True)
+    command = [str(COMMAND), "simulate", str(tmp_path / "scene.toml"), "--out", str(out), "--cache", str(tmp_path)]
+    subprocess.run(command, check=True, capture_output=True)
     motion = np.load(out / "trajectories.npz")
     q, time = motion["q_spring"][:, 0], motion["time"]
-    # Of both signs, and beyond what Blender allows by itself.
+    # Of both signs, and beyond the default range of sliders in Blender.
     assert q.min() < -0.1 and q.max() > 1.5
 
     bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -1,14 +1,14 @@
-//! The layers as text, for people: crate by crate, the lowest last.
+//! Draws the layers as text, crate by crate, the lowest last.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::order::{Levels, Order};
-use super::read::{ReadCrate, Workspace};
+use super::read::{CrateSource, Workspace};
 use super::resolve::Target;
 
 type Arrows = BTreeMap<String, BTreeSet<String>>;
 
-/// The diagram of the crates, then that of each crate; with names only those of these crates.
+/// Returns the diagram of the crates, then that of each crate. `names` selects crates; empty selects all.
 pub fn diagram(workspace: &Workspace, order: &Order, names: &[String]) -> String {
     let mut parts = Vec::new();
     if names.is_empty() {
@@ -18,8 +18,8 @@ pub fn diagram(workspace: &Workspace, order: &Order, names: &[String]) -> String
         });
         parts.push(format!("crates\n{}", draw(&order.crates, &arrows.collect())));
     }
-    let place = |krate: &&ReadCrate| order.crates.place(&krate.manifest.name).map(|place| place.level);
-    let mut crates: Vec<&ReadCrate> = workspace.crates.iter().collect();
+    let place = |krate: &&CrateSource| order.crates.place(&krate.manifest.name).map(|place| place.level);
+    let mut crates: Vec<&CrateSource> = workspace.crates.iter().collect();
     crates.sort_by_key(|krate| std::cmp::Reverse(place(krate)));
     for krate in crates {
         let name = &krate.manifest.name;
@@ -36,8 +36,8 @@ pub fn diagram(workspace: &Workspace, order: &Order, names: &[String]) -> String
     parts.join("\n")
 }
 
-/// Which modules of a folder import which others of it.
-fn arrows(krate: &ReadCrate, folder: &[&str]) -> Arrows {
+/// Returns the imports between the modules of a folder.
+fn arrows(krate: &CrateSource, folder: &[&str]) -> Arrows {
     let mut arrows = Arrows::new();
     let entry = |file: usize| {
         let path = &krate.modules.modules[krate.modules.files[file].module].path;
@@ -55,7 +55,7 @@ fn arrows(krate: &ReadCrate, folder: &[&str]) -> Arrows {
     arrows
 }
 
-/// One line for each name, the highest first: what it imports, the highest first.
+/// Returns one line for each name with the names that it imports, both from the highest level down.
 fn draw(levels: &Levels, arrows: &Arrows) -> String {
     let from_top: Vec<&String> = levels.rows.iter().rev().flatten().collect();
     let width = from_top.iter().map(|name| name.len()).max().unwrap_or(0);

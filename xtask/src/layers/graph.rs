@@ -1,11 +1,11 @@
-//! The files of one crate as a graph: which imports which, circles, the deepest chain.
+//! The graph of imports between the files of a crate: its circles and its longest chain.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use super::imports::Import;
 use super::resolve::Target;
 
-/// For each file those that it imports, each with the first import that does.
+/// For each file, the files that it imports, each with the first such import.
 pub struct FileGraph<'a> {
     steps: Vec<BTreeMap<usize, &'a Import>>,
 }
@@ -24,13 +24,12 @@ impl<'a> FileGraph<'a> {
         Self { steps }
     }
 
-    /// Each pair of files of which one imports the other, by one import of it.
+    /// Returns one import for each pair of files of which one imports the other.
     pub fn steps(&self) -> impl Iterator<Item = &'a Import> {
         self.steps.iter().flat_map(|steps| steps.values().copied())
     }
 
-    /// Short circles, no two of which have a step in common: none where there is no circle at all. Each is one import for
-    /// each step.
+    /// Returns short circles without common steps, each as one import for each step; empty if there is no circle.
     pub fn circles(&self) -> Vec<Vec<&'a Import>> {
         let mut circles: Vec<Vec<&Import>> =
             (0..self.steps.len()).filter_map(|file| self.shortest_circle(file)).collect();
@@ -45,7 +44,7 @@ impl<'a> FileGraph<'a> {
         circles
     }
 
-    /// The shortest way from a file back to itself.
+    /// Returns the shortest circle through a file.
     fn shortest_circle(&self, start: usize) -> Option<Vec<&'a Import>> {
         let mut reached_by: BTreeMap<usize, &Import> = BTreeMap::new();
         let mut waiting = VecDeque::from([start]);
@@ -69,7 +68,7 @@ impl<'a> FileGraph<'a> {
         None
     }
 
-    /// The longest chain of files in which each imports the next one; none where files are in a circle.
+    /// Returns the longest chain of files in which each imports the next one; none if files form a circle.
     pub fn deepest_chain(&self) -> Option<Vec<usize>> {
         if (0..self.steps.len()).any(|file| self.shortest_circle(file).is_some()) {
             return None;
@@ -79,7 +78,7 @@ impl<'a> FileGraph<'a> {
         below.into_values().rev().max_by_key(Vec::len)
     }
 
-    /// Notes the longest chain that begins with a file.
+    /// Adds the longest chain that begins with a file.
     fn add_chain(&self, file: usize, below: &mut BTreeMap<usize, Vec<usize>>) {
         if below.contains_key(&file) {
             return;

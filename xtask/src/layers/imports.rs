@@ -1,4 +1,4 @@
-//! All imports of a crate's files: from which file, on which line, of what.
+//! Collects the imports of a crate's files, with file, line and imported file or crate.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -17,13 +17,13 @@ pub struct Import {
     /// The file that imports.
     pub from: usize,
     pub line: usize,
-    /// A file or a crate.
+    /// The imported file or crate.
     pub to: Target,
-    /// The path as it is written.
+    /// The path as written.
     pub path: String,
 }
 
-/// All imports of the files of a crate. `crates` are those of the workspace: `include!` may reach into their folders.
+/// Returns all imports of the files of a crate. `crates`: those of the workspace, whose folders `include!` may reach.
 pub fn imports(modules: &Modules, crates: &[Crate]) -> Vec<Import> {
     let mut imports = Vec::new();
     for (file, source) in modules.files.iter().enumerate() {
@@ -45,7 +45,7 @@ struct Visitor<'a> {
     crates: &'a [Crate],
     file: usize,
     module: usize,
-    /// What names mean in blocks that import for themselves, and `Self`; the innermost block last.
+    /// The paths of `Self` and of names that blocks import, the innermost block last.
     aliases: Vec<BTreeMap<String, Vec<String>>>,
     imports: &'a mut Vec<Import>,
 }
@@ -59,7 +59,7 @@ impl Visitor<'_> {
         }
     }
 
-    /// A path in code. One name alone is imported elsewhere, by a `use`.
+    /// Adds a path in code. A single name is ignored, since a `use` imports it.
     fn add_path(&mut self, names: &[String], line: usize) {
         if names.len() > 1 {
             let alias = self.aliases.iter().rev().find_map(|aliases| aliases.get(&names[0]));
@@ -69,7 +69,7 @@ impl Visitor<'_> {
         }
     }
 
-    /// A macro that is called by its name alone: imported, or a `macro_rules!` further up in the crate.
+    /// Adds a macro that is called by its name alone, if it is a `macro_rules!` of another file and not imported.
     fn add_macro(&mut self, name: &str, line: usize) {
         if self.modules.resolve_name(self.module, name).is_none()
             && let Some(files) = self.modules.macros.get(name)
@@ -99,7 +99,7 @@ impl Visitor<'_> {
         }
     }
 
-    /// `include!` of a file in the folder of another crate.
+    /// Adds an `include!` of a file in the folder of another crate.
     fn add_include(&mut self, mac: &Macro) {
         let Ok(text) = mac.parse_body::<syn::LitStr>() else { return };
         let folder = self.modules.files[self.file].path.parent().unwrap_or(Path::new(""));
@@ -117,7 +117,7 @@ impl Visitor<'_> {
     }
 }
 
-/// A path without `..`.
+/// Returns a path without `..`.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for component in path.components() {
@@ -138,14 +138,14 @@ impl<'ast> Visit<'ast> for Visitor<'_> {
             Item::Use(item) => use_leaves(&item.tree).iter().for_each(|leaf| self.add_leaf(leaf)),
             Item::Mod(item) => {
                 let Some((_, items)) = &item.content else { return };
-                // All meanings of a name that are modules in this file: `#[cfg]` may choose one of several.
+                // A name may have several meanings that are modules, of which `#[cfg]` selects one.
                 let known = self.modules.modules[self.module].names.get(&items::name(&item.ident));
                 let line = item.ident.span().start().line;
                 let inner = known.into_iter().flatten().find_map(|name| match name.meaning {
                     Meaning::Module(inner) if self.modules.modules[inner].declared.1 == line => Some(inner),
                     _ => None,
                 });
-                // Those within functions are not looked into.
+                // Modules within functions are ignored.
                 let Some(inner) = inner else { return };
                 let outer = std::mem::replace(&mut self.module, inner);
                 items.iter().for_each(|item| self.visit_item(item));

@@ -1,8 +1,8 @@
-//! What the tool needs to know about single items of a parsed file.
+//! Names, visibility and test attributes of single items of a parsed file.
 
 use syn::{Attribute, Ident, ImplItem, Item, ItemImpl, Meta, TraitItem, Type, UseTree, Visibility};
 
-/// The name of an identifier, without `r#`.
+/// Returns the name of an identifier without `r#`.
 pub fn name(ident: &Ident) -> String {
     let name = ident.to_string();
     name.strip_prefix("r#").map(str::to_owned).unwrap_or(name)
@@ -27,6 +27,7 @@ fn needs_test(condition: &Meta) -> bool {
     }
 }
 
+/// Returns the attributes of an item.
 pub fn attributes(item: &Item) -> &[Attribute] {
     match item {
         Item::Const(item) => &item.attrs,
@@ -68,15 +69,16 @@ pub fn attributes_in_trait(item: &TraitItem) -> &[Attribute] {
     }
 }
 
-/// An item that a path can name, neither a module nor a macro.
-pub struct Named<'a> {
+/// An item that a path can name, other than modules and macros.
+pub struct NamedItem<'a> {
     pub ident: &'a Ident,
     pub visibility: &'a Visibility,
-    /// Whether a path can go on behind it: `Type::function`.
+    /// Whether a path can continue after it, as in `Type::function`.
     pub is_type: bool,
 }
 
-pub fn named(item: &Item) -> Option<Named<'_>> {
+/// Returns the name of an item that a path can name; none for other items.
+pub fn named_item(item: &Item) -> Option<NamedItem<'_>> {
     let (ident, visibility, is_type) = match item {
         Item::Const(item) => (&item.ident, &item.vis, false),
         Item::Enum(item) => (&item.ident, &item.vis, true),
@@ -89,10 +91,10 @@ pub fn named(item: &Item) -> Option<Named<'_>> {
         Item::Union(item) => (&item.ident, &item.vis, true),
         _ => return None,
     };
-    Some(Named { ident, visibility, is_type })
+    Some(NamedItem { ident, visibility, is_type })
 }
 
-/// The type of an `impl` block that is of no trait, where the type is named by a path.
+/// Returns the path of the type of an `impl` block; none if the block is of a trait or the type is not a path.
 pub fn type_of_impl(item: &ItemImpl) -> Option<Vec<String>> {
     match &*item.self_ty {
         Type::Path(path) if path.qself.is_none() && item.trait_.is_none() => {
@@ -102,7 +104,7 @@ pub fn type_of_impl(item: &ItemImpl) -> Option<Vec<String>> {
     }
 }
 
-/// The functions and constants of an `impl` block.
+/// Returns the functions and constants of an `impl` block.
 pub fn names_in_impl(item: &ItemImpl) -> Vec<String> {
     let items = item.items.iter().filter(|item| !is_for_tests(attributes_in_impl(item)));
     let names = items.filter_map(|item| match item {
@@ -116,12 +118,12 @@ pub fn names_in_impl(item: &ItemImpl) -> Vec<String> {
 /// One name that a `use` imports.
 pub struct UseLeaf {
     pub path: Vec<String>,
-    /// The name under which it is known; none of a glob.
+    /// The name in the importing module; none for a glob.
     pub alias: Option<String>,
     pub line: usize,
 }
 
-/// All names that a `use` imports: `use a::{self, b::c as d, e::*}` has three.
+/// Returns all names that a `use` imports: `use a::{self, b::c as d, e::*}` has three.
 pub fn use_leaves(tree: &UseTree) -> Vec<UseLeaf> {
     let mut leaves = Vec::new();
     add_leaves(tree, &mut Vec::new(), &mut leaves);

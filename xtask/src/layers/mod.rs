@@ -1,19 +1,19 @@
-//! `cargo xtask layers`: whether imports go down the order that `layers.toml` declares, between crates and between the
-//! modules of a crate, and whether files are in circles. `--graph` prints the layers as a diagram, `--graph sscc` those
-//! of one crate.
+//! `cargo xtask layers`: checks that imports go down the order in `layers.toml`, between crates and between the modules
+//! of a crate, and that no files form a circle. `--graph` prints the layers as a diagram, `--graph sscc` those of one
+//! crate.
 //!
-//! An import is any path that leads to an item of another file: in a `use`, in code, in the arguments of a macro or an
-//! attribute, in the body of a `macro_rules!`. The file that defines the item is imported: re-exports are followed to
-//! it, and a re-export is itself an import by the file that has it. `Type::function` also imports the file of the `impl`
-//! block. A glob imports all that it makes visible. `mod x;` is no import, nor is `use` of a module: what is taken from
-//! the module is.
+//! An import is any path to an item of another file: in a `use`, in code, in the arguments of a macro or an attribute,
+//! in the body of a `macro_rules!`. It imports the file that defines the item. The tool follows re-exports to that
+//! file, and counts a re-export as an import by the file that contains it. `Type::function` also imports the file of
+//! the `impl` block. A glob imports all that it makes visible. `mod x;` is not an import, nor is `use` of a module; a
+//! path to an item of the module is.
 //!
-//! Left out are items for tests alone (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/`
-//! and `build.rs`: they may import whatever they like.
+//! The tool ignores items for tests (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/` and
+//! `build.rs`.
 //!
-//! What the tool cannot see, because it knows no types: methods called on values, of a trait or of the type itself;
-//! functions of a trait called by the type's path; fields; names that a macro puts together. Text from `include!` is not
-//! read; `include!` from another crate's folder is an import of that crate.
+//! The tool does not know types. So it misses methods called on values, functions of a trait called by the type's path,
+//! fields, and names that a macro concatenates. It does not read text from `include!`; `include!` from another crate's
+//! folder is an import of that crate.
 
 mod diagram;
 mod graph;

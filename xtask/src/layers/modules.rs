@@ -1,4 +1,4 @@
-//! The modules of a crate with the names in them: all that paths are resolved with.
+//! The modules of a crate and the names in them. The resolver of paths works on this data.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -11,13 +11,13 @@ pub struct Modules {
     pub modules: Vec<Module>,
     /// The library's name in paths and its first module.
     pub library: Option<(String, usize)>,
-    /// Other crates of the workspace: their names in paths and their own.
+    /// Dependencies in the workspace: name in paths, name of the crate.
     pub dependencies: BTreeMap<String, String>,
-    /// For each `macro_rules!` the files that define it.
+    /// For each `macro_rules!`, the files that define it.
     pub macros: BTreeMap<String, Vec<usize>>,
-    /// The `impl` blocks of types, those of traits apart.
+    /// The `impl` blocks of types, without those of traits.
     pub impls: Vec<Impl>,
-    /// For each type, by its file and name, and each function in its `impl` blocks: the files of these blocks.
+    /// For each type (by file and name) and function of it, the files of the `impl` blocks with that function.
     pub associated: BTreeMap<(usize, String, String), BTreeSet<usize>>,
 }
 
@@ -30,6 +30,7 @@ pub struct Impl {
     pub names: Vec<String>,
 }
 
+/// A parsed file of the crate.
 pub struct SourceFile {
     /// Relative to the root of the workspace.
     pub path: PathBuf,
@@ -37,8 +38,10 @@ pub struct SourceFile {
     pub syntax: Rc<syn::File>,
 }
 
+/// A module, in a file of its own or inline.
 pub struct Module {
-    /// The names of the modules that lead to it, its own last; empty for the first module of a library or program.
+    /// The names of its parents and its own name, the outermost first; empty for the first module of a library or
+    /// program.
     pub path: Vec<String>,
     pub parent: Option<usize>,
     pub file: usize,
@@ -54,13 +57,14 @@ pub struct Name {
     pub visible: Visible,
 }
 
+/// The item that a name stands for.
 pub enum Meaning {
     Module(usize),
-    /// A type or trait: a path can go on behind it.
+    /// A type or trait: a path can continue after it.
     Type,
     /// A function, constant or macro.
     Value,
-    /// What a `use` imports by this path.
+    /// An import by a `use` of this path.
     Import(Vec<String>),
 }
 
@@ -73,12 +77,12 @@ pub struct Glob {
 #[derive(Clone, Copy, PartialEq)]
 pub enum Visible {
     Everywhere,
-    /// In this module and in all below it.
+    /// In this module and its descendants.
     Within(usize),
 }
 
 impl Modules {
-    /// Whether a module is `ancestor` or below it.
+    /// Whether a module is `ancestor` or a descendant of it.
     pub fn is_within(&self, module: usize, ancestor: usize) -> bool {
         let mut at = Some(module);
         while let Some(module) = at {
@@ -90,7 +94,7 @@ impl Modules {
         false
     }
 
-    /// The first module of the library or program that a module belongs to: `crate`.
+    /// Returns the first module of the library or program of a module: `crate` in paths.
     pub fn first_module(&self, mut module: usize) -> usize {
         while let Some(parent) = self.modules[module].parent {
             module = parent;

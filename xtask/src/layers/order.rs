@@ -1,4 +1,4 @@
-//! The order declared in `layers.toml`: of the crates, and of the modules of each crate or folder, lowest first.
+//! The order of crates and of modules that `layers.toml` declares, lowest first.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,9 +10,10 @@ use super::toml_file::TomlFile;
 /// The file that declares the order, at the root of the workspace.
 pub const FILE: &str = "layers.toml";
 
+/// The declared order of crates and modules.
 pub struct Order {
     pub crates: Levels,
-    /// For a crate, such as `sscc`, or a folder of modules in it, such as `sscc/query`.
+    /// The levels of each crate, such as `sscc`, and folder of modules, such as `sscc/query`.
     pub folders: BTreeMap<String, Levels>,
 }
 
@@ -25,18 +26,19 @@ pub struct Levels {
 
 #[derive(Clone, Copy)]
 pub struct Place {
-    /// Counted from the lowest, 0.
+    /// The level; 0 is the lowest.
     pub level: usize,
     /// The line in the file.
     pub line: usize,
 }
 
 impl Levels {
+    /// Returns the place of a name; none if the order does not have it.
     pub fn place(&self, name: &str) -> Option<Place> {
         self.places.get(name).copied()
     }
 
-    /// All names with the lines on which they are declared.
+    /// Returns all names with the lines of their declarations.
     pub fn entries(&self) -> impl Iterator<Item = (&str, usize)> {
         self.places.iter().map(|(name, place)| (name.as_str(), place.line))
     }

@@ -1,4 +1,4 @@
-//! Reads the modules of a crate from its files. Items for tests are left out.
+//! Reads the modules of a crate from its files, without items for tests.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use syn::{Item, ItemMacro, ItemMod, Visibility};
 
-use super::items::{attributes, is_for_tests, name, named, names_in_impl, type_of_impl, use_leaves};
+use super::items::{attributes, is_for_tests, name, named_item, names_in_impl, type_of_impl, use_leaves};
 use super::modules::{Glob, Impl, Meaning, Module, Modules, Name, SourceFile, Visible};
 use super::workspace::{Crate, Dependency};
 
@@ -27,7 +27,7 @@ pub fn read(root: &Path, krate: &Crate) -> Result<Modules, String> {
 }
 
 impl Modules {
-    /// Reads a file and all modules below it; gives its module. `declared` is none for a first file.
+    /// Reads a file and all modules below it, and returns its module. `declared`: none for a first file.
     fn read_file(&mut self, root: &Path, path: &Path, declared: Option<Declared>) -> Result<usize, String> {
         let text =
             fs::read_to_string(root.join(path)).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -78,7 +78,7 @@ impl Modules {
                     self.impls.push(Impl { module, path, names: names_in_impl(item) });
                 }
                 item => {
-                    let Some(named) = named(item) else { continue };
+                    let Some(named) = named_item(item) else { continue };
                     let meaning = if named.is_type { Meaning::Type } else { Meaning::Value };
                     let visible = self.visible(module, named.visibility);
                     self.add_name(module, name(named.ident), meaning, visible);
@@ -131,8 +131,8 @@ impl Modules {
         Ok(())
     }
 
-    /// A `macro_rules!`: paths find it in its module, where a `use` can begin, and in the crate's first one if it is
-    /// exported. By its name alone it is found through `macros`.
+    /// Adds a `macro_rules!` to its module and, if it is exported, to the first module of the crate. Calls by name
+    /// alone use `macros`.
     fn add_macro(&mut self, module: usize, item: &ItemMacro) {
         let Some(ident) = &item.ident else { return };
         let at = &self.modules[module];
@@ -162,7 +162,7 @@ impl Modules {
     }
 }
 
-/// Where a module is declared.
+/// The declaration of a module.
 struct Declared {
     path: Vec<String>,
     parent: Option<usize>,

@@ -1,4 +1,4 @@
-//! The whole workspace as the rules need it: crates, their modules and imports.
+//! Reads the workspace: its crates, their modules and imports.
 
 use std::path::Path;
 
@@ -8,11 +8,13 @@ use super::parse;
 use super::resolve::Target;
 use super::workspace::{self, Crate};
 
+/// All crates of the workspace.
 pub struct Workspace {
-    pub crates: Vec<ReadCrate>,
+    pub crates: Vec<CrateSource>,
 }
 
-pub struct ReadCrate {
+/// A crate with its modules and imports.
+pub struct CrateSource {
     pub manifest: Crate,
     pub modules: Modules,
     pub imports: Vec<Import>,
@@ -32,25 +34,26 @@ impl Workspace {
         let crates = manifests.into_iter().zip(read);
         Ok(Self {
             crates: crates
-                .map(|(manifest, (modules, imports))| ReadCrate { manifest, modules, imports })
+                .map(|(manifest, (modules, imports))| CrateSource { manifest, modules, imports })
                 .collect(),
         })
     }
 }
 
-impl ReadCrate {
-    /// The path of a file, relative to the root of the workspace.
+impl CrateSource {
+    /// Returns the path of a file, relative to the root of the workspace.
     pub fn path(&self, file: usize) -> String {
         self.modules.files[file].path.display().to_string()
     }
 
-    /// The name by which `layers.toml` knows a folder of modules, such as `sscc/query`; the crate's own for no modules.
+    /// Returns the name of a folder of modules in `layers.toml`, such as `sscc/query`; without modules, the crate's
+    /// name.
     pub fn folder(&self, modules: &[String]) -> String {
         let name = std::slice::from_ref(&self.manifest.name);
         [name, modules].concat().join("/")
     }
 
-    /// `file:line: imports path (file)`.
+    /// Returns `file:line: imports path (file)`.
     pub fn describe(&self, import: &Import) -> String {
         let at = format!("{}:{}", self.path(import.from), import.line);
         match import.to {

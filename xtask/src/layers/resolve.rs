@@ -1,15 +1,15 @@
-//! Which file defines what a path names: imports, re-exports and globs are followed to the item itself.
+//! Finds the files that define the items of paths. It follows imports, re-exports and globs.
 
 use std::collections::BTreeSet;
 
 use super::modules::{Meaning, Modules, Visible};
 
-/// What a path names.
+/// The target of a path.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// An item that is defined in this file.
     File(usize),
-    /// A type that is defined in this file: what follows in the path may be in an `impl` block of another one.
+    /// A type that is defined in this file. The rest of the path may be in an `impl` block of another file.
     Type(usize, String),
     Module(usize),
     /// Another crate of the workspace, or something in it.
@@ -18,7 +18,7 @@ pub enum Target {
 
 pub type Targets = BTreeSet<Target>;
 
-/// Types are no more than items of their files, once the path is at its end.
+/// Converts types to their files, for paths that end there.
 fn at_end(targets: Targets) -> Targets {
     let file = |target| match target {
         Target::Type(file, _) => Target::File(file),
@@ -28,14 +28,13 @@ fn at_end(targets: Targets) -> Targets {
 }
 
 impl Modules {
-    /// What a path in a module names: more than one thing where a name has several meanings, nothing where it is no
-    /// part of the workspace. A name that a module lacks was made by a macro there: it is taken as an item of the
-    /// module's file.
+    /// Returns the targets of a path in a module: several if a name has several meanings, none outside of the
+    /// workspace. A name that a module lacks counts as an item of its file, because a macro made it.
     pub fn resolve(&self, module: usize, path: &[String]) -> Targets {
         at_end(Resolver::new(self).path(module, path, false).unwrap_or_default())
     }
 
-    /// The types that a path names, each by its file and name.
+    /// Returns the types of a path, each by file and name.
     fn resolve_types(&self, module: usize, path: &[String]) -> Vec<(usize, String)> {
         let targets = Resolver::new(self).path(module, path, true);
         let types = targets.into_iter().flatten().filter_map(|target| match target {
@@ -45,7 +44,7 @@ impl Modules {
         types.collect()
     }
 
-    /// Finds the files in which functions of types are, for paths such as `Type::function`.
+    /// Finds the files with functions of types, for paths such as `Type::function`.
     pub fn find_associated(&mut self) {
         for block in std::mem::take(&mut self.impls) {
             let file = self.modules[block.module].file;
@@ -58,12 +57,12 @@ impl Modules {
         }
     }
 
-    /// What a module itself knows under a name; none where it does not know the name.
+    /// Returns the targets of a name in a module; none if the module does not have the name.
     pub fn resolve_name(&self, module: usize, name: &str) -> Option<Targets> {
         Resolver::new(self).name(module, name, false).map(at_end)
     }
 
-    /// All that `use path::*` in a module brings into it.
+    /// Returns the targets that `use path::*` imports into a module.
     pub fn resolve_glob(&self, module: usize, path: &[String]) -> Targets {
         let mut targets = Targets::new();
         for target in self.resolve(module, path) {
@@ -75,7 +74,7 @@ impl Modules {
         targets
     }
 
-    /// Adds all in the module `from` that is visible in the module `to`.
+    /// Adds the targets in the module `from` that are visible in the module `to`.
     fn add_visible(&self, from: usize, to: usize, seen: &mut BTreeSet<usize>, targets: &mut Targets) {
         if !seen.insert(from) {
             return;
@@ -103,7 +102,7 @@ impl Modules {
 
 struct Resolver<'a> {
     modules: &'a Modules,
-    /// Imports that are being followed: some lead to themselves, such as `pub use a_macro`.
+    /// Imports on the current path of the search. Some lead to themselves, such as `pub use a_macro`.
     open: BTreeSet<(usize, &'a [String], bool)>,
 }
 
@@ -112,8 +111,8 @@ impl<'a> Resolver<'a> {
         Self { modules, open: BTreeSet::new() }
     }
 
-    /// None where the first name is unknown: then it is something outside of the workspace, or not there at all. With
-    /// `goes_on` only modules and types count, since functions have nothing behind them.
+    /// Returns the targets of a path; none if the first name is unknown, and so outside of the workspace. With
+    /// `goes_on` only modules and types count, because a path cannot continue after a function.
     fn path(&mut self, module: usize, path: &[String], goes_on: bool) -> Option<Targets> {
         let (first, mut rest) = path.split_first()?;
         let mut reached = match first.as_str() {
@@ -155,7 +154,7 @@ impl<'a> Resolver<'a> {
         Some(reached)
     }
 
-    /// A name at the beginning of a path: one of the module, the library in its programs, or a dependency.
+    /// Returns the targets of the first name of a path: a name of the module, the library or a dependency.
     fn first_name(&mut self, module: usize, name: &str, goes_on: bool) -> Option<Targets> {
         if let Some(targets) = self.name(module, name, goes_on) {
             return Some(targets);

@@ -1,4 +1,4 @@
-//! The rules: imports go down the declared order, files are in no circle, the order names what is there.
+//! Checks the rules: imports go down the declared order, files form no circle, the order names all modules.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -6,19 +6,19 @@ use std::collections::BTreeSet;
 use super::graph::FileGraph;
 use super::imports::Import;
 use super::order::{FILE, Levels, Order};
-use super::read::{ReadCrate, Workspace};
+use super::read::{CrateSource, Workspace};
 use super::resolve::Target;
 use super::workspace::Dependency;
 
-/// A rule that is broken, and where.
+/// A violation of a rule, with its place.
 pub struct Violation {
-    /// The crate that breaks it; none where `layers.toml` names a crate that is not there.
+    /// The crate with the violation; none if `layers.toml` names an unknown crate.
     pub krate: Option<String>,
-    /// One line, or several: `file:line: what is wrong`.
+    /// One or more lines `file:line: message`.
     pub message: String,
 }
 
-/// All violations, crate by crate.
+/// Returns all violations, crate by crate.
 pub fn check(workspace: &Workspace, order: &Order) -> Vec<Violation> {
     let mut violations = check_places_of_crates(workspace, order);
     for krate in &workspace.crates {
@@ -34,8 +34,8 @@ pub fn check(workspace: &Workspace, order: &Order) -> Vec<Violation> {
     violations
 }
 
-/// Why one name must not import another: none where it may. Names without a place are told elsewhere.
-fn against(levels: &Levels, from: &str, to: &str) -> Option<String> {
+/// Returns the reason why one name must not import another; none if it may. Names without a place are other violations.
+fn reason_against(levels: &Levels, from: &str, to: &str) -> Option<String> {
     let (above, below) = (levels.place(from)?.level, levels.place(to)?.level);
     match above.cmp(&below) {
         Ordering::Less => Some(format!("{from} is below {to} in {FILE}")),
@@ -66,19 +66,19 @@ fn check_places_of_crates(workspace: &Workspace, order: &Order) -> Vec<Violation
     violations
 }
 
-fn check_dependencies(krate: &ReadCrate, order: &Order) -> Vec<String> {
-    let against = |dependency: &Dependency| {
-        let why = against(&order.crates, &krate.manifest.name, &dependency.name)?;
+fn check_dependencies(krate: &CrateSource, order: &Order) -> Vec<String> {
+    let message = |dependency: &Dependency| {
+        let why = reason_against(&order.crates, &krate.manifest.name, &dependency.name)?;
         Some(format!(
             "{}:{}: depends on {}: {why}",
             krate.manifest.manifest, dependency.line, dependency.name
         ))
     };
-    krate.manifest.dependencies.iter().filter_map(against).collect()
+    krate.manifest.dependencies.iter().filter_map(message).collect()
 }
 
-/// Modules without a place, and places without a module.
-fn check_places_of_modules(krate: &ReadCrate, order: &Order) -> Vec<String> {
+/// Returns the modules without a place, and the places without a module.
+fn check_places_of_modules(krate: &CrateSource, order: &Order) -> Vec<String> {
     let mut messages = Vec::new();
     let name = &krate.manifest.name;
     let files = krate.modules.files.iter().map(|file| &krate.modules.modules[file.module]);
@@ -111,20 +111,20 @@ fn check_places_of_modules(krate: &ReadCrate, order: &Order) -> Vec<String> {
     messages
 }
 
-fn check_imports(krate: &ReadCrate, order: &Order) -> Vec<String> {
+fn check_imports(krate: &CrateSource, order: &Order) -> Vec<String> {
     let mut messages = Vec::new();
     for import in FileGraph::new(krate.modules.files.len(), &krate.imports).steps() {
         if let Target::File(to) = import.to
-            && let Some(why) = against_order(krate, order, import.from, to)
+            && let Some(why) = reason_against_import(krate, order, import.from, to)
         {
             messages.push(format!("{}: {why}", krate.describe(import)));
         }
     }
-    let mut told = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     for import in &krate.imports {
         if let Target::Crate(to) = &import.to
-            && told.insert((import.from, to))
-            && let Some(why) = against(&order.crates, &krate.manifest.name, to)
+            && reported.insert((import.from, to))
+            && let Some(why) = reason_against(&order.crates, &krate.manifest.name, to)
         {
             messages.push(format!("{}: {why}", krate.describe(import)));
         }
@@ -132,14 +132,14 @@ fn check_imports(krate: &ReadCrate, order: &Order) -> Vec<String> {
     messages
 }
 
-/// Why one file must not import another of its crate. The file of a folder, and the first file of a crate, is above all
-/// in it.
-fn against_order(krate: &ReadCrate, order: &Order, from: usize, to: usize) -> Option<String> {
+/// Returns the reason why one file must not import another of its crate. The file of a folder, and the first file of a
+/// crate, is above all modules in it.
+fn reason_against_import(krate: &CrateSource, order: &Order, from: usize, to: usize) -> Option<String> {
     let [from, to] = [from, to].map(|file| &krate.modules.modules[krate.modules.files[file].module].path);
     let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
     let folder = krate.folder(&from[..common]);
     match (from.get(common), to.get(common)) {
-        (Some(from), Some(to)) => against(order.folders.get(&folder)?, from, to),
+        (Some(from), Some(to)) => reason_against(order.folders.get(&folder)?, from, to),
         (Some(_), None) => {
             let is_declared = order.folders.contains_key(&folder);
             is_declared.then(|| format!("the file of {folder} itself is above all modules in it"))
@@ -148,7 +148,7 @@ fn against_order(krate: &ReadCrate, order: &Order, from: usize, to: usize) -> Op
     }
 }
 
-fn check_circles(krate: &ReadCrate) -> Vec<String> {
+fn check_circles(krate: &CrateSource) -> Vec<String> {
     let describe = |circle: &Vec<&Import>| {
         let first = circle[0];
         let mut text =

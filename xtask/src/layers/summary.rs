@@ -1,4 +1,4 @@
-//! The whole workspace in one line, and all violations in one.
+//! Summarizes the workspace in one line, and all violations in another.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,8 +7,8 @@ use super::order::FILE;
 use super::read::Workspace;
 use super::rules::Violation;
 
-/// How many crates, files and imports there are (each file or crate that a file imports once), and the longest chain of
-/// files that import each other.
+/// Returns the numbers of crates, files and imports (pairs of a file and a file or crate that it imports), and the
+/// longest chain of files that import each other.
 pub fn summary(workspace: &Workspace) -> String {
     let files: usize = workspace.crates.iter().map(|krate| krate.modules.files.len()).sum();
     let imports = workspace.crates.iter().map(|krate| {
@@ -30,7 +30,7 @@ pub fn summary(workspace: &Workspace) -> String {
     format!("{} crates, {files} files, {imports} imports{deepest}", workspace.crates.len())
 }
 
-/// How many violations each crate has.
+/// Returns the number of violations of each crate.
 pub fn count(violations: &[Violation]) -> String {
     let mut counts = BTreeMap::new();
     for violation in violations {

@@ -1,4 +1,4 @@
-//! Paths in token streams: arguments of macros and of attributes, and bodies of `macro_rules!`.
+//! Finds paths in token streams: arguments of macros and of attributes, and bodies of `macro_rules!`.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
@@ -10,7 +10,7 @@ pub struct TokenPath {
     pub is_macro: bool,
 }
 
-/// All paths, in their order. `$crate` is `crate`; paths that begin with another variable of a macro are left out.
+/// Returns all paths in order. `$crate` becomes `crate`; paths that begin with another macro variable are ignored.
 pub fn paths(stream: TokenStream) -> Vec<TokenPath> {
     let mut found = Vec::new();
     scan(stream, &mut found);
@@ -43,7 +43,7 @@ fn scan(stream: TokenStream, found: &mut Vec<TokenPath>) {
             end += 3;
         }
         let before = |punct: char| at > 0 && is_punct(at - 1, punct);
-        // A field or method, a lifetime, a variable of a macro, what follows `<T as Trait>::`.
+        // Not the start of a path: a field or method, a lifetime, a macro variable, a name after `<T as Trait>::`.
         let is_range = before('.') && at > 1 && is_punct(at - 2, '.');
         let is_variable = before('$') && first != "crate";
         let is_start =
@@ -69,7 +69,7 @@ fn scan(stream: TokenStream, found: &mut Vec<TokenPath>) {
     }
 }
 
-/// The paths in the braces of a `use`.
+/// Returns the paths in the braces of a `use`.
 fn group_of_use(stream: TokenStream) -> Vec<Vec<String>> {
     let mut paths = vec![Vec::new()];
     let mut is_alias = false;

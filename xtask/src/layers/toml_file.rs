@@ -1,4 +1,4 @@
-//! A TOML file whose values can be traced to their lines.
+//! A TOML file with the line numbers of its values.
 
 use std::fs;
 use std::ops::Range;
@@ -29,7 +29,7 @@ impl TomlFile {
         })
     }
 
-    /// The line on which a value begins, counted from 1.
+    /// Returns the line on which a value begins, counted from 1.
     pub fn line(&self, span: Range<usize>) -> usize {
         1 + self.text.bytes().take(span.start).filter(|byte| *byte == b'\n').count()
     }

@@ -1,4 +1,4 @@
-//! The crates of the workspace, read from their manifests.
+//! Reads the crates of the workspace from their manifests.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,22 +17,24 @@ pub struct Crate {
     pub library: Option<Library>,
     /// The first file of each program.
     pub programs: Vec<PathBuf>,
-    /// Those of `[dependencies]` that are crates of the workspace.
+    /// The crates of the workspace in `[dependencies]`.
     pub dependencies: Vec<Dependency>,
 }
 
+/// The library of a crate.
 pub struct Library {
-    /// Its name in paths, such as `sscc_io`.
+    /// The name in paths, such as `sscc_io`.
     pub ident: String,
     pub root: PathBuf,
 }
 
+/// A dependency on a crate.
 pub struct Dependency {
-    /// Its name in paths.
+    /// The name in paths.
     pub ident: String,
     /// The name of the crate.
     pub name: String,
-    /// Where it stands in the manifest.
+    /// The line in the manifest.
     pub line: usize,
 }
 

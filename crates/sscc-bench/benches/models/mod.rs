@@ -1,4 +1,4 @@
-//! The models of the benches.
+//! Models of the benches.
 #![allow(dead_code)]
 
 use std::error::Error;
@@ -10,14 +10,14 @@ use sscc_modes::{polynomial_modes, shapes};
 /// Any error ends a bench.
 pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// A model and how to certify it.
+/// A model with the options of its certificates.
 pub struct Case {
     pub name: &'static str,
     pub model: ReducedModel,
     pub options: CertifyOptions,
 }
 
-/// The embedded shapes, and the real models that are there; those that take longest last.
+/// Returns the embedded shapes and the available real models, the slowest last.
 pub fn all() -> Result<Vec<Case>> {
     let polynomial = |name, mesh: TriMesh| -> Result<Case> {
         let modes = polynomial_modes(&mesh)?;
@@ -43,7 +43,7 @@ impl Case {
     }
 }
 
-/// The face, and its published configurations.
+/// Returns the face with its published configurations; None without real models.
 pub fn face() -> Result<Option<(ReducedModel, Vec<Vec<f64>>)>> {
     let Some(folder) = sscc_testing::models("the benches on a face") else { return Ok(None) };
     let folder = folder.join("ict_face");

@@ -1,4 +1,4 @@
-//! Whether all methods list the same pairs.
+//! Compares the pairs that methods list.
 
 use sscc::{Impact, Pair, ReducedModel};
 
@@ -7,7 +7,7 @@ use super::step::Step;
 use crate::error::Error;
 use crate::methods::{COLUMNS, Column, Engine, Role};
 
-/// The answers of several methods to the same discrete queries.
+/// Comparison of the answers of several methods to the same discrete queries.
 pub struct Agreement {
     /// Whether some body collides with itself.
     pub is_colliding: bool,
@@ -15,7 +15,7 @@ pub struct Agreement {
     pub is_equal: bool,
 }
 
-/// Answers discrete queries of all bodies by the methods that take part.
+/// Runs discrete queries of all bodies by the methods that take part, and compares their pairs.
 pub fn compare_discrete(
     engines: &mut [Box<dyn Engine + '_>],
     takes_part: impl Fn(&Column) -> bool,
@@ -42,7 +42,7 @@ pub fn compare_discrete(
     Ok(agreement)
 }
 
-/// Whether all methods list the same pairs for the motion of all bodies, apart from pairs within the tolerance.
+/// Returns whether all methods list the same pairs for the motion of all bodies, apart from pairs within the tolerance.
 pub fn agree_on_motion(
     engines: &mut [Box<dyn Engine + '_>],
     model: &ReducedModel,

@@ -1,4 +1,4 @@
-//! Every method on the same steps: its times, and whether its answers are those of the others.
+//! Compares all methods on the same steps: their times and their answers.
 
 use sscc::Progress;
 use sscc_sim::CertifiedModel;
@@ -12,19 +12,19 @@ use crate::methods::{COLUMNS, Column, Engine, Role};
 use crate::progress::{Counter, check_cancelled};
 use crate::sampling::{Counts, Strata, Stratum};
 
-/// Up to this number of queries (steps times bodies), comparators run on all discrete ones.
-const FEW: usize = 64;
+/// Maximum number of queries (steps times bodies) for which comparators run on all discrete ones.
+const MAX_QUERIES_OF_COMPARATORS: usize = 64;
 
-/// Otherwise they run on this number of steps, drawn of each stratum, and on as many continuous ones.
-const COMPARED: usize = 20;
+/// Number of steps, drawn from all strata, on which comparators run otherwise, also for continuous queries.
+const COMPARED_STEPS: usize = 20;
 
-/// All methods on some steps.
+/// Results of all methods on some steps.
 pub struct Comparison {
-    /// Whether some body collides with itself at the start of each step.
+    /// For each step, whether a body collides with itself at its start.
     pub colliding: Vec<bool>,
-    /// Whether some body's root certificate fails there.
+    /// For each step, whether the root's certificate fails for a body at its start.
     pub root_failed: Vec<bool>,
-    /// The strata of the steps, and so their weights.
+    /// Strata of the steps, which give their weights.
     pub strata: Strata,
     /// Times of discrete queries.
     pub discrete: Times,
@@ -34,7 +34,7 @@ pub struct Comparison {
     pub mismatches: usize,
 }
 
-/// Which queries are measured.
+/// Kinds of measured queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinds {
     /// Discrete and continuous ones.
@@ -43,7 +43,7 @@ pub enum Kinds {
     Discrete,
 }
 
-/// Runs all methods. `scene` has the strata of all steps of the scene that the given steps represent; none where these
+/// Runs all methods. `scene` counts the strata of all steps of the scene that the given steps represent; None if these
 /// are the whole scene.
 ///
 /// # Errors
@@ -59,7 +59,7 @@ pub fn compare(
         COLUMNS.iter().map(|column| column.engine(model)).collect::<Result<_, _>>()?;
     let objects = steps.first().map_or(0, |step| step.q_t0.len());
     let is_certified = |column: &Column| column.role == Role::Certified;
-    // Which steps are compared depends on the strata of all of them.
+    // The choice of compared steps requires the strata of all steps.
     let (mut colliding, mut root_failed) = (Vec::with_capacity(steps.len()), Vec::with_capacity(steps.len()));
     let mut differs = Vec::with_capacity(steps.len());
     for step in steps {
@@ -72,10 +72,10 @@ pub fn compare(
     let of = root_failed.iter().zip(&colliding).map(|(failed, collides)| Stratum::of(*failed, *collides));
     let strata = Strata::new(of.collect(), scene);
     let all: Vec<usize> = (0..steps.len()).collect();
-    let is_few = steps.len() * objects <= FEW;
-    let compared = if is_few { all.clone() } else { strata.draw(COMPARED) };
+    let is_few = steps.len() * objects <= MAX_QUERIES_OF_COMPARATORS;
+    let compared = if is_few { all.clone() } else { strata.draw(COMPARED_STEPS) };
     let continuous = match kinds {
-        Kinds::Both if is_few => strata.draw(COMPARED),
+        Kinds::Both if is_few => strata.draw(COMPARED_STEPS),
         Kinds::Both => compared.clone(),
         Kinds::Discrete => Vec::new(),
     };

@@ -1,8 +1,8 @@
-//! The distance of two triangles, in plain floating-point arithmetic.
+//! Distance of two triangles, in plain floating-point arithmetic.
 
 use glam::DVec3;
 
-/// The distance of two triangles that do not meet.
+/// Returns the distance of two triangles that do not intersect.
 pub fn distance_triangle_triangle(x: &[DVec3; 3], y: &[DVec3; 3]) -> f64 {
     let edges = |[a, b, c]: [DVec3; 3]| [[a, b], [b, c], [c, a]];
     let between_edges = edges(*x).into_iter().flat_map(|a| edges(*y).map(|b| distance_segment_segment(a, b)));
@@ -11,7 +11,8 @@ pub fn distance_triangle_triangle(x: &[DVec3; 3], y: &[DVec3; 3]) -> f64 {
     between_edges.chain(to_faces).fold(f64::INFINITY, f64::min)
 }
 
-/// The distance of a point from a triangle above or below which it is; infinite elsewhere, where an edge is nearest.
+/// Returns the distance of a point from a triangle whose face holds the point's projection; infinite if the projection
+/// is outside, where an edge is nearer.
 fn distance_vertex_face(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let inside = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) >= 0.0;
@@ -22,7 +23,7 @@ fn distance_vertex_face(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
     }
 }
 
-/// The distance of two segments (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
+/// Returns the distance of two segments (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
 fn distance_segment_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, vv, uv, uw, vw) = (u.dot(u), v.dot(v), u.dot(v), u.dot(w), v.dot(w));
@@ -38,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_are_known() {
+    fn distances_equal_known_values() {
         let x = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let moved = |by: DVec3| x.map(|p| p + by);
         assert_eq!(distance_triangle_triangle(&x, &moved(DVec3::Z * 0.5)), 0.5); // a vertex and a face, two edges

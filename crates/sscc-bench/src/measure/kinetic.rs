@@ -1,5 +1,5 @@
-//! Kinetic queries over the steps of a scene. They use what earlier steps computed, so no step can be measured alone or
-//! repeated.
+//! Times kinetic queries over the steps of a scene. Each query depends on earlier steps, so no step can be measured
+//! alone or repeated.
 
 use sscc::{KineticQuery, Progress, Query};
 use sscc_sim::CertifiedModel;
@@ -10,21 +10,21 @@ use super::timer::REPETITIONS;
 use crate::error::Error;
 use crate::progress::check_cancelled;
 
-/// Kinetic queries on the steps of a scene.
+/// Times of kinetic queries on the steps of a scene.
 pub struct KineticTimes {
     /// Milliseconds of all bodies, by step.
     pub milliseconds: Vec<f64>,
-    /// Steps at which their answers are not those of plain queries.
+    /// Number of steps whose answers differ from those of certified discrete queries.
     pub mismatches: usize,
 }
 
-/// Times kinetic queries, one for each body, brought up to date by one untimed query before each block of steps. All
-/// blocks are repeated; the median counts.
+/// Times kinetic queries, one for each body. One untimed query before each block of steps brings them up to date. All
+/// blocks are repeated, and the result is the median.
 ///
-/// A query may take less time than reading the clock: consecutive steps that the root's certificate answers share one
-/// reading, and so do consecutive ones that it leaves open. What a query computes at one step serves the next ones: the
-/// steps of a block that the root's certificate leaves open share the time of all of them, since other methods run on
-/// some of them only.
+/// A query may take less time than reading the clock: consecutive steps that the root's certificate proves free share
+/// one reading, and so do consecutive steps for which it fails. A query computes data that later steps reuse, and other
+/// methods run on some of the steps only. The steps of a block for which the root's certificate fails therefore share
+/// the time of all of them.
 ///
 /// # Errors
 /// When some q is out of range, or `progress` cancels.
@@ -39,9 +39,9 @@ pub fn time_kinetic(
     let queries = || -> Result<Vec<KineticQuery<'_>>, Error> {
         (0..bodies).map(|_| Ok(KineticQuery::new(&model.model, certificates)?)).collect()
     };
-    // The compared ones answer the same q as the timed ones.
+    // One set of queries is timed; the other one, for the same q, is compared with discrete queries.
     let (mut timed, mut compared) = (queries()?, queries()?);
-    let is_quick = |step: &Step| step.q_t0.iter().all(|q| model.is_root_certified(q));
+    let is_root_certified = |step: &Step| step.q_t0.iter().all(|q| model.is_root_certified(q));
     let mut repetitions: Vec<Vec<f64>> = vec![Vec::with_capacity(REPETITIONS); steps.len()];
     let mut differs = vec![false; steps.len()];
     for _ in 0..REPETITIONS {
@@ -56,12 +56,12 @@ pub fn time_kinetic(
             }
             update(&mut timed, block[0].before.iter().flatten())?;
             let mut own = Vec::with_capacity(block.len());
-            for stretch in block.chunk_by(|a, b| is_quick(a) == is_quick(b)) {
+            for stretch in block.chunk_by(|a, b| is_root_certified(a) == is_root_certified(b)) {
                 let time = seconds(|| stretch.iter().try_for_each(|step| update(&mut timed, &step.q_t0)))?;
                 let mean = 1e3 * time / stretch.len() as f64;
                 own.extend(stretch.iter().map(|_| mean));
             }
-            share(&mut own, |n| !is_quick(&block[n]));
+            share(&mut own, |n| !is_root_certified(&block[n]));
             repetitions[at..].iter_mut().zip(own).for_each(|(times, time)| times.push(time));
             at += block.len();
         }
@@ -83,7 +83,7 @@ fn update<'q>(
     Ok(())
 }
 
-/// Gives each of the numbers that take part the mean of them.
+/// Replaces each time that takes part by the mean of these times.
 fn share(times: &mut [f64], takes_part: impl Fn(usize) -> bool) {
     let own: Vec<usize> = (0..times.len()).filter(|n| takes_part(*n)).collect();
     let mean = own.iter().map(|n| times[*n]).sum::<f64>() / own.len().max(1) as f64;

@@ -1,4 +1,4 @@
-//! Whether a pair that only some methods list for a motion is a mismatch.
+//! Decides whether a pair that only some methods list for a motion is a mismatch.
 
 use glam::DVec3;
 use sscc::{Impact, MovingTriangle, ReducedModel};
@@ -6,9 +6,9 @@ use sscc_testing::first_contact;
 
 use super::distance::distance_triangle_triangle;
 
-/// Whether a pair that some methods list for a motion and others do not proves one of them wrong: if the two triangles
-/// truly meet during the motion (exact arithmetic on the positions at both ends), or if they are farther apart than
-/// [`Impact::TOLERANCE`] at the time for which they are listed. Every other pair may be listed or not.
+/// Returns whether a pair that some methods list for a motion and others do not proves one of them wrong. It does if
+/// the two triangles have a common point during the motion (exact arithmetic on the positions at both ends), or if
+/// their distance exceeds [`Impact::TOLERANCE`] at the listed time. Every other pair may be listed or not.
 pub fn is_mismatch(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Impact) -> bool {
     let faces = model.mesh().faces();
     let moving = |t: u32| {
@@ -19,7 +19,7 @@ pub fn is_mismatch(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Im
     first_contact(&x, &y).is_some() || !are_close(&x, &y, impact.time)
 }
 
-/// Whether the two are within twice the tolerance at a time, in floating-point arithmetic.
+/// Returns whether the distance is within twice the tolerance at a time, in floating-point arithmetic.
 fn are_close(x: &MovingTriangle, y: &MovingTriangle, time: f64) -> bool {
     // Relative to a corner, so that small differences far from the origin are not lost.
     let origin = [x.t0[0], x.t1[0]];
@@ -48,10 +48,10 @@ mod tests {
     fn pairs_within_the_tolerance_are_no_mismatch() {
         let model = model(1.0);
         let listed = |q: f64, time: f64| is_mismatch(&model, &[0.0], &[q], &Impact { pair: (0, 1), time });
-        assert!(listed(1.0, 1.0), "they touch at the end");
-        assert!(listed(2.0, 0.5), "they pass");
-        assert!(listed(1.0 - 1e-9, 1.0), "they stay apart");
-        assert!(listed(1.0 - 1e-13, 0.5), "they are close, but not then");
+        assert!(listed(1.0, 1.0), "contact at the end");
+        assert!(listed(2.0, 0.5), "intersection during the motion");
+        assert!(listed(1.0 - 1e-9, 1.0), "no contact");
+        assert!(listed(1.0 - 1e-13, 0.5), "within the tolerance at another time");
         assert!(!listed(1.0 - 1e-13, 1.0), "within the tolerance");
     }
 }

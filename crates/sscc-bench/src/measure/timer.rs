@@ -1,7 +1,8 @@
-//! Times of all methods, interleaved.
+//! Times all methods, interleaved.
 //!
-//! The methods run one after the other on blocks of steps: other load of the machine meets all of them, and each finds
-//! in the processor's caches what its own last query left there, as in a program that uses one method only.
+//! The methods run one after the other on blocks of steps. Other load of the machine then affects all of them alike.
+//! Each method finds the data of its own last query in the processor's caches, as in a program that uses one method
+//! only.
 
 use super::clock::{median, milliseconds};
 use super::step::Step;
@@ -12,10 +13,10 @@ use crate::progress::Counter;
 /// Repetitions of each method on each block of steps; the time of a step is their median.
 pub const REPETITIONS: usize = 3;
 
-/// Steps in a block. The first of each finds the caches as the other methods left them.
+/// Steps in a block. Only the first step of each block runs with the caches that another method left.
 const BLOCK: usize = 20;
 
-/// Milliseconds by step and column; none where a method did not run on a step.
+/// Milliseconds by step and column; None where a method did not run on a step.
 pub type Milliseconds = Vec<Vec<Option<f64>>>;
 
 /// The queries of one step by one method.
@@ -26,12 +27,12 @@ pub struct Timer<'t, 'a, 'p> {
     engines: &'t mut [Box<dyn Engine + 'a>],
     steps: &'t [Step],
     counter: &'t mut Counter<'p>,
-    /// What was measured.
+    /// Measured times.
     pub times: Milliseconds,
 }
 
 impl<'t, 'a, 'p> Timer<'t, 'a, 'p> {
-    /// `counter` counts each repetition on each step.
+    /// Creates a timer. `counter` counts each repetition on each step.
     pub fn new(
         engines: &'t mut [Box<dyn Engine + 'a>],
         steps: &'t [Step],

@@ -4,8 +4,7 @@ use super::timer::Milliseconds;
 use crate::methods::COLUMNS;
 use crate::sampling::{Strata, weighted_mean};
 
-/// The name of kinetic queries in tables and JSON. They depend on the steps before, so they are no column of the
-/// interleaved ones.
+/// Name of kinetic queries in tables and JSON. They depend on earlier steps, so they are not an interleaved column.
 const KINETIC: &str = "kinetic";
 
 /// Milliseconds of the queries of all bodies.
@@ -13,14 +12,15 @@ const KINETIC: &str = "kinetic";
 pub struct Times {
     /// The steps on which every method ran.
     pub compared: Vec<usize>,
-    /// By step and column.
+    /// Times by step and column.
     pub interleaved: Milliseconds,
-    /// By step, of kinetic queries; empty where they did not run.
+    /// Times of kinetic queries by step; empty if they did not run.
     pub kinetic: Vec<f64>,
 }
 
 impl Times {
-    /// Milliseconds of one method, of the steps on which it ran; where it has several engines, of the faster one.
+    /// Returns the milliseconds of one method on the steps on which it ran; with several engines, those of the faster
+    /// one.
     pub fn of(&self, key: &str) -> Vec<(usize, f64)> {
         if key == KINETIC {
             return self.kinetic.iter().copied().enumerate().collect();
@@ -33,7 +33,7 @@ impl Times {
         steps.filter_map(|(step, times)| Some((step, faster(times)?))).collect()
     }
 
-    /// Mean milliseconds over the scene, estimated from some steps, of the methods that ran on all of these.
+    /// Returns mean milliseconds over the scene, estimated from some steps, of the methods that ran on all of these.
     pub fn means(&self, steps: &[usize], strata: &Strata) -> Vec<(&'static str, f64)> {
         let mut means: Vec<(&'static str, f64)> = Vec::new();
         if steps.is_empty() {
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(of(&times.means(&[0, 2], &strata), COLUMNS[0].key), None);
         assert_eq!(of(&means, "kinetic"), Some(2.0));
         assert!(times.means(&[], &strata).is_empty());
-        // A step that stands for three of the scene, and one that stands for itself.
+        // One step represents three of the scene, the other one itself.
         let strata = Strata::new(
             vec![Stratum::RootCertified, Stratum::Colliding, Stratum::Colliding],
             Some([3, 0, 1]),

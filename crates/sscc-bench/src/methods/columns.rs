@@ -1,29 +1,28 @@
-//! The methods that are compared: a line for each.
+//! Table of the compared methods.
 
 use parry3d_f64::partitioning::BvhBuildStrategy;
 use sscc::{Method, Query};
 use sscc_sim::CertifiedModel;
 
-use super::approximate_cones::ApproximateCones;
 use super::engine::Engine;
 use super::parry::Parry;
 use crate::error::Error;
 
-/// One column of the tables. Where several have the same key, the one with the smallest mean counts.
+/// One column of the tables. Of several columns with the same key, the one with the smallest mean is reported.
 pub struct Column {
     /// Its name in tables and JSON.
     pub key: &'static str,
-    /// On which steps it runs, and whether its answers are compared.
+    /// Determines the steps on which it runs, and whether its answers are compared.
     pub role: Role,
     make: for<'a> fn(&'a CertifiedModel) -> Result<Box<dyn Engine + 'a>, Error>,
 }
 
-/// Where a method takes part.
+/// Role of a method in a bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Ours: runs on all steps.
+    /// Our method: runs on all steps.
     Certified,
-    /// A method that ours is compared with: runs on some of the steps, where these are many.
+    /// A method for comparison: runs on a sample if there are many steps.
     Comparator,
     /// A comparator that may miss pairs.
     Approximate,
@@ -31,7 +30,7 @@ pub enum Role {
 
 use Role::{Approximate, Certified, Comparator};
 
-/// All of them, in the order in which they are interleaved.
+/// All methods, in the order in which they are interleaved.
 pub const COLUMNS: &[Column] = &[
     Column { key: "traditional", role: Comparator, make: |model| uncertified(model, Method::Traditional) },
     Column { key: "bdtree", role: Comparator, make: |model| uncertified(model, Method::BdTree) },
@@ -44,7 +43,7 @@ pub const COLUMNS: &[Column] = &[
 ];
 
 impl Column {
-    /// The method, for one model.
+    /// Creates the method for one model.
     ///
     /// # Errors
     /// When the model lacks the certificates that the method needs.
@@ -58,7 +57,7 @@ fn uncertified(model: &CertifiedModel, method: Method) -> Result<Box<dyn Engine 
 }
 
 fn approximate_cones(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {
-    Ok(Box::new(ApproximateCones::new(&model.model, &model.full.certificates)?))
+    Ok(Box::new(Query::with_approximate_cones(&model.model, &model.full.certificates)?))
 }
 
 fn paper(model: &CertifiedModel) -> Result<Box<dyn Engine + '_>, Error> {

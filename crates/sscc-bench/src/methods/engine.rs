@@ -1,16 +1,16 @@
-//! A method at work.
+//! Interface of the methods that benches compare.
 
 use sscc::{Error, Impact, Pair, Query};
 
-/// A method at work: everything that it needs for an answer is done within the call.
+/// A method for queries on one model. A call does all work of a query, including moving vertices and refitting.
 pub trait Engine {
-    /// The pairs that collide at q, sorted.
+    /// Returns the pairs that collide at q, sorted.
     ///
     /// # Errors
     /// When q has the wrong length, or is out of range.
     fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error>;
 
-    /// The pairs that meet on the straight line from one q to another, sorted, each with its time of impact.
+    /// Returns the pairs that collide during the motion from q_t0 to q_t1, sorted, each with its time of impact.
     ///
     /// # Errors
     /// When a q has the wrong length, or is out of range.

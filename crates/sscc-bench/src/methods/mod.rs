@@ -1,9 +1,10 @@
-//! The methods that are compared: ours, and peers.
+//! The compared methods: ours and peers.
 
-mod approximate_cones;
 mod columns;
 mod engine;
 mod parry;
+#[cfg(test)]
+mod tests;
 
 pub use columns::{COLUMNS, Column, Role};
 pub use engine::Engine;

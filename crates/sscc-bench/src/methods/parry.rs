@@ -1,8 +1,9 @@
-//! The peer parry3d-f64, in its fastest use.
+//! Queries by the peer parry3d-f64, in its fastest use.
 //!
-//! It moves the vertices, refits its BVH as its own `TriMesh` does (each leaf, then `refit_without_opt`, by its
-//! documentation the faster one), traverses it against itself, leaves out triangles that share a vertex, and tests the
-//! rest by our exact test. Continuous queries: the same with swept AABBs and our test of moving triangles.
+//! A discrete query moves the vertices, refits parry's BVH as parry's `TriMesh` does (each leaf, then
+//! `refit_without_opt`, the faster variant by parry's documentation), traverses the BVH against itself, skips triangles
+//! that share a vertex, and runs our exact test on the rest. A continuous query does the same with swept AABBs and our
+//! CCD test.
 
 use glam::DVec3;
 use parry3d_f64::bounding_volume::Aabb;
@@ -26,7 +27,7 @@ pub struct Parry<'a> {
 }
 
 impl<'a> Parry<'a> {
-    /// With one of its two strategies to build a BVH.
+    /// Builds the BVH with one of parry's two strategies.
     pub fn new(model: &'a ReducedModel, strategy: BvhBuildStrategy) -> Self {
         let positions = model.mesh().rest_positions().to_vec();
         let leaves: Vec<Aabb> =
@@ -40,7 +41,7 @@ impl<'a> Parry<'a> {
             pairs: Vec::new(),
             impacts: Vec::new(),
         };
-        // Once, for the order in memory.
+        // The first refit sorts the nodes in memory.
         this.bvh.refit(&mut this.workspace);
         this
     }
@@ -105,7 +106,7 @@ fn refit(bvh: &mut Bvh, leaves: impl Iterator<Item = Aabb>) {
     bvh.refit_without_opt();
 }
 
-/// Visits the pairs without a common vertex whose AABBs overlap; the smaller number first.
+/// Calls `visit` for the pairs without a common vertex whose AABBs overlap, the smaller number first.
 fn traverse(bvh: &Bvh, workspace: &mut BvhWorkspace, faces: &[[u32; 3]], mut visit: impl FnMut(u32, u32)) {
     bvh.traverse_bvtt_single_tree::<false>(workspace, &mut |i, j| {
         let [a, b] = [i, j].map(|t| faces[t as usize]);

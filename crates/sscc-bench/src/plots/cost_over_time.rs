@@ -1,13 +1,13 @@
-//! The cost of each step of a scene, in the manner of the paper's Figure 12.
+//! Plot of the cost of each step of a scene, as in the paper's Figure 12.
 
 use sscc_view::{Axis, Plot, Series};
 
 use crate::measure::Times;
 
-/// The methods that are drawn, where they ran.
+/// Drawn methods; those that did not run are omitted.
 const METHODS: [&str; 3] = ["traditional", "full", "kinetic"];
 
-/// Milliseconds of discrete queries over time; `seconds` gives the time of a measured step.
+/// Returns the plot of milliseconds of discrete queries over time; `seconds` gives the time of a measured step.
 pub fn cost_over_time(scenario: &str, times: &Times, seconds: impl Fn(usize) -> f64) -> Plot {
     let shown = METHODS.map(|key| (key, times.of(key)));
     let line = |(key, times): (&str, Vec<(usize, f64)>)| {

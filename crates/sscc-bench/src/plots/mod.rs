@@ -1,4 +1,4 @@
-//! Plots of what was measured: on a page, and as SVG.
+//! Plots of measurements: on a page and as SVG.
 
 mod cost_over_time;
 mod page;

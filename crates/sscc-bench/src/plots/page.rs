@@ -1,4 +1,4 @@
-//! What was measured, as a page in one file.
+//! Page with the records of a scenario, in one file.
 
 use sscc_sim::text::duration;
 use sscc_view::{Arrays, Axis, Plot, Report, Scene, Series};
@@ -24,7 +24,7 @@ impl BenchPage {
         self.costs.push(costs);
     }
 
-    /// The page, under the name of the scenario.
+    /// Returns the page, titled with the name of the scenario.
     ///
     /// # Errors
     /// When the page cannot be made.
@@ -34,12 +34,12 @@ impl BenchPage {
         scene.summary = records.iter().map(line).collect();
         scene.summary.push(("machine".into(), sscc_sim::machine_description()));
         scene.plots.extend(self.costs.iter().cloned());
-        // A model over its displacement.
+        // Cost of a model over its displacement.
         for group in records.chunk_by(|a, b| a.scenario == b.scenario).filter(|group| group.len() > 1) {
             let x = Axis::logarithmic("largest displacement, % of half the box's diagonal");
             scene.plots.push(plot(&group[0].scenario, x, group, |record| record.share));
         }
-        // One shape in several sizes.
+        // Cost of one shape over its number of triangles.
         if scenario == "growth" && records.len() > 1 {
             let x = Axis::logarithmic("triangles");
             scene.plots.push(plot(scenario, x, records, |record| record.triangles as f64));
@@ -48,7 +48,7 @@ impl BenchPage {
     }
 }
 
-/// The label of a record, with the times of the certified and of the traditional method, and their ratio.
+/// Returns the label of a record, with the times of the certified and of the traditional method and their ratio.
 fn line(record: &Record) -> (String, String) {
     let label = format!("{}, displaced by {:.1}%", record.scenario, record.share);
     let value = match (record.discrete_ms.get("full"), record.discrete_ms.get("traditional")) {
@@ -63,7 +63,7 @@ fn line(record: &Record) -> (String, String) {
     (label, value)
 }
 
-/// A line for each method.
+/// Returns a plot with a line for each method.
 fn plot(title: &str, x: Axis, records: &[Record], at: impl Fn(&Record) -> f64) -> Plot {
     let keys = records[0].discrete_ms.0.iter().map(|(key, _)| *key);
     let line = |key: &'static str| {

@@ -1,8 +1,8 @@
-//! A plot as SVG, its y axis logarithmic.
+//! SVG plots with a logarithmic y axis.
 
 use std::fmt::Write;
 
-/// Pixels of a plot, and where its axes are.
+/// Size and margins of a plot (pixels).
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 260.0;
 const LEFT: f64 = 70.0;
@@ -26,17 +26,17 @@ pub struct SvgPlot<'a> {
 pub struct Line<'a> {
     /// Its label.
     pub label: &'a str,
-    /// Its colour, as SVG has it.
+    /// Its colour, in SVG syntax.
     pub color: &'a str,
-    /// x and y, x ascending. Points whose y is not positive are left out.
+    /// x and y, x ascending. Points whose y is not positive are not drawn.
     pub points: Vec<[f64; 2]>,
 }
 
 impl SvgPlot<'_> {
-    /// The SVG element.
+    /// Returns the SVG element.
     pub fn svg(&self) -> String {
-        let is_seen = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite() && p[1] > 0.0;
-        let all = || self.lines.iter().flat_map(|line| &line.points).filter(|p| is_seen(p));
+        let is_drawn = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite() && p[1] > 0.0;
+        let all = || self.lines.iter().flat_map(|line| &line.points).filter(|p| is_drawn(p));
         let [x_low, x_high] = range(all().map(|p| p[0]));
         let [low, high] = range(all().map(|p| p[1]));
         let [low, high] = [low.log10().floor(), high.log10().ceil()];
@@ -73,8 +73,8 @@ impl SvgPlot<'_> {
             );
         }
         for line in &self.lines {
-            let seen = line.points.iter().filter(|p| is_seen(p));
-            let points: Vec<String> = seen.map(|[a, b]| format!("{:.1},{:.1}", x(*a), y(*b))).collect();
+            let drawn = line.points.iter().filter(|p| is_drawn(p));
+            let points: Vec<String> = drawn.map(|[a, b]| format!("{:.1},{:.1}", x(*a), y(*b))).collect();
             let _ = writeln!(
                 svg,
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>",
@@ -112,7 +112,7 @@ impl SvgPlot<'_> {
     }
 }
 
-/// Text between tags.
+/// Escapes text for SVG.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -122,12 +122,12 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     if low <= high { [low, high] } else { [0.1, 1.0] }
 }
 
-/// Round numbers of a range, at most about six, at least `smallest_step` apart.
+/// Returns round numbers of a range: about six at most, at least `smallest_step` apart.
 fn ticks(low: f64, high: f64, smallest_step: f64) -> Vec<f64> {
-    let rough = (high - low) / 6.0;
-    let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= rough);
-    let step = step.unwrap_or(rough).max(smallest_step);
+    let raw_step = (high - low) / 6.0;
+    let power = 10_f64.powf(raw_step.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= raw_step);
+    let step = step.unwrap_or(raw_step).max(smallest_step);
     let first = (low / step).ceil();
     (0..20).map(|i| (first + f64::from(i)) * step).take_while(|tick| *tick <= high + 1e-9 * step).collect()
 }

@@ -1,4 +1,4 @@
-//! A value for each method.
+//! Values by method, with their JSON.
 
 use serde::{Serialize, Serializer};
 
@@ -7,12 +7,12 @@ use serde::{Serialize, Serializer};
 pub struct Means<T = f64>(pub Vec<(&'static str, T)>);
 
 impl<T: Copy> Means<T> {
-    /// The value of one method.
+    /// Returns the value of one method.
     pub fn get(&self, key: &str) -> Option<T> {
         self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
     }
 
-    /// Whether there is no method.
+    /// Returns whether there is no method.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

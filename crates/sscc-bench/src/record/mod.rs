@@ -1,4 +1,4 @@
-//! Records of what was measured, as JSON has them.
+//! Records of measurements, as in JSON.
 
 mod means;
 mod model_record;

@@ -7,18 +7,18 @@ use super::means::Means;
 use crate::measure::Comparison;
 use crate::sampling::Counts;
 
-/// One line of JSON. Times are means over the whole scene, estimated from steps that are weighted by the shares of their
-/// strata. Where comparators did not run on all steps, the times of every method are those of the steps on which they
-/// ran, so that ratios are of the same steps.
+/// Record of one model: one line of JSON. Times are means over the whole scene, estimated from steps weighted by the
+/// shares of their strata. If comparators did not run on all steps, the times of every method are those of the steps on
+/// which they ran, so that ratios compare the same steps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Record {
-    /// With the model, where the scenario has several.
+    /// Name of the scenario, with the model if the scenario has several.
     pub scenario: String,
     /// The name of the model.
     pub model: String,
-    /// Where its mesh is from.
+    /// Origin of its mesh.
     pub source: String,
-    /// A stand-in, or strata that are missing.
+    /// Note on a replaced model or on missing strata.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// The largest displacement in percent of half the diagonal of the AABB.
@@ -27,7 +27,7 @@ pub struct Record {
     pub triangles: usize,
     /// Modes of one body.
     pub rank: usize,
-    /// Bodies.
+    /// Number of bodies.
     pub objects: usize,
     /// Steps that were measured.
     pub steps: usize,
@@ -55,21 +55,21 @@ pub struct Record {
     pub certify_seconds: f64,
     /// Threads that computed them.
     pub certify_threads: usize,
-    /// Peak memory of the process meanwhile.
+    /// Peak memory of the process during their computation (bytes).
     pub certify_peak_bytes: Option<u64>,
     /// Seconds of one discrete query of one body by parry.
     pub parry_query_seconds: Option<f64>,
     /// Steps of each stratum in the scene, and among the compared ones.
     #[serde(skip)]
     pub strata: [Counts; 2],
-    /// Processor time of the whole scene, by the detection that its file names; none where nothing is simulated.
+    /// Processor time of the whole scene (s) with the detection of its file; none without a simulation.
     pub simulation_seconds: Option<f64>,
-    /// The share of it that finds self-collisions.
+    /// Share of self-collision detection in this time.
     pub self_collision_share: Option<f64>,
-    /// The time it would take with the traditional method over the time it took.
+    /// Time with the traditional method over the measured time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation_speedup: Option<f64>,
-    /// Mean milliseconds of the processor of the parts of a step, over the whole scene.
+    /// Mean processor time of the parts of a step over the whole scene (ms).
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub simulation_ms: Means,
     /// Mean milliseconds of discrete queries.
@@ -77,17 +77,17 @@ pub struct Record {
     /// Mean milliseconds of continuous queries.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub continuous_ms: Means,
-    /// Of discrete queries in the compared steps in which the root certificate fails.
+    /// Mean milliseconds of discrete queries in the compared steps in which the root certificate fails.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub discrete_ms_root_failed: Means,
-    /// Of the methods that ran on all steps, where others did not.
+    /// Mean milliseconds over all steps, of the methods that ran on all; empty if all methods did.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub discrete_ms_all_steps: Means,
-    /// The machine.
+    /// Description of the machine.
     pub machine: String,
 }
 
-/// The whole scene that the measured steps represent.
+/// Totals of the whole scene that the measured steps represent.
 pub struct SceneTotals {
     /// Steps.
     pub steps: usize,
@@ -97,12 +97,13 @@ pub struct SceneTotals {
     pub body_steps: usize,
     /// Those of them in which the body collides with itself.
     pub colliding_body_steps: usize,
-    /// Processor seconds of the parts of its simulation; none where nothing is simulated.
+    /// Processor seconds of the parts of its simulation; none without a simulation.
     pub seconds: Option<[f64; STEP_PARTS.len()]>,
 }
 
 impl Record {
-    /// The record of `objects` bodies of one model. `scene` is the whole scene; none where the measured steps are.
+    /// Creates the record of `objects` bodies of one model. `scene` has the totals of the whole scene; None if the
+    /// measured steps are the whole scene.
     pub fn new(
         scenario: String,
         share: f64,
@@ -176,7 +177,7 @@ impl Record {
     }
 }
 
-/// Both notes, if there are any.
+/// Joins two notes.
 fn notes(first: Option<String>, second: Option<String>) -> Option<String> {
     let notes: Vec<String> = first.into_iter().chain(second).collect();
     (!notes.is_empty()).then(|| notes.join("; "))

@@ -1,4 +1,4 @@
-//! Which steps of a scene are measured: blocks of consecutive ones, spread over the scene.
+//! Chooses the measured steps of a scene: blocks of consecutive steps, spread over the scene.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -8,23 +8,23 @@ use super::strata::{Counts, Stratum};
 /// Number of blocks, one in each of as many equal parts of the scene.
 const BLOCKS: usize = 10;
 
-/// Numbers of `wanted` of the steps of a scene, in blocks of consecutive ones, one in each of ten equal parts of the
-/// scene.
+/// Chooses `wanted` steps of a scene, in blocks of consecutive steps, one in each of ten equal parts of the scene.
+/// Returns their numbers, ascending.
 ///
-/// All blocks begin equally far into their parts: where they meet most strata, then where they have most steps of the
-/// strata that are rare (a landing may be all that is not certified, and a block has to hold enough of it to represent
-/// it), and then where the strata's shares are nearest to those of the scene. If a stratum is still missing, a block is
-/// moved to it within its part. Strata alone decide, never costs, and weights correct the shares of rare strata.
+/// All blocks begin equally far into their parts. The shift is the one with the most strata in the blocks, then with
+/// the most steps of rare strata (one landing may have all steps that are not certified), then with shares of the
+/// strata nearest to those of the scene. If a stratum is still missing, one block is shifted to it within its part.
+/// Only strata decide, never costs. Weights correct the shares of rare strata.
 pub fn blocks(of: &[Stratum], wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(of.len());
     let layout = Layout::new(of, BLOCKS.min(wanted), wanted);
     let count = layout.blocks.len();
-    let farthest = layout.blocks.iter().map(|block| block.slack).max().unwrap_or(0);
-    let shifted = (0..=farthest).map(|shift| vec![shift; count]);
+    let max_shift = layout.blocks.iter().map(|block| block.max_shift).max().unwrap_or(0);
+    let shifted = (0..=max_shift).map(|shift| vec![shift; count]);
     let Some(mut shifts) = shifted.max_by_key(|shifts| layout.fitness(shifts)) else { return Vec::new() };
     let moved = |shifts: &[usize]| {
-        let places =
-            (0..count).flat_map(|block| (0..=layout.blocks[block].slack).map(move |shift| (block, shift)));
+        let places = (0..count)
+            .flat_map(|block| (0..=layout.blocks[block].max_shift).map(move |shift| (block, shift)));
         let at = |(block, shift): (usize, usize)| {
             let mut shifts = shifts.to_vec();
             shifts[block] = shift;
@@ -42,10 +42,10 @@ pub fn blocks(of: &[Stratum], wanted: usize) -> Vec<usize> {
     layout.steps(&shifts).flatten().collect()
 }
 
-/// Where blocks may be.
+/// Possible places of the blocks.
 struct Layout {
     blocks: Vec<Block>,
-    /// Before each step, the steps of each stratum.
+    /// For each step, the number of earlier steps of each stratum.
     before: Vec<Counts>,
     scene: Counts,
     wanted: usize,
@@ -55,8 +55,8 @@ struct Block {
     /// The first step of its part of the scene.
     start: usize,
     length: usize,
-    /// How far it may begin behind the start.
-    slack: usize,
+    /// Maximum shift of the block from the start of its part.
+    max_shift: usize,
 }
 
 impl Layout {
@@ -70,24 +70,24 @@ impl Layout {
         let mut longer = wanted.checked_rem(count).unwrap_or(0);
         let blocks = (0..count).map(|block| {
             let [start, end] = [block, block + 1].map(|block| block * of.len() / count);
-            // Parts differ by a step where the scene cannot be divided; the longer ones have room for longer blocks.
+            // Parts may differ by one step; longer parts have room for longer blocks.
             let length = wanted / count;
             let length = length + usize::from(longer > 0 && end - start > length);
             longer -= length - wanted / count;
-            Block { start, length, slack: end - start - length }
+            Block { start, length, max_shift: end - start - length }
         });
         Self { blocks: blocks.collect(), scene: before[of.len()], before, wanted }
     }
 
     fn steps(&self, shifts: &[usize]) -> impl Iterator<Item = Range<usize>> {
-        self.blocks.iter().zip(shifts).map(|(Block { start, length, slack }, shift)| {
-            let start = start + shift.min(slack);
+        self.blocks.iter().zip(shifts).map(|(Block { start, length, max_shift }, shift)| {
+            let start = start + shift.min(max_shift);
             start..start + length
         })
     }
 
-    /// How many strata are in the blocks; how many steps of each, up to half of an even part; and how near their shares
-    /// are to those of the scene. Of equal ones the smallest shifts are best.
+    /// Rates shifts: the number of strata in the blocks; the number of steps of each stratum, up to half of an even
+    /// share; the difference of the shares from those of the scene; the sum of the shifts (smaller is better).
     fn fitness(&self, shifts: &[usize]) -> (usize, usize, Reverse<usize>, Reverse<usize>) {
         let mut counts = [0; 3];
         for steps in self.steps(shifts) {
@@ -96,14 +96,14 @@ impl Layout {
         }
         let all: usize = self.scene.iter().sum();
         let difference = (0..3).map(|h| (counts[h] * all).abs_diff(self.scene[h] * self.wanted)).sum();
-        let met = counts.iter().filter(|steps| **steps > 0).count();
+        let present = counts.iter().filter(|steps| **steps > 0).count();
         let enough = self.wanted.div_ceil(2 * counts.len());
         let steps = counts.iter().map(|steps| (*steps).min(enough)).sum();
-        (met, steps, Reverse(difference), Reverse(shifts.iter().sum()))
+        (present, steps, Reverse(difference), Reverse(shifts.iter().sum()))
     }
 }
 
-/// At most `count` of the numbers below `end`, evenly spread.
+/// Returns at most `count` numbers below `end`, evenly spread.
 pub fn evenly_spread(end: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(end);
     (0..count).map(move |i| i * end / count)
@@ -120,7 +120,7 @@ mod tests {
         stretches.iter().flat_map(|(stratum, steps)| vec![*stratum; *steps]).collect()
     }
 
-    /// As of a dragon that lands early and then lies still.
+    /// Strata of a dragon that lands early and then lies still.
     fn landing() -> Vec<Stratum> {
         scene(&[
             (RootCertified, 310),
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_meet_each_stratum() {
+    fn blocks_contain_each_stratum() {
         let of = landing();
         for wanted in [20, 100, 200, 2000] {
             let steps = blocks(&of, wanted);
@@ -166,13 +166,13 @@ mod tests {
         // A block holds most of the only landing.
         let counts = Stratum::counts(blocks(&of, 2000).iter().map(|step| of[*step]));
         assert_eq!(counts, [1800, 145, 55]);
-        // Where no stratum is rare, they have the shares of the scene.
+        // If no stratum is rare, the blocks have the shares of the scene.
         let swing = scene(&[(RootCertified, 290), (RootFailed, 30), (Colliding, 40), (RootFailed, 30)]);
         let of: Vec<Stratum> = std::iter::repeat_n(swing, 50).flatten().collect();
         let counts = Stratum::counts(blocks(&of, 4000).iter().map(|step| of[*step]));
         let shares = Stratum::counts(of).map(|steps| steps * 4000 / (50 * 390));
         assert!((0..3).all(|h| counts[h].abs_diff(shares[h]) < 200), "{counts:?} {shares:?}");
-        // Single steps at different places of their parts: no common shift meets both.
+        // Single steps at different places of their parts: no common shift contains both.
         let mut of = vec![RootCertified; 1000];
         (of[17], of[860]) = (Colliding, RootFailed);
         let steps = blocks(&of, 50);

@@ -1,4 +1,4 @@
-//! Random configurations of a given largest displacement.
+//! Random directions in q-space, scaled to a given largest displacement.
 
 use sscc::ReducedModel;
 
@@ -6,7 +6,7 @@ use crate::random::Random;
 
 const SEED: u64 = 7;
 
-/// Directions in q-space: `z_i = N(0,1) / i`, mode i counted from 1, in the model's metric.
+/// Returns random directions in q-space: `z_i = N(0,1) / i`, mode i counted from 1, in the model's metric.
 pub fn directions(model: &ReducedModel, count: usize) -> Vec<Vec<f64>> {
     let mut random = Random(SEED);
     let mut direction = || {
@@ -16,26 +16,26 @@ pub fn directions(model: &ReducedModel, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|_| direction()).collect()
 }
 
-/// For each direction the q along it at which the largest displacement of a vertex is half the diagonal of the rest
-/// AABB.
+/// Returns for each direction the q along it at which the largest displacement of a vertex is half the diagonal of the
+/// rest AABB.
 pub fn unit_displacements(model: &ReducedModel, directions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let half = half_diagonal(model);
     directions.iter().map(|dir| scaled(dir, half / largest_displacement(model, dir))).collect()
 }
 
-/// A multiple of q.
+/// Returns a multiple of q.
 pub fn scaled(q: &[f64], factor: f64) -> Vec<f64> {
     q.iter().map(|x| x * factor).collect()
 }
 
-/// Half the diagonal of the AABB at rest.
+/// Returns half the diagonal of the AABB at rest (model unit).
 pub fn half_diagonal(model: &ReducedModel) -> f64 {
     let p = model.mesh().rest_positions();
     let (lower, upper) = p.iter().fold((p[0], p[0]), |(lower, upper), p| (lower.min(*p), upper.max(*p)));
     (upper - lower).length() / 2.0
 }
 
-/// The largest displacement of a vertex at q.
+/// Returns the largest displacement of a vertex at q (model unit).
 pub fn largest_displacement(model: &ReducedModel, q: &[f64]) -> f64 {
     let rest = model.mesh().rest_positions();
     let displacement = |v: usize| (model.position(v as u32, q) - rest[v]).length();

@@ -1,4 +1,4 @@
-//! Which q are measured, and the weight of each in a mean.
+//! Chooses the measured q, and their weights in means.
 
 mod blocks;
 mod directions;

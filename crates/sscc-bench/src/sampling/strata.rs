@@ -1,16 +1,17 @@
-//! Strata of the steps of a scene: which steps are compared, and the weight of each.
+//! Strata of the steps of a scene: the choice of compared steps, and their weights.
 //!
-//! A query costs nanoseconds where the root's certificate holds and milliseconds where bodies nearly touch, and in most
-//! scenes the first is by far the most frequent. So steps fall into three strata, and means are those of stratified
-//! sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted by the stratum's share
-//! of the whole scene, however many of its steps were drawn. Such a mean estimates the one over the whole scene without
-//! bias, as far as the measured steps of a stratum represent the others.
+//! A query costs nanoseconds where the root's certificate holds and milliseconds where bodies nearly touch. In most
+//! scenes the first case is by far the most frequent. Steps are therefore divided into three strata, and means are
+//! those of stratified sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted
+//! by the stratum's share of the whole scene, for any number of drawn steps. Such a mean is an unbiased estimate of the
+//! mean over the whole scene if the measured steps of a stratum represent the others. Experiment:
+//! docs/notes/2026-11-23-strata.md.
 
 use crate::random::Random;
 
 const SEED: u64 = 13;
 
-/// The state of a step, all bodies together.
+/// Stratum of a step, all bodies together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stratum {
     /// The root's certificate proves every body free.
@@ -25,7 +26,7 @@ pub enum Stratum {
 pub type Counts = [usize; 3];
 
 impl Stratum {
-    /// The stratum of a step: whether some body's root certificate fails, and whether some body collides.
+    /// Returns the stratum of a step, given whether some body's root certificate fails and whether some body collides.
     pub fn of(root_failed: bool, colliding: bool) -> Self {
         match (colliding, root_failed) {
             (true, _) => Self::Colliding,
@@ -34,7 +35,7 @@ impl Stratum {
         }
     }
 
-    /// Number of steps of each stratum.
+    /// Returns the number of steps of each stratum.
     pub fn counts(steps: impl IntoIterator<Item = Self>) -> Counts {
         let mut counts = [0; 3];
         steps.into_iter().for_each(|stratum| counts[stratum as usize] += 1);
@@ -45,44 +46,46 @@ impl Stratum {
 /// The strata of some steps of a scene.
 #[derive(Clone, Debug)]
 pub struct Strata {
-    /// Of each step.
+    /// Stratum of each step.
     of: Vec<Stratum>,
-    /// Of all steps of the scene.
+    /// Counts of all steps of the scene.
     scene: Counts,
 }
 
 impl Strata {
-    /// `scene` counts all steps of the scene; none where the given steps are the whole scene.
+    /// Creates the strata of some steps. `scene` counts all steps of the scene; None if the given steps are the whole
+    /// scene.
     pub fn new(of: Vec<Stratum>, scene: Option<Counts>) -> Self {
         let scene = scene.unwrap_or_else(|| Stratum::counts(of.iter().copied()));
         Self { of, scene }
     }
 
-    /// Steps of the whole scene.
+    /// Returns the counts of the whole scene.
     pub fn scene(&self) -> Counts {
         self.scene
     }
 
-    /// The strata of some of the steps.
+    /// Returns the counts of some of the steps.
     pub fn counts(&self, steps: &[usize]) -> Counts {
         Stratum::counts(steps.iter().map(|step| self.of[*step]))
     }
 
-    /// At most `count` of the steps, ascending: equally many of each stratum that occurs, as far as it has steps, and at
-    /// least one. In most scenes the root certifies nearly all steps, and these cost nearly the same. The others differ;
-    /// drawn in proportion, they would be one or two.
+    /// Draws at most `count` of the steps. Returns them ascending: equally many of each stratum that occurs, if it has
+    /// as many, and at least one. In most scenes the root certifies nearly all steps, which cost nearly the same. A
+    /// draw in proportion would have only one or two of the other steps, whose costs differ.
     pub fn draw(&self, count: usize) -> Vec<usize> {
         self.draw_by(count, &mut Random(SEED))
     }
 
-    /// In each stratum one step in each of equally long stretches, at a random place that is the same in all of them:
-    /// every step of the stratum is drawn with the same probability.
+    /// Draws with this generator. Each stratum is divided into stretches of equal length, and one step is drawn in
+    /// each, at a random place that is the same in all stretches. Every step of a stratum thus has the same
+    /// probability.
     fn draw_by(&self, count: usize, random: &mut Random) -> Vec<usize> {
         let own = |stratum: usize| -> Vec<usize> {
             (0..self.of.len()).filter(|step| self.of[*step] as usize == stratum).collect()
         };
         let mut strata: Vec<Vec<usize>> = (0..3).map(own).filter(|steps| !steps.is_empty()).collect();
-        // The larger strata get the steps that a small one does not have.
+        // Larger strata get the share of the draw that a small stratum cannot fill.
         strata.sort_by_key(Vec::len);
         let mut drawn = Vec::new();
         for (at, steps) in strata.iter().enumerate() {
@@ -96,7 +99,7 @@ impl Strata {
         drawn
     }
 
-    /// The weight of each of some steps in a mean over the scene. The strata that are among them are weighted by their
+    /// Returns the weight of each of some steps in a mean over the scene. Each stratum among them is weighted by its
     /// number of steps in the scene.
     pub fn weights(&self, steps: &[usize]) -> Vec<f64> {
         let counts = self.counts(steps);
@@ -107,7 +110,8 @@ impl Strata {
         steps.iter().map(weight).collect()
     }
 
-    /// Names the strata of the scene that none of the steps is in: means leave them out.
+    /// Returns a note that names the strata of the scene without a measured step; means exclude them. None if there are
+    /// none.
     pub fn missing(&self) -> Option<String> {
         let counts = Stratum::counts(self.of.iter().copied());
         let names = ["the root certifies", "the root leaves open", "collide"];
@@ -115,11 +119,12 @@ impl Strata {
             .filter(|stratum| counts[*stratum] == 0 && self.scene[*stratum] > 0)
             .map(|stratum| format!("none of the {} steps that {}", self.scene[stratum], names[stratum]))
             .collect();
-        (!missing.is_empty()).then(|| format!("{} is measured: take more by --steps", missing.join(" and ")))
+        (!missing.is_empty())
+            .then(|| format!("{} is measured: choose more with --steps", missing.join(" and ")))
     }
 }
 
-/// The weighted mean of values.
+/// Returns the weighted mean of values.
 pub fn weighted_mean(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> f64 {
     let sum: f64 = values.into_iter().zip(weights).map(|(value, weight)| value * weight).sum();
     sum / weights.iter().sum::<f64>()
@@ -135,7 +140,7 @@ mod tests {
         stretches.iter().flat_map(|(stratum, steps)| vec![*stratum; *steps]).collect()
     }
 
-    /// As of a dragon that lands early and then lies still.
+    /// Strata of a dragon that lands early and then lies still.
     fn landing() -> Vec<Stratum> {
         scene(&[
             (RootCertified, 310),
@@ -159,7 +164,7 @@ mod tests {
         let whole = (0..8000).map(|step| cost(&step)).sum::<f64>() / 8000.0;
         let mean = weighted_mean(drawn.iter().map(cost), &weights);
         assert!((mean / whole - 1.0).abs() < 1e-12, "{mean} {whole}");
-        // Also of some steps of a scene, where the strata have other shares.
+        // The same holds for a part of a scene, in which the strata have other shares.
         let some: Vec<usize> = (300..600).collect();
         let strata = Strata::new(some.iter().map(|step| strata.of[*step]).collect(), Some(strata.scene()));
         let drawn = strata.draw(20);
@@ -178,7 +183,7 @@ mod tests {
         assert_eq!(strata.counts(&drawn), [17, 2, 1]);
         let weight = |step: usize| strata.weights(&drawn)[drawn.binary_search(&step).unwrap()];
         assert_eq!((weight(500), weight(801)), (1.0, 1.0));
-        // Fewer than are wanted, and than there are strata.
+        // Draws of fewer steps than strata, and from fewer steps than requested.
         assert_eq!(strata.counts(&strata.draw(3)), [1, 1, 1]);
         assert_eq!(strata.counts(&strata.draw(2)), [0, 1, 1]);
         let few = Strata::new(scene(&[(Colliding, 2), (RootFailed, 3)]), None);
@@ -206,8 +211,8 @@ mod tests {
         let strata = Strata::new(vec![RootCertified; 10], Some([700, 90, 10]));
         assert_eq!(
             strata.missing().unwrap(),
-            "none of the 90 steps that the root leaves open and none of the 10 steps that collide is measured: take \
-             more by --steps"
+            "none of the 90 steps that the root leaves open and none of the 10 steps that collide is measured: \
+             choose more with --steps"
         );
         assert!(Strata::new(vec![Colliding], None).missing().is_none());
     }

@@ -1,4 +1,4 @@
-//! `amplitudes`: the cost of queries over how far the shape is displaced.
+//! Scenario `amplitudes`: the cost of queries over the displacement of the shape.
 
 use sscc_sim::{ModesSpec, Recipe, Shape};
 
@@ -27,10 +27,10 @@ pub fn amplitudes_models() -> [AmplitudesModel; 3] {
 }
 
 impl AmplitudesModel {
-    /// Samples at each displacement by default.
+    /// Default number of samples at each displacement.
     pub const SAMPLES: usize = 64;
 
-    /// Measures the model at so many samples of each displacement: one record for each of these.
+    /// Measures the model at a number of samples of each displacement. Returns one record for each displacement.
     ///
     /// # Errors
     /// When the model cannot be read or made, the cache cannot be written to, or the work is cancelled.

@@ -1,4 +1,4 @@
-//! `growth`: the cost of certificates and queries over the number of triangles.
+//! Scenario `growth`: the cost of certificates and queries over the number of triangles.
 
 use serde::Serialize;
 use sscc_sim::{ModesSpec, Recipe, SPRING_RINGS, Shape};
@@ -10,7 +10,7 @@ use crate::record::{Means, Record};
 use crate::sampling::{directions, unit_displacements};
 use crate::setup::Setup;
 
-/// Number of modes of the springs that exponents are fitted to.
+/// Number of modes of the springs to which exponents are fitted.
 pub const GROWTH_RANK: usize = 20;
 
 /// The largest displacement in percent of half the diagonal of the AABB.
@@ -21,7 +21,7 @@ const SHARE: f64 = 5.0;
 pub struct GrowthSize {
     /// Its name.
     pub name: &'static str,
-    /// Halves of the usual number of rings, and of vertices in each.
+    /// Factor on the default number of rings and on the vertices of each, in halves.
     halves: usize,
     rank: usize,
 }
@@ -37,15 +37,15 @@ pub const GROWTH_SIZES: [GrowthSize; 6] = [
 ];
 
 impl GrowthSize {
-    /// Samples of each size by default.
+    /// Default number of samples of each size.
     pub const SAMPLES: usize = 20;
 
-    /// Measures this size at so many samples.
+    /// Measures this size at a number of samples.
     ///
     /// # Errors
     /// When the cache cannot be written to, or the work is cancelled.
     pub fn measure(&self, setup: &Setup<'_>, samples: usize) -> Result<Record, Error> {
-        let [rings, around] = SPRING_RINGS.map(|usual| usual * self.halves / 2);
+        let [rings, around] = SPRING_RINGS.map(|default| default * self.halves / 2);
         let recipe = Recipe::new(self.name, Shape::Spring { rings, around }, ModesSpec::Linear(self.rank));
         let model = setup.certified_model(&recipe)?;
         let unit = unit_displacements(&model.model, &directions(&model.model, samples));
@@ -56,7 +56,7 @@ impl GrowthSize {
     }
 }
 
-/// All sizes that were measured, and with which power of the number of triangles values grow.
+/// Records of all measured sizes, and the exponents of growth.
 #[derive(Clone, Debug, Serialize)]
 pub struct GrowthRecord {
     scenario: &'static str,
@@ -64,24 +64,24 @@ pub struct GrowthRecord {
     pub mismatches: usize,
     /// A record for each size.
     pub sizes: Vec<Record>,
-    /// Fitted to the sizes of [`GROWTH_RANK`] modes.
+    /// Exponents, fitted to the sizes of [`GROWTH_RANK`] modes.
     pub exponents: Exponents,
     machine: String,
 }
 
-/// Powers of the number of triangles; none where there is only one size.
+/// Exponents of growth with the number of triangles; None for a single size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Exponents {
-    /// Of the seconds of certificates.
+    /// Exponent of the time to compute certificates.
     pub certify_seconds: Option<f64>,
-    /// Of the peak memory meanwhile.
+    /// Exponent of the peak memory during this time.
     pub certify_peak_bytes: Option<f64>,
-    /// Of the time of a query.
+    /// Exponent of the time of a query, by method.
     pub discrete_ms: Means<Option<f64>>,
 }
 
 impl GrowthRecord {
-    /// Fits exponents to the records of some sizes.
+    /// Creates the record of some sizes, and fits exponents.
     pub fn new(sizes: Vec<Record>) -> Self {
         Self {
             scenario: "growth",
@@ -109,7 +109,7 @@ impl Exponents {
     }
 }
 
-/// The slope of a line through logarithms (least squares); none of fewer than two different sizes.
+/// Returns the slope of a line through logarithms (least squares); None for fewer than two different sizes.
 fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     let logs: Vec<[f64; 2]> = points.iter().map(|point| point.map(libm::log)).collect();
     let mean = |at: usize| logs.iter().map(|log| log[at]).sum::<f64>() / logs.len() as f64;

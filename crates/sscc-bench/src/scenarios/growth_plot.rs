@@ -1,4 +1,4 @@
-//! `growth` as a plot.
+//! Plot of the scenario `growth`.
 
 use super::growth::{GROWTH_RANK, GrowthRecord};
 use crate::plots::{Line, SvgPlot};
@@ -23,8 +23,8 @@ const LINES: [GrowthLine; 4] = [
 ];
 
 impl GrowthRecord {
-    /// Milliseconds of a query and seconds of certificates over the number of triangles, all logarithmic, as an SVG
-    /// element.
+    /// Returns the plot as an SVG element: milliseconds of a query and seconds of certificates over the number of
+    /// triangles, all logarithmic.
     pub fn svg(&self) -> String {
         let records: Vec<&Record> = self.sizes.iter().filter(|record| record.rank == GROWTH_RANK).collect();
         let line = |GrowthLine { value, label, color }: &GrowthLine| {

@@ -1,11 +1,11 @@
-//! The scenarios by name.
+//! List of the scenarios by name.
 
 use sscc_sim::{SHIPPED, Scene, nearest};
 
 use crate::error::Error;
 use crate::paper::PaperTable;
 
-/// What can be measured.
+/// A scenario of the benches.
 #[derive(Clone, Copy, Debug)]
 pub enum Scenario {
     /// Models over their displacement: see [`amplitudes_models`](crate::amplitudes_models).
@@ -18,7 +18,7 @@ pub enum Scenario {
     Scenes {
         /// Their names and texts.
         scenes: &'static [(&'static str, &'static str)],
-        /// The table of the paper that has them, if it is to be shown.
+        /// The table of the paper to print beside them, if any.
         table: Option<PaperTable>,
     },
 }
@@ -28,15 +28,15 @@ pub enum Scenario {
 pub struct ListedScenario {
     /// Its name.
     pub name: &'static str,
-    /// What it measures, in one line.
+    /// Its description, in one line.
     pub about: String,
 }
 
-/// Scenarios that are no single scene.
+/// Scenarios other than single scenes.
 const OTHERS: [(&str, Scenario, &str); 6] = [
     ("amplitudes", Scenario::Amplitudes, "bunny, dragon and spring at random q, displaced by 0.5 to 40%"),
     ("growth", Scenario::Growth, "springs of 4,000 to a million triangles"),
-    ("kinetic", Scenario::Kinetic, "a spring that swings, 44,100 steps in a second: kinetic queries"),
+    ("kinetic", Scenario::Kinetic, "a spring that vibrates, 44,100 steps per second: kinetic queries"),
     (
         "table1",
         Scenario::Scenes { scenes: &SHIPPED, table: Some(PaperTable::One) },
@@ -50,11 +50,11 @@ const OTHERS: [(&str, Scenario, &str); 6] = [
     (
         "table3",
         Scenario::Scenes { scenes: &[SHIPPED[0]], table: Some(PaperTable::Three) },
-        "spring, what its time goes to, beside the paper's Table 3",
+        "spring, the shares of its time, beside the paper's Table 3",
     ),
 ];
 
-/// All by name; those that are one scene first.
+/// Returns all scenarios by name, single scenes first.
 fn all() -> impl Iterator<Item = (&'static str, Scenario)> {
     let single = |shipped: &'static (&'static str, &'static str)| {
         (shipped.0, Scenario::Scenes { scenes: std::slice::from_ref(shipped), table: None })
@@ -63,11 +63,11 @@ fn all() -> impl Iterator<Item = (&'static str, Scenario)> {
 }
 
 impl Scenario {
-    /// The scenario of a name.
+    /// Returns the scenario of a name.
     ///
     /// # Errors
-    /// When there is none of that name; the message has the nearest one.
-    pub fn named(name: &str) -> Result<Self, Error> {
+    /// When no scenario has the name; the message names the nearest one.
+    pub fn from_name(name: &str) -> Result<Self, Error> {
         if let Some((_, scenario)) = all().find(|(known, _)| *known == name) {
             return Ok(scenario);
         }
@@ -75,7 +75,7 @@ impl Scenario {
         Err(Error::NoScenario { name: name.to_owned(), nearest })
     }
 
-    /// All scenarios.
+    /// Returns all scenarios.
     ///
     /// # Errors
     /// When a scene cannot be parsed.
@@ -99,7 +99,9 @@ mod tests {
         names.sort_unstable();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
         let list = Scenario::list().unwrap();
-        assert!(list.iter().all(|listed| listed.about.len() > 20 && Scenario::named(listed.name).is_ok()));
+        assert!(
+            list.iter().all(|listed| listed.about.len() > 20 && Scenario::from_name(listed.name).is_ok())
+        );
         assert_eq!(list.len(), names.len());
     }
 }

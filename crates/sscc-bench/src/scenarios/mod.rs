@@ -1,4 +1,4 @@
-//! The scenarios.
+//! Scenarios of the benches.
 
 mod amplitudes;
 mod displacement;

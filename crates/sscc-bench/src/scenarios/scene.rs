@@ -1,4 +1,4 @@
-//! Scenes: simulated whole, or taken from the cache; some of their steps are measured.
+//! Measures steps of a scene, which is simulated whole or read from the cache.
 
 use sscc_sim::text::one_line;
 use sscc_sim::{
@@ -13,13 +13,13 @@ use crate::record::{Record, SceneTotals};
 use crate::sampling::{Counts, Stratum, blocks, evenly_spread, half_diagonal, largest_displacement};
 use crate::setup::Setup;
 
-/// States among which the largest displacement is searched.
+/// Number of states among which the largest displacement is searched.
 const DISPLACEMENTS: usize = 100;
 
-/// Steps of a scene that are measured by default.
+/// Default number of measured steps of a scene.
 pub const SCENE_STEPS: usize = 100;
 
-/// What was measured of a scene.
+/// Measurement of a scene.
 pub struct SceneMeasurement {
     /// Its record.
     pub record: Record,
@@ -48,7 +48,7 @@ pub fn measure_scene(
     let mut model = model.certified.with_paper(setup.cache, setup.watch)?;
     if setup.is_quick {
         model.note =
-            Some("--quick: a spring of 4,000 triangles stands in for any model, for half a second".into());
+            Some("--quick: a spring of 4,000 triangles replaces the model, for half a second".into());
     }
     let strata = strata(&model, &history);
     let numbers = blocks(&strata, steps);
@@ -60,13 +60,13 @@ pub fn measure_scene(
     comparison.mismatches += kinetic.mismatches;
     comparison.discrete.kinetic = kinetic.milliseconds;
     let costs = cost_over_time(name, &comparison.discrete, |step| numbers[step] as f64 * scene.step);
-    let share = 100.0 * farthest(&model, &history) / half_diagonal(&model.model);
+    let share = 100.0 * max_displacement(&model, &history) / half_diagonal(&model.model);
     let (objects, totals) = (scene.bodies.len(), Some(totals(&history)));
     let record = Record::new(name.into(), share, &model, &comparison, objects, totals);
     Ok(SceneMeasurement { record, costs })
 }
 
-/// The motion of the whole scene, simulated on one thread.
+/// Returns the motion of the whole scene, simulated on one thread or read from the cache.
 fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Result<History, Error> {
     let digest = prepared.digest(scene);
     let hash: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
@@ -76,7 +76,7 @@ fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Resul
     let run_on_pool = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, setup.watch));
     let RunOutcome { history, failure, .. } = match run_on_pool(false) {
         Err(error) if StateLog::is_begun(&folder) => {
-            setup.watch.note(&format!("simulated anew: {}", one_line(&error.to_string())));
+            setup.watch.note(&format!("simulated again: {}", one_line(&error.to_string())));
             run_on_pool(true)?
         }
         outcome => outcome?,
@@ -88,7 +88,7 @@ fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Resul
     }
 }
 
-/// The stratum of each step.
+/// Returns the stratum of each step.
 fn strata(model: &CertifiedModel, history: &History) -> Vec<Stratum> {
     let stratum = |state: usize| {
         let root_failed = history.bodies(state).any(|body| !model.is_root_certified(body.q));
@@ -97,7 +97,7 @@ fn strata(model: &CertifiedModel, history: &History) -> Vec<Stratum> {
     (0..history.len() - 1).map(stratum).collect()
 }
 
-/// The steps of these numbers, ascending.
+/// Returns the steps of these numbers, which must be ascending.
 fn measured_steps(history: &History, numbers: &[usize]) -> Vec<Step> {
     let at = |state: usize| -> Vec<Vec<f64>> { history.bodies(state).map(|body| body.q.to_vec()).collect() };
     let step = |(n, state): (usize, &usize)| {
@@ -107,13 +107,13 @@ fn measured_steps(history: &History, numbers: &[usize]) -> Vec<Step> {
     numbers.iter().enumerate().map(step).collect()
 }
 
-/// The largest displacement of a vertex.
-fn farthest(model: &CertifiedModel, history: &History) -> f64 {
+/// Returns the largest displacement of a vertex in the scene (model unit).
+fn max_displacement(model: &CertifiedModel, history: &History) -> f64 {
     let bodies = evenly_spread(history.len(), DISPLACEMENTS).flat_map(|state| history.bodies(state));
     bodies.map(|body| largest_displacement(&model.model, body.q)).fold(0.0, f64::max)
 }
 
-/// What collides in the whole scene, and the cost of its simulation.
+/// Returns the counts of collisions in the whole scene, and the cost of its simulation.
 fn totals(history: &History) -> SceneTotals {
     let steps = history.len();
     let colliding: Vec<usize> = (0..steps).map(|state| history.colliding_bodies(state)).collect();

@@ -1,4 +1,4 @@
-//! `sscc audit`: certificates under attack.
+//! `sscc audit`: attacks certificates, and reports violations and tightness.
 
 use anyhow::Context;
 use serde::Serialize;
@@ -54,15 +54,16 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
         let root = certificates.root_radius();
         let no_root = match root {
             r if r <= 0.0 => "the radius is 0",
-            r if r >= certificates.global_radius() => "the radius is capped: no larger one was asked for",
+            r if r >= certificates.global_radius() => "the radius is capped at the global radius",
             _ => "no collision was found",
         };
-        let none = "no collision was found for a radius that is neither 0 nor capped";
-        let shown = |value: Option<f64>, why: &str| value.map_or(format!("- ({why})"), |v| format!("{v:.4}"));
+        let no_others = "no collision was found for a radius that is neither 0 nor capped";
+        let shown =
+            |value: Option<f64>, reason: &str| value.map_or(format!("- ({reason})"), |v| format!("{v:.4}"));
         out.line(format_args!("  root     {}", shown(found.root_tightness, no_root)))?;
-        out.line(format_args!("  median   {}", shown(found.tightness_median, none)))?;
-        out.line(format_args!("  least    {}", shown(found.tightness_min, none)))?;
+        out.line(format_args!("  median   {}", shown(found.tightness_median, no_others)))?;
+        out.line(format_args!("  minimum  {}", shown(found.tightness_min, no_others)))?;
     }
     out.finish()?;
-    Ok(if found.violations.is_empty() { Outcome::Done } else { Outcome::Found })
+    Ok(if found.violations.is_empty() { Outcome::Done } else { Outcome::Finding })
 }

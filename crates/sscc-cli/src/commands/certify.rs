@@ -1,4 +1,4 @@
-//! `sscc certify`: the certificates of a model, computed once.
+//! `sscc certify`: computes the certificates of a model, and writes them to a file.
 
 use std::path::Path;
 use std::time::Instant;
@@ -16,8 +16,8 @@ use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
 
-/// Triangles that a note names.
-const LISTED: usize = 8;
+/// Maximum number of triangles in a note.
+const MAX_LISTED: usize = 8;
 
 #[derive(Serialize)]
 struct Report {
@@ -77,13 +77,13 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
-    let unresolved = Unresolved::find(&model, &certificates, &options)?;
+    let zero_radius = ZeroRadius::find(&model, &certificates, &options)?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
     } else {
         let metric = certificates.metric().kind().name();
-        let promise = promise(&certificates, unresolved.as_ref());
+        let promise = promise(&certificates, zero_radius.as_ref());
         for line in report.lines(metric, &promise, tree.limit(), &args.output) {
             out.line(line)?;
         }
@@ -92,26 +92,25 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         }
     }
     out.finish()?;
-    let notes = [unresolved.map(|why| why.note()), picture.and_then(|drawn| drawn.note)];
+    let notes = [zero_radius.map(|reason| reason.note()), picture.and_then(|drawn| drawn.note)];
     notes.into_iter().flatten().for_each(note);
     Ok(Outcome::Done)
 }
 
-/// Why the root's radius is 0, as far as a query at the centre tells.
-enum Unresolved {
-    /// More pairs collide at the centre than may be exceptions (`most`).
+/// The reason for a root's radius of 0, found by queries at the centre and at rest.
+enum ZeroRadius {
+    /// More pairs collide at the centre than may be exceptions.
     Colliding {
-        most: usize,
-        /// Whether `--ignore-rest`, which was not typed, would leave few enough of them.
-        at_rest: bool,
+        max_exceptions: usize,
+        /// Whether `--ignore-rest` is absent, and would reduce the pairs to at most `max_exceptions`.
+        can_ignore_rest: bool,
     },
-    /// No pair that counts collides there beside the exceptions, but some two triangles, both of this part of the
-    /// shape, are too close for any bound above 0.
+    /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
     TooClose { triangles: Vec<u32> },
 }
 
-impl Unresolved {
-    /// Asks for the pairs that collide at the centre; none where the radius is not 0.
+impl ZeroRadius {
+    /// Finds the reason; none if the root's radius is not 0. Costs up to two discrete queries.
     fn find(
         model: &ReducedModel,
         certificates: &Certificates,
@@ -125,86 +124,91 @@ impl Unresolved {
         let mut others = query.discrete(center)?.to_vec();
         others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
         if others.is_empty() {
-            return Ok(Some(Self::TooClose { triangles: smallest_unresolved(certificates) }));
+            return Ok(Some(Self::TooClose { triangles: smallest_zero_node(certificates) }));
         }
         let default = CertifyOptions::default_exceptions(model.mesh().faces().len());
-        let most = options.max_exceptions.unwrap_or(default);
+        let max_exceptions = options.max_exceptions.unwrap_or(default);
         let at_rest = query.discrete(&vec![0.0; model.rank()])?;
         let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
-        Ok(Some(Self::Colliding { most, at_rest: !options.ignore_rest && left <= most }))
+        let can_ignore_rest = !options.ignore_rest && left <= max_exceptions;
+        Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
     }
 
-    /// What to do about it.
+    /// Returns a note with the remedy.
     fn note(&self) -> String {
         match self {
-            Self::Colliding { most, at_rest } => {
-                let ignore = if *at_rest {
-                    ", or leave out for good what collides at rest with --ignore-rest"
+            Self::Colliding { max_exceptions, can_ignore_rest } => {
+                let ignore = if *can_ignore_rest {
+                    ", or ignore the pairs that collide at rest with --ignore-rest"
                 } else {
                     ""
                 };
                 format!(
-                    "more pairs collide at the centre than may be exceptions ({most}): radii of parts that contain one \
-                     are 0; raise --max-exceptions{ignore}"
+                    "more pairs collide at the centre than may be exceptions ({max_exceptions}): parts that contain \
+                     one have radius 0; raise --max-exceptions{ignore}"
                 )
             }
             Self::TooClose { triangles } => format!(
-                "nothing else collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
-                 radius above 0 could be proven for them: radii of parts that contain both are 0; move these apart, or \
-                 take another --center",
+                "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
+                 radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \
+                 another --center",
                 listed(triangles)
             ),
         }
     }
 }
 
-/// The triangles of the smallest node with the radius 0. Nodes within small ones are left out: they only repeat its
-/// radius.
-fn smallest_unresolved(certificates: &Certificates) -> Vec<u32> {
+/// Returns the triangles of the smallest node with radius 0. Nodes within a bucket are skipped, because they repeat the
+/// bucket's radius.
+fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
     let hierarchy = certificates.hierarchy();
     let nodes = hierarchy.nodes();
     let mut is_own = vec![true; nodes.len()];
     for (n, node) in nodes.iter().enumerate() {
-        let is_searched_whole = n != 0 && node.is_bucket();
-        let of_children = is_own[n] && !is_searched_whole;
-        node.children().for_each(|child| is_own[child as usize] = of_children);
+        let has_own_children = is_own[n] && (n == 0 || !node.fits_in_bucket());
+        node.children().for_each(|child| is_own[child as usize] = has_own_children);
     }
-    let unresolved = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
-    let smallest = (0..nodes.len()).filter(unresolved).min_by_key(|n| nodes[*n].triangle_count);
+    let has_zero_radius = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
+    let smallest = (0..nodes.len()).filter(has_zero_radius).min_by_key(|n| nodes[*n].triangle_count);
     let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
     triangles.sort_unstable();
     triangles
 }
 
-/// Numbers of triangles in words, not too many.
+/// Returns the numbers of triangles as text, at most [`MAX_LISTED`] of them.
 fn listed(triangles: &[u32]) -> String {
-    let shown: Vec<String> = triangles.iter().take(LISTED).map(u32::to_string).collect();
-    let more =
-        if triangles.len() > LISTED { format!(", ... ({} in all)", triangles.len()) } else { String::new() };
+    let shown: Vec<String> = triangles.iter().take(MAX_LISTED).map(u32::to_string).collect();
+    let more = if triangles.len() > MAX_LISTED {
+        format!(", ... ({} in all)", triangles.len())
+    } else {
+        String::new()
+    };
     shown.join(", ") + &more
 }
 
-/// What the root's radius says.
-fn promise(certificates: &Certificates, unresolved: Option<&Unresolved>) -> String {
+/// Returns the meaning of the root's radius as text.
+fn promise(certificates: &Certificates, zero_radius: Option<&ZeroRadius>) -> String {
     let exceptions = !certificates.exceptions().is_empty();
     let ignored = !certificates.filter().ignored().is_empty();
-    match (unresolved, exceptions, ignored) {
-        (Some(Unresolved::Colliding { .. }), ..) => {
+    match (zero_radius, exceptions, ignored) {
+        (Some(ZeroRadius::Colliding { .. }), ..) => {
             "the shape collides with itself at the centre; the parts that do not are certified".into()
         }
-        (Some(Unresolved::TooClose { .. }), ..) => {
+        (Some(ZeroRadius::TooClose { .. }), ..) => {
             "two triangles nearly touch at the centre; the parts without both are certified".into()
         }
         (None, false, false) => "below it the whole shape is free".into(),
-        (None, true, false) => "below it the whole shape is free, exceptions apart".into(),
-        (None, false, true) => "below it the whole shape is free, ignored pairs apart".into(),
-        (None, true, true) => "below it the whole shape is free, exceptions and ignored pairs apart".into(),
+        (None, true, false) => "below it the whole shape is free, apart from exceptions".into(),
+        (None, false, true) => "below it the whole shape is free, apart from ignored pairs".into(),
+        (None, true, true) => {
+            "below it the whole shape is free, apart from exceptions and ignored pairs".into()
+        }
     }
 }
 
-/// Up to where pairs are resolved, if they are.
-fn pairs_up_to(limit: f64) -> String {
-    if limit > 0.0 { format!(", pairs up to {}", length(limit)) } else { String::new() }
+/// Returns the limit of the pair tree as text; empty without a pair tree.
+fn pair_tree_limit(limit: f64) -> String {
+    if limit > 0.0 { format!(", pair tree up to {}", length(limit)) } else { String::new() }
 }
 
 impl Report {
@@ -221,7 +225,7 @@ impl Report {
                 self.rank
             ),
             format!(
-                "certificates   {} nodes, {} pairs",
+                "certificates   {} nodes, {} node pairs",
                 grouped(self.nodes as u64),
                 grouped(self.pairs as u64)
             ),
@@ -230,7 +234,7 @@ impl Report {
             format!("at rest        {} collide", counted(self.rest_collisions, "pair")),
             format!("exceptions     {exceptions}"),
             format!("root radius    {}: {promise}", length(self.root_radius)),
-            format!("resolved up to {}{}", length(self.global_radius), pairs_up_to(pair_limit)),
+            format!("global radius  {}{}", length(self.global_radius), pair_tree_limit(pair_limit)),
             format!("written        {} ({} bytes)", output.display(), grouped(self.bytes as u64)),
         ]
     }

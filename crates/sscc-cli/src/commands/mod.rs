@@ -1,4 +1,4 @@
-//! What the commands mean, one file for each.
+//! Executes the subcommands, one file or folder for each.
 
 mod audit;
 mod bench;
@@ -13,7 +13,7 @@ mod view;
 use crate::args::{Cli, Command};
 use crate::outcome::Outcome;
 
-/// Runs one command to its end.
+/// Runs a subcommand.
 pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
     match cli.command {
         Command::Demo(args) => demo::run(&args),

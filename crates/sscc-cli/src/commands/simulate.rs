@@ -1,4 +1,4 @@
-//! `sscc simulate`: a scene moves, and its motion, costs and sound are written.
+//! `sscc simulate`: simulates a scene, and writes its motion, costs, sound and report.
 
 use anyhow::Result;
 use sscc_sim::{Outputs, Request, simulate};

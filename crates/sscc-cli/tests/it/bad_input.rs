@@ -1,9 +1,9 @@
-//! Bad input of every kind: one line that names file and cause, exit code 2, no output, no panic.
+//! Invalid input of every kind: one line with file and cause, exit code 2, no output, no panic.
 
 use std::fs;
 use std::path::Path;
 
-use sscc_io::container::{CERTIFICATES, Kind, MODEL, SealedWriter};
+use sscc_io::container::{CERTIFICATES, ContainerWriter, Kind, MODEL};
 use sscc_io::write_npy;
 
 use crate::common::{files, sscc, strips};
@@ -12,13 +12,13 @@ const MESH: &str = "mesh.obj";
 const STRIPS: &str = "strips.model.safetensors";
 const CERTIFIED: &str = "strips.sscc.safetensors";
 
-/// Runs a command that must be refused with a message that names these; nothing may be left behind.
+/// Asserts that a command is refused with a message that contains `named`, and leaves no file.
 fn refused(folder: &Path, args: &[&str], named: &[&str]) {
     let before = files(folder);
     let run = sscc(folder, args);
     let message = run.refusal();
     for part in named {
-        assert!(message.contains(part), "{args:?}: {message} does not say '{part}'");
+        assert!(message.contains(part), "{args:?}: {message} does not contain '{part}'");
     }
     assert_eq!(files(folder), before, "{args:?}");
 }
@@ -28,7 +28,7 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) {
 }
 
 #[test]
-fn files_that_are_no_models() {
+fn files_that_are_not_models() {
     let directory = strips();
     let folder = directory.path();
     let good = fs::read(folder.join(STRIPS)).unwrap();
@@ -66,7 +66,7 @@ fn files_that_are_no_models() {
         ("none.npz", "none.npz: "),
         ("none.stl", "none.stl: "),
         (CERTIFIED, "this is a certificate file, a model file was expected"),
-        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE, or make some first: sscc modes"),
+        (MESH, "mesh.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes"),
     ] {
         refused(folder, &["certify", model, "-o", "out.sscc.safetensors"], &[named]);
         refused(folder, &["check", model, "--q=0,0"], &[named]);
@@ -80,9 +80,9 @@ fn files_that_are_no_models() {
     }
 }
 
-/// What is not there is told before what it should be, by every command and every reader.
+/// A missing file is reported before its kind, by every command and every reader.
 #[test]
-fn files_that_are_not_there() {
+fn missing_files() {
     let directory = strips();
     let folder = directory.path();
     let modes = ["modes", "-o", "out.model.safetensors", "--kind"];
@@ -118,16 +118,16 @@ fn files_that_are_not_there() {
 }
 
 #[test]
-fn meshes_that_are_not_there() {
+fn missing_meshes() {
     let directory = strips();
     let folder = directory.path();
     write(folder, "still.gltf", r#"{"asset":{"version":"2.0"},"meshes":[{"name":"a","primitives":[]}]}"#);
     for (args, named) in [
-        (&["still.gltf"][..], "still.gltf: no mesh in it has morph targets"),
+        (&["still.gltf"][..], "still.gltf: no mesh of the file has morph targets"),
         (&["still.gltf", "--mesh-name", "a"], "still.gltf: the mesh 'a' has no morph targets"),
         (&["still.gltf", "--mesh-name", "b"], "still.gltf: there is no mesh 'b'"),
         (&["still.gltf", "--modes", "modes.npy"], "a model file has its own modes: leave out --modes"),
-        (&[MESH, "--modes", "modes.npy", "--mesh-name", "a"], "only a glTF file has meshes to choose from"),
+        (&[MESH, "--modes", "modes.npy", "--mesh-name", "a"], "only a glTF file can have several meshes"),
         (&[MESH, "--modes", "."], ": "),
     ] {
         refused(folder, &[&["certify"], args, &["-o", "out.sscc.safetensors"]].concat(), &[named]);
@@ -167,7 +167,7 @@ fn modes_that_do_not_fit() {
         ("nan.npy", "nan.npy: mode 0 of vertex 13 "),
         ("inf.npy", "inf.npy: mode 0 of vertex 13 "),
         ("far.npy", "far.npy: mode 0 of vertex 13 "),
-        ("huge.U", "huge.U: byte 8: the header says 2147483647 rows"),
+        ("huge.U", "huge.U: byte 8: the header declares 2147483647 rows"),
         ("negative.U", "negative.U: byte 0: a negative number of rows"),
         ("empty.npy", "empty.npy: the file is empty"),
         ("text.npy", "text.npy: "),
@@ -208,7 +208,7 @@ fn coordinates_that_do_not_fit() {
         ("cube.npy", "cube.npy: shape [1, 1, 2]"),
         ("q.csv", "q.csv: unknown kind of trajectory file; supported: .npy"),
     ] {
-        // Rows before the bad one are not answered either: standard output stays empty.
+        // Rows before the invalid one have no answers: standard output stays empty.
         refused(folder, &[&check[..], &["--trajectory", trajectory]].concat(), &[named]);
         refused(folder, &[&check[..], &["--trajectory", trajectory, "--json"]].concat(), &[named]);
     }
@@ -269,7 +269,8 @@ fn certificates_that_do_not_fit() {
     check("missing.sscc.safetensors", &["missing.sscc.safetensors: not found"]);
     check(STRIPS, &["strips.model.safetensors: this is a model file, a certificate file was expected"]);
     check(MESH, &["mesh.obj: not a file written by sscc"]);
-    let newer = |kind: Kind| SealedWriter::new(Kind { version: kind.version + 1, ..kind }).finish().unwrap();
+    let newer =
+        |kind: Kind| ContainerWriter::new(Kind { version: kind.version + 1, ..kind }).finish().unwrap();
     write(folder, "newer.sscc.safetensors", newer(CERTIFICATES));
     write(folder, "newer.model.safetensors", newer(MODEL));
     let named = ["written by a newer sscc (format version ", "): update sscc"];
@@ -279,7 +280,7 @@ fn certificates_that_do_not_fit() {
     refused(folder, &["check", "newer.model.safetensors", "--q=0"], &named);
 }
 
-/// A forged file: the digest is of this model, the tree of another.
+/// A forged file: the digest is that of this model, and the hierarchy that of another.
 #[test]
 fn forged_certificates() {
     let directory = strips();
@@ -298,7 +299,7 @@ fn forged_certificates() {
 }
 
 #[test]
-fn outputs_that_cannot_be() {
+fn outputs_that_cannot_be_written() {
     let directory = strips();
     let folder = directory.path();
     fs::create_dir(folder.join("taken.sscc.safetensors")).unwrap();
@@ -317,5 +318,5 @@ fn outputs_that_cannot_be() {
     modes(MESH, "out.sscc.safetensors", "must end in .model.safetensors");
     modes(STRIPS, STRIPS, "the output is an input; choose another name");
     write(folder, "demo", "a file");
-    refused(folder, &["demo", "--out", "demo"], &["demo: no folder that can be written to"]);
+    refused(folder, &["demo", "--out", "demo"], &["demo: cannot write to this folder"]);
 }

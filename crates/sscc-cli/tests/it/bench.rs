@@ -1,4 +1,4 @@
-//! `sscc bench`: the keys of its JSON, that all methods agree, its cache, what it refuses.
+//! `sscc bench`: keys of the JSON, equality of all methods, cache, refusals.
 
 use std::fs;
 use std::path::Path;
@@ -15,13 +15,13 @@ const COLUMNS: &str = "traditional, bdtree, normal_cones, normal_cones_approx, p
 const CERTIFIED: &str = "paper, full, kinetic";
 const PARTS: &str = "self, inter_object, ground, penalty, dynamics, sound";
 
-/// Without real models, whatever the environment says; the cache is in the folder.
+/// Runs a bench without real models, whatever `SSCC_MODELS` is. The cache is in the folder.
 fn bench(folder: &Path, args: &[&str]) -> Run {
     let args = [&["bench", "--cache", "cache"], args].concat();
     Run::of(command(folder, &args).env_remove("SSCC_MODELS"))
 }
 
-/// Asserts that a report has all keys, with values that can be.
+/// Asserts that a record has all keys, with plausible values.
 fn check(report: &Value, more: &str) {
     let optional = ["discrete_ms_root_failed"];
     let found: Vec<&str> = keys(report).into_iter().filter(|key| !optional.contains(key)).collect();
@@ -47,19 +47,19 @@ fn check(report: &Value, more: &str) {
     assert_eq!(whole("scene_body_steps"), whole("scene_steps") * whole("objects"));
     let positive = |value: &Value| value.as_f64().is_some_and(|x| x > 0.0);
     assert!(positive(&report["certify_seconds"]) && positive(&report["parry_query_seconds"]), "{report}");
-    // What is simulated moves in steps, which kinetic queries follow.
-    let moves = report["simulation_seconds"].is_number();
+    // Scenes have steps, which kinetic queries follow.
+    let is_scene = report["simulation_seconds"].is_number();
     for key in ["discrete_ms", "continuous_ms", "discrete_ms_root_failed"] {
         let Some(times) = report.get(key) else { continue };
-        let follows = if moves && key != "continuous_ms" { ", kinetic" } else { "" };
-        assert_eq!(keys(times), sorted(&format!("{COLUMNS}{follows}")), "{key}");
+        let kinetic = if is_scene && key != "continuous_ms" { ", kinetic" } else { "" };
+        assert_eq!(keys(times), sorted(&format!("{COLUMNS}{kinetic}")), "{key}");
         assert!(times.as_object().unwrap().values().all(positive), "{report}");
     }
     assert_eq!(report.get("discrete_ms_root_failed").is_some(), whole("compared_root_failed_steps") > 0);
     assert!(report["machine"].as_str().is_some_and(|machine| machine.contains(" cores")));
 }
 
-/// One model for all of them, and so one cache.
+/// Amplitudes, growth and a scene, in one test so that they share a cache.
 #[test]
 fn measurements() {
     let folder = tempfile::tempdir().unwrap();
@@ -75,7 +75,7 @@ fn measurements() {
     assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
     assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
 
-    // Growth has the same model; it is not made again.
+    // Growth takes the same model from the cache.
     let made = files(&cache);
     assert_eq!(made.len(), 5, "a model, two sets of certificates with their times: {made:?}");
     let model = made.iter().find(|path| path.to_string_lossy().ends_with(".model.safetensors")).unwrap();
@@ -84,7 +84,7 @@ fn measurements() {
     let growth = ["growth", "--only", "spring-4k", "--samples", "2", "--json", "--plot", "growth.svg"];
     let run = bench(folder.path(), &growth);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
-    // A point of each line.
+    // One point for each line of the plot.
     let plot = fs::read_to_string(folder.path().join("growth.svg")).unwrap();
     assert_eq!((plot.matches("<circle").count(), plot.matches("certified (ms)").count()), (4, 1));
     assert_eq!((files(&cache), written()), (made.clone(), before));
@@ -120,10 +120,11 @@ fn measurements() {
     }
     assert!(run.stdout.contains("\nall exact methods list the same pairs\n"), "{}", run.stdout);
 
-    // Beyond 64 queries, the others answer 20 of the steps.
+    // Beyond 64 steps, the slow methods answer 20 of them.
     let page = folder.path().join("spring.html");
-    let told = ["--report", page.to_str().unwrap()];
-    let run = bench(folder.path(), &[&["spring", "--quick", "--steps", "65", "--json"][..], &told].concat());
+    let report = ["--report", page.to_str().unwrap()];
+    let run =
+        bench(folder.path(), &[&["spring", "--quick", "--steps", "65", "--json"][..], &report].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let page = fs::read_to_string(page).unwrap();
     for part in ["Cost over time: spring", r#"{"name":"traditional","x":["#, r#"{"name":"kinetic","x":["#] {
@@ -134,7 +135,7 @@ fn measurements() {
     assert_eq!((&scene["scenario"], &scene["steps"]), (&json!("spring"), &json!(65)));
     assert_eq!((&scene["compared_steps"], &scene["continuous_steps"]), (&json!(20), &json!(20)));
     assert!(scene["scene_steps"].as_u64().unwrap() > 100);
-    // A third of the compared steps are such as the root certifies, of which the scene has few.
+    // The root certifies a third of the compared steps, although the scene has few such steps.
     let steps = |key: &str| scene[key].as_u64().unwrap();
     let certified = steps("steps") - steps("root_failed_steps");
     let compared = steps("compared_steps") - steps("compared_root_failed_steps");
@@ -150,10 +151,10 @@ fn measurements() {
     assert!((scene["self_collision_share"].as_f64().unwrap() - part("self") / sum).abs() < 1e-9);
     assert!(scene["simulation_speedup"].as_f64().unwrap() > 1.0);
 
-    // The simulation is taken from the cache, and the paper's rows stand beside ours.
+    // The simulation is taken from the cache, and the table has the paper's rows beside ours.
     let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let seconds = format!("simulated in {all:.2} s of the processor, ");
+    let seconds = format!("simulated in {all:.2} s of processor time, ");
     let strata = "means are of the whole scene: the root certifies ";
     for part in [&seconds[..], strata, "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
@@ -209,7 +210,7 @@ fn refusals() {
     ] {
         assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{name}");
     }
-    assert_eq!(files(folder.path()), [] as [&Path; 0], "a list leaves nothing behind");
+    assert_eq!(files(folder.path()), [] as [&Path; 0], "--list leaves no file");
     for (args, named) in [
         (&["amplitude"][..], "there is no scenario 'amplitude'; did you mean 'amplitudes'?"),
         (&["bunny12"], "did you mean 'bunny1"),
@@ -223,9 +224,9 @@ fn refusals() {
         (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
-        (&["growth", "--steps", "2"], "--steps is for what moves"),
+        (&["growth", "--steps", "2"], "--steps is for scenes and kinetic"),
         (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
-        (&["growth", "--quick"], "--quick: growth needs its sizes"),
+        (&["growth", "--quick"], "--quick is not for growth"),
         (&[], "SCENARIO"),
     ] {
         let run = bench(folder.path(), args);

@@ -1,4 +1,4 @@
-//! What scripts rely on: exit codes, the keys of the JSON, standard output that is the result alone.
+//! The contract with scripts: exit codes, keys of the JSON, results alone on standard output.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -36,7 +36,7 @@ fn certify() {
         ],
         [20, 24, 2, 2, 0].map(|n| json!(n)).each_ref()
     );
-    // They meet at q_0 = 1, where |z| is 1: the displacement metric, and a mode that moves by 1.
+    // The strips touch at q_0 = 1, where |z| is 1: the displacement metric, and a mode that moves by 1.
     let root = report["root_radius"].as_f64().unwrap();
     assert!((0.9..=1.0).contains(&root), "{root}");
     let [first, again] =
@@ -76,7 +76,7 @@ fn check() {
         assert_eq!(line["count"], json!(line["pairs"].as_array().unwrap().len()));
         assert_eq!(line["colliding"], json!(line["count"] != 0));
     }
-    // Apart, at rest, through each other, and touching exactly.
+    // Closer, at rest, past each other, and touching exactly.
     let colliding: Vec<bool> = lines.iter().map(|l| l["colliding"].as_bool().unwrap()).collect();
     assert_eq!(colliding, [false, false, false, true]);
     assert_eq!(lines[0]["root_certified"], json!(true));
@@ -92,8 +92,8 @@ fn check() {
     }
 }
 
-/// The ways between the rows of a trajectory: nothing meets, the upper strip goes through the lower one, stays below
-/// it, and comes back to touch it at the very end.
+/// Four motions: no contact; the upper strip passes through the lower one; it stays below; it returns and touches the
+/// lower one at t = 1.
 #[test]
 fn check_continuous() {
     let folder = strips();
@@ -111,7 +111,7 @@ fn check_continuous() {
         assert_eq!((pairs.len(), &line["count"]), (times.len(), &json!(pairs.len())));
         assert_eq!((&line["index"], &line["complete"]), (&json!(index), &json!(true)));
         assert_eq!(line["colliding"], json!(!pairs.is_empty()));
-        // At q_0 = 1, never told too late.
+        // Contact begins at q_0 = 1, and the time is never later.
         let time = [None, Some(2.0 / 3.0), None, Some(1.0)][index];
         for found in times.iter().map(|t| t.as_f64().unwrap()) {
             let true_time = time.unwrap();
@@ -121,7 +121,7 @@ fn check_continuous() {
     }
     assert_eq!(lines[0]["root_certified"], json!(true));
     let norm = lines[1]["norm"].as_f64().unwrap();
-    assert!((norm - 1.5).abs() < 1e-9, "the larger one of both ends: {norm}");
+    assert!((norm - 1.5).abs() < 1e-9, "the larger norm of both ends: {norm}");
     for method in ["certified", "bdtree", "traditional", "brute-force"] {
         for certificates in [&[][..], &["--certificates", CERTIFICATES]] {
             let other = run(&[&["--method", method, "--json"][..], certificates].concat());
@@ -132,7 +132,7 @@ fn check_continuous() {
             assert_eq!(answers(&other.json()), answers(&lines), "{method}");
         }
     }
-    // The first to meet, of as many as were asked for.
+    // --first and --limit list the earliest pairs.
     for (limit, count) in [("--first", 1), ("--limit=3", 3)] {
         let some = run(&["--certificates", CERTIFICATES, limit, "--json"]).json().remove(1);
         assert_eq!((&some["count"], &some["complete"]), (&json!(count), &json!(false)));
@@ -148,7 +148,7 @@ fn check_continuous() {
     assert!(free.code == Some(0) && free.stdout.starts_with("free: proven by the root's"), "{free:?}");
     sscc_io::write_npy(&folder.path().join("one.npy"), &[1, 2], &[0.5, 0.0]).unwrap();
     let args = ["check", MODEL, "--trajectory", "one.npy", "--continuous"];
-    assert!(sscc(folder.path(), &args).refusal().contains("it takes two to move"));
+    assert!(sscc(folder.path(), &args).refusal().contains("a motion needs at least two"));
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn schemes() {
         ("full.sscc.safetensors", "--budget=1"),
         ("paper.sscc.safetensors", "--scheme=full"),
     ] {
-        assert!(check(file, &[flag]).refusal().contains("against --scheme or --budget"), "{file} {flag}");
+        assert!(check(file, &[flag]).refusal().contains("contradicts --scheme or --budget"), "{file} {flag}");
     }
 }
 
@@ -233,7 +233,7 @@ fn certificates_are_computed_where_none_are_given() {
 }
 
 #[test]
-fn flags_may_agree_with_certificates_and_must_not_contradict_them() {
+fn flags_may_repeat_but_not_contradict_certificates() {
     let folder = strips();
     fs::write(folder.path().join("weights.txt"), "1 1 # both strips move by 1").unwrap();
     let run = |args: &[&str]| {
@@ -264,9 +264,9 @@ fn audit() {
     assert!(text.stdout.starts_with("200 attacks, no violation found\n"), "{}", text.stdout);
 }
 
-/// Certificates that promise too much, under a good seal.
+/// Certificates with doubled radii, in a file with a valid checksum.
 #[test]
-fn audit_finds_lies() {
+fn audit_refutes_radii_that_are_too_large() {
     let folder = strips();
     let path = folder.path().join(CERTIFICATES);
     let mut parts = sscc_io::read_certificates(&path).unwrap().parts().clone();
@@ -368,7 +368,7 @@ fn info_of_solids() {
         text.contains("material       steel: youngs=200000000000,poisson=0.3,density=7850; 1 element\n"),
         "{text}"
     );
-    // What `sscc modes` would refuse is told, too.
+    // The reason why `sscc modes` would refuse the solid.
     fs::write(folder.join("flat.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 1 1 0\n").unwrap();
     fs::write(folder.join("flat.ele"), "1 4 0\n0 0 1 2 3\n").unwrap();
     let known = sscc(folder, &["info", "flat.node", "--json"]).json().remove(0);
@@ -377,7 +377,7 @@ fn info_of_solids() {
     assert!(sscc(folder, &["info", "flat.ele"]).stdout.contains("\nsurface        refused: tetrahedron 0 "));
 }
 
-/// What a model made with its stiffness can do beyond others.
+/// A model with a stiffness has frequencies and an energy metric.
 #[test]
 fn elasticity() {
     let folder = strips();
@@ -438,7 +438,7 @@ fn help_and_usage() {
     assert_eq!(sscc(folder.path(), &[] as &[&str]).code, Some(2));
 }
 
-/// The exit code, and what was said on standard error, when the reader leaves after the first line.
+/// Runs a command whose reader closes the pipe after the first line. Returns exit code and standard error.
 fn read_one_line(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let mut child = command(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = String::new();
@@ -459,37 +459,37 @@ fn a_closed_pipe_ends_quietly() {
         sscc_io::write_npy(&folder.join(name), &[20_000, 2], &rows).unwrap();
     }
     for (trajectory, code) in [("free.npy", 0), ("colliding.npy", 1)] {
-        for way in [&[][..], &["--json"], &["--continuous"]] {
+        for form in [&[][..], &["--json"], &["--continuous"]] {
             let args = ["check", MODEL, "--certificates", CERTIFICATES, "--trajectory", trajectory];
             assert_eq!(
-                read_one_line(folder, &[&args, way].concat()),
+                read_one_line(folder, &[&args, form].concat()),
                 (Some(code), String::new()),
-                "{trajectory} {way:?}"
+                "{trajectory} {form:?}"
             );
         }
     }
 }
 
-/// A reader who has left before the first line changes neither the files that are written nor the exit code; one of
-/// standard error neither.
+/// A pipe that is closed before the first line, of standard output or standard error, changes neither the written files
+/// nor the exit code.
 #[test]
-fn nobody_need_read() {
+fn closed_pipes_change_neither_files_nor_exit_codes() {
     let directory = strips();
     let folder = directory.path();
-    let lies = {
+    let too_large = {
         let mut parts = sscc_io::read_certificates(&folder.join(CERTIFICATES)).unwrap().parts().clone();
         parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 2.0);
         parts.global_radius *= 2.0;
         sscc::Certificates::from_parts(parts).unwrap()
     };
-    sscc_io::write_certificates(&folder.join("lies.sscc.safetensors"), &lies).unwrap();
+    sscc_io::write_certificates(&folder.join("too_large.sscc.safetensors"), &too_large).unwrap();
     for (args, code) in [
         (&["info", MODEL][..], 0),
         (&["certify", MODEL, "-o", "new.sscc.safetensors"], 0),
         (&["modes", "mesh.obj", "-o", "new.model.safetensors", "--kind", "polynomial"], 0),
         (&["audit", MODEL, "--certificates", CERTIFICATES, "--samples", "50"], 0),
-        (&["audit", MODEL, "--certificates", "lies.sscc.safetensors", "--samples", "50"], 1),
-        // These say on standard error that certificates are computed first.
+        (&["audit", MODEL, "--certificates", "too_large.sscc.safetensors", "--samples", "50"], 1),
+        // These commands print a note on standard error, that certificates are computed first.
         (&["check", MODEL, "--q=0,0"], 0),
         (&["check", MODEL, "--q=1,0"], 1),
         (&["check", "missing.obj", "--q=1,0"], 2),

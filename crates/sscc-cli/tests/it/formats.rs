@@ -1,4 +1,4 @@
-//! The same model in every form in which it can come: the same answers.
+//! One model in every file format: the answers are the same.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,7 +10,7 @@ use sscc_io::write_npy;
 
 use crate::common::{Run, sscc, strips};
 
-/// Configurations of the strips: free, shifted, touching, through each other.
+/// Configurations of the strips: free, shifted, touching, past each other, touching and shifted.
 const Q: [f64; 10] = [0.0, 0.0, 0.5, 2.0, 1.0, 0.25, 1.5, 0.0, 1.0, -2.0];
 
 fn check(folder: &Path, model: &[&str], more: &[&str]) -> Run {
@@ -27,7 +27,7 @@ fn model(folder: &Path) -> ReducedModel {
     sscc_io::load_model(&folder.join("mesh.obj"), Some(&folder.join("modes.npy"))).unwrap().0
 }
 
-/// An STL file of a mesh, and modes for its vertices: three for each triangle.
+/// Writes an STL file of the mesh, and modes for its vertices, three for each triangle.
 fn write_stl(folder: &Path, model: &ReducedModel) {
     let mut text = "solid strips\n".to_owned();
     let mut modes: Vec<f64> = Vec::new();
@@ -46,7 +46,7 @@ fn write_stl(folder: &Path, model: &ReducedModel) {
     write_npy(&folder.join("stl.npy"), &[rows, model.rank()], &modes).unwrap();
 }
 
-/// A glTF file with morph targets, each triangle with vertices of its own, as drawing programs want them.
+/// Writes a glTF file with morph targets. Each triangle has vertices of its own, as renderers need them.
 fn write_gltf(folder: &Path, model: &ReducedModel, name: &str) {
     let faces = model.mesh().faces();
     let corners: Vec<u32> = faces.iter().flatten().copied().collect();
@@ -90,7 +90,7 @@ fn write_gltf(folder: &Path, model: &ReducedModel, name: &str) {
     fs::write(folder.join("strips.gltf"), gltf.to_string()).unwrap();
 }
 
-/// A neutral mesh beside which lies a folder with one mesh for each mode.
+/// Writes a folder of target meshes, one for each mode.
 fn write_targets(folder: &Path, model: &ReducedModel) {
     fs::create_dir(folder.join("targets")).unwrap();
     for (k, name) in ["a_lower", "b_shift"].iter().enumerate() {
@@ -136,19 +136,19 @@ fn every_form_of_a_model_gives_the_same_pairs() {
             [&["audit"], form, &["--certificates", "x.sscc.safetensors", "--samples", "100"]].concat();
         assert_eq!(sscc(folder, &audit).code, Some(0), "{form:?}");
     }
-    // Without welding every triangle touches those beside it.
+    // Without welding, every triangle touches its neighbours.
     for form in [&["strips.stl", "--modes", "stl.npy"][..], &["strips.gltf"]] {
         let unwelded = pairs(&check(folder, form, &["--weld=off", "--method", "traditional"]));
         assert!(unwelded.iter().all(|pairs| pairs.as_array().unwrap().len() >= 18), "{unwelded:?}");
         let welded = pairs(&check(folder, form, &["--weld", "--method", "traditional"]));
         assert_eq!(welded, expected);
     }
-    // Welding a mesh that shares its vertices changes nothing.
+    // Welding does not change a mesh without duplicate vertices.
     assert_eq!(pairs(&check(folder, &["strips.model.safetensors"], &["--weld"])), expected);
 }
 
 #[test]
-fn info_tells_what_is_in_a_gltf_file() {
+fn info_of_a_gltf_file() {
     let directory = strips();
     let folder = directory.path();
     write_gltf(folder, &model(folder), "two\nlines");
@@ -173,7 +173,7 @@ fn info_tells_what_is_in_a_gltf_file() {
     );
 }
 
-/// PCA and body models: mean, components and faces by name.
+/// PCA and body models: an archive with mean, components and faces.
 #[test]
 fn a_statistical_shape_model_is_read() {
     let directory = strips();
@@ -208,9 +208,9 @@ fn a_statistical_shape_model_is_read() {
     assert_eq!(sscc(folder, &["info", "shape.npz", "--json"]).json()[0]["rank"], json!(2));
 }
 
-/// The shape at q as a mesh of its own.
+/// `--pose` writes the shape at q, with its colliding triangles marked.
 #[test]
-fn a_pose_is_written_with_its_collisions_marked() {
+fn poses_have_their_collisions_marked() {
     let directory = strips();
     let folder = directory.path();
     for (q, colliding) in [("--q=0.5,0", 0), ("--q=1.5,0", 0), ("--q=1,0", 20)] {
@@ -233,15 +233,15 @@ fn a_pose_is_written_with_its_collisions_marked() {
     }
 }
 
-/// An STL file keeps its split vertices as a model, too.
+/// A model made from an STL file keeps the split vertices.
 #[test]
-fn a_mesh_for_drawing_can_be_given_modes() {
+fn models_from_stl_files_keep_split_vertices() {
     let directory = strips();
     let folder = directory.path();
     write_stl(folder, &model(folder));
     let run = sscc(folder, &["modes", "strips.stl", "-o", "s.model.safetensors", "--kind", "polynomial"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    assert!(run.stderr.contains("certify it with --weld"), "{}", run.stderr);
+    assert!(run.stderr.contains("certify the model with --weld"), "{}", run.stderr);
     let (read, _) = sscc_io::read_model(&folder.join("s.model.safetensors")).unwrap();
     assert_eq!(read.modes().vertices(), 60);
     let welded =
@@ -249,7 +249,7 @@ fn a_mesh_for_drawing_can_be_given_modes() {
     assert_eq!(welded.json()[0]["rest_collisions"], json!(0), "{welded:?}");
 }
 
-/// The frames of an animation that two modes made: the mean and those modes are found again.
+/// PCA of frames made with two modes returns the mean and these modes.
 #[test]
 fn an_animation_becomes_a_model() {
     let directory = strips();
@@ -274,7 +274,7 @@ fn an_animation_becomes_a_model() {
     assert!((report["explained"].as_f64().unwrap() - 1.0).abs() < 1e-9);
     let (read, info) = sscc_io::read_model(&folder.join(output)).unwrap();
     assert_eq!(info.provenance, "mean and principal components of 5 meshes in frames");
-    // Unit variance: the coordinates of the first frame are those of its mode, over their root mean square.
+    // q has unit variance: components are modes times the root mean square of their coordinates.
     let deviation = (2.0_f64 * 0.2 * 0.2 / 4.0).sqrt();
     for (v, p) in strips.mesh().rest_positions().iter().enumerate() {
         assert!(p.distance(read.mesh().rest_positions()[v]) < 1e-12);
@@ -291,12 +291,9 @@ fn an_animation_becomes_a_model() {
 
     let refusal = |args: &[&str]| sscc(folder, args).refusal().to_owned();
     let more = refusal(&[&args[..], &["--rank", "3"]].concat());
-    assert!(
-        more.starts_with("error: frames: 3 components were asked for, but the frames differ in 2 "),
-        "{more}"
-    );
+    assert!(more.starts_with("error: frames: 3 components were requested, but the frames have 2 "), "{more}");
     let file = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "pca"]);
-    assert!(file.contains("mesh.obj: is a file; principal components are those of a folder"), "{file}");
+    assert!(file.contains("mesh.obj: is a file; --kind pca needs a folder"), "{file}");
     let rank = refusal(&["modes", "mesh.obj", "-o", output, "--kind", "polynomial", "--rank", "3"]);
     assert!(rank.contains("polynomial modes are always all 24"), "{rank}");
     fs::write(folder.join("frames/5.obj"), "v 0 0 0\n").unwrap();

@@ -1,4 +1,4 @@
-//! The pages of help: as wide as the terminal, and their examples can be pasted.
+//! The help pages: their width is that of the terminal, and their examples run as shown.
 
 use std::fmt::Write;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::common::{Run, STRIP, command, strips};
 const COMMANDS: [&str; 9] =
     ["demo", "modes", "certify", "check", "audit", "info", "simulate", "bench", "view"];
 
-/// The lines of a page of help, in a terminal of that width.
+/// Returns the lines of a help page in a terminal of that width.
 fn page(name: Option<&str>, width: usize) -> Vec<String> {
     let args: Vec<&str> = name.into_iter().chain(["--help"]).collect();
     let run = Run::of(command(Path::new("."), &args).env("COLUMNS", width.to_string()));
@@ -20,7 +20,7 @@ fn page(name: Option<&str>, width: usize) -> Vec<String> {
     run.stdout.lines().map(str::to_owned).collect()
 }
 
-/// The commands of a page, as they are to be pasted.
+/// Returns the example commands of a page.
 fn examples(page: &[String]) -> Vec<String> {
     let (start, _) = page.iter().enumerate().find(|(_, line)| *line == "Examples:").unwrap();
     let lines = page[start + 1..].iter().take_while(|line| !line.is_empty());
@@ -39,29 +39,29 @@ fn pages_are_as_wide_as_the_terminal() {
         for width in [60, 80, 100, 200] {
             let page = page(name, width);
             assert_eq!(examples(&page), commands, "{name:?} at {width}: one command a line");
-            // Longer lines are hard to read, however wide the terminal is.
-            let most = width.min(100);
+            // Longer lines are hard to read, even on wide terminals.
+            let max = width.min(100);
             let prose =
                 page.iter().filter(|line| !line.starts_with("  sscc ") && !line.starts_with("Usage: "));
             let widest = prose.clone().max_by_key(|line| line.chars().count()).unwrap();
-            assert!(widest.chars().count() <= most, "{name:?} at {width}: {widest}");
-            assert!(widest.chars().count() > most / 2, "{name:?} at {width}: {widest}");
+            assert!(widest.chars().count() <= max, "{name:?} at {width}: {widest}");
+            assert!(widest.chars().count() > max / 2, "{name:?} at {width}: {widest}");
         }
         assert!(page(name, 60).len() > wide.len(), "{name:?}");
     }
 }
 
-/// The words of a command up to a pipe, as a shell splits them.
+/// Returns the words of a command up to a pipe, as a shell splits them.
 fn words(command: &str) -> Vec<String> {
     let command = command.split(" | ").next().unwrap();
     assert!(
         !command.contains(['\'', '"', '\\', '$', '#', '>', ';', '&', '*']),
-        "{command}: this is a simple shell"
+        "{command}: the test knows no shell syntax"
     );
     command.split_whitespace().skip(1).map(str::to_owned).collect()
 }
 
-/// Two strips that meet at q_0 = 1, as in `strips`, with so many modes that move the upper one.
+/// Writes two strips that touch at q_0 = 1, as in `strips`, with `rank` modes that move the upper one.
 fn write_face(folder: &Path, rank: usize) {
     let modes: Vec<f32> = (0..rank)
         .flat_map(|k| (0..6 * STRIP).map(move |row| (row, (2 + k) % 3)))
@@ -73,7 +73,7 @@ fn write_face(folder: &Path, rank: usize) {
     fs::copy(folder.join("mesh.obj"), folder.join("face.obj")).unwrap();
 }
 
-/// Meshes like this one, moved up a little further each: targets, or frames.
+/// Writes copies of `mesh.obj`, each moved up a little further: targets or frames.
 fn write_meshes(folder: &Path, names: &[String]) {
     let mesh = sscc_io::read_mesh(&folder.join("mesh.obj")).unwrap();
     for (n, name) in names.iter().enumerate() {
@@ -91,7 +91,7 @@ fn write_meshes(folder: &Path, names: &[String]) {
     }
 }
 
-/// Two triangles, and three targets that move the second one.
+/// Writes a glTF file with two triangles, and three targets that move the second one.
 fn write_head(folder: &Path) {
     let rest: [[f32; 3]; 6] =
         [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [1., 0., 1.], [0., 1., 1.]];
@@ -118,7 +118,7 @@ fn write_head(folder: &Path) {
     fs::write(folder.join("head.glb"), gltf.to_string()).unwrap();
 }
 
-/// A bar of cubes, 2 x 2 x 6, from z = 0 up.
+/// Writes a bar of 2 x 2 x 6 cubes that begins at z = 0.
 fn write_bar(folder: &Path) {
     let [x, y, z] = [3, 3, 7];
     let vertex = |i: usize, j: usize, k: usize| i + x * (j + y * k) + 1;
@@ -137,7 +137,7 @@ fn write_bar(folder: &Path) {
     fs::write(folder.join("bar.veg"), text).unwrap();
 }
 
-/// Examples that take long, or do not end: they are only parsed (in the tests of the arguments).
+/// Whether an example takes long or does not end. Such examples are only parsed, in the tests of `args.rs`.
 fn takes_long(args: &[String]) -> bool {
     matches!(args[0].as_str(), "demo" | "simulate" | "view")
         || args[0] == "bench" && args[1] != "--list"

@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: one word and one exit code for all commands, and nothing half-written.
+//! Ctrl-C and SIGTERM: one message and one exit code for all commands, and no partly written file.
 
 #![cfg(unix)]
 
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use crate::common::{command, files, strips};
 
-/// Waits until a program listens to interrupts, as far as the system tells.
+/// Waits until a program has installed its signal handlers, by the process status of Linux; elsewhere for a second.
 fn wait_for_handlers(child: &Child) {
     /// SIGINT is signal 2, SIGTERM is 15: bits count from 1.
     const BOTH: u64 = 1 << 1 | 1 << 14;
@@ -30,7 +30,7 @@ fn wait_for_handlers(child: &Child) {
     }
 }
 
-/// Begins all of these at once, interrupts each in the midst of its work, and gives what each said on standard error.
+/// Starts all commands at once, and interrupts each during its work. Returns the exit code and standard error of each.
 fn interrupted(folder: &Path, all: &[(&[&str], &str)]) -> Vec<(Option<i32>, String)> {
     let begin = |(args, _): &(&[&str], &str)| {
         let mut command = command(folder, args);
@@ -51,7 +51,7 @@ fn interrupted(folder: &Path, all: &[(&[&str], &str)]) -> Vec<(Option<i32>, Stri
     children.iter_mut().map(end).collect()
 }
 
-/// The spring with polynomial modes, whose certificates take long where they are to be precise.
+/// Writes the spring with polynomial modes, whose certificates take long at a small epsilon.
 fn write_spring(folder: &Path) {
     let mesh = sscc_modes::shapes::spring();
     let points = mesh.rest_positions().iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z));
@@ -64,7 +64,7 @@ fn write_spring(folder: &Path) {
 }
 
 #[test]
-fn every_command_says_the_same_word() {
+fn every_command_prints_the_same_message() {
     let directory = strips();
     let folder = directory.path();
     write_spring(folder);
@@ -94,15 +94,15 @@ fn every_command_says_the_same_word() {
         let message = stderr.lines().find(|line| !line.starts_with("note: "));
         assert_eq!((code, message), (Some(130), Some("error: interrupted")), "{args:?}: {stderr}");
     }
-    // Folders are made first, to see whether they can be.
+    // Output folders are created before the work, to test that they can be.
     let after: Vec<_> = files(folder).into_iter().filter(|path| path.is_file()).collect();
     assert_eq!(after, before);
     assert!(files(&folder.join("demo")).is_empty());
 }
 
-/// A scene that was interrupted says how it goes on.
+/// The message of an interrupted simulation begins in the same way.
 #[test]
-fn scenes_say_it_too() {
+fn simulations_are_interrupted() {
     let directory = tempfile::tempdir().unwrap();
     let args: &[&str] = &["simulate", "spring", "--cache", "cache", "--out", "out"];
     let other: &[&str] = &["simulate", "spring", "--cache", "other", "--out", "other-out"];

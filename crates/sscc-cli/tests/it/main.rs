@@ -1,4 +1,4 @@
-//! The command as its users run it. One program of tests: linking is dear.
+//! Tests of the command as a child process. They are one program, because linking takes long.
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;

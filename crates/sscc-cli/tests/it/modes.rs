@@ -1,4 +1,4 @@
-//! `sscc modes` of solids: surfaces in a lattice, files of elements, and what has no modes.
+//! `sscc modes` of solids: surfaces in a lattice, files of elements, and solids that are refused.
 
 use std::fs;
 use std::path::Path;
@@ -22,7 +22,7 @@ fn folder() -> tempfile::TempDir {
     write("two.veg", VEG);
     write("open.obj", &BOX.replace("f 4 1 5 8\n", ""));
     write("turned.obj", &BOX.replace("f 4 1 5 8\n", "f 8 5 1 4\n"));
-    // The same box once more, far away, and a little moved.
+    // A second box, far from the first one or overlapping it.
     let second = |by: f64| {
         let moved: String = BOX
             .lines()
@@ -58,7 +58,7 @@ fn modes(folder: &Path, args: &[&str]) -> serde_json::Value {
 }
 
 #[test]
-fn a_surface_vibrates() {
+fn linear_modes_of_a_surface() {
     let directory = folder();
     let folder = directory.path();
     let report = modes(folder, &["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8"]);
@@ -72,9 +72,12 @@ fn a_surface_vibrates() {
     assert!(report["degrees_of_freedom"].as_u64().unwrap() > 3 * 5 * 5 * 9);
 
     let info = sscc(folder, &["info", "x.model.safetensors", "--json"]).json().remove(0);
-    let told: Vec<f64> =
+    let listed: Vec<f64> =
         info["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect();
-    assert_eq!((told, &info["metric"], &info["nonlinear"]), (found.clone(), &"energy".into(), &false.into()));
+    assert_eq!(
+        (listed, &info["metric"], &info["nonlinear"]),
+        (found.clone(), &"energy".into(), &false.into())
+    );
     assert!(sscc(folder, &["info", "x.model.safetensors"]).stdout.contains(" Hz"));
 
     let certify = |metric| {
@@ -82,7 +85,7 @@ fn a_surface_vibrates() {
     };
     assert_eq!((certify("energy"), certify("displacement")), (Some(0), Some(0)));
 
-    // A heavier material is slower, by the root of its density; a stiffer one faster.
+    // Frequencies fall with the root of the density, and rise with the root of the stiffness.
     let args = ["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8", "--material"];
     for (material, factor) in [("density=4000", 0.5), ("youngs=4e6,density=1000", 2.0)] {
         let report = modes(folder, &[&args[..], &[material]].concat());
@@ -90,7 +93,7 @@ fn a_surface_vibrates() {
         assert!((first / found[0] / factor - 1.0).abs() < 1e-6);
     }
 
-    // Held at one end it is slower, and vertices there do not move.
+    // Fixed at one end, its lowest frequency is lower, and the vertices there do not move.
     for fix in ["box:-1,-1,-1,0,2,2", "0,3,4,7"] {
         let report =
             modes(folder, &["box.obj", "--kind", "linear", "--rank", "2", "--resolution", "8", "--fix", fix]);
@@ -102,7 +105,7 @@ fn a_surface_vibrates() {
 }
 
 #[test]
-fn bases_for_large_deformations_know_their_forces() {
+fn bases_for_large_deformations_have_forces() {
     let directory = folder();
     let folder = directory.path();
     for (kind, rank) in [("nonlinear", 8), ("polynomial", 24)] {
@@ -115,13 +118,13 @@ fn bases_for_large_deformations_know_their_forces() {
         assert_eq!(model.rank(), rank);
         let Some(sscc_solid::Elasticity::Nonlinear(forces)) = info.elasticity else { panic!("{kind}") };
         assert!(forces.asymmetry() < 1e-9);
-        // Stretching is stiffer than linear, so large deformations cost energy.
+        // Large deformations have an energy above 0.
         assert!(forces.energy(&vec![1.0; rank]) > 0.0);
     }
 }
 
 #[test]
-fn solids_from_files_vibrate() {
+fn linear_modes_of_solids_from_files() {
     let directory = folder();
     let folder = directory.path();
     let report = modes(folder, &["two.veg", "--kind", "linear", "--rank", "9"]);
@@ -133,7 +136,7 @@ fn solids_from_files_vibrate() {
     assert_eq!(held["degrees_of_freedom"], 9);
 }
 
-/// The provenance that a model's file tells.
+/// Returns the provenance in the model's file.
 fn provenance(folder: &Path) -> String {
     sscc_io::read_model(&folder.join("x.model.safetensors")).unwrap().1.provenance
 }
@@ -142,9 +145,9 @@ fn frequencies(report: &serde_json::Value) -> Vec<f64> {
     report["frequencies_hz"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect()
 }
 
-/// The materials of `two.veg`, each with one number replaced, are told from those that are the file's own.
+/// Note and provenance name the numbers of the materials of `two.veg` that `--material` replaces.
 #[test]
-fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
+fn a_typed_material_overrides_those_of_the_file() {
     let directory = folder();
     let folder = directory.path();
     let run = |file: &str, material: Option<&str>| {
@@ -154,38 +157,38 @@ fn a_material_that_is_asked_for_goes_before_those_of_the_file() {
         assert_eq!(run.code, Some(0), "{run:?}");
         (frequencies(&run.json()[0]), run.stderr, provenance(folder))
     };
-    let note = |numbers: &str| format!("note: --material overrides what the file states: {numbers}\n");
-    let (own, silent, told) = run("two.veg", None);
-    assert_eq!(silent, "");
-    assert!(told.ends_with(", materials of the file"), "{told}");
+    let note = |numbers: &str| format!("note: --material overrides the file's materials: {numbers}\n");
+    let (own, stderr, stored) = run("two.veg", None);
+    assert_eq!(stderr, "");
+    assert!(stored.ends_with(", materials of the file"), "{stored}");
 
-    // Written into the file, a material gives what it gives when asked for.
+    // A material gives the same frequencies in the file and on the command line.
     let both = |enu: &str| VEG.replace("1000, 1e6, 0.4", enu).replace("2000, 1e7, 0.3", enu);
     fs::write(folder.join("steel.veg"), both("7850, 2e11, 0.29")).unwrap();
     let (steel, ..) = run("steel.veg", None);
-    for asked in ["steel", "youngs=2e11,poisson=0.29,density=7850"] {
-        let (found, said, told) = run("two.veg", Some(asked));
-        assert_eq!((found, said), (steel.clone(), note("youngs=2e11 poisson=0.29 density=7850")));
-        assert!(told.ends_with(", youngs=2e11 poisson=0.29 density=7850"), "{told}");
+    for typed in ["steel", "youngs=2e11,poisson=0.29,density=7850"] {
+        let (found, stderr, stored) = run("two.veg", Some(typed));
+        assert_eq!((found, stderr), (steel.clone(), note("youngs=2e11 poisson=0.29 density=7850")));
+        assert!(stored.ends_with(", youngs=2e11 poisson=0.29 density=7850"), "{stored}");
     }
-    // One number alone replaces that of each material.
+    // A single number replaces that number of each material.
     let dense = VEG.replace("ENU, 1000", "ENU, 4000").replace("ENU, 2000", "ENU, 4000");
     fs::write(folder.join("dense.veg"), dense).unwrap();
-    let (found, said, told) = run("two.veg", Some("density=4000"));
-    assert_eq!((&found, said), (&run("dense.veg", None).0, note("density=4000")));
-    assert!(found != own && told.ends_with(", materials of the file with density=4000"), "{told}");
+    let (found, stderr, stored) = run("two.veg", Some("density=4000"));
+    assert_eq!((&found, stderr), (&run("dense.veg", None).0, note("density=4000")));
+    assert!(found != own && stored.ends_with(", materials of the file with density=4000"), "{stored}");
 
-    // A file that names none: the default's numbers, or those asked for, and nothing is replaced.
+    // A file without materials: the default numbers, or the typed ones, and no note.
     let medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1 1\n\
         Tetrahedra\n2\n1 2 3 4 1\n2 3 4 5 1\nEnd\n";
     fs::write(folder.join("two.mesh"), medit).unwrap();
-    for (asked, numbers) in [
+    for (typed, numbers) in [
         (None, "youngs=1e6 poisson=0.4 density=1000"),
         (Some("glass"), "youngs=6.2e10 poisson=0.2 density=2600"),
     ] {
-        let (_, said, told) = run("two.mesh", asked);
-        assert_eq!(said, "");
-        assert!(told.ends_with(&format!(", {numbers}")), "{told}");
+        let (_, stderr, stored) = run("two.mesh", typed);
+        assert_eq!(stderr, "");
+        assert!(stored.ends_with(&format!(", {numbers}")), "{stored}");
     }
 }
 
@@ -199,7 +202,7 @@ fn the_help_lists_the_materials() {
 }
 
 #[test]
-fn what_has_no_modes_is_told() {
+fn refusals() {
     let directory = folder();
     let folder = directory.path();
     let linear: &[&str] = &["--kind", "linear", "--rank", "3"];
@@ -214,7 +217,7 @@ fn what_has_no_modes_is_told() {
             "--fix 8: there is no vertex 8 (counted from 0): the file has 8",
         ),
         (&["box.obj", "--resolution", "4", "--fix", "box:1,2"], "--fix box: six numbers were expected"),
-        (&["box.obj", "--resolution", "4", "--fix", "box:7,7,7,8,8,8"], "no vertex is there"),
+        (&["box.obj", "--resolution", "4", "--fix", "box:7,7,7,8,8,8"], "this selects no vertex"),
         (
             &["box.obj", "--resolution", "4", "--fix", "box:-9,-9,-9,9,9,9"],
             "vertices are fixed: leave some free",
@@ -248,7 +251,7 @@ fn what_has_no_modes_is_told() {
     }
     let run =
         sscc(folder, &["modes", "-o", "x.model.safetensors", "two.veg", "--kind", "linear", "--rank", "10"]);
-    assert!(run.refusal().contains("two.veg: 10 modes were asked for, but the body has 9"), "{run:?}");
+    assert!(run.refusal().contains("two.veg: 10 modes were requested, but the body has 9"), "{run:?}");
     let run = sscc(
         folder,
         &["modes", "-o", "x.model.safetensors", "box.obj", "--kind", "polynomial", "--rank", "9"],
@@ -260,7 +263,7 @@ fn what_has_no_modes_is_told() {
 fn a_surface_split_along_seams_is_closed() {
     let folder = folder();
     let folder = folder.path();
-    // The box with three vertices of its own for each triangle.
+    // The box, with three separate vertices for each triangle.
     let vertices: Vec<&str> = BOX.lines().filter(|line| line.starts_with('v')).collect();
     let mut text = "solid box\n".to_owned();
     for line in BOX.lines().filter(|line| line.starts_with('f')) {

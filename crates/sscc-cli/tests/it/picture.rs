@@ -1,4 +1,4 @@
-//! `sscc certify --picture`: what is drawn, and when.
+//! `sscc certify --picture`: contents of the picture, and refusals.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ use crate::common::{files, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 
-/// Width, height, and RGB pixels.
+/// Returns width, height and RGB pixels of a PNG file.
 fn decode(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
     let mut reader = png::Decoder::new(std::io::Cursor::new(fs::read(path).unwrap())).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
@@ -18,7 +18,7 @@ fn decode(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
 }
 
 #[test]
-fn views_of_both_ways_along_each_mode() {
+fn views_in_both_directions_of_each_mode() {
     let directory = strips();
     let folder = directory.path();
     let args = ["certify", MODEL, "-o", "x.sscc.safetensors", "--picture", "x.png"];
@@ -41,9 +41,9 @@ fn views_of_both_ways_along_each_mode() {
         assert!((shown.len() / 4..shown.len()).contains(&background), "{background} of {}", shown.len());
     }
     let views: BTreeSet<&Vec<[u8; 3]>> = along.iter().chain([&rest]).collect();
-    assert_eq!(views.len(), 5, "all differ");
+    assert_eq!(views.len(), 5, "all views differ");
 
-    // The same picture again, and the same certificates as without one.
+    // Picture and certificates do not depend on threads, nor certificates on --picture.
     let first = fs::read(folder.join("x.png")).unwrap();
     assert_eq!(sscc(folder, &[&args[..], &["--threads", "1", "--json"]].concat()).code, Some(0));
     assert_eq!(fs::read(folder.join("x.png")).unwrap(), first);
@@ -53,7 +53,7 @@ fn views_of_both_ways_along_each_mode() {
 }
 
 #[test]
-fn without_a_radius_the_shape_stands_alone() {
+fn without_a_finite_radius_the_picture_shows_the_centre() {
     let directory = strips();
     let folder = directory.path();
     sscc_io::write_npy(&folder.join("still.npy"), &[72, 1], &[0.0; 72]).unwrap();
@@ -82,7 +82,7 @@ fn pictures_that_cannot_be_written_are_refused_first() {
         ("x.jpg", "x.jpg: the name of the output must end in .png"),
         (".png", ".png: the name of the output must end in .png"),
         ("missing/x.png", "missing/x.png: cannot be written"),
-        ("folder.png", "folder.png: cannot be written: it is no file"),
+        ("folder.png", "folder.png: cannot be written: it is not a file"),
     ] {
         let run = sscc(folder, &["certify", MODEL, "-o", "x.sscc.safetensors", "--picture", picture]);
         assert!(run.refusal().contains(named), "{run:?}");

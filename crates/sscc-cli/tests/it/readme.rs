@@ -1,10 +1,10 @@
-//! The commands that the README shows work as shown.
+//! The commands and the Rust example of the README run as shown.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// The only block of that language.
+/// Returns the only code block in that language.
 fn block<'a>(text: &'a str, language: &str) -> &'a str {
     let fence = format!("```{language}\n");
     let mut parts = text.split(&fence);
@@ -14,8 +14,8 @@ fn block<'a>(text: &'a str, language: &str) -> &'a str {
     rest.split_once("```").unwrap().0
 }
 
-/// Whoever follows the README begins a project beside a copy of this one: it knows nothing of the workspace but the
-/// paths, and the versions of other crates, so that nothing is downloaded.
+/// The example is a project beside a copy of this one. It gets paths of the crates and the lock file, so that nothing
+/// is downloaded, and nothing else of the workspace.
 #[test]
 fn the_rust_example_is_a_project_of_its_own() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
@@ -30,7 +30,7 @@ fn the_rust_example_is_a_project_of_its_own() {
     fs::create_dir(folder.join("src")).unwrap();
     fs::write(folder.join("src/main.rs"), block(&readme, "rust")).unwrap();
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    // Beside what the tests were built into, so that a second run finds it compiled.
+    // In the target folder of the tests, so that a second run finds it compiled.
     let target = Path::new(env!("CARGO_BIN_EXE_sscc")).ancestors().nth(2).unwrap().join("readme");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let built = Command::new(cargo)
@@ -39,11 +39,11 @@ fn the_rust_example_is_a_project_of_its_own() {
         .current_dir(folder)
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&built.stderr);
-    assert!(built.status.success() && !said.contains("warning"), "{said}");
+    let stderr = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success() && !stderr.contains("warning"), "{stderr}");
 }
 
-/// Lines that begin with `sscc ` in the blocks marked `sh`.
+/// Returns the words of the lines that begin with `sscc ` in blocks marked `sh`.
 fn commands(text: &str) -> Vec<Vec<String>> {
     let mut in_block = false;
     let mut commands = Vec::new();
@@ -70,7 +70,7 @@ fn commands_of_the_readme() {
         assert_eq!((run.code, run.stderr.as_str()), (Some(wanted), ""), "sscc {}", args.join(" "));
         assert!(!run.stdout.is_empty());
     }
-    // A mesh written and read again, and its modes made anew, is the same model to the last bit.
+    // The model made again from the written mesh is the same to the last bit.
     let digest =
         |file| crate::common::sscc(directory.path(), &["info", file, "--json"]).json()[0]["digest"].clone();
     assert_eq!(digest("spring.model.safetensors"), digest("demo/spring.sscc.safetensors"));
@@ -79,7 +79,7 @@ fn commands_of_the_readme() {
     assert_eq!(made, again);
 }
 
-/// What the demo says of itself: part of the frames collide, part are proven free by one comparison.
+/// Some frames of the demo collide, and the root's certificate proves others free.
 #[test]
 fn the_demo_shows_all_kinds_of_frames() {
     let directory = tempfile::tempdir().unwrap();

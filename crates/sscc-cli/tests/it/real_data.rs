@@ -1,4 +1,4 @@
-//! Real models with known answers: exactly the listed pairs.
+//! Real models with known answers: every method lists exactly the published pairs.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,7 +15,7 @@ struct Case {
     pairs: Pairs,
 }
 
-/// The model and the cases of a `*_selfcollision_cases.json`.
+/// Returns the model and the cases of a `*_selfcollision_cases.json`.
 fn cases(file: &Path) -> (ReducedModel, Vec<Case>) {
     let json: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
     let beside = |key: &str| file.with_file_name(json[key].as_str().unwrap());
@@ -46,7 +46,7 @@ fn vega_letter() {
     every_method_gives_the_listed_pairs(&folder.join("vega_A/A_selfcollision_cases.json"), 17);
 }
 
-/// Every claim about the letter attacked, and its radius close to the truth.
+/// An audit of the letter finds no violation, and its root radius is tight.
 #[test]
 fn vega_letter_audit() {
     let Some(folder) = models("vega_letter_audit") else { return };
@@ -64,7 +64,7 @@ fn face() {
     every_method_gives_the_listed_pairs(&folder.join("ict_face/ict_face_selfcollision_cases.json"), 12);
 }
 
-/// A GLB of another tool, and the same model as OBJ and npy: the same pairs at 200 random q.
+/// A GLB of another tool, and the same model as OBJ and npy, have the same pairs at 200 random q.
 #[test]
 fn glb_and_obj_agree() {
     let Some(folder) = models("glb_and_obj_agree") else { return };
@@ -111,14 +111,14 @@ fn random(i: usize) -> f64 {
     (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// Every published configuration with the rest contacts as exceptions, without, and ignored.
+/// Every published configuration, with the pairs that collide at rest as exceptions, or ignored.
 #[test]
 fn face_with_exceptions() {
     let Some(folder) = models("face_with_exceptions") else { return };
     let (model, cases) = cases(&folder.join("ict_face/ict_face_selfcollision_cases.json"));
     let rest = &cases[0].pairs;
     let certify = |ignore_rest| {
-        // Loose radii: what counts here is which pairs they speak of.
+        // Radii may be loose: the test is about the pairs that they cover.
         let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
         Certificates::compute(&model, &options, &()).unwrap()
     };
@@ -128,13 +128,13 @@ fn face_with_exceptions() {
     let mut query = Query::new(&model, &with).unwrap();
     assert_eq!(query.discrete(&cases[0].q).unwrap(), rest);
     assert!(query.statistics().root_certified && query.statistics().opened == 0);
-    // The jaw alone opens a small part of the tree.
+    // The jaw alone opens a small part of the hierarchy.
     let mut jaw = vec![0.0; model.rank()];
     jaw[0] = 0.1;
     assert!(query.discrete(&jaw).unwrap().is_empty());
     let nodes = with.hierarchy().nodes();
     let open: Vec<bool> = with.parts().node_radii.iter().map(|r| *r <= query.norm()).collect();
-    // By triangles: what lies in a small node has its radius, and lips and eyelids are in many of them.
+    // Counted by triangles, since nodes within a bucket repeat its radius, and lips and eyelids are in many buckets.
     let leaves = || (0..nodes.len()).filter(|n| nodes[*n].children().is_empty());
     let open: u32 = leaves().filter(|n| open[*n]).map(|n| nodes[n].triangle_count).sum();
     assert!(0 < open && 8 * open < model.mesh().faces().len() as u32, "{open}");
@@ -145,7 +145,7 @@ fn face_with_exceptions() {
     }
 }
 
-/// The whole way by the command: certify, then check a trajectory of all cases.
+/// Certifies by the command, then checks a trajectory of all cases.
 #[test]
 fn vega_letter_by_the_command() {
     let Some(folder) = models("vega_letter_by_the_command") else { return };
@@ -171,7 +171,7 @@ fn vega_letter_by_the_command() {
     assert_eq!(found, cases.into_iter().map(|case| case.pairs).collect::<Vec<_>>());
 }
 
-/// A mesh that intersects itself as it is, with modes that move nothing.
+/// A mesh that intersects itself at rest, with a mode that moves nothing.
 #[test]
 fn double_loop() {
     let Some(folder) = models("double_loop") else { return };

@@ -1,5 +1,5 @@
-//! What certificates speak of: centres, neighbours, welds, exceptions, ignored pairs, dense metrics; and how much of an
-//! answer is asked for.
+//! The scope of certificates: centres, neighbours, welds, exceptions, ignored pairs, dense metrics. Also limits of
+//! answers.
 
 use std::fs;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn certify(folder: &Path, model: &[&str], args: &[&str], output: &str) -> Value 
     run.json().remove(0)
 }
 
-/// Two strips that touch at rest, and a fan with a flap that comes down on its own first triangle.
+/// Writes a mesh of two strips that touch at rest. Returns the arguments of the model.
 fn touching(folder: &Path) -> [&'static str; 3] {
     let obj = fs::read_to_string(folder.join("mesh.obj")).unwrap();
     let lowered = obj.replace(" 1\n", " 1e-300\n").replace("1e-300", "0");
@@ -86,7 +86,7 @@ fn exceptions_at_rest() {
         let c = check("ignored.sscc.safetensors", q);
         assert_eq!((&c["colliding"], &c["root_certified"]), (&json!(false), &json!(true)), "{q}");
     }
-    // Too many of them: told, with the way out.
+    // Too many exceptions: the note names the remedy.
     let args = [&["certify"], &model[..], &["--max-exceptions", "3", "-o", "few.sscc.safetensors"]].concat();
     let few = sscc(folder, &args);
     assert_eq!(few.code, Some(0));
@@ -132,7 +132,7 @@ fn one_vertex_neighbours() {
 fn centres() {
     let directory = strips();
     let folder = directory.path();
-    // They touch at q_0 = 1: half a unit from this centre, on the other side.
+    // The strips touch at q_0 = 1, half a unit from this centre.
     let about = certify(folder, &[MODEL], &["--center=1.5,0.25"], "about.sscc.safetensors");
     let root = about["root_radius"].as_f64().unwrap();
     assert!((0.45..=0.5).contains(&root), "{about}");
@@ -233,7 +233,7 @@ fn flags_must_not_contradict_certificates() {
         sscc(folder, &args)
     };
     assert!(run("--ignore-rest").refusal().contains("certified without --ignore-rest"));
-    assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions says"));
+    assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions allows"));
     assert_eq!(run("--max-exceptions=1000").code, Some(1));
 }
 
@@ -253,7 +253,7 @@ fn poses_that_cannot_be_written() {
     }
 }
 
-/// The last line of what `certify` says of the root's radius, and the note beside it.
+/// Returns the line of `certify` about the root's radius, and its note.
 fn promise(folder: &Path, model: &[&str], args: &[&str]) -> (String, String) {
     let run = sscc(folder, &[&["certify"], model, args, &["-o", "x.sscc.safetensors"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -261,9 +261,9 @@ fn promise(folder: &Path, model: &[&str], args: &[&str]) -> (String, String) {
     (promise, run.stderr)
 }
 
-/// Why a radius is 0 is asked, not guessed: two triangles one rounding apart collide nowhere, and no flag helps.
+/// Two triangles one rounding apart do not collide: the note about the radius of 0 recommends no flag for collisions.
 #[test]
-fn what_nearly_touches_is_not_called_colliding() {
+fn near_contact_is_not_reported_as_a_collision() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let above = 1.0 + f64::EPSILON;
@@ -278,43 +278,43 @@ fn what_nearly_touches_is_not_called_colliding() {
         let (promise, note) = promise(folder, &model, args);
         assert!(promise.contains("0: two triangles nearly touch at the centre"), "{promise}");
         assert!(
-            note.starts_with("note: nothing else collides at the centre, but two of the triangles 0, 1 "),
+            note.starts_with("note: no other pair collides at the centre, but two of the triangles 0, 1 "),
             "{note}"
         );
         assert!(!note.contains("--ignore-rest") && !note.contains("--max-exceptions"), "{note}");
     }
 }
 
-/// A way out is recommended only where it is one.
+/// The note recommends a flag only if the flag helps.
 #[test]
 fn recommended_flags_help() {
     let directory = strips();
     let folder = directory.path();
     let touching = touching(folder);
-    // Collides at rest, and there are too many for the flag: both ways help.
-    let (told, note) = promise(folder, &touching, &["--max-exceptions", "1"]);
+    // Too many pairs collide at rest: both flags help.
+    let (line, note) = promise(folder, &touching, &["--max-exceptions", "1"]);
     assert!(
-        told.ends_with(
+        line.ends_with(
             "0: the shape collides with itself at the centre; the parts that do not are certified"
         )
     );
     assert!(note.contains("than may be exceptions (1)") && note.contains("raise --max-exceptions"), "{note}");
     assert!(note.contains("--ignore-rest"), "{note}");
-    let (told, note) = promise(folder, &touching, &["--max-exceptions", "1", "--ignore-rest"]);
-    assert!(told.ends_with(": below it the whole shape is free, ignored pairs apart"), "{told}");
+    let (line, note) = promise(folder, &touching, &["--max-exceptions", "1", "--ignore-rest"]);
+    assert!(line.ends_with(": below it the whole shape is free, apart from ignored pairs"), "{line}");
     assert_eq!(note, "");
-    // Collides at the centre, and nothing does at rest: what collides at rest is nothing to leave out.
+    // Pairs collide at the centre, and none at rest: --ignore-rest would not help.
     for given in [&[][..], &["--ignore-rest"]] {
         let args = [&["--center=1,0", "--max-exceptions", "1"], given].concat();
-        let (told, note) = promise(folder, &[MODEL], &args);
-        assert!(told.contains("0: the shape collides with itself at the centre"), "{told}");
+        let (line, note) = promise(folder, &[MODEL], &args);
+        assert!(line.contains("0: the shape collides with itself at the centre"), "{line}");
         assert!(note.contains("raise --max-exceptions") && !note.contains("--ignore-rest"), "{note}");
     }
 }
 
-/// Of a radius that nothing was held against the report says why.
+/// The report of an audit states why the tightness of the root is unknown.
 #[test]
-fn an_audit_says_why_it_measured_nothing() {
+fn an_audit_states_why_a_tightness_is_unknown() {
     let directory = strips();
     let folder = directory.path();
     let root = |certify: &[&str], model: &[&str]| {
@@ -332,9 +332,9 @@ fn an_audit_says_why_it_measured_nothing() {
     );
 }
 
-/// Vertices are called split where two of them are equal, whatever the file's name is.
+/// The note about split vertices depends on equal vertices, not on the file's name.
 #[test]
-fn split_vertices_are_looked_for() {
+fn split_vertices_are_found() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let facet = |x: f64| {
@@ -346,6 +346,6 @@ fn split_vertices_are_looked_for() {
         let args = ["modes", name, "-o", "x.model.safetensors", "--kind", "polynomial"];
         let run = sscc(folder, &args);
         assert_eq!(run.code, Some(0), "{run:?}");
-        assert_eq!(run.stderr.contains("certify it with --weld"), is_split, "{name}: {}", run.stderr);
+        assert_eq!(run.stderr.contains("certify the model with --weld"), is_split, "{name}: {}", run.stderr);
     }
 }

@@ -1,4 +1,4 @@
-//! `sscc simulate`: what it writes, that it goes on after being killed, what it refuses.
+//! `sscc simulate`: output files, resumed simulations, refusals.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,7 +18,7 @@ use tempfile::TempDir;
 
 use crate::common::{Run, command, files, keys, sorted};
 
-/// A soft little spring that is shaken until it meets itself, above the ground; with sound.
+/// A small soft spring above the ground, shaken until it collides with itself; with sound.
 const SCENE: &str = r#"
 steps_per_second = 8000
 duration = 0.1
@@ -44,10 +44,10 @@ shake = [0.2, 0.5]
 modes = 30
 "#;
 
-/// The same twice, side by side.
+/// A second body beside the first one.
 const PAIR: &str = "\n[[bodies]]\nmodel = \"spring\"\nposition = [0.4, 0, 0.2]\n";
 
-/// Models are made once, for all tests.
+/// The cache with the model, which all tests share.
 static CACHE: LazyLock<TempDir> = LazyLock::new(|| {
     let cache = tempfile::tempdir().unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -72,13 +72,13 @@ fn simulate(folder: &Path, args: &[&str]) -> Run {
     simulate_with(CACHE.path(), folder, args)
 }
 
-/// The data of a report.
+/// Returns the data of a report.
 fn data(page: &str) -> Value {
     let (_, rest) = page.split_once("id=\"sscc-report\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
-/// An array of a report.
+/// Returns the bytes of an array of a report.
 fn bytes_of(report: &Value, name: &Value) -> Vec<u8> {
     STANDARD.decode(report["arrays"][name.as_str().unwrap()].as_str().unwrap()).unwrap()
 }
@@ -87,14 +87,14 @@ fn floats(report: &Value, name: &Value) -> Vec<f32> {
     bytes_of(report, name).as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
-/// A folder with a scene of this text.
+/// Creates a folder with a scene of this text.
 fn folder(text: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), text).unwrap();
     folder
 }
 
-/// The arrays of an archive: shapes and values.
+/// Returns the arrays of an archive: shapes and values.
 fn arrays(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<f64>)> {
     let mut archive = zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap();
     let mut found = BTreeMap::new();
@@ -147,14 +147,14 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!((shape("orientations"), shape("time")), (vec![800, 1, 4], vec![800]));
     let pairs = &trajectories["self_pairs"].1;
     assert_eq!(pairs.iter().filter(|count| **count > 0.0).count() as f64, number("colliding_steps"));
-    // It begins where the scene says, and falls.
+    // The body begins at the scene's position, and falls.
     assert_eq!(trajectories["positions"].1[..3], [0.0, 0.0, 0.2]);
     assert!(trajectories["positions"].1[3 * 100 + 2] < 0.2);
     let costs = arrays(&out.join("costs.npz"));
     assert_eq!(costs["self_seconds"].0, [800]);
     assert!(costs["traditional_self_seconds"].1.iter().all(|seconds| *seconds > 0.0));
 
-    // The animation holds the model, and as many key frames as its rate says.
+    // The animation contains the model.
     let model = sscc_io::gltf::read(&out.join("animation.glb"), Some("spring")).unwrap();
     assert_eq!((model.mesh.faces().len(), model.modes.rank()), (4000, 10));
     let bytes = fs::read(out.join("sound.wav")).unwrap();
@@ -174,7 +174,7 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!(times.len(), sscc_io::gltf::key_frames(800, 1.0 / 8000.0, 60.0).len());
     assert_eq!((times[0], times[times.len() - 1]), (0.0, 799.0 / 8000.0));
     assert_eq!(playback["costs"]["series"].as_array().unwrap().len(), 2);
-    // What is shown is the motion, and what collides in it.
+    // The report contains the motion and its collisions.
     let body = &playback["bodies"][0];
     let q = floats(&report, &body["q"]);
     let states = &trajectories["q_spring"].1;
@@ -183,21 +183,21 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!(floats(&report, &body["rigid"]).len(), 7 * times.len());
     let pairs: Vec<u64> =
         body["pairs"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).collect();
-    // What collides in a frame is told of that very frame; what collides between it and the one before, apart from it.
+    // `pairs` counts the collisions in each frame, and `pairs_since` those in the steps since the frame before.
     let frames = sscc_io::gltf::key_frames(800, 1.0 / 8000.0, 60.0);
     let own = |state: usize| trajectories["self_pairs"].1[state] as u64;
-    let most = |states: Range<usize>| states.map(own).max().unwrap_or(0);
+    let max = |states: Range<usize>| states.map(own).max().unwrap_or(0);
     assert_eq!(pairs, frames.iter().map(|frame| own(*frame)).collect::<Vec<_>>());
     let since: Vec<u64> =
         playback["pairs_since"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).collect();
-    let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
+    let between = frames.windows(2).map(|pair| max(pair[0] + 1..pair[1]));
     assert_eq!(since, [0].into_iter().chain(between).collect::<Vec<_>>());
     assert!(pairs.iter().zip(&since).any(|(own, since)| *own == 0 && *since > 0), "{pairs:?} {since:?}");
     let offsets = bytes_of(&report, &playback["colliding"]["offsets"]);
     assert_eq!(offsets.len(), 4 * (times.len() + 1));
     assert_eq!(&bytes_of(&report, &playback["sound"])[..4], b"RIFF");
 
-    // For people; and what is done already is not done again.
+    // The text output; a finished simulation is not run again.
     let run = simulate(folder.path(), &["scene.toml"]);
     for part in
         ["spring: 4,000 triangles, 10 modes (embedded spring)", "scene: one body, 800 steps", "written: "]
@@ -223,22 +223,22 @@ fn the_motion_is_the_same_for_any_number_of_threads_and_any_detection() {
     assert!(found.windows(2).all(|pair| pair[0] == pair[1]));
 }
 
-/// In units twice as long the radius is half as many.
+/// Certificates are measured in amplitudes of modes: with doubled amplitudes the radius is halved.
 #[test]
-fn certificates_are_measured_in_the_spread() {
+fn radii_are_measured_in_amplitudes() {
     let radius = |spread: &str| {
         let folder = folder(&SCENE.replace("rank = 10", &format!("rank = 10{spread}")));
         let run = simulate(folder.path(), &["scene.toml", "--steps", "1", "--json"]);
         assert_eq!(run.code, Some(0), "{run:?}");
         run.json()[0]["models"][0]["root_radius"].as_f64().unwrap()
     };
-    let spread = |far: f64| format!("\nspread = {:?}", [far; 10]);
+    let spread = |amplitude: f64| format!("\nspread = {:?}", [amplitude; 10]);
     let [energy, one, two] = ["", &spread(0.125), &spread(0.25)].map(radius);
     assert!((one - 2.0 * two).abs() < 1e-9 * one && (one / energy - 1.0).abs() > 0.1, "{energy} {one} {two}");
 }
 
 #[test]
-fn a_killed_simulation_goes_on_to_the_same_bits() {
+fn a_killed_simulation_resumes_to_the_same_bits() {
     let whole = folder(SCENE);
     assert_eq!(simulate(whole.path(), &["scene.toml", "--steps", "600"]).code, Some(0));
     let long = SCENE.replace("duration = 0.1", "duration = 1e3");
@@ -254,8 +254,8 @@ fn a_killed_simulation_goes_on_to_the_same_bits() {
     for times in 1..=2 {
         let mut child =
             prepared(CACHE.path(), killed.path(), &["scene.toml"]).stderr(Stdio::null()).spawn().unwrap();
-        // Killed with states in the log that no checkpoint knows of: it cut off those of the run before, and wrote its
-        // own.
+        // Killed with states in the log that are later than the checkpoint: the run has cut off such states of the run
+        // before, and has written its own.
         let length = || fs::metadata(&log).unwrap().len();
         let (before, mut was_cut) = (length(), false);
         while !(was_cut && length() >= checkpointed + 1000) {
@@ -272,7 +272,7 @@ fn a_killed_simulation_goes_on_to_the_same_bits() {
         let read = |folder: &TempDir| fs::read(folder.path().join("scene").join(name)).unwrap();
         assert!(read(&killed) == read(&expected), "{name}");
     }
-    // Fewer steps are a part of it.
+    // Fewer steps give the first part of the motion.
     assert_eq!(simulate(killed.path(), &["scene.toml", "--steps", "600"]).code, Some(0));
     let part = |folder: &TempDir| arrays(&folder.path().join("scene/trajectories.npz"))["q_spring"].clone();
     assert_eq!(part(&killed), part(&whole));
@@ -292,7 +292,7 @@ fn a_diverging_motion_is_named_and_kept() {
     for part in [
         "the motion of body 0 (counted from 0) diverges (energy ",
         " J)",
-        "what was simulated until then is in scene",
+        "the states until then are in scene",
     ] {
         assert!(message.contains(part) && !message.contains('\n'), "{message}");
     }
@@ -323,7 +323,7 @@ fn refusals() {
         (
             "[sound]\nmodes = 30",
             "grid = [16, 16, 16]\nspacing = [1, 1, 1]",
-            "bodies: about 8192 MB for all 4096 (limit 8000 MB); take fewer, or of fewer triangles",
+            "bodies: all 4096 need about 8192 MB (limit 8000 MB); use fewer bodies, or models of fewer triangles",
         ),
     ] {
         let to = if to == PAIR { to.replace("0.4, 0", "0.01, 0") } else { to.into() };
@@ -334,11 +334,11 @@ fn refusals() {
     for (args, named) in [
         (&["missing.toml"][..], "missing.toml: not found"),
         (&["buny16"], "buny16: not found; did you mean 'bunny16'?"),
-        // A folder of an earlier run is no scene.
+        // A folder with the name of a scene is not the scene.
         (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["scene.toml", "--steps", "0"], "--steps"),
         (&["scene.toml", "--models", "nowhere"], "nowhere: no folder of models"),
-        (&["scene.toml", "--out", "scene.toml"], "scene.toml: no folder that can be written to"),
+        (&["scene.toml", "--out", "scene.toml"], "scene.toml: cannot write to this folder"),
         (&[], "SCENE"),
     ] {
         let run = simulate(folder.path(), args);
@@ -348,8 +348,8 @@ fn refusals() {
     assert_eq!(simulate(folder.path(), &["scene.toml", "--steps", "3", "--out", "a"]).code, Some(0));
     fs::write(folder.path().join("other.toml"), SCENE.replace("-9.81", "-1.62")).unwrap();
     let run = simulate(folder.path(), &["other.toml", "--steps", "3", "--out", "a"]);
-    assert!(run.refusal().contains("states.log: it is of another scene"), "{run:?}");
-    // Begun again, nothing of it is left.
+    assert!(run.refusal().contains("states.log: this file belongs to another scene"), "{run:?}");
+    // --restart removes all files of the other simulation.
     let (mute, _) = SCENE.split_once("[sound]").unwrap();
     fs::write(folder.path().join("other.toml"), mute).unwrap();
     let sound = folder.path().join("a/sound.wav");

@@ -1,4 +1,4 @@
-//! `sscc view`: the line that scripts wait for, what it answers, what it refuses.
+//! `sscc view`: the printed address, answers of the server, refusals.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -10,22 +10,22 @@ use serde_json::{Value, json};
 
 use crate::common::{command, sscc, strips};
 
-/// A page that is being shown.
-struct Shown {
+/// A running `sscc view`.
+struct Viewer {
     child: Child,
     stdout: BufReader<ChildStdout>,
     port: u16,
     token: String,
 }
 
-impl Drop for Shown {
+impl Drop for Viewer {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-impl Shown {
+impl Viewer {
     fn of(folder: &Path, args: &[&str]) -> Self {
         let args = [&["view", "--no-open"], args].concat();
         let mut child = command(folder, &args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -39,7 +39,7 @@ impl Shown {
         Self { child, stdout, port, token }
     }
 
-    fn ask(&self, method: &str, path: &str, body: &str) -> (u16, String) {
+    fn request(&self, method: &str, path: &str, body: &str) -> (u16, String) {
         let Self { port, token, .. } = self;
         let mut stream = TcpStream::connect(("127.0.0.1", *port)).unwrap();
         write!(
@@ -55,9 +55,9 @@ impl Shown {
         (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
     }
 
-    /// Presses Ctrl-C; gives the exit code, and what was said after the address.
+    /// Sends SIGINT. Returns the exit code, and standard output and standard error after the address.
     #[cfg(unix)]
-    fn interrupted(mut self) -> (Option<i32>, String, String) {
+    fn interrupt(mut self) -> (Option<i32>, String, String) {
         let pid = self.child.id().to_string();
         assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
         let code = self.child.wait().unwrap().code();
@@ -74,9 +74,9 @@ const MODEL: [&str; 3] = ["strips.model.safetensors", "--certificates", "strips.
 #[cfg(unix)]
 fn a_page_answers_as_check_does_until_ctrl_c() {
     let folder = strips();
-    let shown = Shown::of(folder.path(), &MODEL);
+    let viewer = Viewer::of(folder.path(), &MODEL);
     for q in [[0.0, 0.0], [0.5, 3.0], [1.0, 0.25], [1.25, -2.0], [2.0, 0.0]] {
-        let (status, answer) = shown.ask("POST", "/api/check", &json!({"q": q}).to_string());
+        let (status, answer) = viewer.request("POST", "/api/check", &json!({"q": q}).to_string());
         assert_eq!(status, 200, "{answer}");
         let answer: Value = serde_json::from_str(&answer).unwrap();
         let at = format!("--q={},{}", q[0], q[1]);
@@ -95,28 +95,28 @@ fn a_page_answers_as_check_does_until_ctrl_c() {
             assert_eq!(answer[key], known[key], "{key}");
         }
     }
-    let (status, scene) = shown.ask("GET", "/api/scene", "");
+    let (status, scene) = viewer.request("GET", "/api/scene", "");
     let scene: Value = serde_json::from_str(&scene).unwrap();
     assert_eq!((status, &scene["title"]), (200, &json!("strips.model.safetensors")));
-    // An open connection does not hold it up.
-    let _idle = TcpStream::connect(("127.0.0.1", shown.port)).unwrap();
-    assert_eq!(shown.interrupted(), (Some(0), String::new(), String::new()));
+    // An open connection does not delay the end.
+    let _idle = TcpStream::connect(("127.0.0.1", viewer.port)).unwrap();
+    assert_eq!(viewer.interrupt(), (Some(0), String::new(), String::new()));
 }
 
 #[test]
 #[cfg(unix)]
 fn certificates_are_computed_where_none_are_given() {
     let folder = strips();
-    let shown = Shown::of(
+    let viewer = Viewer::of(
         folder.path(),
         &["mesh.obj", "--modes", "modes.npy", "--metric", "identity", "--center=0.5,0"],
     );
-    let (_, scene) = shown.ask("GET", "/api/scene", "");
+    let (_, scene) = viewer.request("GET", "/api/scene", "");
     let scene: Value = serde_json::from_str(&scene).unwrap();
     let model = &scene["models"][0];
     assert_eq!((&model["metric"], &model["center"]), (&json!("identity"), &json!([0.5, 0.0])));
     assert_eq!(model["resolved_up_to"], Value::Null);
-    let (code, _, stderr) = shown.interrupted();
+    let (code, _, stderr) = viewer.interrupt();
     assert_eq!(code, Some(0));
     assert_eq!(
         stderr,
@@ -126,24 +126,24 @@ fn certificates_are_computed_where_none_are_given() {
 
 #[test]
 #[cfg(unix)]
-fn a_folder_is_shown_by_its_report() {
+fn the_report_of_a_folder_is_served() {
     let folder = tempfile::tempdir().unwrap();
     let data = r#"<script type="application/json" id="sscc-report">{"scene":{},"arrays":{}}</script>"#;
     let html = format!("<html><script>steal()</script>{data}<script>steal()</script></html>");
     fs::write(folder.path().join("report.html"), html).unwrap();
-    let shown = Shown::of(folder.path(), &["."]);
-    let (status, body) = shown.ask("GET", &format!("/?token={}", shown.token), "");
-    // Its data in the page of the program, and nothing else of the file.
+    let viewer = Viewer::of(folder.path(), &["."]);
+    let (status, body) = viewer.request("GET", &format!("/?token={}", viewer.token), "");
+    // The server sends the data in the page of the program, and nothing else of the file.
     assert!(status == 200 && body.contains(data) && !body.contains("steal()"));
-    assert_eq!(shown.ask("GET", "/api/scene", "").0, 404);
-    assert_eq!(shown.interrupted().0, Some(0));
+    assert_eq!(viewer.request("GET", "/api/scene", "").0, 404);
+    assert_eq!(viewer.interrupt().0, Some(0));
 }
 
 #[test]
-fn what_is_refused() {
+fn refusals() {
     let folder = strips();
     let folder = folder.path();
-    // With a port that is taken: what is not refused ends there, too, rather than showing a page for ever.
+    // The port is taken, so that a command that is not refused for another reason ends, too.
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
     let refused = |args: &[&str], parts: &[&str]| {
@@ -153,7 +153,7 @@ fn what_is_refused() {
             assert!(message.contains(part), "{part}: {message}");
         }
     };
-    // What contradicts the certificates.
+    // Flags that contradict the certificates.
     let with = |more: &[&'static str]| [&MODEL[..], more].concat();
     refused(&with(&["--epsilon", "0.5"]), &["certified with --epsilon 0.1, not 0.5"]);
     refused(&with(&["--metric", "mass"]), &["certified with another metric"]);
@@ -171,14 +171,14 @@ fn what_is_refused() {
     refused(&["mesh.obj"], &["a mesh has no modes"]);
     refused(&["."], &["report.html: not found"]);
     fs::write(folder.join("report.html"), "<html></html>").unwrap();
-    refused(&["."], &["report.html: it is no report of sscc: it has no data"]);
+    refused(&["."], &["report.html: not a report of sscc: it has no data"]);
     fs::write(folder.join("report.html"), "<script type=\"application/json\" id=\"sscc-report\">1</script>")
         .unwrap();
-    refused(&["."], &["report.html: it is no report of sscc: "]);
-    // Sparse: it takes no room.
+    refused(&["."], &["report.html: not a report of sscc: "]);
+    // A sparse file, which takes no disk space.
     fs::File::create(folder.join("report.html")).unwrap().set_len((256 << 20) + 1).unwrap();
-    refused(&["."], &["report.html: larger than a report may be (256 MiB)"]);
-    // What says nothing about a folder.
+    refused(&["."], &["report.html: file is larger than 256 MiB, the maximum for a report"]);
+    // Options that have no meaning for a folder.
     for option in
         ["--certificates=a", "--modes=a", "--compare-metrics", "--epsilon=0.5", "--weld=on", "--threads=1"]
     {

@@ -37,7 +37,7 @@ use std::path::Path;
 use sscc::hierarchy::{Hierarchy, Node};
 use sscc::{CertificateParts, Certificates, ContactFilter, Digest, Neighbours, Pair, PairTree, Scope};
 
-use super::{ANY, CERTIFICATES, Sealed, SealedWriter, metric};
+use super::{ANY, CERTIFICATES, Container, ContainerWriter, metric};
 use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
@@ -106,7 +106,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let tree = &parts.pair_tree;
     let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
-    let mut writer = SealedWriter::new(CERTIFICATES);
+    let mut writer = ContainerWriter::new(CERTIFICATES);
     metric::write(&mut writer, &scope.metric);
     writer
         .text("scheme", scheme(tree))
@@ -137,7 +137,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
 /// # Errors
 /// As [`read_certificates`], without the file's name.
 pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError> {
-    let file = Sealed::parse(bytes, CERTIFICATES)?;
+    let file = Container::parse(bytes, CERTIFICATES)?;
     file.only(&TENSORS)?;
     let unknown = |key: &str, found: &str| {
         let cause = format!("{} is not known in this version of the format", quoted(found));
@@ -210,7 +210,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
 }
 
 /// Reads triangle pairs `i < j`, sorted, without duplicates.
-fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
+fn read_pairs(file: &Container<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
     let tensor = file.u32(name)?.shaped(&[ANY, 2])?;
     let pairs: Vec<Pair> = tensor.values.as_chunks().0.iter().map(|&[i, j]| (i, j)).collect();
     if pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|(i, j)| i < j) {
@@ -221,7 +221,7 @@ fn read_pairs(file: &Sealed<'_>, name: &str) -> Result<Vec<Pair>, FormatError> {
 }
 
 /// Reads the pair tree. [`Certificates::from_parts`] checks that it fits the hierarchy.
-fn read_pair_tree(file: &Sealed<'_>) -> Result<PairTree, FormatError> {
+fn read_pair_tree(file: &Container<'_>) -> Result<PairTree, FormatError> {
     if file.version() < 4 {
         return Ok(PairTree::default());
     }
@@ -232,7 +232,7 @@ fn read_pair_tree(file: &Sealed<'_>) -> Result<PairTree, FormatError> {
     Ok(PairTree::from_parts(limit, starts, radii.into_iter().zip(links)))
 }
 
-fn read_hierarchy(file: &Sealed<'_>) -> Result<Hierarchy, FormatError> {
+fn read_hierarchy(file: &Container<'_>) -> Result<Hierarchy, FormatError> {
     let columns = file.u32("nodes")?.shaped(&[ANY, 4])?.values;
     let nodes = columns
         .as_chunks()

@@ -3,7 +3,7 @@
 
 use sscc_solid::{Elasticity, ReducedForces, SolidError, Stiffness, monomials};
 
-use super::{ANY, Sealed, SealedWriter};
+use super::{ANY, Container, ContainerWriter};
 use crate::{FormatError, Place};
 
 pub(super) const STIFFNESS: &str = "stiffness";
@@ -27,13 +27,13 @@ fn shapes(rank: usize) -> [(&'static str, [usize; 2]); 3] {
 /// # Errors
 /// When the rank of the forces differs.
 pub(super) fn write(
-    writer: &mut SealedWriter,
+    writer: &mut ContainerWriter,
     elasticity: &Elasticity,
     rank: usize,
 ) -> Result<(), FormatError> {
     let found = elasticity.rank();
     if found != rank {
-        let cause = format!("the stiffness is of {found} modes, the model has {rank}");
+        let cause = format!("the stiffness has {found} modes, the model has {rank}");
         return Err(FormatError::new(Place::Tensor(STIFFNESS.into()), cause));
     }
     let stiffness = elasticity.stiffness().entries();
@@ -49,10 +49,10 @@ pub(super) fn write(
 }
 
 /// Reads the forces of a model of rank r; None if the file has no forces.
-pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Option<Elasticity>, FormatError> {
+pub(super) fn read(file: &Container<'_>, rank: usize) -> Result<Option<Elasticity>, FormatError> {
     let names = file.names();
-    let there = |name: &str| names.iter().any(|known| known == name);
-    if ![STIFFNESS, QUADRATIC, CUBIC].into_iter().any(there) {
+    let exists = |name: &str| names.iter().any(|known| known == name);
+    if ![STIFFNESS, QUADRATIC, CUBIC].into_iter().any(exists) {
         return Ok(None);
     }
     let mass = file.text(MASS)?;
@@ -64,7 +64,7 @@ pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Option<Elasticity>,
         |(name, shape): (&str, [usize; 2])| Ok::<_, FormatError>(file.f64(name)?.shaped(&shape)?.values);
     let [linear, quadratic, cubic] = shapes(rank);
     let stiffness = Stiffness::new(rank, tensor(linear)?).map_err(refused)?;
-    if !there(QUADRATIC) && !there(CUBIC) {
+    if !exists(QUADRATIC) && !exists(CUBIC) {
         return Ok(Some(Elasticity::Linear(stiffness)));
     }
     let forces = ReducedForces::new(stiffness, tensor(quadratic)?, tensor(cubic)?).map_err(refused)?;

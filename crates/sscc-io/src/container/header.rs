@@ -20,8 +20,8 @@ pub(super) const DIGEST: std::ops::Range<usize> = LENGTH + PREFIX.len()..LENGTH 
 /// Key of the digest.
 pub(super) const DIGEST_KEY: &str = "blake3";
 
-/// Longer headers are refused on both sides: parsed JSON takes many times the memory of its text.
-pub(super) const LARGEST_HEADER: usize = 1 << 20;
+/// Maximum size of a header for reader and writer: parsed JSON takes many times the memory of its text.
+pub(super) const MAX_HEADER_BYTES: usize = 1 << 20;
 
 /// Number types of tensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,8 +102,11 @@ pub(super) fn to_text(
     header.push('}');
     let padded = header.len().next_multiple_of(8);
     header.extend(std::iter::repeat_n(' ', padded - header.len()));
-    if header.len() > LARGEST_HEADER {
-        return Err(FormatError::whole(format!("a header of {} bytes is too long", header.len())));
+    if header.len() > MAX_HEADER_BYTES {
+        return Err(FormatError::whole(format!(
+            "the header has {} bytes: at most {MAX_HEADER_BYTES} are allowed",
+            header.len()
+        )));
     }
     Ok(header)
 }

@@ -2,7 +2,7 @@
 
 use sscc::{Metric, MetricKind};
 
-use super::{Sealed, SealedWriter};
+use super::{Container, ContainerWriter};
 use crate::error::quoted;
 use crate::{FormatError, Place};
 
@@ -10,7 +10,7 @@ pub(super) const SCALES: &str = "metric_scales";
 pub(super) const FACTOR: &str = "metric_factor";
 
 /// Adds a metric, with the name of its kind as the text `metric`.
-pub(super) fn write(writer: &mut SealedWriter, metric: &Metric) {
+pub(super) fn write(writer: &mut ContainerWriter, metric: &Metric) {
     let rank = metric.rank();
     writer.text("metric", metric.kind().name());
     match metric.dense_factor() {
@@ -19,8 +19,8 @@ pub(super) fn write(writer: &mut SealedWriter, metric: &Metric) {
     };
 }
 
-/// Reads a metric for any number of modes, or (`rank`) for so many.
-pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Metric, FormatError> {
+/// Reads a metric for `rank` modes; [`ANY`](super::ANY) matches any number.
+pub(super) fn read(file: &Container<'_>, rank: usize) -> Result<Metric, FormatError> {
     let name = file.text("metric")?;
     let kind = MetricKind::from_name(name).ok_or_else(|| {
         FormatError::new(Place::Key("metric".into()), format!("unknown metric {}", quoted(name)))
@@ -30,7 +30,7 @@ pub(super) fn read(file: &Sealed<'_>, rank: usize) -> Result<Metric, FormatError
     }
     let factor = file.f64(FACTOR)?.shaped(&[rank, rank])?;
     if file.names().iter().any(|name| name == SCALES) {
-        return Err(factor.refused(format!("there is a tensor '{SCALES}', too")));
+        return Err(factor.refused(format!("the file also has the tensor '{SCALES}'")));
     }
     Ok(Metric::from_factor(kind, factor.shape[0], factor.values)?)
 }
@@ -40,19 +40,19 @@ mod tests {
     use super::super::{ANY, MODEL};
     use super::*;
 
-    fn message(writer: SealedWriter) -> String {
+    fn message(writer: ContainerWriter) -> String {
         let bytes = writer.finish().unwrap();
-        read(&Sealed::parse(&bytes, MODEL).unwrap(), ANY).unwrap_err().to_string()
+        read(&Container::parse(&bytes, MODEL).unwrap(), ANY).unwrap_err().to_string()
     }
 
     #[test]
-    fn both_kinds_of_factor_are_kept() {
+    fn diagonal_and_dense_factors_round_trip() {
         let dense = Metric::from_factor(MetricKind::Energy, 2, vec![1.0, 0.5, 0.0, 3.0]).unwrap();
         for metric in [Metric::identity(3), dense] {
-            let mut writer = SealedWriter::new(MODEL);
+            let mut writer = ContainerWriter::new(MODEL);
             write(&mut writer, &metric);
             let bytes = writer.finish().unwrap();
-            let file = Sealed::parse(&bytes, MODEL).unwrap();
+            let file = Container::parse(&bytes, MODEL).unwrap();
             assert_eq!(read(&file, ANY).unwrap(), metric);
             assert_eq!(read(&file, metric.rank()).unwrap(), metric);
             assert!(read(&file, 7).is_err());
@@ -60,9 +60,9 @@ mod tests {
     }
 
     #[test]
-    fn factors_that_are_none_are_refused() {
+    fn invalid_factors_are_rejected() {
         let with = |shape: &[usize], values: &[f64]| {
-            let mut writer = SealedWriter::new(MODEL);
+            let mut writer = ContainerWriter::new(MODEL);
             writer.text("metric", "given").f64(FACTOR, shape, values);
             writer
         };
@@ -74,6 +74,6 @@ mod tests {
         assert!(message(with(&[4], &[1.0; 4])).contains("was expected"));
         let mut both = with(&[1, 1], &[1.0]);
         both.f64(SCALES, &[1], &[1.0]);
-        assert!(message(both).contains("'metric_scales', too"));
+        assert!(message(both).contains("also has the tensor 'metric_scales'"));
     }
 }

@@ -1,4 +1,4 @@
-//! Containers: safetensors files sealed with a digest of themselves.
+//! Containers: safetensors files that store a digest of themselves.
 //!
 //! A container is an ordinary safetensors file, which NumPy and other tools read: a JSON header with named tensors and
 //! text, then the data. Its first text entry, `blake3`, is the BLAKE3 digest of the whole file with the 64 digits of
@@ -11,7 +11,7 @@ mod header;
 mod kind;
 mod metric;
 mod model;
-mod sealed;
+mod reader;
 mod tensor;
 mod writer;
 
@@ -20,6 +20,6 @@ pub use certificates::{
 };
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
-pub use sealed::Sealed;
+pub use reader::Container;
 pub use tensor::{ANY, Tensor};
-pub use writer::SealedWriter;
+pub use writer::ContainerWriter;

@@ -21,7 +21,7 @@ use glam::DVec3;
 use sscc::{Modes, ReducedModel, TriMesh};
 use sscc_solid::Elasticity;
 
-use super::{ANY, MODEL, Sealed, SealedWriter, elasticity, metric};
+use super::{ANY, Container, ContainerWriter, MODEL, elasticity, metric};
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError};
 
@@ -79,7 +79,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .chunks_exact(rank)
         .flat_map(|of_vertex| (0..3).flat_map(move |axis| of_vertex.iter().map(move |u| u[axis])))
         .collect();
-    let mut writer = SealedWriter::new(MODEL);
+    let mut writer = ContainerWriter::new(MODEL);
     metric::write(&mut writer, model.metric());
     if let Some(forces) = &info.elasticity {
         elasticity::write(&mut writer, forces, rank)?;
@@ -98,7 +98,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 /// # Errors
 /// As [`read_model`], without the file's name.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
-    let file = Sealed::parse(bytes, MODEL)?;
+    let file = Container::parse(bytes, MODEL)?;
     file.only(&[
         "faces",
         elasticity::CUBIC,
@@ -119,7 +119,7 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     let mesh = TriMesh::new(positions, faces)?;
     let modes = Modes::from_matrix(vertices, rank, |row, k| modes.values[row * rank + k])?;
     let model = ReducedModel::with_metric(mesh, modes, metric)?;
-    // Of a model with at least one vertex: its modes bear out the rank.
+    // The model has a vertex, so the size of its modes bounds the rank.
     let elasticity = elasticity::read(&file, rank)?;
     let info = ModelInfo::new(file.text("units")?, file.text("provenance")?);
     Ok((model, ModelInfo { elasticity, ..info }))

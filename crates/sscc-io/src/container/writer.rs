@@ -1,4 +1,4 @@
-//! Writing a container.
+//! Writer for containers.
 
 use std::collections::BTreeMap;
 
@@ -6,31 +6,31 @@ use super::Kind;
 use super::header::{self, DIGEST, DIGEST_KEY, Entry, Item};
 use crate::{FormatError, Place};
 
-/// Collects the tensors and texts of a container.
+/// Collects the tensors and text entries of a container, and writes them.
 ///
 /// ```
-/// use sscc_io::container::{MODEL, Sealed, SealedWriter};
+/// use sscc_io::container::{MODEL, Container, ContainerWriter};
 ///
-/// let mut writer = SealedWriter::new(MODEL);
+/// let mut writer = ContainerWriter::new(MODEL);
 /// writer.text("units", "metres").f64("points", &[2, 3], &[0.0; 6]);
 /// let bytes = writer.finish()?;
-/// let file = Sealed::parse(&bytes, MODEL)?;
+/// let file = Container::parse(&bytes, MODEL)?;
 /// assert_eq!(file.text("units")?, "metres");
 /// assert_eq!(file.f64("points")?.shape, [2, 3]);
 /// # Ok::<(), sscc_io::FormatError>(())
 /// ```
 #[derive(Debug)]
-pub struct SealedWriter {
+pub struct ContainerWriter {
     texts: BTreeMap<String, String>,
     tensors: BTreeMap<String, (Item, Vec<usize>, Vec<u8>)>,
-    /// First error, which [`SealedWriter::finish`] returns.
-    refused: Option<FormatError>,
+    /// First error, which [`ContainerWriter::finish`] returns.
+    error: Option<FormatError>,
 }
 
-impl SealedWriter {
+impl ContainerWriter {
     /// Creates a container of the given kind in its newest version, without content.
     pub fn new(kind: Kind) -> Self {
-        let mut writer = Self { texts: BTreeMap::new(), tensors: BTreeMap::new(), refused: None };
+        let mut writer = Self { texts: BTreeMap::new(), tensors: BTreeMap::new(), error: None };
         writer.text("format", kind.format).text("version", &kind.version.to_string());
         writer
     }
@@ -38,7 +38,7 @@ impl SealedWriter {
     /// Adds a text entry.
     pub fn text(&mut self, key: &str, text: &str) -> &mut Self {
         if key == DIGEST_KEY || self.texts.insert(key.into(), text.into()).is_some() {
-            self.refuse(Place::Key(key.into()), "there already is such an entry".into());
+            self.refuse(Place::Key(key.into()), "the entry already exists".into());
         }
         self
     }
@@ -74,7 +74,7 @@ impl SealedWriter {
             let cause = format!("{} values do not fill the shape {shape:?}", data.len() / item.size());
             self.refuse(Place::Tensor(name.into()), cause);
         } else if name == "__metadata__" || self.tensors.contains_key(name) {
-            self.refuse(Place::Tensor(name.into()), "the name is taken".into());
+            self.refuse(Place::Tensor(name.into()), "the name is already in use".into());
         } else {
             self.tensors.insert(name.into(), (item, shape.into(), data));
         }
@@ -82,7 +82,7 @@ impl SealedWriter {
     }
 
     fn refuse(&mut self, place: Place, cause: String) {
-        self.refused.get_or_insert_with(|| FormatError::new(place, cause));
+        self.error.get_or_insert_with(|| FormatError::new(place, cause));
     }
 
     /// Returns the bytes of the file.
@@ -90,8 +90,8 @@ impl SealedWriter {
     /// # Errors
     /// When a name was used twice, values did not fill their shape, or names and texts exceed 1 MiB in all.
     pub fn finish(self) -> Result<Vec<u8>, FormatError> {
-        if let Some(refused) = self.refused {
-            return Err(refused);
+        if let Some(error) = self.error {
+            return Err(error);
         }
         let mut entries: Vec<Entry> = self
             .tensors

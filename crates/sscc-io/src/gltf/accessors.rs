@@ -38,7 +38,7 @@ impl<'a> Accessors<'a> {
                 }
             }
         }
-        let allowance = Allowance::new(size.saturating_add(buffers.read_beside()), u64::MAX);
+        let allowance = Allowance::new(size.saturating_add(buffers.external_size()), u64::MAX);
         Ok(Self { root, buffers, allowance })
     }
 
@@ -83,7 +83,7 @@ impl<'a> Accessors<'a> {
                 return Err(refused("sparse indices must be unsigned integers".into()));
             };
             if sparse.count > accessor.count {
-                return Err(refused("more sparse items than items".into()));
+                return Err(refused("it has more sparse items than items".into()));
             }
             let plain = Layout { component: of_index, width: 1, normalized: false };
             let (indices, items) = (&sparse.indices, &sparse.values);
@@ -135,7 +135,7 @@ impl<'a> Accessors<'a> {
         let size = layout.component.size() * layout.width;
         let stride = view.byte_stride.unwrap_or(size);
         if stride < size {
-            return refused(format!("a stride of {stride} bytes for items of {size}"));
+            return refused(format!("the stride of {stride} bytes is shorter than an item of {size} bytes"));
         }
         // The last item may end before the stride ends.
         let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size));

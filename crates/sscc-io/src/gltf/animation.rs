@@ -93,15 +93,15 @@ pub fn animation_to_bytes(
         models.iter().map(|named| file.mesh(named.name, named.model)).collect::<Result<_, _>>()?;
     let input = file.accessor(SCALAR, times, None)?;
     let mut nodes = Vec::new();
-    let [mut motion, mut least, mut greatest] =
+    let [mut motion, mut minima, mut maxima] =
         ["simulation", "least weights", "greatest weights"].map(Animation::new);
     let start = file.accessor(SCALAR, &times[..1], None)?;
     for track in tracks {
-        let (mover, shape) = (nodes.len(), nodes.len() + 1);
+        let (carrier, shape) = (nodes.len(), nodes.len() + 1);
         let flat = |points: &[DVec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<f64>>();
         let outputs = [
-            (mover, "translation", file.accessor(VEC3, &flat(&track.positions), None)?),
-            (mover, "rotation", file.accessor(VEC4, &continued(&track.orientations), None)?),
+            (carrier, "translation", file.accessor(VEC3, &flat(&track.positions), None)?),
+            (carrier, "rotation", file.accessor(VEC4, &continuous_quaternions(&track.orientations), None)?),
             (shape, "weights", file.accessor(SCALAR, &track.weights, None)?),
         ];
         for (node, path, output) in outputs {
@@ -109,7 +109,7 @@ pub fn animation_to_bytes(
         }
         let rank = models[track.model].model.rank();
         for (animation, pick) in
-            [(&mut least, f64::min as fn(f64, f64) -> f64), (&mut greatest, f64::max as fn(f64, f64) -> f64)]
+            [(&mut minima, f64::min as fn(f64, f64) -> f64), (&mut maxima, f64::max as fn(f64, f64) -> f64)]
         {
             let of_mode = |k: usize| track.weights.iter().skip(k).step_by(rank).copied().reduce(pick);
             let weights: Vec<f64> = (0..rank).filter_map(of_mode).collect();
@@ -118,13 +118,13 @@ pub fn animation_to_bytes(
         nodes.push(json!({
             "name": track.name,
             "children": [shape],
-            "translation": singles(&track.positions[0].to_array()),
-            "rotation": singles(&track.orientations[0].to_array()),
+            "translation": single_precision(&track.positions[0].to_array()),
+            "rotation": single_precision(&track.orientations[0].to_array()),
         }));
         nodes.push(json!({
             "mesh": track.model,
-            "translation": singles(&(-track.center).to_array()),
-            "weights": singles(&track.weights[..rank]),
+            "translation": single_precision(&(-track.center).to_array()),
+            "weights": single_precision(&track.weights[..rank]),
         }));
     }
     let roots: Vec<usize> = (0..nodes.len()).step_by(2).collect();
@@ -134,12 +134,12 @@ pub fn animation_to_bytes(
         "scenes": [{"nodes": roots}],
         "nodes": nodes,
         "meshes": meshes,
-        "animations": [motion.json(), least.json(), greatest.json()],
+        "animations": [motion.json(), minima.json(), maxima.json()],
         "accessors": file.accessors,
         "bufferViews": file.views,
         "buffers": [{"byteLength": file.binary.len()}],
     });
-    joined(root.to_string().into_bytes(), file.binary)
+    glb(root.to_string().into_bytes(), file.binary)
 }
 
 /// Animation of the JSON: samplers and channels.
@@ -175,29 +175,29 @@ fn check(models: &[NamedModel<'_>], times: &[f64], tracks: &[Track]) -> Result<(
     }
     for Track { name, model, positions, orientations, weights, .. } in tracks {
         let Some(NamedModel { model, .. }) = models.get(*model) else {
-            return Err(format!("body {name} is of model {model}, but there are {}", models.len()));
+            return Err(format!("body {name} refers to model {model}, but there are {}", models.len()));
         };
         let [n, rank] = [times.len(), model.rank()];
         if [positions.len(), orientations.len()] != [n, n] || weights.len() != n * rank {
-            return Err(format!("body {name} has not one entry for each of the {n} key frames"));
+            return Err(format!("body {name} needs one entry for each of the {n} key frames"));
         }
     }
     Ok(())
 }
 
-/// Components x y z w of rotations. The sign of each is chosen next to its predecessor (q and -q are the same
-/// rotation).
-fn continued(orientations: &[DQuat]) -> Vec<f64> {
-    let mut before = DQuat::IDENTITY;
+/// Returns the components x y z w of rotations, each with the sign that is nearest to its predecessor (q and -q are the
+/// same rotation).
+fn continuous_quaternions(orientations: &[DQuat]) -> Vec<f64> {
+    let mut previous = DQuat::IDENTITY;
     let mut values = Vec::with_capacity(4 * orientations.len());
-    for turn in orientations {
-        before = if turn.dot(before) < 0.0 { -*turn } else { *turn };
-        values.extend(before.to_array());
+    for rotation in orientations {
+        previous = if rotation.dot(previous) < 0.0 { -*rotation } else { *rotation };
+        values.extend(previous.to_array());
     }
     values
 }
 
-fn singles(values: &[f64]) -> Vec<f32> {
+fn single_precision(values: &[f64]) -> Vec<f32> {
     values.iter().map(|x| *x as f32).collect()
 }
 
@@ -251,9 +251,11 @@ impl File {
         values: &[f64],
         target: Option<u32>,
     ) -> Result<usize, String> {
-        let values = singles(values);
+        let values = single_precision(values);
         if let Some(x) = values.iter().find(|x| !x.is_finite()) {
-            return Err(format!("a number of an animation is {x} in single precision"));
+            return Err(format!(
+                "a number of the animation is {x} in single precision: scale the model down"
+            ));
         }
         let bound = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
             let item = |c: usize| values.iter().skip(c).step_by(width).copied();
@@ -280,13 +282,15 @@ impl File {
     }
 }
 
-/// Returns header and both chunks. Only the JSON needs padding: all numbers have 4 bytes.
-fn joined(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, String> {
+/// Joins header and both chunks. Only the JSON needs padding: all numbers have 4 bytes.
+fn glb(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, String> {
     json.resize(json.len().next_multiple_of(4), b' ');
     let total = 12 + 8 + json.len() + 8 + binary.len();
     let size = |n: usize| u32::try_from(n).map(u32::to_le_bytes);
     let (Ok(all), Ok(first), Ok(second)) = (size(total), size(json.len()), size(binary.len())) else {
-        return Err(format!("the animation has {total} bytes, a file holds 4 GiB: take fewer key frames"));
+        return Err(format!(
+            "the animation has {total} bytes, but a file can have at most 4 GiB: use fewer key frames"
+        ));
     };
     let mut bytes = Vec::with_capacity(total);
     for part in [&b"glTF"[..], &2_u32.to_le_bytes(), &all, &first, b"JSON", &json, &second, b"BIN\0", &binary]

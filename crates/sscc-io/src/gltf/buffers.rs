@@ -41,7 +41,7 @@ impl<'a> Buffers<'a> {
         let buffer = self.declared.get(index).ok_or_else(|| refused("there is no such buffer".into()))?;
         let source = match &buffer.uri {
             None if index == 0 && self.chunk.is_some() => Source::Chunk,
-            None => return Err(refused("it has no uri, and is not in the file".into())),
+            None => return Err(refused("it has no uri, and the file has no binary chunk for it".into())),
             Some(uri) if has_scheme(uri, "data:") => Source::Embedded(embedded(uri).map_err(refused)?),
             Some(uri) => {
                 let path = beside(uri).map_err(refused)?;
@@ -57,9 +57,9 @@ impl<'a> Buffers<'a> {
             }
         };
         self.sources.insert(index, source);
-        let there = self.all_of(index).len();
-        if buffer.byte_length > there {
-            let cause = format!("{} bytes are promised, {there} are there", buffer.byte_length);
+        let found = self.all_of(index).len();
+        if buffer.byte_length > found {
+            let cause = format!("it declares {} bytes, but has {found}", buffer.byte_length);
             return Err(refused(cause));
         }
         Ok(())
@@ -72,7 +72,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// Returns the total size of the files that were read.
-    pub fn read_beside(&self) -> u64 {
+    pub fn external_size(&self) -> u64 {
         self.files.values().map(|file| file.len() as u64).sum()
     }
 
@@ -93,10 +93,10 @@ fn has_scheme(uri: &str, scheme: &str) -> bool {
 /// Returns the bytes of a `data:` URI.
 fn embedded(uri: &str) -> Result<Vec<u8>, String> {
     let Some((media_type, text)) = uri.split_once(',') else {
-        return Err("a data URI without a comma".into());
+        return Err("the data URI has no comma".into());
     };
     if !media_type.ends_with(";base64") {
-        return Err("a data URI that is not in base64".into());
+        return Err("the data URI is not in base64".into());
     }
     BASE64.decode(text).map_err(|error| format!("not base64: {error}"))
 }
@@ -115,11 +115,7 @@ fn beside(uri: &str) -> Result<PathBuf, String> {
         return refused("leads out of the folder: only files in the folder of the glTF file are read");
     }
     let path: PathBuf = name.split('/').filter(|part| !matches!(*part, "" | ".")).collect();
-    if path.as_os_str().is_empty() || name.contains('\0') {
-        refused("is no name of a file")
-    } else {
-        Ok(path)
-    }
+    if path.as_os_str().is_empty() || name.contains('\0') { refused("is not a file name") } else { Ok(path) }
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {
@@ -138,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_files_beside_are_named() {
+    fn only_files_in_the_folder_are_accepted() {
         for (uri, path) in [("a.bin", "a.bin"), ("./b/c%20d.bin", "b/c d.bin"), ("b//a%C3%A9", "b/a\u{e9}")] {
             assert_eq!(beside(uri).unwrap(), Path::new(path));
         }
@@ -177,6 +173,6 @@ mod tests {
         assert!(embedded("data:;base64,A").unwrap_err().starts_with("not base64"));
         assert!(embedded("data:;base64,A\n=").is_err());
         assert!(embedded("data:text/plain,AAAA").unwrap_err().contains("not in base64"));
-        assert!(embedded("data:").unwrap_err().contains("without a comma"));
+        assert!(embedded("data:").unwrap_err().contains("has no comma"));
     }
 }

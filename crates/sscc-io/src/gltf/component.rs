@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_those_of_the_standard() {
+    fn numbers_are_decoded_by_the_standard() {
         use Component::*;
         let f32_bytes = 0.1_f32.to_le_bytes();
         for (component, bytes, plain, normalized) in [

@@ -29,7 +29,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, FormatError> {
         return Err(at(4, cause));
     }
     if length != bytes.len() as u64 {
-        let cause = format!("the header says {length} bytes, the file has {}: is it cut off?", bytes.len());
+        let cause =
+            format!("the header declares {length} bytes, the file has {}: is it cut off?", bytes.len());
         return Err(at(8, cause));
     }
     let mut chunks: [Option<&[u8]>; 2] = [None; 2];
@@ -48,14 +49,14 @@ pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, FormatError> {
         match (number, &kind) {
             (0, JSON) | (1, BINARY) => chunks[number] = Some(chunk),
             (0, _) => return Err(at(next, "the first chunk is not JSON".into())),
-            (_, JSON | BINARY) => return Err(at(next, "a second chunk of its kind, or out of order".into())),
+            (_, JSON | BINARY) => return Err(at(next, "the chunk is repeated or out of order".into())),
             _ => {}
         }
         number += 1;
         next = begin + size;
     }
     let [Some(json), binary] = chunks else {
-        return Err(at(HEADER, "there is no chunk of JSON".into()));
+        return Err(at(HEADER, "the file has no JSON chunk".into()));
     };
     Ok(Chunks { json, binary })
 }
@@ -86,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn chunks_are_found() {
+    fn chunks_are_split() {
         let bytes = file(2, &[(JSON, b"{}  "), (BINARY, b"1234"), (b"MORE", b"abcd")]);
         let chunks = split(&bytes).unwrap();
         assert_eq!((chunks.json, chunks.binary), (&b"{}  "[..], Some(&b"1234"[..])));
@@ -95,16 +96,18 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_place() {
         assert!(message(&file(1, &[(JSON, b"{}")])).contains("version 1 of GLB is not supported"));
         assert!(message(&file(2, &[(BINARY, b"{}")])).contains("the first chunk is not JSON"));
-        assert!(message(&file(2, &[(JSON, b"{}"), (JSON, b"{}")])).starts_with("byte 22: a second chunk"));
-        assert!(message(&file(2, &[])).contains("no chunk of JSON"));
+        assert!(
+            message(&file(2, &[(JSON, b"{}"), (JSON, b"{}")])).starts_with("byte 22: the chunk is repeated")
+        );
+        assert!(message(&file(2, &[])).contains("no JSON chunk"));
         let good = file(2, &[(JSON, b"{}  "), (BINARY, b"1234")]);
         for len in 4..good.len() {
             assert!(split(&good[..len]).is_err(), "{len}");
         }
-        assert!(message(&[&good[..], b"\0"].concat()).contains("says 36 bytes, the file has 37"));
+        assert!(message(&[&good[..], b"\0"].concat()).contains("declares 36 bytes, the file has 37"));
         let mut huge = good;
         huge[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
         assert_eq!(message(&huge), "byte 12: a chunk of 4294967295 bytes does not fit into the file");

@@ -172,8 +172,9 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Supported extensions: they do not change positions (colours, images, light), or quantize numbers, which is read.
-const HARMLESS: [&str; 8] = [
+/// Prefixes of supported extensions. They do not change positions (colours, images, light), or quantize numbers, which
+/// the reader decodes.
+const SUPPORTED_EXTENSIONS: [&str; 8] = [
     "KHR_materials_",
     "KHR_texture_",
     "EXT_texture_",
@@ -190,15 +191,20 @@ impl Root {
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         // The version is checked first: other versions have another structure.
         let Head { asset } = serde_json::from_slice(text).map_err(refused)?;
-        let newest = asset.min_version.as_ref().is_none_or(|least| least == "2.0");
-        if !asset.version.starts_with("2.") || !newest {
-            let version = quoted(asset.min_version.filter(|_| !newest).as_ref().unwrap_or(&asset.version));
+        let is_supported = asset.min_version.as_ref().is_none_or(|minimum| minimum == "2.0");
+        if !asset.version.starts_with("2.") || !is_supported {
+            let version =
+                quoted(asset.min_version.filter(|_| !is_supported).as_ref().unwrap_or(&asset.version));
             let cause =
                 format!("version {version} of the format is not supported: save the file as glTF 2.0");
             return Err(FormatError::part("asset", cause));
         }
         let root: Self = serde_json::from_slice(text).map_err(refused)?;
-        match root.extensions_required.iter().find(|name| !HARMLESS.iter().any(|h| name.starts_with(h))) {
+        match root
+            .extensions_required
+            .iter()
+            .find(|name| !SUPPORTED_EXTENSIONS.iter().any(|h| name.starts_with(h)))
+        {
             Some(name) => Err(FormatError::part("extensionsRequired", unsupported(name))),
             None => Ok(root),
         }

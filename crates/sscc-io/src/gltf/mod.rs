@@ -5,8 +5,8 @@
 //! target k. Other content (nodes and their transforms, skins, materials, animations) is ignored. The transform of a
 //! node does not change which triangles collide: an affine map preserves intersections.
 //!
-//! The module has its own parser: version 1.4.1 of the crate `gltf` panics on unchecked accessors. See [the
-//! note](https://placeholder).
+//! The module has its own parser: version 1.4.1 of the crate `gltf` panics on unchecked accessors. See
+//! `docs/notes/2026-11-23-parsers-of-other-crates.md`.
 
 mod accessors;
 mod animation;

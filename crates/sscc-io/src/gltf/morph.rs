@@ -17,29 +17,29 @@ use crate::FormatError;
 pub struct MorphModel {
     /// The base mesh, in its own coordinates: node transforms are not applied.
     pub mesh: TriMesh,
-    /// Mode k is what target k adds to the positions.
+    /// Mode k is the displacement of target k.
     pub modes: Modes,
-    /// The mesh's default weights, a q: r numbers, zeros where the file has none. They are not applied to `mesh`.
+    /// Default weights of the mesh, a q (r numbers); zeros if the file has none. They are not applied to `mesh`.
     pub default_weights: Vec<f64>,
-    /// The names of the targets; `target 0` and so on where the file has none.
+    /// Names of the targets (r); `target 0`, `target 1`, ... if the file has none.
     pub target_names: Vec<String>,
-    /// The name of the mesh, `#0` and so on where it has none.
+    /// Name of the mesh; `#0` for an unnamed first mesh, and so on.
     pub mesh_name: String,
-    /// The parts of the mesh.
+    /// Ranges of the primitives, in file order.
     pub primitives: Vec<PrimitiveRange>,
 }
 
-/// What one primitive became.
+/// Vertices and triangles of one primitive in the joined mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PrimitiveRange {
-    /// Its vertices in the joined mesh.
+    /// Vertices.
     pub vertices: Range<u32>,
-    /// Its triangles in the joined mesh.
+    /// Triangles.
     pub triangles: Range<u32>,
 }
 
-/// Joins the primitives of a mesh. `size` is that of the file.
+/// Joins the primitives of a mesh. `size` is the size of the file in bytes.
 pub(super) fn model(
     root: &Root,
     index: usize,
@@ -53,7 +53,7 @@ pub(super) fn model(
         let targets = p.targets.iter().filter_map(|t| t.position);
         p.attributes.position.into_iter().chain(p.indices).chain(targets)
     });
-    let mut joined = Joined {
+    let mut joined = Assembly {
         accessors: Accessors::new(root, buffers, used, size)?,
         rank,
         positions: Vec::new(),
@@ -75,22 +75,21 @@ pub(super) fn model(
     })
 }
 
-struct Joined<'a> {
+struct Assembly<'a> {
     accessors: Accessors<'a>,
     rank: usize,
     positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// Vertex after vertex, `rank` for each.
+    /// `rank` displacements for each vertex.
     displacements: Vec<DVec3>,
 }
 
-impl Joined<'_> {
+impl Assembly<'_> {
     fn push(&mut self, primitive: &Primitive, part: &str) -> Result<PrimitiveRange, FormatError> {
         let refused = |cause: String| FormatError::part(part, cause);
         primitive.extensions.check(|| part.into())?;
-        let topology = Topology::from_mode(primitive.mode).map_err(|kind| {
-            refused(format!("a primitive of triangles was expected, this one is of {kind}"))
-        })?;
+        let topology = Topology::from_mode(primitive.mode)
+            .map_err(|kind| refused(format!("a primitive of triangles was expected, this one has {kind}")))?;
         if primitive.targets.len() != self.rank {
             let cause = format!(
                 "it has {} morph targets, the first primitive {}: all need the same number",
@@ -107,7 +106,7 @@ impl Joined<'_> {
         let positions = vectors(&self.accessors.read(base, Role::Positions)?);
         let mut columns = Vec::new();
         for (k, target) in primitive.targets.iter().enumerate() {
-            // A target without positions changes normals or colours only.
+            // A target without positions only changes normals or colours.
             let Some(accessor) = target.position else {
                 columns.push(Vec::new());
                 continue;
@@ -123,9 +122,10 @@ impl Joined<'_> {
         let (v, t) = (self.positions.len(), self.faces.len());
         let range = |from: usize, more: usize| match (u32::try_from(from), u32::try_from(from + more)) {
             (Ok(begin), Ok(end)) => Ok(begin..end),
-            _ => {
-                Err(refused(format!("with it the mesh has {} vertices or triangles: too many", from + more)))
-            }
+            _ => Err(refused(format!(
+                "with it the mesh has {} vertices or triangles: 32-bit indices allow at most 2^32 - 1",
+                from + more
+            ))),
         };
         let ranges = PrimitiveRange { vertices: range(v, count)?, triangles: range(t, faces.len())? };
         let first = ranges.vertices.start;
@@ -138,7 +138,7 @@ impl Joined<'_> {
         Ok(ranges)
     }
 
-    /// The triangles of a primitive, with its own vertex numbers, which are below `count`.
+    /// Returns the triangles of a primitive, with its own vertex numbers, which are below `count`.
     fn faces_of(
         &mut self,
         primitive: &Primitive,
@@ -149,14 +149,16 @@ impl Joined<'_> {
         let refused = |cause: String| FormatError::part(part, cause);
         let corners: Vec<u32> = match primitive.indices {
             Some(indices) => {
-                // Up to 12 bytes of a triangle for each corner, twice.
+                // A strip has up to 12 bytes of a triangle for each corner, and lists are copied once.
                 let corners = self.accessors.count(indices)?;
                 self.take(corners, 28, part)?;
                 self.accessors.read(indices, Role::Indices)?.into_iter().map(|index| index as u32).collect()
             }
             None => {
                 self.take(count, 28, part)?;
-                (0..u32::try_from(count).map_err(|_| refused(format!("{count} vertices are too many")))?)
+                (0..u32::try_from(count).map_err(|_| {
+                    refused(format!("it has {count} vertices: 32-bit indices allow at most 2^32 - 1"))
+                })?)
                     .collect()
             }
         };

@@ -38,10 +38,10 @@ pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatErr
     let Some(name) = name else {
         return match movable[..] {
             [one] => Ok(one),
-            [] => Err(FormatError::whole("no mesh in it has morph targets")),
+            [] => Err(FormatError::whole("no mesh of the file has morph targets")),
             _ => {
                 let cause = format!(
-                    "{} meshes have morph targets: choose one by --mesh-name; there are {}",
+                    "{} meshes have morph targets: choose one with --mesh-name: {}",
                     movable.len(),
                     names()
                 );
@@ -62,11 +62,11 @@ pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatErr
         },
         [one, ..] => {
             let several = format!("{} meshes have the name {}", named.len(), quoted(name));
-            return Err(FormatError::whole(format!("{several}: choose one by its number, as #{one}")));
+            return Err(FormatError::whole(format!("{several}: choose one by its number, such as #{one}")));
         }
     };
-    let others = if movable.is_empty() { "no mesh has".into() } else { format!("{} have", names()) };
-    Err(FormatError::whole(format!("{cause}; {others} morph targets")))
+    let others = if movable.is_empty() { "none".into() } else { names() };
+    Err(FormatError::whole(format!("{cause}; meshes with morph targets: {others}")))
 }
 
 #[cfg(test)]
@@ -86,23 +86,29 @@ mod tests {
     }
 
     #[test]
-    fn the_only_one_or_the_named_one() {
+    fn the_only_or_the_named_mesh_is_chosen() {
         let one = root(&[(Some("a"), 0), (Some("b"), 2)]);
         assert_eq!(choose(&one, None), Ok(1));
         assert_eq!(choose(&one, Some("b")), Ok(1));
         let message = |root: &Root, name| choose(root, name).unwrap_err().to_string();
-        assert_eq!(message(&one, Some("a")), "the mesh 'a' has no morph targets; 'b' have morph targets");
-        assert_eq!(message(&one, Some("c")), "there is no mesh 'c'; 'b' have morph targets");
+        assert_eq!(
+            message(&one, Some("a")),
+            "the mesh 'a' has no morph targets; meshes with morph targets: 'b'"
+        );
+        assert_eq!(message(&one, Some("c")), "there is no mesh 'c'; meshes with morph targets: 'b'");
         let many = root(&[(None, 1), (Some("b"), 1), (Some("b"), 3), (Some("#0"), 0)]);
         assert_eq!(
             message(&many, None),
-            "3 meshes have morph targets: choose one by --mesh-name; there are '#0', 'b', 'b'"
+            "3 meshes have morph targets: choose one with --mesh-name: '#0', 'b', 'b'"
         );
-        assert_eq!(message(&many, Some("b")), "2 meshes have the name 'b': choose one by its number, as #1");
+        assert_eq!(
+            message(&many, Some("b")),
+            "2 meshes have the name 'b': choose one by its number, such as #1"
+        );
         assert_eq!(choose(&many, Some("#2")), Ok(2));
         assert!(message(&many, Some("#4")).starts_with("there is no mesh '#4'"));
-        assert_eq!(message(&root(&[]), None), "no mesh in it has morph targets");
-        assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; no mesh has morph targets");
+        assert_eq!(message(&root(&[]), None), "no mesh of the file has morph targets");
+        assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; meshes with morph targets: none");
         let infos = list(&many);
         assert_eq!((infos[0].name.as_str(), infos[2].targets, infos[2].primitives), ("#0", 3, 1));
         let long = "x".repeat(1000);

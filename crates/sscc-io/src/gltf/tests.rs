@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::*;
 
-/// Numbers as they are in a buffer.
+/// Returns the bytes of numbers in a buffer.
 fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// A GLB of these two chunks, padded to multiples of 4.
+/// Returns a GLB of these two chunks, padded to multiples of 4.
 fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
     let pad = |bytes: &[u8], with: u8| {
         let mut bytes = bytes.to_vec();
@@ -33,8 +33,8 @@ fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-/// Two primitives: a square as a strip (bytes: corners), with a plain and an empty target; and a triangle
-/// without indices, whose positions are normalised shorts, with a sparse target.
+/// Two primitives: a square as a strip with indices of 8 bits, a plain and an empty target; and a triangle without
+/// indices, with normalized 16-bit positions and a sparse target.
 const JSON: &str = r#"{
  "asset":{"version":"2.0"},
  "extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],
@@ -75,7 +75,7 @@ fn message(json: &str) -> String {
     parse(&glb(json, &binary()), None).unwrap_err().to_string()
 }
 
-/// The good file with one change.
+/// Returns the error message for the valid file with one change.
 fn with(from: &str, to: &str) -> String {
     assert_eq!(JSON.matches(from).count(), 1, "{from}");
     message(&JSON.replace(from, to))
@@ -104,19 +104,19 @@ fn primitives_are_joined() {
             PrimitiveRange { vertices: 4..7, triangles: 2..3 }
         ]
     );
-    // Names of another number, or of another form, are no names.
+    // Names in another number or form are ignored.
     for extras in [r#"{"targetNames":["smile"]}"#, "7", "null", r#"{"targetNames":{"a":1}}"#] {
         let json = JSON.replace(r#"{"targetNames":["smile","frown"]}"#, extras);
         let other = parse(&glb(&json, &binary()), None).unwrap();
         assert_eq!(other.target_names, ["target 0", "target 1"], "{extras}");
     }
-    let silent = JSON.replace(r#""weights":[0.25,0],"#, "").replace(r#""name":"face","#, "");
-    let silent = parse(&glb(&silent, &binary()), Some("#0")).unwrap();
-    assert_eq!((silent.default_weights, silent.mesh_name.as_str()), (vec![0.0; 2], "#0"));
+    let unnamed = JSON.replace(r#""weights":[0.25,0],"#, "").replace(r#""name":"face","#, "");
+    let unnamed = parse(&glb(&unnamed, &binary()), Some("#0")).unwrap();
+    assert_eq!((unnamed.default_weights, unnamed.mesh_name.as_str()), (vec![0.0; 2], "#0"));
 }
 
 #[test]
-fn buffers_beside_and_embedded() {
+fn external_and_embedded_buffers() {
     use base64::Engine;
     let whole = parse(&glb(JSON, &binary()), None).unwrap();
     let directory = tempfile::tempdir().unwrap();
@@ -151,12 +151,12 @@ fn buffers_beside_and_embedded() {
     assert!(refused("c.bin").contains("c.bin: not found"));
     assert!(refused("sub dir").contains("is a directory"));
     fs::write(folder.join("short.bin"), &binary()[1..]).unwrap();
-    assert!(refused("short.bin").ends_with("buffers[0]: 152 bytes are promised, 151 are there"));
-    assert!(refused("data:application/gltf-buffer;base64,AAAA").ends_with("3 are there"));
+    assert!(refused("short.bin").ends_with("buffers[0]: it declares 152 bytes, but has 151"));
+    assert!(refused("data:application/gltf-buffer;base64,AAAA").ends_with("but has 3"));
 }
 
 #[test]
-fn other_versions_and_extensions_are_refused() {
+fn other_versions_and_extensions_are_rejected() {
     for version in ["1.0", "1", "3.0", "20", ""] {
         let refused = with(r#""version":"2.0""#, &format!(r#""version":"{version}""#));
         assert!(refused.starts_with("asset: version ") && refused.ends_with("as glTF 2.0"), "{refused}");
@@ -164,7 +164,7 @@ fn other_versions_and_extensions_are_refused() {
     assert!(with(r#""version":"2.0""#, r#""version":"2.1","minVersion":"2.1""#).contains("version '2.1'"));
     let newer = JSON.replace(r#""version":"2.0""#, r#""version":"2.1","minVersion":"2.0""#);
     assert!(parse(&glb(&newer, &binary()), None).is_ok());
-    // Version 1.0 had objects in place of lists.
+    // Version 1.0 has objects in place of lists.
     let first = message(r#"{"asset":{"version":"1.0"},"accessors":{"a":{}},"meshes":{"b":{}}}"#);
     assert!(first.contains("version '1.0'"), "{first}");
     assert!(message(r#"{"meshes":[]}"#).starts_with("JSON: missing field `asset`"));
@@ -190,10 +190,10 @@ fn other_versions_and_extensions_are_refused() {
 }
 
 #[test]
-fn bad_content_is_named() {
+fn errors_name_the_part() {
     assert_eq!(
         with(r#""mode":5"#, r#""mode":1"#),
-        "meshes[0].primitives[0]: a primitive of triangles was expected, this one is of lines"
+        "meshes[0].primitives[0]: a primitive of triangles was expected, this one has lines"
     );
     assert_eq!(
         with(r#"{},{"POSITION":4}"#, "{}"),
@@ -210,13 +210,16 @@ fn bad_content_is_named() {
     assert!(with(r#""indices":2"#, r#""indices":0"#).contains("must be SCALAR of unsigned integers"));
     assert!(with(r#"{"POSITION":0,"#, "{").ends_with("it has no positions"));
     assert!(with("5123", "5122").contains("sparse indices must be unsigned integers"));
-    assert!(with(r#""byteStride":8"#, r#""byteStride":4"#).contains("a stride of 4 bytes for items of 6"));
-    assert!(with(r#""byteStride":8"#, r#""byteStride":0"#).contains("a stride of 0 bytes"));
+    assert!(
+        with(r#""byteStride":8"#, r#""byteStride":4"#)
+            .contains("the stride of 4 bytes is shorter than an item of 6")
+    );
+    assert!(with(r#""byteStride":8"#, r#""byteStride":0"#).contains("the stride of 0 bytes"));
     assert!(
         with(r#""byteOffset":96,"byteLength":4"#, r#""byteOffset":150,"byteLength":4"#)
             .contains("bufferViews[2]: 4 bytes from byte 150 on are not within buffers[0] of 152 bytes")
     );
-    assert!(with(r#"[{"byteLength":152}]"#, r#"[{"byteLength":153}]"#).contains("153 bytes are promised"));
+    assert!(with(r#"[{"byteLength":152}]"#, r#"[{"byteLength":153}]"#).contains("it declares 153 bytes"));
     assert!(with(r#"[{"byteLength":152}]"#, "[]").contains("buffers[0]: there is no such buffer"));
     assert!(with(r#"[{"byteLength":152}]"#, r#"[{"byteLength":-1}]"#).starts_with("JSON: "));
     let mut bytes = binary();
@@ -240,15 +243,15 @@ fn bad_content_is_named() {
     assert!(parse(&glb(JSON, &bytes), None).unwrap_err().to_string().starts_with("mode 0 of vertex 0 "));
 }
 
-/// Counts that no bytes bear out: an error at once, with little memory.
+/// Counts that exceed the bytes of the file are errors, without large allocations.
 #[test]
-fn hostile_counts_are_refused() {
+fn hostile_counts_are_rejected() {
     for count in ["5", "4294967296", "18446744073709551615", "6148914691236517206"] {
         let refused = with(r#""count":4,"type":"SCALAR""#, &format!(r#""count":{count},"type":"SCALAR""#));
         assert!(refused.contains("fit into it") || refused.contains("of memory"), "{refused}");
         let sparse = with(r#"{"count":2,"#, &format!(r#"{{"count":{count},"#));
         assert!(sparse.contains("more sparse items than items"), "{sparse}");
-        // Zeros come from nowhere: only the limit on growth is in their way.
+        // An accessor without a view is all zeros, so only the memory allowance limits its count.
         let zeros = format!(
             r#"{{"componentType":5126,"count":{count},"type":"VEC3"}},{{"componentType":5126,"count":3,"#
         );
@@ -262,7 +265,7 @@ fn hostile_counts_are_refused() {
         let name = key.split(':').next().unwrap();
         assert!(!with(key, &format!("{name}:18446744073709551615")).is_empty());
     }
-    // Many targets of one accessor: the numbers are there, but not so often.
+    // Many targets refer to one accessor, so the decoded numbers exceed the memory allowance.
     let targets = vec![r#"{"POSITION":1}"#; 20_000].join(",");
     let vertices = 1_000;
     let json = format!(
@@ -277,7 +280,7 @@ fn hostile_counts_are_refused() {
 }
 
 #[test]
-fn every_truncation_is_refused() {
+fn every_truncation_is_rejected() {
     let bytes = glb(JSON, &binary());
     assert!(parse(&bytes, None).is_ok());
     for len in 0..bytes.len() {
@@ -288,7 +291,7 @@ fn every_truncation_is_refused() {
     assert!(parse(&[JSON.as_bytes(), b"}"].concat(), None).is_err());
 }
 
-/// The file as two other tools would have written it.
+/// The same model as OBJ and `.npy`.
 #[test]
 fn agrees_with_obj_and_npy() {
     let directory = tempfile::tempdir().unwrap();

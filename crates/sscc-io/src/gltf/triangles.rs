@@ -9,7 +9,7 @@ pub(super) enum Topology {
 }
 
 impl Topology {
-    /// Returns the topology of a number in the file; the error is the name of a topology without triangles.
+    /// Returns the topology of a mode number of the file; the error is the name of a topology without triangles.
     pub fn from_mode(mode: Option<u32>) -> Result<Self, String> {
         Err(match mode {
             None | Some(4) => return Ok(Self::List),
@@ -17,7 +17,7 @@ impl Topology {
             Some(6) => return Ok(Self::Fan),
             Some(0) => "points".into(),
             Some(1..=3) => "lines".into(),
-            Some(other) => format!("unknown (mode {other})"),
+            Some(other) => format!("the unknown topology {other}"),
         })
     }
 
@@ -36,11 +36,11 @@ impl Topology {
                 rest.is_empty().then(|| triangles.to_vec())
             }
             Self::Strip => {
-                let wound = |(i, w): (usize, &[u32])| {
+                let triangle = |(i, w): (usize, &[u32])| {
                     if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] }
                 };
-                let is_real = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-                Some(corners.windows(3).enumerate().map(wound).filter(is_real).collect())
+                let is_proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+                Some(corners.windows(3).enumerate().map(triangle).filter(is_proper).collect())
             }
             Self::Fan => Some(corners[1..].windows(2).map(|pair| [pair[0], pair[1], corners[0]]).collect()),
         }
@@ -68,10 +68,10 @@ mod tests {
     }
 
     #[test]
-    fn others_are_named() {
+    fn unsupported_topologies_are_named() {
         assert_eq!(Topology::from_mode(Some(0)).unwrap_err(), "points");
         assert_eq!(Topology::from_mode(Some(3)).unwrap_err(), "lines");
-        assert_eq!(Topology::from_mode(Some(7)).unwrap_err(), "unknown (mode 7)");
+        assert_eq!(Topology::from_mode(Some(7)).unwrap_err(), "the unknown topology 7");
         assert_eq!(Topology::from_mode(None), Topology::from_mode(Some(4)));
     }
 }

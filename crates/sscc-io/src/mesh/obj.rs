@@ -1,4 +1,4 @@
-//! Wavefront OBJ.
+//! Reader for Wavefront OBJ files.
 //!
 //! The module has its own parser: general ones renumber vertices by first use and drop unused ones, after which modes
 //! for the `v` lines of the file no longer fit.
@@ -14,16 +14,16 @@ use crate::error::quoted;
 use crate::text::{Lines, decoded, number, split_word, without_comment};
 use crate::{FormatError, Place};
 
-/// Parses an OBJ file: `v` and `f` lines; everything else (normals, texture coordinates, groups, materials,
-/// lines, points) is skipped.
+/// Parses an OBJ file: `v` and `f` lines. Other lines (normals, texture coordinates, groups, materials, lines, points)
+/// are skipped.
 ///
-/// `v x y z`, with an optional weight or colour behind, which is skipped. `f` with corners `a`, `a/b`,
-/// `a//c`, `a/b/c`: `a` from 1, or from -1 backwards from the last vertex so far. A `v` or `f` line that ends
-/// in a backslash goes on in the next.
+/// A weight or colour after `v x y z` is skipped. Corners in `f` lines have the form `a`, `a/b`, `a//c` or `a/b/c`, where
+/// `a` counts from 1, or backwards from -1, the last vertex so far. A `v` or `f` line that ends in a backslash continues
+/// on the next line.
 ///
 /// # Errors
-/// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there
-/// are no vertices or no faces, or [`TriMesh::new`] refuses the mesh.
+/// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there are no vertices or
+/// no faces, or [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -90,9 +90,10 @@ fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
         }
         found += 1;
     }
-    // x y z, then nothing, a weight, a colour, or both.
+    // x y z, optionally followed by a weight, a colour, or both.
     if !matches!(found, 3 | 4 | 6 | 7) {
-        let cause = format!("a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one {found}");
+        let cause =
+            format!("a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one has {found}");
         return Err(FormatError::line(line, cause));
     }
     Ok(DVec3::new(values[0], values[1], values[2]))
@@ -164,12 +165,12 @@ mod tests {
     fn backslash_continues_a_line() {
         assert_eq!(faces("f 1 \\\n2 \\ # comment\n 3\nf\\\n1 3 4"), [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(faces("f 1 2 3\\\n"), [[0, 1, 2]]);
-        // The next statement keeps its own line number.
+        // The statement after a continued line keeps its line number.
         assert!(message("f 1 2 \\\n3\nf 1 2\n").starts_with("line 7: "));
     }
 
     #[test]
-    fn bad_lines_are_named() {
+    fn errors_name_the_line() {
         assert_eq!(message("f 1 2 0"), "line 5: corner '0': vertices are counted from 1");
         assert_eq!(message("f 1 2 5"), "line 5: names vertex 5 (counted from 1), but there are 4");
         assert_eq!(message("f 1 2 -5"), "line 5: corner '-5': only 4 vertices come before it");
@@ -177,7 +178,7 @@ mod tests {
         assert_eq!(message("f"), "line 5: a face needs at least 3 corners, this one has 0");
         assert_eq!(
             message("v 1 2"),
-            "line 5: a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one 2"
+            "line 5: a vertex has 3 coordinates (with weight or colour 4, 6 or 7), this one has 2"
         );
         assert_eq!(message("v 1 nan 2"), "line 5: 'nan' is not a finite number");
         assert_eq!(message("v 1 1e999 2"), "line 5: '1e999' is not a finite number");

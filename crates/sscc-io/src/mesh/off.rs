@@ -9,13 +9,13 @@ use crate::error::quoted;
 use crate::text::{Lines, count, decoded, number, without_comment};
 use crate::{FormatError, Place};
 
-/// Parses an OFF file: the word `OFF`, the counts of vertices, faces and edges (in the same line or the
-/// next), one line for each vertex, one for each face (`n i_1 .. i_n`, from 0). Comments (`#`), colours, and
-/// the normals and texture coordinates of the variants `[ST][C][N]OFF` are skipped.
+/// Parses an OFF file: the word `OFF`, the counts of vertices, faces and edges (on the same line or the next), one line
+/// for each vertex, and one for each face (`n i_1 .. i_n`, from 0). Comments (`#`), colours, and the normals and texture
+/// coordinates of the variants `[ST][C][N]OFF` are skipped.
 ///
 /// # Errors
-/// When the file is binary or of another dimension (`4OFF`, `nOFF`), has fewer or more lines than its counts
-/// say, a line is malformed, an index names no vertex, or [`TriMesh::new`] refuses the mesh.
+/// When the file is binary or has another dimension (`4OFF`, `nOFF`), the number of lines differs from the counts, a line
+/// is malformed, an index names no vertex, or [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -32,19 +32,20 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
         let (line, text) = lines.required("the counts")?;
         (line, counts(text.split_ascii_whitespace(), line)?)
     };
-    // The counts give the number of lines that follow; nothing is allocated by them.
+    // The counts give the number of lines that follow. They do not determine an allocation.
     let mut positions = Vec::new();
     for done in 0..vertices {
-        let (line, text) = lines.wanted("vertices", done, vertices, line)?;
+        let (line, text) = lines.next_item("vertices", done, vertices, line)?;
         positions.push(position(text, line)?);
     }
     let mut polygons = Polygons::new(0);
     for done in 0..faces {
-        let (line, text) = lines.wanted("faces", done, faces, line)?;
+        let (line, text) = lines.next_item("faces", done, faces, line)?;
         polygons.push(&corners(text, line)?, Place::Line(line))?;
     }
     if let Some(extra) = lines.next() {
-        let cause = format!("more lines than the {vertices} vertices and {faces} faces of the header");
+        let cause =
+            format!("the file has more lines than the {vertices} vertices and {faces} faces of the header");
         return Err(FormatError::line(extra?.0, cause));
     }
     polygons.finish(positions)
@@ -71,7 +72,7 @@ impl<'a> Statements<'a> {
         self.next().unwrap_or_else(|| Err(FormatError::whole(format!("the file ends before {what}"))))
     }
 
-    fn wanted(
+    fn next_item(
         &mut self,
         what: &str,
         done: usize,
@@ -79,7 +80,7 @@ impl<'a> Statements<'a> {
         header: usize,
     ) -> Result<(usize, &'a str), FormatError> {
         self.next().unwrap_or_else(|| {
-            Err(FormatError::line(header, format!("the file has {done} of the {all} {what} promised here")))
+            Err(FormatError::line(header, format!("the file has {done} of the {all} {what} declared here")))
         })
     }
 }
@@ -117,13 +118,14 @@ fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
 
 fn corners(text: &str, line: usize) -> Result<Vec<u64>, FormatError> {
     let mut words = text.split_ascii_whitespace();
-    let promised = count(words.next().unwrap_or_default(), line)?;
+    let declared = count(words.next().unwrap_or_default(), line)?;
     let mut corners = Vec::new();
-    for word in words.take(promised) {
+    for word in words.take(declared) {
         corners.push(count(word, line)? as u64);
     }
-    if corners.len() < promised {
-        let cause = format!("a face of {promised} corners, but only {} numbers follow", corners.len());
+    if corners.len() < declared {
+        let cause =
+            format!("the face declares {declared} corners, but only {} numbers follow", corners.len());
         return Err(FormatError::line(line, cause));
     }
     Ok(corners)
@@ -151,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_line() {
         assert_eq!(message("PLY\n"), "line 1: an OFF file begins with 'OFF', not 'PLY'");
         assert_eq!(message("4OFF\n"), "line 1: the OFF variant '4OFF' is not supported");
         assert_eq!(message("OFF BINARY\n"), "line 1: binary OFF is not supported: save it as text");
@@ -161,13 +163,16 @@ mod tests {
         assert_eq!(message("OFF\n3\n"), "line 2: the counts of vertices and faces are missing");
         assert_eq!(
             message("OFF\n99999999999 1 0\n0 0 0\n"),
-            "line 2: the file has 1 of the 99999999999 vertices promised here"
+            "line 2: the file has 1 of the 99999999999 vertices declared here"
         );
         let with = |from, to| message(&SQUARE.replace(from, to));
-        assert_eq!(with("4 1 0\n", "4 2 0\n"), "line 2: the file has 1 of the 2 faces promised here");
+        assert_eq!(with("4 1 0\n", "4 2 0\n"), "line 2: the file has 1 of the 2 faces declared here");
         assert_eq!(with("1 1 0\n", "1 inf 0\n"), "line 7: 'inf' is not a finite number");
         assert_eq!(with("1 1 0\n", "1 1\n"), "line 7: a vertex has 3 coordinates");
-        assert_eq!(with("4 0 1 2 3", "5 0 1 2 3"), "line 9: a face of 5 corners, but only 4 numbers follow");
+        assert_eq!(
+            with("4 0 1 2 3", "5 0 1 2 3"),
+            "line 9: the face declares 5 corners, but only 4 numbers follow"
+        );
         assert_eq!(
             with("4 0 1 2 3", "4 0 1 2 4"),
             "line 9: names vertex 4 (counted from 0), but there are 4"
@@ -176,17 +181,17 @@ mod tests {
         assert_eq!(with("4 0 1 2 3", "2 0 1"), "line 9: a face needs at least 3 corners, this one has 2");
         assert_eq!(
             with("4 0 1 2 3", "9999999999999 0 1"),
-            "line 9: a face of 9999999999999 corners, but only 2 numbers follow"
+            "line 9: the face declares 9999999999999 corners, but only 2 numbers follow"
         );
         assert_eq!(
             with("2 3\n", "2 3\n7"),
-            "line 10: more lines than the 4 vertices and 1 faces of the header"
+            "line 10: the file has more lines than the 4 vertices and 1 faces of the header"
         );
     }
 
     #[test]
-    fn every_truncation_is_refused() {
-        // Cut before the last corner; after it, only the line's end is missing.
+    fn every_truncation_is_rejected() {
+        // Beyond the last corner, only the end of the line is missing.
         for len in 0..SQUARE.len() - 2 {
             assert!(parse(&SQUARE.as_bytes()[..len]).is_err(), "{len}");
         }

@@ -30,7 +30,7 @@ impl Polygons {
         if self.largest.as_ref().is_none_or(|(known, _)| largest > *known) {
             self.largest = Some((largest, place));
         }
-        // An index beyond 32 bits is cut here, but it is also `largest`, which `finish` refuses.
+        // An index beyond 32 bits is truncated here, but `largest` keeps it, and `finish` rejects it.
         self.triangles.extend(rest.windows(2).map(|pair| [*first as u32, pair[0] as u32, pair[1] as u32]));
         Ok(())
     }
@@ -43,8 +43,8 @@ impl Polygons {
         match self.largest {
             Some((index, place)) if index >= positions.len() as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
-                let there = positions.len();
-                let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
+                let vertices = positions.len();
+                let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
                 Err(FormatError::new(place, cause))
             }
             _ => Ok(Soup { positions, faces: self.triangles }),

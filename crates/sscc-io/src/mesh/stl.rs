@@ -20,13 +20,13 @@ const HEADER: usize = 84;
 /// Size of one triangle: normal, three corners (f32 each) and two attribute bytes.
 const TRIANGLE: usize = 50;
 
-/// Parses an STL file. It is binary when its size is the one that its count of triangles gives
-/// (84 + 50 n), else text when it begins with `solid` and holds no zero byte early on. Normals, attribute
-/// bytes and the names of solids are skipped; a text may hold several solids.
+/// Parses an STL file. The file is binary if its size is 84 + 50 n for its count n of triangles, else text if it begins
+/// with `solid` and has no zero byte among the first 1,024. Normals, attribute bytes and names of solids are skipped. A
+/// text file can have several solids.
 ///
 /// # Errors
-/// When a binary file is shorter or longer than its count says; when a text has other statements than
-/// STL's, facets of other than 3 corners, or ends early; when [`TriMesh::new`] refuses the mesh.
+/// When the size of a binary file does not match its count; when a text file has unknown statements or facets without
+/// exactly 3 corners, or ends early; when [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -37,7 +37,10 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
         positions => positions?,
     };
     let Ok(vertices) = u32::try_from(positions.len()) else {
-        return Err(FormatError::whole(format!("{} vertices are too many", positions.len())));
+        return Err(FormatError::whole(format!(
+            "the mesh has {} vertices: 32-bit indices allow at most 2^32 - 1",
+            positions.len()
+        )));
     };
     let faces = (0..vertices / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     Ok(Soup { positions, faces })
@@ -50,14 +53,14 @@ fn is_text(bytes: &[u8]) -> bool {
 
 fn binary(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
-        let cause = "not an STL file: shorter than a binary header, and no text that begins with 'solid'";
+        let cause = "not an STL file: it is shorter than a binary header, and does not begin with 'solid'";
         return Err(FormatError::whole(cause));
     };
     let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
     let size = u64::from(count) * TRIANGLE as u64;
     if size != body.len() as u64 {
         let cause = format!(
-            "the header promises {count} triangles ({size} bytes), but {} bytes follow: is the file cut off?",
+            "the header declares {count} triangles ({size} bytes), but {} bytes follow: is the file cut off?",
             body.len()
         );
         return Err(FormatError::new(Place::Byte(80), cause));

@@ -2,11 +2,11 @@
 
 use sscc::Modes;
 
-use super::other_mesh::other_mesh;
+use super::mesh_mismatch::mesh_mismatch;
 use crate::FormatError;
 use crate::npy::Array;
 
-/// The modes in an array for a mesh of V `vertices`. Its shape decides, by the first line that fits:
+/// Returns the modes in an array for a mesh with V `vertices`. The first matching line gives the layout:
 ///
 /// | shape | entry of vertex v, component c, mode k |
 /// | --- | --- |
@@ -15,10 +15,10 @@ use crate::npy::Array;
 /// | (r, V, 3) | `[k, v, c]` |
 /// | (3V) | `[3 v + c]`, one mode |
 ///
-/// Only a mesh of 3 vertices with r = 3 fits two of them, (V, 3, r) and (r, V, 3): then it is the former.
+/// Only V = 3 and r = 3 match two lines, (V, 3, r) and (r, V, 3); then the former applies.
 ///
 /// # Errors
-/// When no line fits, the array is empty, or [`Modes::new`] refuses the entries.
+/// When no line matches, the array is empty, or [`Modes::new`] rejects the entries.
 pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> {
     let rows = vertices.saturating_mul(3);
     if array.shape().contains(&0) {
@@ -37,8 +37,8 @@ pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> 
             let cause = format!("shape {:?} has the modes in rows: transpose it to (3V, r)", array.shape());
             return Err(FormatError::whole(cause));
         }
-        [n, _] | [n] => return Err(other_mesh(n, vertices)),
-        [n, 3, _] | [_, n, 3] => return Err(other_mesh(n.saturating_mul(3), vertices)),
+        [n, _] | [n] => return Err(mesh_mismatch(n, vertices)),
+        [n, 3, _] | [_, n, 3] => return Err(mesh_mismatch(n.saturating_mul(3), vertices)),
         _ => {
             let cause = format!(
                 "shape {:?} is none of (3V, r), (V, 3, r), (r, V, 3) for V = {vertices} vertices",
@@ -50,8 +50,8 @@ pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> 
     Ok(modes?)
 }
 
-/// The modes in an array whose first axis counts them, as scikit-learn's `components_`. Where no such shape
-/// fits, the modes may be along the last axis. By the first line that fits:
+/// Returns the modes in an array with one mode in each row, as in scikit-learn's `components_`. The first matching line
+/// gives the layout; if no row layout matches, the modes may be along the last axis:
 ///
 /// | shape | entry of vertex v, component c, mode k |
 /// | --- | --- |
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn all_shapes_are_read() {
+    fn all_layouts_are_read() {
         // Two vertices, four modes.
         let mode_1_of_vertex_1 = |shape: &[usize]| {
             let modes = from_array(&array(shape), 2).unwrap();
@@ -100,13 +100,13 @@ mod tests {
     }
 
     #[test]
-    fn the_ambiguous_shape_is_vertices_first() {
+    fn vertices_come_first_in_the_ambiguous_shape() {
         let modes = from_array(&array(&[3, 3, 3]), 3).unwrap();
         assert_eq!(modes.of_vertex(1)[2], DVec3::new(11.0, 14.0, 17.0));
     }
 
     #[test]
-    fn rows_may_be_modes() {
+    fn rows_are_modes() {
         let mode_1_of_vertex_1 = |shape: &[usize]| from_rows(&array(shape), 2).unwrap().of_vertex(1)[1];
         assert_eq!(mode_1_of_vertex_1(&[4, 6]), DVec3::new(9.0, 10.0, 11.0));
         assert_eq!(mode_1_of_vertex_1(&[4, 2, 3]), DVec3::new(9.0, 10.0, 11.0));
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn other_shapes_are_named() {
+    fn errors_name_the_shape() {
         let message =
             |shape: &[usize], vertices| from_array(&array(shape), vertices).unwrap_err().to_string();
         let another = "the modes are for 2 vertices, the mesh has 5: are they of another mesh?";
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_out_of_range_are_named() {
+    fn errors_name_entries_out_of_range() {
         for bad in [f64::NAN, f64::INFINITY, 1e61] {
             let mut values = [0.0; 12];
             values[7] = bad;

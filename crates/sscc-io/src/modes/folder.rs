@@ -11,19 +11,19 @@ use super::named_modes::NamedModes;
 use crate::mesh::{is_mesh_name, read_soup};
 use crate::{FormatError, IoError};
 
-/// More targets than any face has.
-const MOST: usize = 10_000;
+/// Maximum number of meshes in a folder.
+const MAX_MESHES: usize = 10_000;
 
-/// Reads the targets of a neutral mesh: every mesh file in the folder, in the order of the bytes of their names,
-/// so `10.obj` comes before `9.obj`. Mode k is target k minus neutral, vertex by vertex, each difference
-/// rounded to f64. The names are those of the files, without their endings.
+/// Reads the targets of a neutral mesh: every mesh file in the folder, ordered by the bytes of their names, so `10.obj`
+/// comes before `9.obj`. Mode k is target k minus the neutral mesh, each difference rounded to f64. Names are those of
+/// the files, without endings.
 ///
-/// Other files, folders, hidden files, and the neutral mesh itself where it lies among its targets, are skipped.
+/// Other files, folders, hidden files, and the neutral mesh itself are skipped.
 ///
 /// # Errors
-/// When the folder cannot be read or has no mesh in it, or more than 10,000; when a target cannot be read, has
-/// another number of vertices, has faces that differ from the neutral ones (it may have none), or a
-/// coordinate that is not finite or too large.
+/// When the folder cannot be read, or has no mesh or more than 10,000; when a target cannot be read, has another number
+/// of vertices, has faces that differ from the neutral ones (it may have none), or has a coordinate that is not finite
+/// or too large.
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
     // The neutral mesh may have another path (links, `..`).
@@ -65,7 +65,11 @@ pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
     let request = |cause: String| Err(IoError::Request { path: folder.to_owned(), cause });
     match names.len() {
         0 => return request(format!("there is no {what} mesh in this folder")),
-        count if count > MOST => return request(format!("{count} meshes are more than {MOST} {what}s")),
+        count if count > MAX_MESHES => {
+            return request(format!(
+                "the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"
+            ));
+        }
         _ => names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes())),
     }
     Ok(names.iter().map(|name| folder.join(name)).collect())
@@ -80,15 +84,15 @@ pub(super) fn positions_like(
 ) -> Result<Vec<DVec3>, IoError> {
     let read = read_soup(path)?;
     let refused = |cause: String| Err(FormatError::whole(cause).of(path));
-    let (there, wanted) = (read.positions.len(), model.rest_positions().len());
-    if there != wanted {
-        return refused(format!("this {what} has {there} vertices, {other} {wanted}"));
+    let (found, expected) = (read.positions.len(), model.rest_positions().len());
+    if found != expected {
+        return refused(format!("this {what} has {found} vertices, {other} has {expected}"));
     }
     if !read.faces.is_empty() && read.faces != model.faces() {
-        let (there, wanted) = (read.faces.len(), model.faces().len());
+        let (found, expected) = (read.faces.len(), model.faces().len());
         let cause = match read.faces.iter().zip(model.faces()).position(|(a, b)| a != b) {
-            Some(face) if there == wanted => format!("triangle {face} (counted from 0) of this {what}"),
-            _ => format!("the number of triangles, {there} for {wanted},"),
+            Some(face) if found == expected => format!("triangle {face} (counted from 0) of this {what}"),
+            _ => format!("the number of triangles, {found} for {expected},"),
         };
         return refused(format!("{cause} differs from {other}: are the vertices in the same order?"));
     }
@@ -105,7 +109,7 @@ mod tests {
     const NEUTRAL: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
     #[test]
-    fn targets_become_modes_in_the_order_of_their_names() {
+    fn targets_are_modes_in_the_order_of_their_names() {
         let directory = tempfile::tempdir().unwrap();
         let folder = directory.path();
         let put = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
@@ -129,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_that_differs_is_named() {
+    fn errors_name_the_file_that_differs() {
         let directory = tempfile::tempdir().unwrap();
         let folder = directory.path();
         let mesh = crate::mesh::obj::parse(NEUTRAL.as_bytes()).unwrap();
@@ -141,9 +145,12 @@ mod tests {
             message()
         };
         let more = with(&format!("{NEUTRAL}v 0 0 0\n"));
-        assert!(more.ends_with("b.obj: this target has 4 vertices, the neutral mesh 3"), "{more}");
-        let turned = with(&NEUTRAL.replace("f 1 2 3", "f 2 3 1"));
-        assert!(turned.contains("b.obj: triangle 0 (counted from 0) of this target differs"), "{turned}");
+        assert!(more.ends_with("b.obj: this target has 4 vertices, the neutral mesh has 3"), "{more}");
+        let reordered = with(&NEUTRAL.replace("f 1 2 3", "f 2 3 1"));
+        assert!(
+            reordered.contains("b.obj: triangle 0 (counted from 0) of this target differs"),
+            "{reordered}"
+        );
         assert!(with(&format!("{NEUTRAL}f 1 2 3\n")).contains("number of triangles, 2 for 1, differs"));
         assert!(with(&NEUTRAL.replace("v 1", "v 1e70")).contains("b.obj: vertex 1 (counted from 0)"));
         assert!(with("v 1").contains("b.obj: line 1: "));

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_that_differs_is_named() {
+    fn errors_name_the_file_that_differs() {
         let directory = tempfile::tempdir().unwrap();
         let folder = directory.path();
         let message = || read_frames(folder).unwrap_err().to_string();
@@ -72,9 +72,11 @@ mod tests {
             message()
         };
         let more = with(&format!("{FRAME}v 0 0 0\n"));
-        assert!(more.ends_with("b.obj: this frame has 4 vertices, the first one (a.obj) 3"), "{more}");
-        let turned = with(&FRAME.replace("f 1 2 3", "f 2 3 1"));
-        assert!(turned.contains("b.obj: triangle 0 (counted from 0) of this frame differs from the first"));
+        assert!(more.ends_with("b.obj: this frame has 4 vertices, the first one (a.obj) has 3"), "{more}");
+        let reordered = with(&FRAME.replace("f 1 2 3", "f 2 3 1"));
+        assert!(
+            reordered.contains("b.obj: triangle 0 (counted from 0) of this frame differs from the first")
+        );
         assert!(with("v 1").contains("b.obj: line 1: "));
         std::fs::write(folder.join("a.obj"), "v 0 0 0\n").unwrap();
         assert!(message().ends_with("a.obj: the mesh has no triangles"), "{}", message());

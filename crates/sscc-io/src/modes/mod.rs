@@ -4,8 +4,8 @@
 pub mod array;
 pub mod folder;
 mod frames;
+mod mesh_mismatch;
 mod named_modes;
-mod other_mesh;
 pub mod vega;
 
 use std::path::Path;
@@ -18,16 +18,16 @@ use crate::file::{ending, read_whole, unsupported};
 pub use frames::{Frames, read_frames};
 pub use named_modes::NamedModes;
 
-/// What [`read_modes_for`](crate::read_modes_for) reads. Of these, [`read_modes`] reads those that need no mesh.
+/// Formats of [`read_modes_for`](crate::read_modes_for); [`read_modes`] supports those that need no mesh.
 const SUPPORTED: &str = ".npy, .U, .Ulinear, .Unonlinear, .URendering (float64), .float (float32); \
                          with their mesh also .npz and a folder of target meshes";
 
-/// Reads the modes of a mesh with that many vertices (unused ones included); the format goes by the file
-/// name's ending, in any case: `.npy` ([`mod@array`]), or a VegaFEM modal matrix ([`vega`]).
+/// Reads the modes of a mesh with this number of vertices (unused ones included). The ending of the file name, in any
+/// case, selects the format: `.npy` ([`mod@array`]), or a VegaFEM modal matrix ([`vega`]).
 ///
 /// # Errors
-/// When the ending is unknown, the file cannot be read or is malformed, the modes are of a mesh with another
-/// number of vertices, or there are none.
+/// When the ending is unknown, the file cannot be read or is malformed, the modes belong to a mesh with another number of
+/// vertices, or there are none.
 pub fn read_modes(path: &Path, vertices: usize) -> Result<Modes, IoError> {
     let parse = match ending(path).as_str() {
         "npy" => |bytes: &[u8], vertices| array::from_array(&crate::npy::parse(bytes)?, vertices),
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_decides() {
+    fn the_ending_selects_the_format() {
         let directory = tempfile::tempdir().unwrap();
         let write = |name: &str, bytes: &[u8]| {
             let path = directory.path().join(name);

@@ -5,7 +5,7 @@
 
 use sscc::Modes;
 
-use super::other_mesh::other_mesh;
+use super::mesh_mismatch::mesh_mismatch;
 use crate::{FormatError, Place};
 
 /// Type of the entries, by the ending of the file name.
@@ -33,8 +33,8 @@ const HEADER: usize = 8;
 /// Parses a modal matrix for a mesh with this number of vertices.
 ///
 /// # Errors
-/// When the size of the file does not agree with its header and the precision, the modes are of a mesh with
-/// another number of vertices, there are none, or [`Modes::new`] refuses an entry.
+/// When the size of the file does not agree with its header and the precision, the modes belong to a mesh with
+/// another number of vertices, there are none, or [`Modes::new`] rejects an entry.
 pub fn parse(bytes: &[u8], precision: Precision, vertices: usize) -> Result<Modes, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         return Err(FormatError::new(Place::Byte(bytes.len()), "the file ends within the header"));
@@ -49,7 +49,7 @@ pub fn parse(bytes: &[u8], precision: Precision, vertices: usize) -> Result<Mode
     check_size(u64::from(rows) * u64::from(rank), body.len() as u64, precision, [rows, rank])?;
     let (rows, rank) = (rows as usize, rank as usize);
     if vertices.checked_mul(3) != Some(rows) {
-        return Err(other_mesh(rows, vertices));
+        return Err(mesh_mismatch(rows, vertices));
     }
     Ok(match precision {
         Precision::Double => {
@@ -64,21 +64,21 @@ pub fn parse(bytes: &[u8], precision: Precision, vertices: usize) -> Result<Mode
 }
 
 fn check_size(entries: u64, found: u64, precision: Precision, shape: [u32; 2]) -> Result<(), FormatError> {
-    // Below 2^62 entries of at most 8 bytes, from two i32: may pass 2^64.
-    let is = |precision: Precision| entries.checked_mul(precision.size()) == Some(found);
-    if is(precision) && entries > 0 {
+    // Two i32 give up to 2^62 entries of at most 8 bytes, which may exceed 2^64 bytes.
+    let has_size = |precision: Precision| entries.checked_mul(precision.size()) == Some(found);
+    if has_size(precision) && entries > 0 {
         return Ok(());
     }
     let [rows, rank] = shape;
     let cause = if entries == 0 {
         format!("a modal matrix of {rows} rows and {rank} columns is empty")
-    } else if precision == Precision::Double && is(Precision::Single) {
-        "its size is that of float32 numbers, its name says float64: rename it to end in .float".into()
-    } else if precision == Precision::Single && is(Precision::Double) {
-        "its size is that of float64 numbers, its name says float32: rename it to end in .U".into()
+    } else if precision == Precision::Double && has_size(Precision::Single) {
+        "its size fits float32 numbers, but its name means float64: rename it to end in .float".into()
+    } else if precision == Precision::Single && has_size(Precision::Double) {
+        "its size fits float64 numbers, but its name means float32: rename it to end in .U".into()
     } else {
         format!(
-            "the header says {rows} rows and {rank} columns of {}-byte numbers, but {found} bytes follow: \
+            "the header declares {rows} rows and {rank} columns of {}-byte numbers, but {found} bytes follow: \
              is the file cut off?",
             precision.size()
         )
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_cause() {
         let message = |bytes: &[u8], precision| parse(bytes, precision, 2).unwrap_err().to_string();
         let double = file(6, 2, &doubles(12));
         assert!(message(&double, Precision::Single).contains("rename it to end in .U"));
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truncation_and_any_extra_is_refused() {
+    fn truncations_and_extra_bytes_are_rejected() {
         let bytes = file(6, 2, &doubles(12));
         for len in 0..bytes.len() {
             assert!(parse(&bytes[..len], Precision::Double, 2).is_err(), "{len}");

@@ -5,8 +5,8 @@ use crate::{FormatError, Place};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// More axes than any array here has; NumPy itself stops at 64.
-const LARGEST_DIMENSION: usize = 32;
+/// Maximum number of axes; NumPy allows 64.
+const MAX_AXES: usize = 32;
 
 /// Kind of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +25,9 @@ pub(super) struct Item {
     pub big: bool,
 }
 
-/// Supported kinds.
+/// Kind of numbers that a reader accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
+pub(super) enum NumberKind {
     Floats,
     Integers,
 }
@@ -42,7 +42,7 @@ pub(super) struct Header {
     pub body: usize,
 }
 
-impl Wanted {
+impl NumberKind {
     fn advice(self) -> &'static str {
         match self {
             Self::Floats => "save the array as float64 or float32",
@@ -52,14 +52,14 @@ impl Wanted {
 }
 
 impl Item {
-    fn from_descr(descr: &str, wanted: Wanted) -> Option<Self> {
+    fn from_descr(descr: &str, wanted: NumberKind) -> Option<Self> {
         let [order, kind, digit] = *descr.as_bytes() else {
             return None;
         };
         let (class, sizes) = match (kind, wanted) {
-            (b'f', Wanted::Floats) => (Class::Float, &b"48"[..]),
-            (b'i', Wanted::Integers) => (Class::Signed, &b"1248"[..]),
-            (b'u', Wanted::Integers) => (Class::Unsigned, &b"1248"[..]),
+            (b'f', NumberKind::Floats) => (Class::Float, &b"48"[..]),
+            (b'i', NumberKind::Integers) => (Class::Signed, &b"1248"[..]),
+            (b'u', NumberKind::Integers) => (Class::Unsigned, &b"1248"[..]),
             _ => return None,
         };
         let order_fits = match order {
@@ -67,13 +67,13 @@ impl Item {
             b'|' => digit == b'1', // one byte has no order
             _ => false,
         };
-        let known = order_fits && sizes.contains(&digit);
-        known.then(|| Self { class, size: (digit - b'0').into(), big: order == b'>' })
+        let is_supported = order_fits && sizes.contains(&digit);
+        is_supported.then(|| Self { class, size: (digit - b'0').into(), big: order == b'>' })
     }
 }
 
 impl Header {
-    pub fn parse(bytes: &[u8], wanted: Wanted) -> Result<Self, FormatError> {
+    pub fn parse(bytes: &[u8], wanted: NumberKind) -> Result<Self, FormatError> {
         let at_byte = |at, cause: &str| FormatError::new(Place::Byte(at), cause);
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
             return Err(at_byte(0, "not a NumPy array: a .npy file begins with '\\x93NUMPY'"));
@@ -93,35 +93,35 @@ impl Header {
         };
         let body = usize::checked_add(start, length).filter(|end| *end <= bytes.len()).ok_or_else(cut)?;
         let text =
-            std::str::from_utf8(&bytes[start..body]).map_err(|_| at_byte(start, "the header is no text"))?;
+            std::str::from_utf8(&bytes[start..body]).map_err(|_| at_byte(start, "the header is not text"))?;
         let (item, fortran, shape) =
             dictionary(text, wanted).map_err(|cause| at_byte(start, &format!("header: {cause}")))?;
         Ok(Self { item, fortran, shape, body })
     }
 }
 
-fn dictionary(text: &str, wanted: Wanted) -> Result<(Item, bool, Vec<usize>), String> {
+fn dictionary(text: &str, wanted: NumberKind) -> Result<(Item, bool, Vec<usize>), String> {
     let (mut item, mut fortran, mut shape) = (None, None, None);
-    let mut scan = Scan(text);
-    scan.expect("{")?;
-    while !scan.take("}") {
-        let key = scan.string()?;
-        scan.expect(":")?;
-        let known = match key {
-            "descr" => item.replace(scan.item(wanted)?).is_some(),
-            "fortran_order" => fortran.replace(scan.boolean()?).is_some(),
-            "shape" => shape.replace(scan.shape()?).is_some(),
+    let mut scanner = Scanner(text);
+    scanner.expect("{")?;
+    while !scanner.take("}") {
+        let key = scanner.string()?;
+        scanner.expect(":")?;
+        let is_repeated = match key {
+            "descr" => item.replace(scanner.item(wanted)?).is_some(),
+            "fortran_order" => fortran.replace(scanner.boolean()?).is_some(),
+            "shape" => shape.replace(scanner.shape()?).is_some(),
             _ => return Err(format!("unknown key {}", quoted(key))),
         };
-        if known {
-            return Err(format!("two entries {}", quoted(key)));
+        if is_repeated {
+            return Err(format!("the key {} is repeated", quoted(key)));
         }
-        if !scan.take(",") {
-            scan.expect("}")?;
+        if !scanner.take(",") {
+            scanner.expect("}")?;
             break;
         }
     }
-    scan.end()?;
+    scanner.end()?;
     match (item, fortran, shape) {
         (Some(item), Some(fortran), Some(shape)) => Ok((item, fortran, shape)),
         _ => Err("one of 'descr', 'fortran_order', 'shape' is missing".into()),
@@ -129,9 +129,9 @@ fn dictionary(text: &str, wanted: Wanted) -> Result<(Item, bool, Vec<usize>), St
 }
 
 /// Unparsed remainder of the header.
-struct Scan<'a>(&'a str);
+struct Scanner<'a>(&'a str);
 
-impl<'a> Scan<'a> {
+impl<'a> Scanner<'a> {
     fn take(&mut self, token: &str) -> bool {
         let rest = self.0.trim_ascii_start().strip_prefix(token);
         self.0 = rest.unwrap_or(self.0);
@@ -151,18 +151,19 @@ impl<'a> Scan<'a> {
 
     fn string(&mut self) -> Result<&'a str, String> {
         let quote = if self.take("'") { '\'' } else { self.expect("\"").map(|()| '"')? };
-        let (text, rest) = self.0.split_once(quote).ok_or("a string without end")?;
+        let (text, rest) = self.0.split_once(quote).ok_or("a string has no end")?;
         self.0 = rest;
         Ok(text)
     }
 
-    fn item(&mut self, wanted: Wanted) -> Result<Item, String> {
+    fn item(&mut self, wanted: NumberKind) -> Result<Item, String> {
         let advice = wanted.advice();
         if self.0.trim_ascii_start().starts_with('[') {
-            return Err(format!("a structured array: {advice}"));
+            return Err(format!("the array is structured: {advice}"));
         }
         let descr = self.string()?;
-        Item::from_descr(descr, wanted).ok_or_else(|| format!("numbers of type {}: {advice}", quoted(descr)))
+        Item::from_descr(descr, wanted)
+            .ok_or_else(|| format!("the array has numbers of type {}: {advice}", quoted(descr)))
     }
 
     fn boolean(&mut self) -> Result<bool, String> {
@@ -175,12 +176,13 @@ impl<'a> Scan<'a> {
         while !self.take(")") {
             let rest = self.0.trim_ascii_start();
             let (digits, rest) = rest.split_at(rest.bytes().take_while(u8::is_ascii_digit).count());
-            let length = digits.parse().map_err(|_| format!("no length of an axis: {}", quoted(rest)))?;
+            let length =
+                digits.parse().map_err(|_| format!("not the length of an axis: {}", quoted(rest)))?;
             shape.push(length);
             // Python 2 wrote long integers as 3L.
             self.0 = rest.strip_prefix('L').unwrap_or(rest);
-            if shape.len() > LARGEST_DIMENSION {
-                return Err(format!("more than {LARGEST_DIMENSION} axes"));
+            if shape.len() > MAX_AXES {
+                return Err(format!("more than {MAX_AXES} axes"));
             }
             if !self.take(",") {
                 self.expect(")")?;

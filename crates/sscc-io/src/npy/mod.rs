@@ -8,7 +8,7 @@ mod header;
 mod write;
 
 use crate::{FormatError, Place};
-use header::{Class, Header, Item, Wanted};
+use header::{Class, Header, Item, NumberKind};
 
 pub use write::{to_bytes, write_npy};
 
@@ -21,26 +21,25 @@ pub struct Array<T = f64> {
     data: Vec<T>,
 }
 
-/// Parses a `.npy` file, versions 1 to 3: numbers of type f8 or f4, of either byte order, in C or
-/// Fortran order.
+/// Parses a `.npy` file, versions 1 to 3, with numbers of type f8 or f4 in either byte order, in C or Fortran order.
 ///
 /// # Errors
-/// When the header is malformed or of another type, or the data is not exactly as long as the header says.
+/// When the header is malformed or has another type, or the length of the data differs from the header.
 pub fn parse(bytes: &[u8]) -> Result<Array, FormatError> {
-    array(bytes, Wanted::Floats, floats)
+    array(bytes, NumberKind::Floats, floats)
 }
 
-/// Parses a `.npy` file of integers of 1, 2, 4 or 8 bytes, signed or not; else as [`parse`].
+/// Parses a `.npy` file of signed or unsigned integers of 1, 2, 4 or 8 bytes; else as [`parse`].
 ///
 /// # Errors
 /// As [`parse`], and when a number is beyond i64.
 pub fn parse_integers(bytes: &[u8]) -> Result<Array<i64>, FormatError> {
-    array(bytes, Wanted::Integers, integers)
+    array(bytes, NumberKind::Integers, integers)
 }
 
 fn array<T>(
     bytes: &[u8],
-    wanted: Wanted,
+    wanted: NumberKind,
     decode: impl Fn(Item, &[u8]) -> Result<Vec<T>, FormatError>,
 ) -> Result<Array<T>, FormatError> {
     let Header { item, fortran, shape, body } = Header::parse(bytes, wanted)?;
@@ -48,7 +47,7 @@ fn array<T>(
     let size = shape.iter().try_fold(item.size, |size, n| size.checked_mul(*n));
     if size != Some(body_bytes.len()) {
         let cause = format!(
-            "the header says shape {shape:?} of {}-byte numbers, but {} bytes follow: is the file cut off?",
+            "the header declares shape {shape:?} of {}-byte numbers, but {} bytes follow: is the file cut off?",
             item.size,
             body_bytes.len()
         );
@@ -106,7 +105,7 @@ impl<T: Copy> Array<T> {
     }
 }
 
-/// For an array that holds something the products are below its size; an empty one has no entries to find.
+/// Returns the stride of each axis. Products saturate only for empty arrays, which have no entries.
 fn strides(shape: &[usize], fortran: bool) -> Vec<usize> {
     let mut strides = vec![0; shape.len()];
     let mut stride = 1_usize;
@@ -135,10 +134,10 @@ fn floats(item: Item, bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
 
 fn integers(item: Item, bytes: &[u8]) -> Result<Vec<i64>, FormatError> {
     let widened = |bytes: &[u8]| {
-        let most_first = |at: usize| bytes[if item.big { at } else { bytes.len() - 1 - at }];
-        let magnitude = (0..bytes.len()).fold(0_u64, |value, at| value << 8 | u64::from(most_first(at)));
+        let big_endian = |at: usize| bytes[if item.big { at } else { bytes.len() - 1 - at }];
+        let magnitude = (0..bytes.len()).fold(0_u64, |value, at| value << 8 | u64::from(big_endian(at)));
         match item.class {
-            // The sign is at the top of the item's own bytes: brought to the top of 64 bits and back.
+            // Two shifts extend the sign from the top bit of the item to 64 bits.
             Class::Signed => Ok((magnitude << (64 - 8 * bytes.len())) as i64 >> (64 - 8 * bytes.len())),
             _ => i64::try_from(magnitude)
                 .map_err(|_| FormatError::whole(format!("the integer {magnitude} is too large"))),

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A `.npy` file with any header.
+/// Returns a `.npy` file with any header.
 fn file(version: u8, header: &str, body: &[u8]) -> Vec<u8> {
     let mut bytes = b"\x93NUMPY".to_vec();
     bytes.extend([version, 0]);
@@ -71,17 +71,19 @@ fn integers_of_all_sizes() {
 }
 
 #[test]
-fn bad_files_are_named() {
+fn errors_name_the_cause() {
     let message = |header: &str| parse(&file(1, header, &body(&SIX))).unwrap_err().to_string();
     let good = header("<f8", "False", "(2, 3)");
     assert!(
         message(&header("<i8", "False", "(2, 3)"))
             .contains("type '<i8': save the array as float64 or float32")
     );
-    assert!(message(&good.replace("'<f8'", "[('a', '<f8')]")).contains("a structured array"));
+    assert!(message(&good.replace("'<f8'", "[('a', '<f8')]")).contains("the array is structured"));
     assert!(message(&good.replace("False", "Maybe")).contains("'False' expected before ' Maybe"));
     assert!(message(&good.replace("shape", "form")).contains("unknown key 'form'"));
-    assert!(message(&good.replace("'shape': (2, 3)", "'descr': '<f8'")).contains("two entries 'descr'"));
+    assert!(
+        message(&good.replace("'shape': (2, 3)", "'descr': '<f8'")).contains("the key 'descr' is repeated")
+    );
     assert!(message("{}").contains("is missing"));
     assert!(message(&good.replace("}\n", "} x")).contains("unexpected text 'x'"));
     for shape in ["(-1, 3)", "2", "(2 3)", "(99999999999999999999999,)", "(2.0, 3)", "((2,), 3)"] {
@@ -107,14 +109,14 @@ fn bad_files_are_named() {
 }
 
 #[test]
-fn open_brackets_take_no_time() {
+fn open_brackets_are_rejected_fast() {
     for bracket in ["{", "[", "(", "{'shape':("] {
         assert!(parse(&file(1, &bracket.repeat(6000), &[])).is_err());
     }
 }
 
 #[test]
-fn every_truncation_and_any_extra_is_refused() {
+fn truncations_and_extra_bytes_are_rejected() {
     let bytes = to_bytes(&[2, 3], &SIX).unwrap();
     for len in 0..bytes.len() {
         assert!(parse(&bytes[..len]).is_err(), "{len}");
@@ -123,7 +125,7 @@ fn every_truncation_and_any_extra_is_refused() {
 }
 
 #[test]
-fn written_files_are_numpys() {
+fn written_files_have_the_form_of_numpy() {
     let bytes = to_bytes(&[2, 3], &SIX).unwrap();
     assert!(bytes.starts_with(
         b"\x93NUMPY\x01\x00\x76\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }"
@@ -139,7 +141,7 @@ proptest! {
         let count: usize = shape.iter().product();
         let values: Vec<f64> = (0..count).map(|i| i as f64 - 1.5).collect();
 
-        // What npyz writes, we read.
+        // This reader reads files of npyz.
         let lengths: Vec<u64> = shape.iter().map(|n| *n as u64).collect();
         let order = if fortran { npyz::Order::Fortran } else { npyz::Order::C };
         let mut bytes = Vec::new();
@@ -158,7 +160,7 @@ proptest! {
         prop_assert_eq!(array.shape(), &shape[..]);
         prop_assert_eq!(&array.data, &values);
 
-        // What we write, npyz and we read.
+        // Both readers read files of this writer.
         let c_order = array.to_c_order();
         let bytes = to_bytes(&shape, &c_order).unwrap();
         let theirs = npyz::NpyFile::new(&bytes[..]).unwrap();

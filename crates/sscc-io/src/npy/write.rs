@@ -34,7 +34,7 @@ pub fn to_bytes(shape: &[usize], values: &[f64]) -> Option<Vec<u8>> {
 /// When the number of values does not fit the shape, or the file cannot be written.
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> Result<(), IoError> {
     let Some(bytes) = to_bytes(shape, values) else {
-        let cause = format!("{} values do not make an array of shape {shape:?}", values.len());
+        let cause = format!("{} values do not fill an array of shape {shape:?}", values.len());
         return Err(IoError::Request { path: path.to_owned(), cause });
     };
     write_whole(path, &bytes)

@@ -9,11 +9,11 @@ use crate::allowance::Allowance;
 use crate::error::{cut, quoted};
 use crate::{FormatError, Place};
 
-/// An archive may hold no more than this, whatever its size: 4 GiB.
-const MOST: u64 = 4 << 30;
+/// Maximum size of the decompressed entries, for archives of any size: 4 GiB.
+const MAX_BYTES: u64 = 4 << 30;
 
 /// Size of the record at the end of an archive, without its comment.
-const END: usize = 22;
+const END_RECORD_BYTES: usize = 22;
 
 /// Returns the bytes of the entries (`NAME.npy`) with accepted names, by name. Other entries are not read.
 pub(super) fn entries(
@@ -25,8 +25,8 @@ pub(super) fn entries(
     };
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| whole(&e))?;
     check_ends(bytes, &archive)?;
-    // Only what is wanted counts, and what two entries share counts twice.
-    let mut allowance = Allowance::new(bytes.len() as u64, MOST);
+    // Only accepted entries count. Bytes that two entries share count twice.
+    let mut allowance = Allowance::new(bytes.len() as u64, MAX_BYTES);
     let mut found = BTreeMap::new();
     for index in 0..archive.len() {
         let mut entry = archive.by_index_raw(index).map_err(|e| whole(&e))?;
@@ -55,11 +55,13 @@ pub(super) fn entries(
         let read = entry.by_ref().take(size.saturating_add(1)).read_to_end(&mut content);
         read.map_err(|e| refused(format!("damaged: {}", cut(&e.to_string(), 120))))?;
         if content.len() as u64 != size {
-            return Err(refused(format!("damaged: it does not have the {size} bytes that it promises")));
+            return Err(refused(format!(
+                "damaged: the entry does not have the {size} bytes that it declares"
+            )));
         }
         drop(entry);
         if found.insert(name.clone(), content).is_some() {
-            return Err(FormatError::part(place(&name), "a second entry of this name"));
+            return Err(FormatError::part(place(&name), "the name is repeated"));
         }
     }
     Ok(found)
@@ -73,17 +75,18 @@ pub(super) fn place(name: &str) -> String {
 /// Rejects bytes before and after the archive, which zip readers skip, and duplicate names, of which they keep the
 /// last.
 fn check_ends(bytes: &[u8], archive: &ZipArchive<Cursor<&[u8]>>) -> Result<(), FormatError> {
-    let end = bytes.len().checked_sub(END + archive.comment().len());
+    let end = bytes.len().checked_sub(END_RECORD_BYTES + archive.comment().len());
     let Some(end) = end.filter(|end| bytes[*end..].starts_with(b"PK\x05\x06")) else {
-        return Err(FormatError::whole("there is something behind the end of the archive"));
+        return Err(FormatError::whole("bytes follow the end of the archive"));
     };
     if archive.offset() != 0 {
-        return Err(FormatError::new(Place::Byte(0), "there is something before the archive"));
+        return Err(FormatError::new(Place::Byte(0), "bytes precede the archive"));
     }
-    // The largest number means that the value is stored elsewhere.
+    // The largest number means that the archive stores the value elsewhere (zip64).
     let entries = u16::from_le_bytes([bytes[end + 10], bytes[end + 11]]);
     if entries != u16::MAX && usize::from(entries) != archive.len() {
-        let cause = format!("it has {} names for {entries} entries: a name twice?", archive.len());
+        let cause =
+            format!("the archive has {} names for {entries} entries: is a name repeated?", archive.len());
         return Err(FormatError::new(Place::Byte(end), cause));
     }
     Ok(())

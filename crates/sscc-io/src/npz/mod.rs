@@ -45,8 +45,8 @@ pub struct NpzModel {
 /// Reads a complete model.
 ///
 /// # Errors
-/// When the file cannot be read, is no archive, is damaged or too large when unpacked; when the mean, the modes or
-/// the faces are missing, or have another type or shape than the table says; when a face names no vertex.
+/// When the file cannot be read, is not an archive, is damaged or too large when unpacked; when the mean, the modes or
+/// the faces are missing, or their type or shape is not in the table; when a face names no vertex.
 pub fn read_npz_model(path: &Path) -> Result<NpzModel, IoError> {
     parse_model(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -64,11 +64,11 @@ pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     Ok(NpzModel { mesh, modes, weights })
 }
 
-/// Parses the modes for a mesh; faces and other arrays are skipped. When the archive has a mean, it must be the
-/// mesh's rest positions up to 2^-20 of their largest coordinate (what float32 and text of 6 digits keep).
+/// Parses the modes of a mesh; faces and other arrays are skipped. If the archive has a mean, it must equal the rest
+/// positions of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
 ///
 /// # Errors
-/// As [`parse_model`], and when the modes or the mean are those of another mesh.
+/// As [`parse_model`], and when the modes or the mean belong to another mesh.
 pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<Modes, FormatError> {
     let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components])?;
     let positions = mesh.rest_positions();
@@ -77,7 +77,7 @@ pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<Modes, FormatError> {
         return Ok(modes);
     };
     if mean.len() != positions.len() {
-        let cause = format!("the mean has {} vertices, the mesh {}", mean.len(), positions.len());
+        let cause = format!("the mean has {} vertices, the mesh has {}", mean.len(), positions.len());
         return Err(FormatError::whole(cause));
     }
     let largest = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -87,8 +87,8 @@ pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<Modes, FormatError> {
         Some(vertex) => {
             let [x, y, z] = (mean[vertex] - positions[vertex]).to_array();
             let cause = format!(
-                "the mean is not the mesh: vertex {vertex} (counted from 0) differs by ({x:.3e}, {y:.3e}, {z:.3e}); \
-                 give the mesh of the mean, or the modes alone"
+                "the mean differs from the mesh: vertex {vertex} (counted from 0) differs by ({x:.3e}, {y:.3e}, {z:.3e}); \
+                 use the mesh of the mean, or an archive with modes only"
             );
             Err(FormatError::whole(cause))
         }

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
     Mean,
-    /// Modes along the last axis, or the first where only that fits.
+    /// Modes along the last axis, or along the first if only that fits.
     Modes,
     /// Modes along the first axis, as in scikit-learn's PCA.
     Components,

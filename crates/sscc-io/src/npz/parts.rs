@@ -22,13 +22,14 @@ impl Parts {
         for (name, content) in archive::entries(bytes, is_wanted)? {
             let Some(part) = Part::of(&name) else { continue };
             if let Some((other, _)) = parts.insert(part, (name.clone(), content)) {
-                let cause = format!("'{other}' and '{name}' mean the same: leave one of them out");
+                let cause =
+                    format!("'{other}' and '{name}' are the same part of the model: remove one of them");
                 return Err(FormatError::whole(cause));
             }
         }
         if parts.contains_key(&Part::Modes) && parts.contains_key(&Part::Components) {
             let [a, b] = [Part::Modes, Part::Components].map(|part| parts[&part].0.clone());
-            let cause = format!("'{a}' and '{b}' mean the same: leave one of them out");
+            let cause = format!("'{a}' and '{b}' are the same part of the model: remove one of them");
             return Err(FormatError::whole(cause));
         }
         Ok(Self(parts))
@@ -44,7 +45,7 @@ impl Parts {
     }
 
     fn missing(part: Part, advice: &str) -> FormatError {
-        FormatError::whole(format!("there is no array of {}{advice}", part.names()))
+        FormatError::whole(format!("the archive has no array named {}{advice}", part.names()))
     }
 
     /// Returns the rest positions, one per vertex.
@@ -79,7 +80,7 @@ impl Parts {
     pub fn mesh(&self) -> Result<TriMesh, FormatError> {
         let mean = self.mean()?.ok_or_else(|| Self::missing(Part::Mean, ""))?;
         let faces = self.get(Part::Faces, |bytes| faces(&npy::parse_integers(bytes)?, mean.len()))?;
-        let advice = ": give it as --modes of a mesh file";
+        let advice = ": pass it as --modes of a mesh file";
         let faces = faces.ok_or_else(|| Self::missing(Part::Faces, advice))?;
         Ok(TriMesh::new(mean, faces)?)
     }

@@ -7,7 +7,7 @@ use zip::{CompressionMethod, ZipWriter};
 use super::*;
 use crate::npy::to_bytes;
 
-/// An archive as NumPy writes it.
+/// Returns an archive in the form of NumPy.
 fn archive(entries: &[(&str, Vec<u8>)], method: CompressionMethod) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(method).large_file(true);
@@ -41,7 +41,7 @@ fn faces(descr: &str, corners: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A tetrahedron's worth of vertices, two modes.
+/// Four vertices, two modes.
 fn good() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("mean", numbers(&[4, 3])),
@@ -51,7 +51,7 @@ fn good() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// The good archive with another array in place of one, or beside.
+/// The valid archive with one array replaced or added.
 fn with(name: &'static str, content: Vec<u8>) -> Vec<(&'static str, Vec<u8>)> {
     let mut entries = good();
     entries.retain(|(other, _)| *other != name);
@@ -109,19 +109,22 @@ fn all_names_and_shapes() {
 }
 
 #[test]
-fn what_does_not_fit_is_named() {
+fn errors_name_the_array() {
     let without = |name: &str| {
         let mut entries = good();
         entries.retain(|(other, _)| *other != name);
         message(&entries)
     };
-    assert!(without("mean").starts_with("there is no array of mean, mean_, vertices"));
-    assert!(without("modes").starts_with("there is no array of modes, shapedirs, U, basis, components"));
-    assert!(without("faces").ends_with("triangles: give it as --modes of a mesh file"));
-    let twice = "'mean' and 'v_template' mean the same: leave one of them out";
+    assert!(without("mean").starts_with("the archive has no array named mean, mean_, vertices"));
+    assert!(
+        without("modes").starts_with("the archive has no array named modes, shapedirs, U, basis, components")
+    );
+    assert!(without("faces").ends_with("triangles: pass it as --modes of a mesh file"));
+    let twice = "'mean' and 'v_template' are the same part of the model: remove one of them";
     assert_eq!(message(&with("v_template", numbers(&[4, 3]))), twice);
     assert!(
-        message(&with("components", numbers(&[2, 12]))).contains("'modes' and 'components' mean the same")
+        message(&with("components", numbers(&[2, 12])))
+            .contains("'modes' and 'components' are the same part")
     );
     assert_eq!(
         message(&with("mean", numbers(&[3, 4]))),
@@ -138,7 +141,7 @@ fn what_does_not_fit_is_named() {
     assert!(message(&with("modes", faces("<i4", &[0; 12]))).contains("save the array as float64"));
     assert!(
         message(&with("faces", numbers(&[2, 3])))
-            .contains("array 'faces': byte 10: header: numbers of type '<f8'")
+            .contains("array 'faces': byte 10: header: the array has numbers of type '<f8'")
     );
     assert_eq!(
         message(&with("faces", faces("<i4", &[0, 1, 2, 0, 4, 1]))),
@@ -152,7 +155,7 @@ fn what_does_not_fit_is_named() {
 }
 
 #[test]
-fn modes_of_another_mesh_are_refused() {
+fn modes_of_another_mesh_are_rejected() {
     let NpzModel { mesh, modes, .. } = parse_model(&stored(&good())).unwrap();
     let alone = stored(&good()[1..2]);
     assert_eq!(parse_modes(&alone, &mesh).unwrap(), modes);
@@ -163,7 +166,7 @@ fn modes_of_another_mesh_are_refused() {
     assert!(parse_modes(&stored(&good()), &moved(1e-6)).is_ok());
     let refused = parse_modes(&stored(&good()), &moved(1e-4)).unwrap_err().to_string();
     assert!(
-        refused.starts_with("the mean is not the mesh: vertex 0 (counted from 0) differs by ("),
+        refused.starts_with("the mean differs from the mesh: vertex 0 (counted from 0) differs by ("),
         "{refused}"
     );
     let fewer = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
@@ -176,7 +179,7 @@ fn modes_of_another_mesh_are_refused() {
 }
 
 #[test]
-fn damage_is_refused() {
+fn damaged_archives_are_rejected() {
     for method in [CompressionMethod::Stored, CompressionMethod::Deflated] {
         let bytes = archive(&good(), method);
         for len in 0..bytes.len() {
@@ -185,7 +188,7 @@ fn damage_is_refused() {
         for extra in [[&bytes[..], b"\0"].concat(), [b"x", &bytes[..]].concat()] {
             assert!(parse_model(&extra).is_err());
         }
-        // Whatever is flipped: the same model, or an error. A checksum is over every array.
+        // A flipped bit is an error or does not change the model, because every array has a checksum.
         let model = parse_model(&bytes).unwrap();
         for at in 0..bytes.len() {
             for bit in [0, 3, 7] {
@@ -200,26 +203,26 @@ fn damage_is_refused() {
 }
 
 #[test]
-fn bombs_are_refused() {
+fn decompression_bombs_are_rejected() {
     // 80 MB of zeros in 80 kB.
     let bomb = archive(&with("modes", vec![0; 80_000_000]), CompressionMethod::Deflated);
     assert!(bomb.len() < 100_000);
     let refused = parse_model(&bomb).unwrap_err().to_string();
     assert!(refused.starts_with("array 'modes': its numbers would take more than"), "{refused}");
-    // A size that is a lie: in the directory (behind the entry's data), as a number of 4 bytes.
+    // A false size in the directory, which follows the data, as a number of 4 bytes.
     let honest = archive(&with("modes", vec![0; 1_000_000]), CompressionMethod::Deflated);
     let size = 1_000_000_u32.to_le_bytes();
     let at = honest.windows(4).rposition(|w| w == size).unwrap();
-    for lie in [0_u32, 1000, 999_999, 1_000_001, 1 << 30, u32::MAX] {
+    for false_size in [0_u32, 1000, 999_999, 1_000_001, 1 << 30, u32::MAX] {
         let mut bytes = honest.clone();
-        bytes[at..at + 4].copy_from_slice(&lie.to_le_bytes());
+        bytes[at..at + 4].copy_from_slice(&false_size.to_le_bytes());
         let refused = parse_model(&bytes).unwrap_err().to_string();
-        assert!(!refused.contains("array 'modes': byte 0"), "{lie}: {refused}");
+        assert!(!refused.contains("array 'modes': byte 0"), "{false_size}: {refused}");
     }
 }
 
 #[test]
-fn names_that_are_there_twice_are_refused() {
+fn repeated_names_are_rejected() {
     let mut bytes = stored(&with("meaN", numbers(&[4, 3])));
     while let Some(at) = bytes.windows(8).position(|w| w == b"meaN.npy") {
         bytes[at..at + 4].copy_from_slice(b"mean");

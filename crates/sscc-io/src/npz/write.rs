@@ -35,11 +35,11 @@ fn to_bytes(arrays: &[NamedArray<'_>]) -> Result<Vec<u8>, String> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::with_capacity(size)));
     for NamedArray { name, shape, values } in arrays {
         if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
-            return Err(format!("array '{}': letters, digits and _ make a name", name.escape_debug()));
+            return Err(format!("array '{}': a name consists of letters, digits and _", name.escape_debug()));
         }
         let refused = |cause: &dyn std::fmt::Display| format!("array '{name}': {cause}");
         let array = npy::to_bytes(shape, values)
-            .ok_or_else(|| refused(&format!("{} values do not make the shape {shape:?}", values.len())))?;
+            .ok_or_else(|| refused(&format!("{} values do not fill the shape {shape:?}", values.len())))?;
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
             .last_modified_time(DateTime::default())
@@ -56,7 +56,7 @@ mod tests {
     use npyz::NpyFile;
 
     #[test]
-    fn arrays_are_read_back_by_another_reader() {
+    fn another_reader_reads_the_arrays() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.npz");
         let (q, t) = ([1.0, -2.5, 0.1, 4.0, 5.0, -0.0], [0.5]);
@@ -85,15 +85,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_archive_is_refused() {
+    fn invalid_arrays_are_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.npz");
         let array = |name, shape: &[usize]| NamedArray { name, shape: shape.to_vec(), values: &[1.0, 2.0] };
         for (arrays, cause) in [
-            (vec![array("a", &[3])], "array 'a': 2 values do not make the shape [3]"),
-            (vec![array("a", &[usize::MAX, 4])], "do not make the shape"),
-            (vec![array("", &[2])], "array '': letters"),
-            (vec![array("../a", &[2])], "array '../a': letters"),
+            (vec![array("a", &[3])], "array 'a': 2 values do not fill the shape [3]"),
+            (vec![array("a", &[usize::MAX, 4])], "do not fill the shape"),
+            (vec![array("", &[2])], "array '': a name consists"),
+            (vec![array("../a", &[2])], "array '../a': a name consists"),
             (vec![array("a", &[2]), array("a", &[2])], "array 'a': "),
         ] {
             let refused = write_npz(&path, &arrays).unwrap_err().to_string();

@@ -8,7 +8,7 @@ use sscc_solid::{NamedMaterial, VolumeMesh, VolumeMeshParts};
 use crate::{FormatError, Place};
 
 /// Name of the material of elements without a material.
-const DEFAULT: &str = "default";
+const DEFAULT_MATERIAL: &str = "default";
 
 /// Vertices and elements read so far. Elements may precede their vertices, so `finish` checks the indices.
 pub(super) struct Builder {
@@ -61,7 +61,7 @@ impl Builder {
 
     /// Returns the index of the material of elements without a material.
     pub fn default_material(&mut self) -> u32 {
-        self.material(DEFAULT)
+        self.material(DEFAULT_MATERIAL)
     }
 
     /// Adds a tetrahedron; corners from 0.
@@ -106,11 +106,11 @@ impl Builder {
 
     /// Returns the mesh if all its indices are valid.
     pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
-        let there = self.parts.vertices.len();
+        let vertices = self.parts.vertices.len();
         match self.largest {
-            Some((index, place)) if there > 0 && index >= there as u64 => {
+            Some((index, place)) if vertices > 0 && index >= vertices as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
-                let cause = format!("names vertex {index} (counted from {first}), but there are {there}");
+                let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
                 return Err(FormatError::new(place, cause));
             }
             _ => {}
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_differ() {
+    fn repeated_corners_are_rejected() {
         let mut builder = with_vertices(4);
         let error = builder.tet([0, 3, 2, 3], 0, Place::Line(2)).unwrap_err().to_string();
         assert_eq!(error, "line 2: names vertex 4 (counted from 1) twice");
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_differ() {
+    fn repeated_elements_are_rejected() {
         let mut builder = with_vertices(5);
         for corners in [[0, 1, 2, 3], [1, 2, 3, 4], [3, 1, 0, 2]] {
             builder.tet(corners, 0, Place::Whole).unwrap();
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_refused() {
+    fn empty_meshes_and_invalid_coordinates_are_rejected() {
         assert!(with_vertices(0).finish().unwrap_err().to_string().contains("no vertices"));
         assert!(with_vertices(4).finish().unwrap_err().to_string().contains("no tetrahedra"));
         for x in [f64::NAN, f64::INFINITY, 2e60] {

@@ -8,22 +8,22 @@ use super::words::Words;
 use crate::FormatError;
 use crate::error::quoted;
 
-/// Existing versions of the format. They differ in the width of numbers, which does not matter in text.
+/// Supported versions of the format. They differ only in the width of binary numbers.
 const VERSIONS: std::ops::RangeInclusive<i64> = 1..=4;
 
 /// Beginnings of the names of unsupported solid elements, such as `TetrahedraP2` of higher order.
-const REFUSED: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "Pentahedra"];
+const UNSUPPORTED_ELEMENTS: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "Pentahedra"];
 
 /// Parses a Medit file: `MeshVersionFormatted` 1 to 4, `Dimension 3`, then sections in any order. `Vertices`,
 /// `Tetrahedra`, `Hexahedra`, `Triangles` and `Quadrilaterals` are read, all others are skipped. Comments
 /// (`#`) are skipped, and `End` may be missing.
 ///
-/// The reference numbers of elements become materials named by them, in order of first use; those of vertices
-/// and faces are not kept.
+/// Reference numbers of elements become names of materials, in order of first use. Those of vertices and faces are
+/// skipped.
 ///
 /// # Errors
-/// When the version or dimension is another, a section is shorter than its count, there are solid elements of
-/// another kind, a section is there twice, something follows `End`, or as [`read_volume_mesh`](super::read_volume_mesh).
+/// When the version or dimension is not supported, a section is shorter than its count or repeated, solid elements have
+/// another kind, or text follows `End`; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut words = Words::new(bytes, true)?;
     header(&mut words)?;
@@ -32,12 +32,12 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut seen = Vec::new();
     while let Some(keyword) = words.next_word()? {
         if seen.contains(&keyword) {
-            return words.refused(format!("a second section {keyword}"));
+            return words.refused(format!("the section {keyword} is repeated"));
         }
         match keyword {
             "Dimension" => match words.integer("the dimension")? {
                 3 => dimension = true,
-                other => return words.refused(format!("dimension {other}: only 3 is supported")),
+                other => return words.refused(format!("dimension {other} is not supported, only 3")),
             },
             "Vertices" if !dimension => return words.refused("'Dimension 3' is missing before the vertices"),
             "Vertices" => vertices(&mut words, &mut builder)?,
@@ -52,7 +52,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
             "Triangles" => elements(&mut words, |words| face::<3>(words, &mut builder))?,
             "Quadrilaterals" => elements(&mut words, |words| face::<4>(words, &mut builder))?,
             "End" => match words.next_word()? {
-                Some(_) => return words.refused("something follows 'End'"),
+                Some(_) => return words.refused("text follows 'End'"),
                 None => break,
             },
             _ => {
@@ -125,9 +125,9 @@ fn skip(keyword: &str, words: &mut Words) -> Result<(), FormatError> {
     if !is_name(keyword) {
         return words.refused(format!("the name of a section was expected, not {}", quoted(keyword)));
     }
-    if REFUSED.iter().any(|name| keyword.starts_with(name)) && words.peek()? != Some("0") {
+    if UNSUPPORTED_ELEMENTS.iter().any(|name| keyword.starts_with(name)) && words.peek()? != Some("0") {
         let cause =
-            format!("{}: only Tetrahedra and Hexahedra of first order are supported", quoted(keyword));
+            format!("{} is not supported: only Tetrahedra and Hexahedra of first order are", quoted(keyword));
         return words.refused(cause);
     }
     while words.peek()?.is_some_and(|word| !is_name(word)) {
@@ -165,11 +165,11 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_line() {
         let with = |from, to| message(&TETS.replace(from, to));
         assert_eq!(message("OFF\n"), "line 1: a Medit file begins with 'MeshVersionFormatted', not 'OFF'");
         assert_eq!(with("ted 2", "ted 5"), "line 1: version 5 of the format is not supported, only 1 to 4");
-        assert_eq!(with("\n3\nV", "\n2\nV"), "line 4: dimension 2: only 3 is supported");
+        assert_eq!(with("\n3\nV", "\n2\nV"), "line 4: dimension 2 is not supported, only 3");
         assert_eq!(with("Dimension\n3\n", ""), "line 3: 'Dimension 3' is missing before the vertices");
         assert_eq!(with("1 0 0 0", "nan 0 0 0"), "line 7: 'nan' is not a finite number");
         assert_eq!(with("1 0 0 0", "2e60 0 0 0"), "line 7: a coordinate is larger than 2^200 or not finite");
@@ -183,11 +183,11 @@ mod tests {
         );
         assert_eq!(with("2 3 4 5 -1", "2 3 4 3 -1"), "line 17: names vertex 3 (counted from 1) twice");
         assert_eq!(with("2 3 4 5 -1", "2 3 4 5 a"), "line 17: 'a' is not an integer");
-        assert_eq!(with("Ridges", "Vertices"), "line 18: a second section Vertices");
+        assert_eq!(with("Ridges", "Vertices"), "line 18: the section Vertices is repeated");
         assert_eq!(with("Ridges", "12"), "line 18: the name of a section was expected, not '12'");
-        assert!(with("Ridges", "Prisms").starts_with("line 18: 'Prisms': only Tetrahedra and Hexahedra"));
-        assert!(with("Ridges", "TetrahedraP2").contains("'TetrahedraP2': only"));
-        assert_eq!(with("End", "End\n7"), "line 21: something follows 'End'");
+        assert!(with("Ridges", "Prisms").starts_with("line 18: 'Prisms' is not supported: only Tetrahedra"));
+        assert!(with("Ridges", "TetrahedraP2").contains("'TetrahedraP2' is not supported"));
+        assert_eq!(with("End", "End\n7"), "line 21: text follows 'End'");
         assert!(with("Tetrahedra", "Edges").contains("no tetrahedra and no cubes"));
         assert_eq!(with("Vertices 5", "Vertices 99999999999"), "line 11: 'Triangles' is not a number");
         assert_eq!(
@@ -197,14 +197,14 @@ mod tests {
     }
 
     #[test]
-    fn truncations_are_refused_or_whole() {
+    fn truncations_are_rejected_or_complete() {
         let whole = parse(TETS.as_bytes()).unwrap();
-        // Behind the last tetrahedron, nothing that is read is missing.
-        let enough = TETS.find(" -1\n").unwrap() + 3;
+        // The reader uses nothing after the last tetrahedron.
+        let complete = TETS.find(" -1\n").unwrap() + 3;
         for len in 0..TETS.len() {
             match parse(&TETS.as_bytes()[..len]) {
-                Ok(mesh) => assert!(len >= enough && mesh == whole, "{len}"),
-                Err(_) => assert!(len < enough || len > enough + 1, "{len}"),
+                Ok(mesh) => assert!(len >= complete && mesh == whole, "{len}"),
+                Err(_) => assert!(len < complete || len > complete + 1, "{len}"),
             }
         }
     }

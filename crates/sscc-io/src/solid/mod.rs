@@ -24,13 +24,13 @@ use crate::file::{ending, read_whole, unsupported};
 /// Endings that [`read_volume_mesh`] supports.
 const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
 
-/// Reads a volumetric mesh; the format goes by the file name's ending, in any case: `.mesh` ([`medit`]), `.veg`
-/// ([`vega`]), `.msh` ([`gmsh`]), `.node` or `.ele` with the other beside it ([`tetgen`]).
+/// Reads a volumetric mesh. The ending of the file name, in any case, selects the format: `.mesh` ([`medit`]), `.veg`
+/// ([`vega`]), `.msh` ([`gmsh`]), `.node` or `.ele` with the other file beside it ([`tetgen`]).
 ///
 /// # Errors
 /// When the ending is none of these, or the file (or one that belongs to it) cannot be read or is malformed; when
-/// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is there
-/// twice or is of another kind than 4-node tetrahedra and 8-node hexahedra, or there is no element.
+/// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is duplicated or
+/// is neither a 4-node tetrahedron nor an 8-node hexahedron, or there is no element.
 pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse,
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_decides() {
+    fn the_ending_selects_the_format() {
         let directory = tempfile::tempdir().unwrap();
         let message = |name: &str| {
             let path = directory.path().join(name);

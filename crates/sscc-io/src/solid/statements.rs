@@ -27,7 +27,7 @@ pub(super) fn corners<'a, const N: usize>(
     let mut corners = [0; N];
     for (found, corner) in corners.iter_mut().enumerate() {
         let Some(field) = fields.next() else {
-            return Err(format!("an element has {N} corners, this one {found}"));
+            return Err(format!("an element has {N} corners, this one has {found}"));
         };
         *corner = index(field)?;
     }
@@ -63,7 +63,7 @@ mod tests {
         let lines: Vec<_> = statements(b"# a\n\n 1, 2,,3\t4 # b\r\n").unwrap().map(Result::unwrap).collect();
         assert_eq!(lines, [(3, "1, 2,,3\t4")]);
         assert_eq!(corners::<4>(&mut fields(lines[0].1)).unwrap(), [1, 2, 3, 4]);
-        assert!(corners::<5>(&mut fields(lines[0].1)).unwrap_err().contains("this one 4"));
+        assert!(corners::<5>(&mut fields(lines[0].1)).unwrap_err().contains("this one has 4"));
         assert!(statements(b"a\xff\n").unwrap().next().unwrap().is_err());
         assert!(value("nan").unwrap_err().contains("'nan' is not a finite number"));
     }

@@ -36,21 +36,21 @@ fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
     let capitals =
         path.extension().is_some_and(|e| e.to_string_lossy().bytes().all(|b| b.is_ascii_uppercase()));
     let companion = path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() });
-    // Of the two, the file that is missing altogether is named by its own reader.
+    // If the given file is missing, its reader reports it.
     if path.exists() && !companion.exists() {
-        let cause = format!("needs the .{other} file of the same name beside it, which is not there");
+        let cause = format!("the .{other} file of the same name does not exist beside it");
         return Err(IoError::Request { path: path.to_owned(), cause });
     }
     Ok(companion)
 }
 
-/// Parses a `.node` file: the number of vertices (then the dimension, the number of attributes, whether there
-/// are markers), and a line for each vertex: its number, x, y, z; attributes and markers are skipped, and so are
-/// comments (`#`). Numbers are consecutive; whether they begin with 0 or 1 holds for the `.ele` file too.
+/// Parses a `.node` file: the number of vertices (then the dimension, the number of attributes, whether there are
+/// markers), and a line for each vertex with its number and x, y, z. Attributes, markers and comments (`#`) are skipped.
+/// Numbers are consecutive. The `.ele` file must use the same first number, 0 or 1.
 ///
 /// # Errors
-/// When the dimension is not 3, there are more or fewer lines than the header says, the numbers are not
-/// consecutive, or a coordinate is malformed or beyond [`sscc::limits`].
+/// When the dimension is not 3, the number of lines differs from the header, the numbers are not consecutive, or a
+/// coordinate is malformed or beyond [`sscc::limits`].
 pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
     let mut nodes = Nodes { positions: Vec::new(), first: 0 };
     table(bytes, "vertices", check_dimension, |number, text, line| {
@@ -62,8 +62,9 @@ pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
         }
         if number != nodes.first + nodes.positions.len() as u64 || nodes.first > 1 {
             let expected = nodes.positions.len() as u64 + nodes.first.min(1);
-            let cause =
-                format!("vertices are numbered from 0 or 1 without gaps: not {number} but {expected}");
+            let cause = format!(
+                "vertices are numbered from 0 or 1 without gaps: {expected} was expected, not {number}"
+            );
             return Err(at(cause));
         }
         if !sscc::limits::contains(position) {
@@ -75,13 +76,13 @@ pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
     Ok(nodes)
 }
 
-/// Parses a `.ele` file for these vertices: the number of tetrahedra (then the corners of each, which must be 4,
-/// and whether there is an attribute), and a line for each: its number, its corners, and maybe an attribute.
-/// The attribute becomes the name of the material.
+/// Parses a `.ele` file for these vertices: the number of tetrahedra (then the number of corners, which must be 4, and
+/// whether there is an attribute), and a line for each with its number, its corners, and the optional attribute. The
+/// attribute becomes the name of the material.
 ///
 /// # Errors
-/// When elements have 10 nodes, there are more or fewer lines than the header says, an attribute that it declares
-/// is missing, or as [`read_volume_mesh`](super::read_volume_mesh).
+/// When elements have 10 nodes, the number of lines differs from the header, or a declared attribute is missing; else as
+/// [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut builder = Builder::new(nodes.first);
     for position in &nodes.positions {
@@ -89,7 +90,7 @@ pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     }
     let header = |header: &[u64]| match header.get(1).copied().unwrap_or(4) {
         4 => Ok(header.get(2).is_some_and(|attributes| *attributes > 0)),
-        other => Err(format!("tetrahedra of {other} nodes: only 4 are supported")),
+        other => Err(format!("tetrahedra of {other} nodes are not supported: only 4 are")),
     };
     table(bytes, "tetrahedra", header, |_, text, line| {
         let at = |cause: String| FormatError::line(line, cause);
@@ -112,12 +113,12 @@ pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
 fn check_dimension(header: &[u64]) -> Result<bool, String> {
     match header.get(1) {
         None | Some(3) => Ok(false),
-        Some(other) => Err(format!("vertices of dimension {other}: only 3 is supported")),
+        Some(other) => Err(format!("vertices of dimension {other} are not supported: only 3 is")),
     }
 }
 
-/// A header that begins with a count, and as many lines that begin with a number. `check` gets the header's
-/// numbers, and says whether each line ends with an attribute; `item` gets number, text and line.
+/// Parses a header that begins with a count, and as many lines that begin with a number. `check` receives the numbers of
+/// the header and returns whether each line ends with an attribute. `item` receives number, text and line.
 fn table(
     bytes: &[u8],
     what: &str,
@@ -128,29 +129,29 @@ fn table(
     let Some(header) = lines.next() else {
         return Err(FormatError::whole("the file ends before the header"));
     };
-    let (top, text) = header?;
-    let at_top = |cause: String| FormatError::line(top, cause);
-    // At most four numbers are used.
-    let header: Vec<u64> = fields(text).take(4).map(index).collect::<Result<_, _>>().map_err(at_top)?;
-    let promised = header.first().copied().unwrap_or_default();
-    let attributes = check(&header).map_err(at_top)?;
+    let (first_line, text) = header?;
+    let at_header = |cause: String| FormatError::line(first_line, cause);
+    // The header has at most four numbers.
+    let header: Vec<u64> = fields(text).take(4).map(index).collect::<Result<_, _>>().map_err(at_header)?;
+    let declared = header.first().copied().unwrap_or_default();
+    let attributes = check(&header).map_err(at_header)?;
     let mut found = 0;
     for line in lines {
         let (line, text) = line?;
-        if found == promised {
-            let cause = format!("more lines than the {promised} {what} of the header");
+        if found == declared {
+            let cause = format!("the file has more lines than the {declared} {what} of the header");
             return Err(FormatError::line(line, cause));
         }
         let number = index(fields(text).next().unwrap_or_default());
         let number = number.map_err(|cause| FormatError::line(line, cause))?;
         if attributes && fields(text).nth(5).is_none() {
-            return Err(FormatError::line(line, "the attribute that the header promises is missing"));
+            return Err(FormatError::line(line, "the attribute that the header declares is missing"));
         }
         item(number, text, line)?;
         found += 1;
     }
-    if found < promised {
-        return Err(at_top(format!("the file has {found} of the {promised} {what} promised here")));
+    if found < declared {
+        return Err(at_header(format!("the file has {found} of the {declared} {what} declared here")));
     }
     Ok(())
 }
@@ -178,36 +179,45 @@ mod tests {
     }
 
     #[test]
-    fn bad_files_are_named() {
+    fn errors_name_the_line() {
         let node = |from, to| both(&NODE.replace(from, to), ELE).unwrap_err();
         let ele = |from, to| both(NODE, &ELE.replace(from, to)).unwrap_err();
-        assert_eq!(node("5 3 1", "5 2 1"), "node line 2: vertices of dimension 2: only 3 is supported");
-        assert_eq!(node("5 3 1", "6 3 1"), "node line 2: the file has 5 of the 6 vertices promised here");
-        assert_eq!(node("5 3 1", "4 3 1"), "node line 7: more lines than the 4 vertices of the header");
-        let gaps = "vertices are numbered from 0 or 1 without gaps: not";
-        assert_eq!(node("4 0 0 1", "9 0 0 1"), format!("node line 6: {gaps} 9 but 4"));
-        assert_eq!(node("\n1 0 0 0", "\n2 0 0 0"), format!("node line 3: {gaps} 2 but 1"));
+        assert_eq!(
+            node("5 3 1", "5 2 1"),
+            "node line 2: vertices of dimension 2 are not supported: only 3 is"
+        );
+        assert_eq!(node("5 3 1", "6 3 1"), "node line 2: the file has 5 of the 6 vertices declared here");
+        assert_eq!(
+            node("5 3 1", "4 3 1"),
+            "node line 7: the file has more lines than the 4 vertices of the header"
+        );
+        let gaps = "vertices are numbered from 0 or 1 without gaps:";
+        assert_eq!(node("4 0 0 1", "9 0 0 1"), format!("node line 6: {gaps} 4 was expected, not 9"));
+        assert_eq!(node("\n1 0 0 0", "\n2 0 0 0"), format!("node line 3: {gaps} 1 was expected, not 2"));
         assert_eq!(node("4 0 0 1", "4 0 0 inf"), "node line 6: 'inf' is not a finite number");
         assert_eq!(node("4 0 0 1", "4 0 0 1e61"), "node line 6: a coordinate is larger than 2^200");
         assert_eq!(node("4 0 0 1 0.5 1", "4 0 0"), "node line 6: a vertex has a number and 3 coordinates");
-        assert_eq!(ele("2  4  1", "2 10 1"), "ele line 1: tetrahedra of 10 nodes: only 4 are supported");
+        assert_eq!(
+            ele("2  4  1", "2 10 1"),
+            "ele line 1: tetrahedra of 10 nodes are not supported: only 4 are"
+        );
         assert_eq!(ele("5  20", "6 20"), "ele line 3: names vertex 6 (counted from 1), but there are 5");
         assert_eq!(ele("5  20", "0 20"), "ele line 3: names vertex 0, but vertices are counted from 1");
         assert_eq!(ele("5  20", "4 20"), "ele line 3: names vertex 4 (counted from 1) twice");
         assert_eq!(ele("5  20", "-1 20"), "ele line 3: '-1' is not a number of a vertex or element");
-        assert_eq!(ele("5  20", "5"), "ele line 3: the attribute that the header promises is missing");
+        assert_eq!(ele("5  20", "5"), "ele line 3: the attribute that the header declares is missing");
         assert_eq!(ele("5  20", "5 x"), "ele line 3: 'x' is not a number");
         let all = u64::MAX;
         assert!(
-            ele("2  4", &format!("{all} 4")).contains(&format!("2 of the {all} tetrahedra promised here"))
+            ele("2  4", &format!("{all} 4")).contains(&format!("2 of the {all} tetrahedra declared here"))
         );
         assert_eq!(both("# nothing\n", ELE).unwrap_err(), "node the file ends before the header");
         assert_eq!(both("0\n", "0\n").unwrap_err(), "ele the mesh has no vertices");
     }
 
     #[test]
-    fn every_truncation_is_refused() {
-        // Behind what is read of the last line, nothing is missing.
+    fn every_truncation_is_rejected() {
+        // The parser ignores the end of the last line.
         for len in 0..NODE.len() - " 0.5 0\n".len() {
             assert!(both(&NODE[..len], ELE).is_err(), "{len}");
         }
@@ -217,14 +227,12 @@ mod tests {
     }
 
     #[test]
-    fn either_file_is_given() {
+    fn either_file_of_the_pair_can_be_given() {
         let directory = tempfile::tempdir().unwrap();
         let path = |name: &str| directory.path().join(name);
         std::fs::write(path("a.1.node"), NODE).unwrap();
         let missing = read(&path("a.1.node")).unwrap_err().to_string();
-        assert!(
-            missing.ends_with("a.1.node: needs the .ele file of the same name beside it, which is not there")
-        );
+        assert!(missing.ends_with("a.1.node: the .ele file of the same name does not exist beside it"));
         std::fs::write(path("a.1.ele"), ELE.replace("5  20", "6 20")).unwrap();
         assert!(read(&path("a.1.node")).unwrap_err().to_string().contains("a.1.ele: line 3: names vertex 6"));
         std::fs::write(path("a.1.ele"), ELE).unwrap();

@@ -19,7 +19,7 @@ pub(super) struct Words<'a> {
 impl<'a> Words<'a> {
     /// Creates a reader. With `comments`, text from a `#` to the end of its line is skipped.
     pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
-        Lines::new(bytes)?; // refuses UTF-16
+        Lines::new(bytes)?; // an error for UTF-16
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Ok(Self { bytes, at, line: 1, comments, binary: false })
     }
@@ -111,7 +111,7 @@ impl<'a> Words<'a> {
     }
 
     /// Skips to after the next line with this beginning, if there is one.
-    pub fn skip_behind_line(&mut self, start: &str) -> bool {
+    pub fn skip_past_line(&mut self, start: &str) -> bool {
         while self.at < self.bytes.len() {
             if self.rest_of_line().trim_ascii_start().starts_with(start.as_bytes()) {
                 return true;
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_know_their_lines() {
+    fn words_have_line_numbers() {
         let mut words = Words::new(b"\xef\xbb\xbfa  b#c\r\n# d\n\te", true).unwrap();
         let mut found = Vec::new();
         while let Some(word) = words.next_word().unwrap() {
@@ -138,12 +138,12 @@ mod tests {
     }
 
     #[test]
-    fn bytes_follow_lines() {
+    fn bytes_and_lines_alternate() {
         let mut words = Words::new(b"a b\nxyz\n$End", false).unwrap();
         words.word("a").unwrap();
         assert_eq!(words.rest_of_line(), b" b");
         assert_eq!(words.take::<2>("xy").unwrap(), *b"xy");
         assert!(words.take::<7>("more").unwrap_err().to_string().starts_with("byte 6: the file ends before"));
-        assert!(words.skip_behind_line("$End") && !words.skip_behind_line("$End"));
+        assert!(words.skip_past_line("$End") && !words.skip_past_line("$End"));
     }
 }

@@ -3,11 +3,11 @@
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, count_negative_eigenvalues};
 
-/// Where in a gap between two eigenvalues they are counted, one place after the other.
-const PLACES: [f64; 3] = [0.5, 0.3, 0.7];
+/// Relative positions of the shift within a gap between two eigenvalues, in the order of attempts.
+const GAP_POSITIONS: [f64; 3] = [0.5, 0.3, 0.7];
 
-/// So many gaps are tried, the widest first.
-const GAPS: usize = 2;
+/// Maximum number of gaps to try, the widest first.
+const MAX_GAPS: usize = 2;
 
 /// Result of a count.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) struct Count {
 }
 
 /// Counts the eigenvalues of `K x = lambda M x` up to a bound in the widest gap (relative) after the first `count` of
-/// `values`, ascending. None if rounding decides in every gap.
+/// `values`, ascending. None if the count is uncertain by rounding in every gap.
 pub(super) fn count_below_gap(
     stiffness: &BlockSparse,
     mass: &BlockSparse,
@@ -30,9 +30,9 @@ pub(super) fn count_below_gap(
     let width = |k: usize| 1.0 - values[k - 1] / values[k];
     let mut gaps: Vec<usize> = (count.max(1)..values.len()).collect();
     gaps.sort_by(|a, b| width(*b).total_cmp(&width(*a)).then(a.cmp(b)));
-    for gap in gaps.into_iter().take(GAPS) {
-        for place in PLACES {
-            let sigma = values[gap - 1] + place * (values[gap] - values[gap - 1]);
+    for gap in gaps.into_iter().take(MAX_GAPS) {
+        for position in GAP_POSITIONS {
+            let sigma = values[gap - 1] + position * (values[gap] - values[gap - 1]);
             let shifted = stiffness.combined(1.0, mass, -sigma);
             if let Some(counted) = count_negative_eigenvalues(&shifted, analysis)? {
                 return Ok(Some(Count { found: gap, counted }));

@@ -7,16 +7,16 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatRef, Par};
 
-use super::tall::inner;
+use super::tall_matrix::inner;
 use crate::ModesError;
 use crate::sparse::BlockSparse;
 
-/// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix (its lower triangle). On one thread, so
-/// that the order of sums is fixed.
+/// Returns the eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix (its lower triangle). Uses one
+/// thread, so that the order of sums is fixed.
 ///
-/// faer's divide and conquer (from 128 rows on) compares a matrix's entries with those of unit vectors: off-diagonal
-/// entries below about 1e-15 count as 0, however small all others are. So the matrix is divided by the power of two
-/// next to its largest entry, which loses nothing, and the eigenvalues are multiplied by it.
+/// From 128 rows on, faer's divide and conquer has an absolute tolerance: off-diagonal entries below about 1e-15 count as
+/// 0. The matrix is therefore divided by a power of two near its largest entry, which is exact, and the eigenvalues are
+/// multiplied by it.
 pub(crate) fn symmetric_eigen(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
     let size = matrix.nrows();
     let lower = || (0..size).flat_map(|j| (j..size).map(move |i| matrix[(i, j)]));
@@ -41,7 +41,7 @@ pub(crate) fn symmetric_eigen(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>
     Ok(((0..size).map(|k| libm::ldexp(values[k], exponent)).collect(), vectors))
 }
 
-/// All eigenvalues of `K x = lambda M x` beside the rigid motions, ascending, and M-orthonormal vectors.
+/// Returns all eigenvalues of `K x = lambda M x` without rigid motions, ascending, and M-orthonormal vectors.
 pub(super) fn all_modes(
     stiffness: &BlockSparse,
     mass: &BlockSparse,
@@ -58,14 +58,14 @@ pub(super) fn all_modes(
         MemStack::new(&mut memory),
         Default::default(),
     )
-    // A mass is positive definite, unless its numbers were lost.
+    // A mass matrix is positive definite unless its entries overflowed.
     .map_err(|_| ModesError::OutOfRange)?;
     // C = L^-1 K L^-T for M = L L'.
     let mut matrix = full(stiffness);
     solve_lower_triangular_in_place(lower.as_ref(), matrix.as_mut(), Par::Seq);
     let mut matrix = matrix.transpose().to_owned();
     solve_lower_triangular_in_place(lower.as_ref(), matrix.as_mut(), Par::Seq);
-    // The rigid motions go to the far end of the spectrum, beyond a bound of it: C + top Q Q' for Q = L' R.
+    // C + top Q Q' with Q = L' R moves the rigid motions beyond an upper bound of the spectrum.
     let row_sum = |i: usize| (0..size).map(|j| matrix[(i, j)].abs()).sum::<f64>();
     let top = 2.0 * (0..size).map(row_sum).fold(0.0, f64::max);
     let rigid = Mat::from_fn(size, rigid.ncols(), |i, k| {
@@ -80,7 +80,7 @@ pub(super) fn all_modes(
     Ok((values[..modes].to_vec(), vectors.as_ref().subcols(0, modes).to_owned()))
 }
 
-/// All entries.
+/// Returns the dense matrix.
 pub(super) fn full(matrix: &BlockSparse) -> Mat<f64> {
     let mut full = Mat::zeros(3 * matrix.rows(), 3 * matrix.rows());
     for row in 0..matrix.rows() {
@@ -98,16 +98,16 @@ mod tests {
     use super::*;
     use crate::eigen::lattice::random_matrix;
 
-    /// A symmetric matrix with eigenvalues from 1 down to 1e-6: `X' D X`, X nearly orthogonal.
+    /// Returns a symmetric matrix with eigenvalues from about 1 to 1e-6: `X' D X`, X nearly orthogonal.
     fn graded(size: usize) -> Mat<f64> {
         let half = random_matrix(size, size);
         let weighted = Mat::from_fn(size, size, |i, j| half[(i, j)] * 1e-6_f64.powf(i as f64 / size as f64));
         inner(half.as_ref(), weighted.as_ref())
     }
 
-    /// Sizes on both sides of faer's 128 rows, from which on it divides and conquers.
+    /// Sizes below and above 128 rows, where faer switches to divide and conquer.
     #[test]
-    fn eigenvalues_are_as_accurate_in_any_unit() {
+    fn accuracy_does_not_depend_on_the_unit() {
         for size in [5, 127, 200] {
             let matrix = graded(size);
             let (values, vectors) = symmetric_eigen(matrix.as_ref()).unwrap();
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_refused() {
+    fn matrices_that_are_not_finite_are_rejected() {
         for bad in [f64::NAN, f64::INFINITY] {
             let mut matrix = graded(130);
             matrix[(129, 0)] = bad;

@@ -6,42 +6,42 @@ use sscc::Progress;
 use super::basis::Basis;
 use super::dense::symmetric_eigen;
 use super::space::Space;
-use super::tall::{Random, inner};
+use super::tall_matrix::{Random, inner};
 use crate::ModesError;
 use crate::cancel::check_cancelled;
 use crate::sparse::Cholesky;
 
-/// Columns of a block. An eigenvalue that is repeated as often, or less, is found at once; cubes have threefold ones,
-/// and a wide block makes more of each pass over the factor.
+/// Number of columns of a block. A block finds all copies of an eigenvalue of at most this multiplicity; cubes have
+/// threefold ones. A wide block also reads the factor less often.
 pub(super) const BLOCK: usize = 16;
 
-/// A Ritz value counts when its residual is at most this share of it. The eigenvalue's own error is about the square.
-const CONVERGED: f64 = 1e-10;
+/// Maximum residual of a converged Ritz value, relative to the value. The eigenvalue's own error is about the square.
+const RESIDUAL_TOLERANCE: f64 = 1e-10;
 
-/// Steps for each block of wanted values, before giving up. About 6 are usual.
-const STEPS: usize = 60;
+/// Maximum number of steps per block of wanted values. About 6 are usual.
+const MAX_STEPS_PER_BLOCK: usize = 60;
 
-/// `(K + s M)^-1 M` beside the rigid motions: its eigenvalues are `1 / (lambda + s)`.
-pub(super) struct Inverse<'a> {
+/// The operator `(K + s M)^-1 M` without rigid motions; its eigenvalues are `1 / (lambda + s)`.
+pub(super) struct ShiftInvert<'a> {
     pub space: &'a Space<'a>,
     pub factor: &'a Cholesky,
-    /// An eigenvalue beyond this one ends the search: the body is a mechanism. Rounding in its direction, made large,
-    /// would keep the others from converging.
+    /// An eigenvalue above this bound ends the search, because the body is a mechanism. The operator would amplify
+    /// rounding in its direction, and the others would not converge.
     pub ceiling: f64,
 }
 
 /// Eigenvalues, descending, with M-orthonormal vectors.
-pub(super) struct Ritz {
+pub(super) struct RitzPairs {
     pub values: Vec<f64>,
     pub vectors: Mat<f64>,
 }
 
-impl Inverse<'_> {
-    /// The operator applied to columns of which M times them is given.
-    pub fn apply(&self, mut heavy: Mat<f64>) -> Result<Mat<f64>, ModesError> {
-        self.factor.solve(&mut heavy)?;
-        self.space.deflate(&mut heavy);
-        Ok(heavy)
+impl ShiftInvert<'_> {
+    /// Returns the operator applied to columns x, given `M x`.
+    pub fn apply(&self, mut m_x: Mat<f64>) -> Result<Mat<f64>, ModesError> {
+        self.factor.solve(&mut m_x)?;
+        self.space.deflate(&mut m_x);
+        Ok(m_x)
     }
 }
 
@@ -52,13 +52,13 @@ impl Inverse<'_> {
 /// All coefficients are computed and none is assumed to be 0: the cost is small beside the solves, the basis stays
 /// orthonormal to rounding, and a restart equals a step.
 pub(super) fn largest(
-    operator: &Inverse,
-    known: Ritz,
+    operator: &ShiftInvert,
+    known: RitzPairs,
     wanted: usize,
     random: &mut Random,
     progress: &dyn Progress,
     shown: usize,
-) -> Result<Ritz, ModesError> {
+) -> Result<RitzPairs, ModesError> {
     let space = operator.space;
     let capacity = wanted + BLOCK + wanted.max(6 * BLOCK);
     let mut basis = Basis::new(space.size(), capacity);
@@ -68,40 +68,40 @@ pub(super) fn largest(
     drop(known);
     let mut block = random.matrix(space.size(), BLOCK);
     space.deflate(&mut block);
-    basis.take_out(&mut block);
-    let (mut heavy, _) = space.orthonormalise(&mut block, &basis, random).ok_or(ModesError::OutOfRange)?;
+    basis.project_out(&mut block);
+    let (mut m_x, _) = space.orthonormalise(&mut block, &basis, random).ok_or(ModesError::OutOfRange)?;
     let (mut converged, mut span) = (0, 1.0);
-    for _ in 0..STEPS * (1 + wanted / BLOCK) {
+    for _ in 0..MAX_STEPS_PER_BLOCK * (1 + wanted / BLOCK) {
         check_cancelled(progress)?;
         // The projection is complete on the columns before the block.
         let done = basis.size();
         let size = done + BLOCK;
-        basis.extend(block.as_ref(), heavy.as_ref());
-        let mut next = operator.apply(heavy)?;
-        let coupling = basis.take_out(&mut next);
+        basis.extend(block.as_ref(), m_x.as_ref());
+        let mut next = operator.apply(m_x)?;
+        let coupling = basis.project_out(&mut next);
         extend(&mut projected, &coupling, done);
         let rest;
-        (heavy, rest) = space.orthonormalise(&mut next, &basis, random).ok_or(ModesError::OutOfRange)?;
+        (m_x, rest) = space.orthonormalise(&mut next, &basis, random).ok_or(ModesError::OutOfRange)?;
         block = next;
         let full = size + BLOCK > capacity;
         if size >= wanted {
-            let (values, turn) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
-            let residuals = &rest * turn.as_ref().subrows(done, BLOCK);
+            let (values, rotation) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
+            let residuals = &rest * rotation.as_ref().subrows(done, BLOCK);
             // A Ritz value is a lower bound, so this one is a proof.
             if values[0] >= operator.ceiling {
-                return Ok(Ritz { values, vectors: Mat::zeros(space.size(), 0) });
+                return Ok(RitzPairs { values, vectors: Mat::zeros(space.size(), 0) });
             }
-            let good = |k: &usize| residuals.col(*k).norm_l2() <= CONVERGED * values[*k];
-            let found = (0..wanted).take_while(good).count();
+            let has_converged = |k: &usize| residuals.col(*k).norm_l2() <= RESIDUAL_TOLERANCE * values[*k];
+            let found = (0..wanted).take_while(has_converged).count();
             (converged, span) = (found, values[0] / values[wanted - 1]);
             progress.report(found.min(shown), shown);
             if found == wanted {
-                let vectors = basis.times(turn.as_ref().subcols(0, wanted));
-                return Ok(Ritz { values: values[..wanted].to_vec(), vectors });
+                let vectors = basis.times(rotation.as_ref().subcols(0, wanted));
+                return Ok(RitzPairs { values: values[..wanted].to_vec(), vectors });
             }
             if full {
                 let keep = wanted + BLOCK;
-                basis.turn(turn.as_ref().subcols(0, keep));
+                basis.rotate(rotation.as_ref().subcols(0, keep));
                 projected.fill(0.0);
                 values[..keep].iter().enumerate().for_each(|(k, value)| projected[(k, k)] = *value);
             }
@@ -114,21 +114,21 @@ pub(super) fn largest(
 /// leaves up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
 /// `docs/notes/2026-11-23-lanczos.md`.
 fn unconverged(converged: usize, wanted: usize, span: f64) -> ModesError {
-    let is_rounding = f64::EPSILON * span >= CONVERGED;
+    let is_rounding = f64::EPSILON * span >= RESIDUAL_TOLERANCE;
     ModesError::Unconverged { converged, wanted, ratio: span.sqrt(), is_rounding }
 }
 
 /// Returns a lower bound of the largest eigenvalue, by a few steps of the block power method.
-pub(super) fn roughly_largest(operator: &Inverse, random: &mut Random) -> Result<f64, ModesError> {
+pub(super) fn estimate_largest(operator: &ShiftInvert, random: &mut Random) -> Result<f64, ModesError> {
     let space = operator.space;
-    let nothing = Basis::new(space.size(), 0);
+    let empty = Basis::new(space.size(), 0);
     let mut block = random.matrix(space.size(), BLOCK);
     let mut value = 0.0;
     for _ in 0..3 {
         space.deflate(&mut block);
-        let (heavy, _) = space.orthonormalise(&mut block, &nothing, random).ok_or(ModesError::OutOfRange)?;
-        let next = operator.apply(heavy.clone())?;
-        let projected = inner(heavy.as_ref(), next.as_ref());
+        let (m_x, _) = space.orthonormalise(&mut block, &empty, random).ok_or(ModesError::OutOfRange)?;
+        let next = operator.apply(m_x.clone())?;
+        let projected = inner(m_x.as_ref(), next.as_ref());
         value = descending(projected.as_ref())?.0[0];
         block = next;
     }
@@ -149,7 +149,7 @@ fn extend(projected: &mut Mat<f64>, coupling: &Mat<f64>, done: usize) {
     }
 }
 
-/// Eigenvalues, descending, and their vectors.
+/// Returns the eigenvalues, descending, and their vectors.
 fn descending(matrix: MatRef<f64>) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
     let (mut values, vectors) = symmetric_eigen(matrix)?;
     values.reverse();
@@ -161,13 +161,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounding_is_told_only_where_it_can_be_the_cause() {
-        let hidden = unconverged(175, 258, 1.4e8).to_string();
-        let cause = "175 of 258 vibrations converged: the highest is about 11832 times as fast as the lowest";
-        assert!(hidden.starts_with(cause) && hidden.ends_with("ask for fewer modes"), "{hidden}");
+    fn the_message_names_rounding_only_if_it_can_be_the_cause() {
+        let rounded = unconverged(175, 258, 1.4e8).to_string();
+        let cause = "175 of 258 vibrations converged: the highest frequency is about 11832 times the lowest";
+        assert!(rounded.starts_with(cause) && rounded.ends_with("request fewer modes"), "{rounded}");
         let unknown = unconverged(3, 28, 1e3).to_string();
         assert!(
-            unknown.starts_with("3 of 28 vibrations converged in") && !unknown.contains("round"),
+            unknown.starts_with("3 of 28 vibrations converged within") && !unknown.contains("round"),
             "{unknown}"
         );
     }

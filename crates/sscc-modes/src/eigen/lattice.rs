@@ -1,14 +1,14 @@
-//! Bodies to test on: boxes of trilinear cubes.
+//! Boxes of trilinear cubes, for tests.
 
 use faer::Mat;
 use glam::DVec3;
 
 use super::basis::Basis;
 use super::space::Space;
-use super::tall::Random;
+use super::tall_matrix::Random;
 use crate::sparse::BlockSparse;
 
-/// Poisson's number and Young's modulus.
+/// Poisson's ratio and Young's modulus.
 const NU: f64 = 0.3;
 const YOUNG: f64 = 1.0;
 
@@ -21,17 +21,17 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// A free box of x by y by z nodes.
+    /// Creates a free box of x by y by z nodes.
     pub fn free(x: usize, y: usize, z: usize) -> Self {
         Self::new([x, y, z], |_| false, |_| true)
     }
 
-    /// The box, of which the nodes with x = 0 do not move.
+    /// Creates the box with all nodes at x = 0 fixed.
     pub fn clamped(x: usize, y: usize, z: usize) -> Self {
         Self::new([x, y, z], |p| p[0] == 0, |_| true)
     }
 
-    /// A box of which some nodes are fixed and only some cubes are there (told by their lowest node).
+    /// Creates a box with fixed nodes, and with the cubes whose lowest node is `present`.
     pub fn new(
         nodes: [usize; 3],
         fixed: impl Fn([usize; 3]) -> bool,
@@ -74,9 +74,9 @@ impl Lattice {
             let motion = if k < 3 { axis } else { axis.cross(positions[row / 3]) };
             motion[row % 3]
         });
-        let nothing = Mat::zeros(rigid.nrows(), 0);
-        let space = Space::new(&mass, nothing.as_ref());
-        space.orthonormalise(&mut rigid, &Basis::new(nothing.nrows(), 0), &mut Random(0)).unwrap();
+        let empty = Mat::zeros(rigid.nrows(), 0);
+        let space = Space::new(&mass, empty.as_ref());
+        space.orthonormalise(&mut rigid, &Basis::new(empty.nrows(), 0), &mut Random(0)).unwrap();
         Self { stiffness, mass, positions, rigid }
     }
 }
@@ -114,17 +114,17 @@ fn cube() -> (Element, Element) {
     (k, m)
 }
 
-/// All entries.
+/// Returns the dense matrix.
 pub(crate) fn dense(matrix: &BlockSparse) -> Mat<f64> {
     super::dense::full(matrix)
 }
 
-/// Numbers between -1 and 1.
+/// Returns a matrix of random numbers between -1 and 1.
 pub(crate) fn random_matrix(rows: usize, columns: usize) -> Mat<f64> {
     Random(42).matrix(rows, columns)
 }
 
-/// A symmetric matrix of random numbers; its diagonal, up to `diagonal`, is random, too.
+/// Returns a symmetric matrix of random numbers; those on the diagonal are scaled by `diagonal`.
 pub(crate) fn random_blocks(pattern: &BlockSparse, seed: u64, diagonal: f64) -> BlockSparse {
     let mut matrix = pattern.combined(0.0, pattern, 0.0);
     let mut random = Random(seed);

@@ -6,11 +6,11 @@ pub(crate) mod dense;
 mod lanczos;
 #[cfg(test)]
 pub(crate) mod lattice;
-mod lowest;
+mod lowest_modes;
 mod shift;
 mod space;
-pub(crate) mod tall;
+pub(crate) mod tall_matrix;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use lowest::{Lowest, fix_signs, lowest_modes};
+pub(crate) use lowest_modes::{LowestModes, fix_signs, lowest_modes};

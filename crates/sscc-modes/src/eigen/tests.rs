@@ -5,15 +5,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::{Mat, Side};
 use sscc::{Error, Progress};
 
-use super::lanczos::{Inverse, Ritz, largest};
+use super::lanczos::{RitzPairs, ShiftInvert, largest};
 use super::lattice::{Lattice, dense};
 use super::space::Space;
-use super::tall::Random;
-use super::{Lowest, lowest_modes};
+use super::tall_matrix::Random;
+use super::{LowestModes, lowest_modes};
 use crate::ModesError;
 use crate::sparse::Analysis;
 
-/// All eigenvalues, rigid motions included, ascending, by a solver that shares no code with the crate.
+/// Returns all eigenvalues, rigid motions included, ascending, from a solver that shares no code with the crate.
 pub(crate) fn dense_eigenvalues(body: &Lattice) -> Vec<f64> {
     let lower = dense(&body.mass).llt(Side::Lower).unwrap();
     let inverse = lower.L().to_owned().partial_piv_lu();
@@ -23,11 +23,11 @@ pub(crate) fn dense_eigenvalues(body: &Lattice) -> Vec<f64> {
     whole.self_adjoint_eigenvalues(Side::Lower).unwrap()
 }
 
-fn lowest(body: &Lattice, count: usize) -> Result<Lowest, ModesError> {
+fn lowest(body: &Lattice, count: usize) -> Result<LowestModes, ModesError> {
     lowest_modes(&body.stiffness, &body.mass, &body.positions, body.rigid.as_ref(), count, &())
 }
 
-/// Eigenvalues against the dense ones.
+/// Compares eigenvalues with those of the dense solver.
 fn check(body: &Lattice, count: usize) {
     let found = lowest(body, count).unwrap();
     let rigid = body.rigid.ncols();
@@ -42,19 +42,19 @@ fn check(body: &Lattice, count: usize) {
     check_vectors(body, &found, count);
 }
 
-/// Vectors by their equation and their products.
-fn check_vectors(body: &Lattice, found: &Lowest, count: usize) {
+/// Checks residuals, products and signs of the vectors.
+fn check_vectors(body: &Lattice, found: &LowestModes, count: usize) {
     let rigid = body.rigid.ncols();
     let x = &found.vectors;
     assert_eq!((x.nrows(), x.ncols()), (3 * body.positions.len(), count));
-    let heavy = body.mass.multiply(x.as_ref());
-    let products = x.transpose() * &heavy;
+    let m_x = body.mass.multiply(x.as_ref());
+    let products = x.transpose() * &m_x;
     assert!((products - Mat::<f64>::identity(count, count)).norm_max() < 1e-12);
-    assert!((body.rigid.transpose() * &heavy).norm_max() < 1e-12);
+    assert!((body.rigid.transpose() * &m_x).norm_max() < 1e-12);
     let force = body.stiffness.multiply(x.as_ref());
     for k in 0..count {
-        let residual = force.col(k) - faer::Scale(found.eigenvalues[k]) * heavy.col(k);
-        // Beside rounding of the largest eigenvalue, which is about 10.
+        let residual = force.col(k) - faer::Scale(found.eigenvalues[k]) * m_x.col(k);
+        // The absolute term is rounding of the largest eigenvalue, which is about 10.
         assert!(residual.norm_l2() < 1e-8 * force.col(k).norm_l2() + 1e-13, "{k}: {}", residual.norm_l2());
         let largest = x.col(k).norm_max();
         let first = x.col(k).iter().find(|x| x.abs() >= (1.0 - 1e-8) * largest).unwrap();
@@ -62,7 +62,7 @@ fn check_vectors(body: &Lattice, found: &Lowest, count: usize) {
     }
     assert_eq!(found.shift == 0.0, rigid == 0);
     assert!(found.shift >= 0.0 && found.shift < found.eigenvalues[0]);
-    let mut back = &force + faer::Scale(found.shift) * &heavy;
+    let mut back = &force + faer::Scale(found.shift) * &m_x;
     found.factor.solve(&mut back).unwrap();
     assert!((back - x).norm_max() < 1e-6);
 }
@@ -101,7 +101,7 @@ fn few_and_all_modes() {
     let small = Lattice::free(3, 3, 3);
     check(&small, 75);
     let error = lowest(&small, 76).err();
-    assert_eq!(error, Some(ModesError::TooManyModes { asked: 76, available: 75 }));
+    assert_eq!(error, Some(ModesError::TooManyModes { requested: 76, available: 75 }));
     check(&Lattice::clamped(2, 2, 2), 12);
 }
 
@@ -113,7 +113,7 @@ fn slender_bodies() {
     let mean = wire.stiffness.trace() / wire.mass.trace();
     assert!(found.eigenvalues[0] < 1e-8 * mean && found.shift < found.eigenvalues[0]);
     check_vectors(&wire, &found, 12);
-    // Bending comes in pairs, and as in a slender beam: (4.7300, 7.8532, 10.9956) to the fourth power.
+    // Bending modes come in pairs. Eigenvalues of a slender beam are (4.7300, 7.8532, 10.9956) to the fourth power.
     for k in 0..3 {
         let ratio = found.eigenvalues[2 * k + 1] / found.eigenvalues[0];
         let beam = ([7.8532, 7.8532, 10.9956][k] / 4.7300_f64).powi(4);
@@ -123,8 +123,8 @@ fn slender_bodies() {
 }
 
 #[test]
-fn mechanisms_are_named() {
-    // Two cubes that share an edge, or a vertex, or nothing; a small body and one that is large enough to iterate.
+fn mechanisms_are_counted() {
+    // Two cubes share an edge, a vertex or nothing. The larger scale uses the iteration.
     let cases = [([1, 0, 1], 7), ([1, 1, 1], 9), ([2, 1, 1], 12)];
     for scale in [1, 3] {
         for (apart, wanted) in cases {
@@ -139,7 +139,7 @@ fn mechanisms_are_named() {
             assert_eq!(error, Some(mechanism), "{apart:?}, scale {scale}");
         }
     }
-    // Fixed along an edge: it turns about it. At one vertex: it turns about that. One part is fixed, one flies.
+    // A cube fixed along an edge rotates about it, one fixed at a vertex about that. Of two parts, only one is fixed.
     for nodes in [3, 6] {
         let hinged = Lattice::new([nodes; 3], |p| p[0] == 0 && p[1] == 0, |_| true);
         assert_eq!(lowest(&hinged, 6).err(), Some(ModesError::Mechanism { found: 1, expected: 0 }));
@@ -150,10 +150,10 @@ fn mechanisms_are_named() {
     }
 }
 
-/// Says stop after some reports.
-struct Stop(AtomicUsize);
+/// Cancels after a number of checks.
+struct CancelAfter(AtomicUsize);
 
-impl Progress for Stop {
+impl Progress for CancelAfter {
     fn report(&self, _: usize, _: usize) {}
 
     fn is_cancelled(&self) -> bool {
@@ -162,17 +162,17 @@ impl Progress for Stop {
 }
 
 #[test]
-fn cancelling_is_noticed_between_steps() {
+fn the_iteration_can_be_cancelled() {
     let body = Lattice::free(7, 7, 7);
     for after in [0, 1, 2, 4] {
-        let stop = Stop(AtomicUsize::new(after));
+        let cancel = CancelAfter(AtomicUsize::new(after));
         let found =
-            lowest_modes(&body.stiffness, &body.mass, &body.positions, body.rigid.as_ref(), 60, &stop);
+            lowest_modes(&body.stiffness, &body.mass, &body.positions, body.rigid.as_ref(), 60, &cancel);
         assert_eq!(found.err(), Some(ModesError::Core(Error::Cancelled)));
     }
 }
 
-/// What a first round misses, the next finds: some vectors are hidden from it.
+/// A search that starts from an incomplete set of vectors finds the missing ones.
 #[test]
 fn missed_modes_are_found_beside_known_ones() {
     let body = Lattice::free(7, 7, 7);
@@ -180,9 +180,9 @@ fn missed_modes_are_found_beside_known_ones() {
     let space = Space::new(&body.mass, body.rigid.as_ref());
     let analysis = Analysis::new(&body.stiffness, &body.positions).unwrap();
     let factor = analysis.factor(&body.stiffness.combined(1.0, &body.mass, wanted.shift)).unwrap();
-    let operator = Inverse { space: &space, factor: &factor, ceiling: f64::INFINITY };
+    let operator = ShiftInvert { space: &space, factor: &factor, ceiling: f64::INFINITY };
     let known: Vec<usize> = (0..68).filter(|k| ![0, 5, 30, 31, 59].contains(k)).collect();
-    let known = Ritz {
+    let known = RitzPairs {
         values: known.iter().map(|k| 1.0 / (wanted.eigenvalues[*k] + wanted.shift)).collect(),
         vectors: Mat::from_fn(space.size(), known.len(), |i, j| wanted.vectors[(i, known[j])]),
     };
@@ -193,7 +193,7 @@ fn missed_modes_are_found_beside_known_ones() {
 }
 
 #[test]
-fn the_number_of_threads_does_not_change_a_bit() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let body = Lattice::free(8, 8, 8);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

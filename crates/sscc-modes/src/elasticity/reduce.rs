@@ -24,10 +24,10 @@ const BATCH: usize = 64;
 /// Number of partial sums. Fixed, so that the result is the same for any number of threads.
 const SUMS: usize = 8;
 
-/// The reduced forces `U' f(U q)` of a solid under modes of its vertices (U: one row of modes for each).
+/// Returns the reduced forces `U' f(U q)` of a solid under modes of its vertices.
 ///
 /// # Errors
-/// When it is cancelled, or a coefficient is beyond [`sscc::limits`].
+/// When cancelled, or a coefficient is beyond [`sscc::limits`].
 pub(crate) fn reduced_forces(
     solid: &Solid,
     modes: &Modes,
@@ -103,7 +103,7 @@ fn add_strains(element: &Element, modes: &Modes, strains: &mut Mat<f64>, mut row
     row
 }
 
-/// The root of the elasticity tensor `C`, applied to a strain: the sum of squares is `E : C : E`.
+/// Returns the root of the elasticity tensor `C` applied to a strain: the sum of squares is `E : C : E`.
 fn rooted(material: &Material, strain: DMat3) -> [f64; COMPONENTS] {
     // C is 2 mu on strains without trace, and 2 mu + 3 lambda on the others.
     let shear = (2.0 * material.lame_mu()).sqrt();
@@ -114,7 +114,7 @@ fn rooted(material: &Material, strain: DMat3) -> [f64; COMPONENTS] {
     [shear * x.x + mean, shear * y.y + mean, shear * z.z + mean, off * y.z, off * x.z, off * x.y]
 }
 
-/// The gradient of the energy that half of `gram` (its lower triangle) gives.
+/// Differentiates the energy, half of the quadratic form `gram` (lower triangle).
 fn differentiate(r: usize, gram: &Mat<f64>) -> Result<ReducedForces, ModesError> {
     let pairs = monomials::all(r, 2);
     let at = |i: usize, j: usize| gram[(i.max(j), i.min(j))];

@@ -1,24 +1,24 @@
 //! St. Venant-Kirchhoff forces in the full space.
 //!
 //! With `A` the gradient of the displacement, `F = I + A`, Green's strain is `E = (A + A' + A'A) / 2`, the stress
-//! `S = lambda tr(E) I + 2 mu E`, the energy the integral of `S : E / 2`, and the force on a vertex (the gradient of
-//! the energy; the body pushes back with its negative) the integral of `F S g`, with `g` its shape function's
-//! gradient. Linear in `A` it is linear elasticity; it turns with large rotations, as linear elasticity does not.
+//! `S = lambda tr(E) I + 2 mu E`, and the energy the integral of `S : E / 2`. The force on a vertex is the gradient of
+//! the energy, the integral of `F S g` with the gradient `g` of its shape function; the body exerts its negative. The
+//! part linear in `A` is linear elasticity. Unlike linear elasticity, these forces rotate with the body.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use sscc_solid::{IntegrationPoint, Material, Solid};
 
-/// Pairs for which one thread walks over the elements.
-const PAIRS: usize = 8;
+/// Number of pairs per task; each task visits all elements.
+const PAIRS_PER_TASK: usize = 8;
 
-/// The stress of a symmetric strain.
+/// Returns the stress of a symmetric strain.
 pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
     let trace = strain.x_axis.x + strain.y_axis.y + strain.z_axis.z;
     DMat3::from_diagonal(DVec3::splat(material.lame_lambda() * trace)) + strain * (2.0 * material.lame_mu())
 }
 
-/// The gradient at a point of displacements of its element's corners.
+/// Returns the displacement gradient at a point from the displacements of its element's corners.
 pub(crate) fn gradient(point: &IntegrationPoint, displacements: &[DVec3]) -> DMat3 {
     let mut sum = DMat3::ZERO;
     for (u, g) in displacements.iter().zip(&point.gradients) {
@@ -27,13 +27,13 @@ pub(crate) fn gradient(point: &IntegrationPoint, displacements: &[DVec3]) -> DMa
     sum
 }
 
-/// The symmetric part.
+/// Returns the symmetric part.
 pub(crate) fn symmetric(a: DMat3) -> DMat3 {
     (a + a.transpose()) * 0.5
 }
 
-/// The elastic energy of a displacement of all vertices, and its gradient (one force for each vertex): the oracle of
-/// the reduced polynomial.
+/// Returns the elastic energy of displacements of all vertices, and its gradient (one force for each vertex): an oracle
+/// for the reduced polynomial.
 #[cfg(test)]
 pub(crate) fn energy_and_forces(solid: &Solid, displacements: &[DVec3]) -> (f64, Vec<DVec3>) {
     let (mut energy, mut forces) = (0.0, vec![DVec3::ZERO; solid.vertices().len()]);
@@ -53,14 +53,14 @@ pub(crate) fn energy_and_forces(solid: &Solid, displacements: &[DVec3]) -> (f64,
     (energy, forces)
 }
 
-/// The second derivatives of the forces at rest along pairs of displacements: the Hessian stiffness `H : a b`
-/// (Barbic and James 2005), for each pair one vector for each vertex. Symmetric in `a` and `b`.
+/// Returns the second derivatives of the forces at rest along pairs of displacements: the Hessian stiffness `H : a b`
+/// (Barbic and James 2005), one vector for each vertex and pair. Symmetric in `a` and `b`.
 pub(crate) fn second_derivatives(
     solid: &Solid,
     fields: &[Vec<DVec3>],
     pairs: &[(usize, usize)],
 ) -> Vec<Vec<DVec3>> {
-    let some = |pairs: &[(usize, usize)]| {
+    let of_pairs = |pairs: &[(usize, usize)]| {
         let mut forces = vec![vec![DVec3::ZERO; solid.vertices().len()]; pairs.len()];
         let used = |k: &usize| pairs.iter().any(|(i, j)| i == k || j == k);
         let used: Vec<usize> = (0..fields.len()).filter(used).collect();
@@ -68,7 +68,7 @@ pub(crate) fn second_derivatives(
         let mut at_point = vec![(DMat3::ZERO, DMat3::ZERO); fields.len()];
         for index in 0..solid.element_count() {
             let element = solid.element(index);
-            let mut own = [[DVec3::ZERO; 8]; PAIRS];
+            let mut own = [[DVec3::ZERO; 8]; PAIRS_PER_TASK];
             for k in &used {
                 let corners = at_corners[*k].iter_mut().zip(element.vertices);
                 corners.for_each(|(u, v)| *u = fields[*k][*v as usize]);
@@ -90,8 +90,8 @@ pub(crate) fn second_derivatives(
         }
         forces
     };
-    // Each pair's sums are in the order of the elements, whatever the number of threads.
-    pairs.par_chunks(PAIRS).flat_map_iter(some).collect()
+    // The sums of each pair are in the order of the elements, for any number of threads.
+    pairs.par_chunks(PAIRS_PER_TASK).flat_map_iter(of_pairs).collect()
 }
 
 /// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's corners.

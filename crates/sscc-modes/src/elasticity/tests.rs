@@ -1,4 +1,4 @@
-//! Reduced against full-space forces, and both against the energy.
+//! Reduced forces match forces in the full space, and both match the energy.
 
 use glam::DVec3;
 use sscc::Modes;
@@ -7,7 +7,7 @@ use sscc_solid::{Material, PartialMaterial, Solid};
 use super::reduced_forces;
 use super::stvk::{energy_and_forces, second_derivatives};
 
-/// Pseudo-random numbers between -1 and 1.
+/// Returns a generator of pseudo-random numbers between -1 and 1.
 fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -16,7 +16,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Two cubes and two tetrahedra on top, all a little out of shape, of two materials.
+/// Two cubes with two tetrahedra on top, all slightly distorted, of two materials.
 fn solid() -> Solid {
     let mut next = random(3);
     let mut vertices = Vec::new();
@@ -49,7 +49,7 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 #[test]
-fn reduced_forces_are_the_full_ones() {
+fn reduced_forces_match_the_full_forces() {
     let (solid, mut next) = (solid(), random(1));
     for rank in [1, 2, 5, 9] {
         let entries: Vec<f64> = (0..39 * rank).map(|_| 0.3 * next()).collect();
@@ -112,14 +112,14 @@ fn second_derivatives_are_those_of_the_forces() {
     let mut field =
         || -> Vec<DVec3> { (0..13).map(|_| DVec3::from_array([next(), next(), next()])).collect() };
     let (a, b) = (field(), field());
-    // Forces at h a + h b, less those at h a - h b and so on: 4 h^2 times the mixed derivative, plus h^4.
+    // The mixed difference of forces at +-h a +- h b is 4 h^2 times the mixed derivative, plus O(h^4).
     let h = 1e-3;
     let at = |s: f64, t: f64| {
         let u: Vec<DVec3> = a.iter().zip(&b).map(|(a, b)| *a * (s * h) + *b * (t * h)).collect();
         energy_and_forces(&solid, &u).1
     };
     let [pp, pm, mp, mm] = [at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(-1.0, -1.0)];
-    // Among as many pairs as several threads share.
+    // Enough pairs for several tasks.
     let pairs: Vec<(usize, usize)> = (0..20).map(|k| if k == 17 { (1, 2) } else { (0, k % 3) }).collect();
     let found = &second_derivatives(&solid, &[b.clone(), a, b], &pairs)[17];
     let size = found.iter().fold(0.0_f64, |m, f| m.max(f.length()));
@@ -132,8 +132,8 @@ fn second_derivatives_are_those_of_the_forces() {
 #[test]
 fn rotations_cost_no_energy() {
     let solid = solid();
-    let turn = glam::DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 2.0);
-    let u: Vec<DVec3> = solid.vertices().iter().map(|p| turn * *p - *p + DVec3::splat(7.0)).collect();
+    let rotation = glam::DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 2.0);
+    let u: Vec<DVec3> = solid.vertices().iter().map(|p| rotation * *p - *p + DVec3::splat(7.0)).collect();
     let (energy, forces) = energy_and_forces(&solid, &u);
     assert!(energy < 1e-20);
     assert!(forces.iter().all(|f| f.length() < 1e-10));

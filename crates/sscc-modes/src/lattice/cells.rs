@@ -11,7 +11,7 @@ use crate::cancel::check_cancelled;
 /// Placeholder for no cell.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Samples of a cell.
+/// Number of samples in a cell.
 pub(super) const CELL_SAMPLES: u32 = SAMPLES * SAMPLES * SAMPLES;
 
 /// The cells that the solid touches, x-fastest, and their *elements*: the samples and the triangles of a cell that has
@@ -29,7 +29,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// The cells of a surface (points in units of cells), given the insides of the lines along x.
+    /// Finds the cells of a surface (points in units of cells), given the inside intervals of the lines along x.
     ///
     /// # Errors
     /// When cancelled.
@@ -54,7 +54,7 @@ impl Cells {
 
         let mut keys: Vec<u64> = incidences.chunk_by(|a, b| a.0 == b.0).map(|of| of[0].0).collect();
         let bordered = keys.len();
-        // One line through each row of cells finds those that lie wholly inside.
+        // One line through each row of cells finds the cells that lie wholly inside.
         for interval in along_x.iter().filter(|i| i.line.map(|k| k % SAMPLES) == [0, 0]) {
             let [y, z] = interval.line.map(|k| k / SAMPLES);
             let (from, to) = (interval.enter.0, interval.leave.0);
@@ -80,44 +80,44 @@ impl Cells {
         Ok(Self { keys, next, first, triangles: incidences.into_iter().map(|i| i.1).collect(), element })
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.keys.len()
     }
 
-    /// Number of elements of all cells.
+    /// Returns the number of elements of all cells.
     pub fn elements(&self) -> usize {
         self.first_element(self.len()) as usize
     }
 
-    /// The first element of a cell: its first sample, if it has triangles.
+    /// Returns the first element of a cell: its first sample, if it has triangles.
     pub fn first_element(&self, cell: usize) -> u32 {
         self.element[cell]
     }
 
-    /// The element of a triangle of a cell, counted within the cell.
+    /// Returns the element of a triangle, given by its index within the cell.
     pub fn triangle_element(&self, cell: usize, number: usize) -> u32 {
         self.element[cell] + CELL_SAMPLES + number as u32
     }
 
-    /// The element of a triangle in a cell, if it is there.
+    /// Returns the element of a triangle in a cell, if the triangle meets the cell.
     pub fn find_triangle(&self, cell: usize, triangle: u32) -> Option<u32> {
         let number = self.triangles(cell).binary_search(&triangle).ok()?;
         Some(self.triangle_element(cell, number))
     }
 
-    /// The triangles in a cell, ascending; none in a cell that lies wholly inside.
+    /// Returns the triangles in a cell, ascending; none in a cell that lies wholly inside.
     pub fn triangles(&self, cell: usize) -> &[u32] {
         &self.triangles[self.first[cell] as usize..self.first[cell + 1] as usize]
     }
 
-    /// The place of a cell in this list.
+    /// Returns the index of a cell in this list.
     pub fn find(&self, key: u64) -> Option<usize> {
         self.keys.binary_search(&key).ok()
     }
 }
 
-/// Calls for each cell of a block in which the triangle has a point, by halving the block.
+/// Calls `found` for each cell of a block that the triangle meets, by halving the block.
 fn visit(low: [u32; 3], high: [u32; 3], corners: [DVec3; 3], found: &mut impl FnMut([u32; 3])) {
     if !Block::cells(low, high).enlarged(SLACK).meets_triangle(corners) {
         return;
@@ -140,7 +140,7 @@ fn visit(low: [u32; 3], high: [u32; 3], corners: [DVec3; 3], found: &mut impl Fn
     visit(middle_low, high, corners, found);
 }
 
-/// For each cell the neighbours along the three axes.
+/// Returns the next cell along each axis for each cell.
 fn neighbours(grid: &Grid, keys: &[u64]) -> Vec<[u32; 3]> {
     let steps = [0, 1, 2].map(|axis| {
         let mut unit = [0; 3];
@@ -152,10 +152,10 @@ fn neighbours(grid: &Grid, keys: &[u64]) -> Vec<[u32; 3]> {
         let cell = grid.cell(*key);
         std::array::from_fn(|axis| {
             let wanted = key + steps[axis];
-            // Keys ascend, so each search goes on where the last one ended.
+            // Keys ascend, so each search continues where the last one ended.
             ahead[axis] += keys[ahead[axis]..].iter().take_while(|k| **k < wanted).count();
-            let is_there = cell[axis] + 1 < grid.size[axis] && keys.get(ahead[axis]) == Some(&wanted);
-            if is_there { ahead[axis] as u32 } else { NONE }
+            let exists = cell[axis] + 1 < grid.size[axis] && keys.get(ahead[axis]) == Some(&wanted);
+            if exists { ahead[axis] as u32 } else { NONE }
         })
     };
     keys.iter().map(neighbour).collect()

@@ -24,16 +24,16 @@ pub(super) const OCTANTS: [[u32; 3]; 8] =
 
 /// The copies of all cells, in the order of cells; within a cell in the order of their smallest elements.
 pub(super) struct Copies {
-    /// The copy of each element; meaningless for samples outside.
+    /// Copy of each element; undefined for samples outside.
     pub of_element: Vec<u32>,
-    /// The cell of each copy.
+    /// Cell of each copy.
     pub cell: Vec<u32>,
-    /// The share of each octant that is inside.
+    /// Filled share of each octant.
     pub fill: Vec<[f64; 8]>,
 }
 
 impl Copies {
-    /// Unites what is connected within cells. Points are in units of cells, `inside` is by axes.
+    /// Finds the connected pieces within cells. Points are in units of cells; `inside` has the intervals of each axis.
     ///
     /// # Errors
     /// When cancelled.
@@ -109,10 +109,10 @@ impl Copies {
         Ok(copies)
     }
 
-    /// How much of each octant is inside, by the lengths of lines there.
+    /// Measures the filled share of each octant by the lengths of its lines.
     fn measure(&mut self, grid: &Grid, cells: &Cells, inside: &[Vec<Interval>; 3], weights: &[[f64; 3]]) {
         let mut fill = vec![[0.0; 8]; self.cell.len()];
-        // Lines through an octant, each of half a cell.
+        // Total length of the lines through an octant, each half a cell long.
         let full = f64::from((SAMPLES / 2).pow(2)) * 0.5;
         for axis in 0..3 {
             for_each_piece(grid, cells, axis, &inside[axis], |piece, _| {
@@ -136,7 +136,7 @@ impl Copies {
     }
 }
 
-/// The box of a cell.
+/// Returns the box of a cell.
 pub(super) fn block_of(grid: &Grid, cells: &Cells, cell: usize) -> Block {
     let low = grid.cell(cells.keys[cell]);
     Block::cells(low, low.map(|i| i + 1))
@@ -151,7 +151,7 @@ fn join_patches(
     cell: usize,
     sets: &mut DisjointSets,
 ) {
-    // Less than triangles are given: both triangles at an edge that is found are in the cell's list.
+    // The slack is smaller than that of triangles, so both triangles at an edge in the box are in the cell's list.
     let block = block_of(grid, cells, cell).enlarged(0.5 * SLACK);
     for (number, triangle) in cells.triangles(cell).iter().enumerate() {
         let face = surface.faces[*triangle as usize];
@@ -166,8 +166,8 @@ fn join_patches(
     }
 }
 
-/// How much the lines of each axis count in a cell. Lengths of lines are exact along the line and counted in whole
-/// lines across it: lines that meet the surface steeply know more. The squares of the normal's components.
+/// Returns the weight of the lines of each axis in a cell: the squares of the components of the mean normal. A line is
+/// exact along its axis but samples across it, so lines that meet the surface steeply are more precise.
 fn axis_weights(parts: &[(DVec3, DVec3)]) -> [f64; 3] {
     let mut sum = DVec3::ZERO;
     for (_, area) in parts {

@@ -10,10 +10,10 @@ use sscc::Progress;
 
 use crate::cancel::check_cancelled;
 
-/// Lines through a cell along each direction across them. Even: half of them in each octant.
+/// Number of lines through a cell along each of the other axes. Even, so that each octant has half of them.
 pub(super) const SAMPLES: u32 = 4;
 
-/// Crossings this close together (in cells) may be in the wrong order by rounding.
+/// Distance (in cells) of crossings whose order may be wrong by rounding.
 const TIE: f64 = 1e-9;
 
 /// An end of an interval: coordinate along the line (in cells), and triangle.
@@ -21,16 +21,16 @@ pub(super) type End = (f64, u32);
 
 /// A part of a line inside the solid.
 pub(super) struct Interval {
-    /// The line: counted in samples along the next axis and the one after it.
+    /// Number of the line along the next axis and the one after it, in samples.
     pub line: [u32; 2],
-    /// Where it begins.
+    /// Begin.
     pub enter: End,
-    /// Where it ends.
+    /// End.
     pub leave: End,
 }
 
-/// A line along an axis that passes a triangle: the coordinate along the axis, and whether the triangle's normal points
-/// forward along it. `u`, `v` are coordinates along the next axis and the one after it.
+/// Intersects a line along an axis with a triangle. Returns the coordinate along the axis, and whether the triangle's
+/// normal points forward along it. `u`, `v` are the coordinates of the line along the next axis and the one after it.
 pub(super) fn cross(axis: usize, [u, v]: [f64; 2], corners: [DVec3; 3]) -> Option<(f64, bool)> {
     let flat = corners.map(|p| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] });
     if flat[0] == flat[1] && flat[1] == flat[2] {
@@ -39,8 +39,8 @@ pub(super) fn cross(axis: usize, [u, v]: [f64; 2], corners: [DVec3; 3]) -> Optio
     let sides: [(f64, bool); 3] = std::array::from_fn(|k| {
         let (a, b) = (flat[(k + 1) % 3], flat[(k + 2) % 3]);
         let side = orient2d(a, b, Coord { x: u, y: v });
-        // On the line of the edge: which side has the point moved by (e, e^2)? Any, for an edge that is a
-        // point: the other two edges are opposite then, and their sides differ.
+        // For a point on the line of the edge, the side of the point moved by (e, e^2) counts. For an edge that is a
+        // point any side is valid: the other two edges are then opposite, and their sides differ.
         let left = if side != 0.0 { side > 0.0 } else { (b.y, a.x) < (a.y, b.x) };
         (side.abs(), left)
     });
@@ -50,15 +50,15 @@ pub(super) fn cross(axis: usize, [u, v]: [f64; 2], corners: [DVec3; 3]) -> Optio
     }
     let along = corners.map(|p| p[axis]);
     let total: f64 = sides.iter().map(|side| side.0).sum();
-    // Relative to one corner, for small triangles; weights of one sign.
+    // Relative to one corner, which is more precise for small triangles. All weights have one sign.
     let moved = (1..3).map(|k| sides[k].0 * (along[k] - along[0])).sum::<f64>();
     let at = along[0] + if total > 0.0 { moved / total } else { 0.0 };
-    let least = along.iter().copied().fold(f64::INFINITY, f64::min);
+    let smallest = along.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some((at.clamp(least, largest), forward))
+    Some((at.clamp(smallest, largest), forward))
 }
 
-/// The coordinate of a line or a sample (in cells).
+/// Returns the coordinate of a line or a sample (in cells).
 pub(super) fn sample_at(number: u32) -> f64 {
     (f64::from(number) + 0.5) / f64::from(SAMPLES)
 }
@@ -69,8 +69,8 @@ struct Crossing {
     leaves: bool,
 }
 
-/// The parts inside the solid of all lines along an axis, in order of lines and along them. The triangles of
-/// crossings that do not fit, into the inside from the inside or out of the outside, are added to `odd`.
+/// Returns the inside intervals of all lines along an axis, in the order of lines and along them. Triangles of
+/// inconsistent crossings, which enter the inside from the inside or leave the outside, are added to `odd`.
 ///
 /// # Errors
 /// When cancelled.
@@ -110,8 +110,8 @@ pub(super) fn intervals(
     Ok(inside)
 }
 
-/// The parts of one line with a positive winding number. Between triangles that share a vertex a surface may
-/// be folded over; elsewhere the winding number is 0 or 1, and an order that says otherwise is rounding.
+/// Adds the parts of one line with a positive winding number. The surface may be folded at triangles that share a vertex.
+/// Elsewhere the winding number is 0 or 1, so another order is caused by rounding and corrected.
 fn pair_crossings(line: &mut [Crossing], inside: &mut Vec<Interval>, odd: &mut Vec<u32>) {
     let (mut winding, mut enter) = (0, (0.0, 0));
     for i in 0..line.len() {
@@ -137,7 +137,7 @@ fn span(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
 }
 
-/// The range of u in which a triangle meets a row.
+/// Returns the range of u in which a triangle meets a row.
 fn slice(u: [f64; 3], v: [f64; 3], row: f64) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for k in 0..3 {
@@ -154,9 +154,9 @@ fn slice(u: [f64; 3], v: [f64; 3], row: f64) -> (f64, f64) {
     (low, high)
 }
 
-/// The lines (or samples) between two coordinates in cells, and a hair more.
+/// Returns the lines (or samples) between two coordinates in cells, with a margin for rounding.
 pub(super) fn lines_between((low, high): (f64, f64)) -> std::ops::Range<u32> {
     let scale = f64::from(SAMPLES);
-    // A negative number becomes 0, and nothing between infinities remains nothing.
+    // The casts saturate: negative numbers become 0, and an empty range of infinities stays empty.
     ((low - TIE) * scale + 0.5).floor() as u32..((high + TIE) * scale + 0.5).floor() as u32
 }

@@ -1,4 +1,4 @@
-//! The grid of cubic cells about a surface.
+//! Grid of cubic cells around a surface.
 
 use glam::DVec3;
 
@@ -9,20 +9,20 @@ use crate::ModesError;
 /// and the computation takes seconds.
 pub(super) const DEFAULT_CELLS: f64 = 20_000.0;
 
-/// The most cells that the solid may touch: nodes and links of more need gigabytes.
-const MOST_CELLS: f64 = 5e6;
+/// Maximum number of cells that the solid touches; nodes and links of more need gigabytes.
+const MAX_CELLS: f64 = 5e6;
 
-/// The most cells that the surface may touch. Each has 64 samples and up to 48 pieces of lines.
-const MOST_SURFACE_CELLS: f64 = 1e6;
+/// Maximum number of cells that the surface touches. Each has 64 samples and up to 48 pieces of lines.
+const MAX_SURFACE_CELLS: f64 = 1e6;
 
-/// The grid is longer than the longest side of the surface by this share of a cell.
+/// Excess of the grid's length over the longest side of the surface, in cells.
 const MARGIN: f64 = 0.3;
 
-/// The surface lies this share of a cell off the middle of the grid, a different one along each axis: models
-/// are symmetric and have flat sides, and what lies in a border of cells costs precision.
+/// Offset of the surface from the middle of the grid, in cells, different along each axis. Without it, flat sides and
+/// symmetry planes of models would lie on borders of cells, where the filled shares are less precise.
 const SHIFT: DVec3 = DVec3::new(0.0123, 0.0171, 0.0147);
 
-/// Cells in rows along x, rows in layers along y, layers along z.
+/// Grid of cells: rows along x, layers of rows along y, layers along z.
 pub(super) struct Grid {
     /// Side of a cell (model unit).
     pub spacing: f64,
@@ -35,20 +35,20 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid of that many cells along the longest side of the surface.
+    /// Creates a grid with this number of cells along the longest side of the surface.
     ///
     /// # Errors
-    /// When that is none, or too many.
+    /// When the number is 0 or too large.
     pub fn around(surface: &Surface, cells: Option<usize>) -> Result<Self, ModesError> {
         let longest = surface.extent.max_element();
-        let most = finest(|n| touched(surface, n) <= MOST_CELLS && touched_by_surface(surface, n));
+        let limit = finest(|n| touched(surface, n) <= MAX_CELLS && touched_by_surface(surface, n));
         let along = match cells {
             None => finest(|n| touched(surface, n) <= DEFAULT_CELLS),
-            Some(n) if n >= 1 && n as f64 - MARGIN <= most => n as f64 - MARGIN,
-            Some(cells) => return Err(ModesError::Resolution { cells, most: (most + MARGIN) as usize }),
+            Some(n) if n >= 1 && n as f64 - MARGIN <= limit => n as f64 - MARGIN,
+            Some(cells) => return Err(ModesError::Resolution { cells, max: (limit + MARGIN) as usize }),
         };
         let spacing = longest / along;
-        // Rounding must not make one more of a whole number.
+        // The margin is reduced so that rounding does not add a cell to a whole number of cells.
         let size = (surface.extent / spacing + (MARGIN - 1e-3)).ceil();
         Ok(Self {
             spacing,
@@ -58,42 +58,42 @@ impl Grid {
         })
     }
 
-    /// A position (model unit) in units of cells: cell i lies between i and i + 1.
+    /// Converts a position (model unit) to units of cells: cell i lies between i and i + 1.
     pub fn coordinates(&self, position: DVec3) -> DVec3 {
         (position - self.middle) / self.spacing + self.center
     }
 
-    /// The position (model unit) of a corner of cells.
+    /// Returns the position (model unit) of a corner of cells.
     pub fn position(&self, corner: [u32; 3]) -> DVec3 {
         (DVec3::from_array(corner.map(f64::from)) - self.center) * self.spacing + self.middle
     }
 
-    /// The cell that holds a point (in units of cells).
+    /// Returns the cell that contains a point (in units of cells).
     pub fn cell_of(&self, point: DVec3) -> [u32; 3] {
         std::array::from_fn(|axis| cell_along(point[axis], self.size[axis]))
     }
 
-    /// The number of a cell: x-fastest.
+    /// Returns the number of a cell: x-fastest.
     pub fn key(&self, cell: [u32; 3]) -> u64 {
         let [nx, ny, _] = self.size.map(u64::from);
         let [x, y, z] = cell.map(u64::from);
         (z * ny + y) * nx + x
     }
 
-    /// The cell of a number.
+    /// Returns the cell with a number.
     pub fn cell(&self, key: u64) -> [u32; 3] {
         let [nx, ny, _] = self.size.map(u64::from);
         [key % nx, key / nx % ny, key / (nx * ny)].map(|i| i as u32)
     }
 }
 
-/// The cell along one axis that holds a coordinate.
+/// Returns the cell along one axis that contains a coordinate.
 pub(super) fn cell_along(coordinate: f64, size: u32) -> u32 {
     (coordinate as u32).min(size - 1)
 }
 
-/// About how many cells the solid touches where n cells are as long as its longest side. Steiner's formula
-/// for convex bodies, with factors for cubes: volume, half a layer about the area, and rods thinner than cells.
+/// Estimates the number of cells that the solid touches, with n cells along its longest side. Steiner's formula for
+/// convex bodies, with factors for cubes: volume, half a layer around the area, and rods thinner than cells.
 fn touched(surface: &Surface, n: f64) -> f64 {
     let length = surface.extent.element_sum() / surface.extent.max_element();
     surface.volume * n * n * n + 0.75 * surface.area * n * n + length * n
@@ -101,13 +101,13 @@ fn touched(surface: &Surface, n: f64) -> f64 {
 
 /// Whether the surface touches few enough cells.
 fn touched_by_surface(surface: &Surface, n: f64) -> bool {
-    1.5 * surface.area * n * n <= MOST_SURFACE_CELLS
+    1.5 * surface.area * n * n <= MAX_SURFACE_CELLS
 }
 
-/// The largest number for which the (monotone) condition holds.
+/// Returns the largest number for which a monotone condition holds.
 fn finest(holds: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (0.5, MOST_CELLS);
-    // Enough for a ratio of 1 + 1e-15.
+    let (mut low, mut high) = (0.5, MAX_CELLS);
+    // 100 halvings give a relative error of 1e-15.
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if holds(middle) {

@@ -7,15 +7,15 @@ use super::copies::{Copies, OCTANTS};
 use super::grid::Grid;
 use super::surface::Surface;
 
-/// Each surface vertex is a trilinear mean of the 8 nodes of the cube that it lies in.
+/// Weights of surface vertices: each is a trilinear mean of the 8 nodes of its cube.
 pub(crate) struct Interpolation {
-    /// For each vertex the nodes and their weights, which are positive and have the sum 1. A vertex that no face
-    /// uses has the weights 0: it does not move.
+    /// Nodes and weights of each vertex. Weights are positive and have the sum 1. A vertex without faces has weights 0 and
+    /// does not move.
     pub vertices: Vec<[(u32, f64); 8]>,
 }
 
 impl Interpolation {
-    /// The weights for vertices (in units of cells), in the copy in which their triangles are.
+    /// Computes the weights of vertices (in units of cells), in the copies that contain their triangles.
     pub(super) fn new(
         grid: &Grid,
         cells: &Cells,
@@ -33,7 +33,7 @@ impl Interpolation {
                 }
                 let low = grid.cell_of(points[v]);
                 let element = cells.find(grid.key(low)).and_then(|cell| cells.find_triangle(cell, triangle));
-                // Always found: the triangle has a point there.
+                // The triangle meets this cell, so the element exists.
                 let Some(element) = element else { continue };
                 is_done[v] = true;
                 let cube = nodes[copies.of_element[element as usize] as usize];
@@ -47,7 +47,7 @@ impl Interpolation {
         Self { vertices }
     }
 
-    /// The vertices' values of a field given at the nodes.
+    /// Interpolates a field at the nodes to the vertices.
     pub fn apply(&self, field: &[DVec3]) -> Vec<DVec3> {
         let value = |weights: &[(u32, f64); 8]| {
             weights.iter().fold(DVec3::ZERO, |sum, (node, weight)| sum + *weight * field[*node as usize])

@@ -2,11 +2,10 @@
 //!
 //! The lattice keeps parts separate that are close in space but not along the surface, for example neighbouring coils
 //! of a spring. If a cell of the grid contains several pieces of the solid that are not connected within it, each has
-//! a copy of the cell with its own nodes (Molino, Bao and
-//! Fedkiw 2004, "A virtual node algorithm"; Nesme et al. 2009, "Preserving topology and elasticity for embedded
-//! deformable models"). What is connected is decided by
-//! - lines through the solid, 16 through each cell along each axis: an inside is one piece, however thin, and a gap
-//!   makes two of it, however narrow;
+//! a copy of the cell with its own nodes (Molino, Bao and Fedkiw 2004, "A virtual node algorithm"; Nesme et al. 2009,
+//! "Preserving topology and elasticity for embedded deformable models"). Two rules decide connectivity:
+//! - lines through the solid, 16 through each cell along each axis: an inside interval is one piece, however thin, and
+//!   a gap separates two pieces, however narrow;
 //! - the surface: triangles that share an edge within a cell belong to one piece.
 
 use glam::DVec3;
@@ -45,12 +44,12 @@ const STEPS: usize = 7;
 pub(crate) struct Lattice {
     /// Positions of the nodes (model unit).
     pub vertices: Vec<DVec3>,
-    /// The nodes at the corners 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z) of each cube.
+    /// Nodes at the corners 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z) of each cube.
     pub cubes: Vec<[u32; 8]>,
-    /// For each cube and each of its octants (the one next to corner k) the share that is inside the solid: at
-    /// least 1e-3, so that there is mass and stiffness everywhere.
+    /// Filled share of each octant of each cube (octant k is at corner k): at least 1e-3, so that every octant has mass
+    /// and stiffness.
     pub fill: Vec<[f64; 8]>,
-    /// The side of a cube (model unit).
+    /// Side of a cube (model unit).
     pub spacing: f64,
     /// Interpolation from the nodes to the surface.
     pub interpolation: Interpolation,
@@ -59,12 +58,12 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Cubes about the solid within a closed surface: so many along its longest side, or none for about 20,000
-    /// cubes. They are in the order of cells, x fastest; nodes are in the order of their first use.
+    /// Creates the lattice around the solid within a closed surface, with `cells` cubes along its longest side; None
+    /// gives about 20,000 cubes in all. Cubes are in the order of cells, x fastest, and nodes in the order of first use.
     ///
     /// # Errors
-    /// When the surface is open, not oriented alike, without volume, collides with itself or is in several
-    /// pieces; when the resolution is 0 or needs too much memory; when cancelled.
+    /// When the surface is open, not consistently oriented, without volume, collides with itself or has several pieces;
+    /// when the resolution is 0 or needs too much memory; when cancelled.
     pub fn around(mesh: &TriMesh, cells: Option<usize>, progress: &dyn Progress) -> Result<Self, ModesError> {
         let step = |done: usize| {
             progress.report(done, STEPS);

@@ -12,7 +12,7 @@ use super::pieces::for_each_piece;
 use super::surface::Surface;
 use crate::ModesError;
 
-/// The corners at the face between a cube and the next one along each axis: of the cube, and of the next.
+/// Common corners of a cube and the next one along each axis: the number in the cube, and in the next one.
 const COMMON: [[[u32; 2]; 4]; 3] =
     [[[1, 0], [2, 3], [5, 4], [6, 7]], [[3, 0], [2, 1], [7, 4], [6, 5]], [[4, 0], [5, 1], [6, 2], [7, 3]]];
 
@@ -20,12 +20,13 @@ const COMMON: [[[u32; 2]; 4]; 3] =
 pub(super) struct Nodes {
     /// Positions (model unit).
     pub positions: Vec<DVec3>,
-    /// The nodes at the corners of each copy.
+    /// Nodes at the corners of each copy.
     pub of_copy: Vec<[u32; 8]>,
 }
 
 impl Nodes {
-    /// Copies in neighbouring cells share the corners of their common face where the solid, or its surface, passes it.
+    /// Creates the nodes. Copies in neighbouring cells share the corners of their common face if the solid or its surface
+    /// passes this face.
     ///
     /// # Errors
     /// When the copies are not all connected.
@@ -98,7 +99,7 @@ fn link_along_surface(
     let mut low = grid.cell(cells.keys[cell]);
     let high = low.map(|i| i + 1);
     low[axis] += 1;
-    // More than triangles are given: one that reaches into both cells only by their slack passes here.
+    // The slack is larger than that of triangles, so a triangle that reaches both cells only by their slack passes.
     let face = Block::cells(low, high).enlarged(2.0 * SLACK);
     for (number, triangle) in cells.triangles(cell).iter().enumerate() {
         if let Some(other) = cells.find_triangle(next as usize, *triangle)

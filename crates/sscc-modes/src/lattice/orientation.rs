@@ -5,11 +5,11 @@ use super::disjoint_sets::DisjointSets;
 use super::surface::Surface;
 use crate::ModesError;
 
-/// Looks at the parts of the surface that are connected by edges: at most of a part's crossings with lines, the line
-/// must pass from outside to inside or back. Not at all of them, as triangles that share a vertex may be folded.
+/// Checks each part of the surface that is connected by edges: at most of its crossings, lines must pass from outside to
+/// inside or back. Triangles that share a vertex may be folded, so single crossings may be inconsistent.
 ///
 /// # Errors
-/// For a body within a body, or one that is inside out beside others.
+/// When a part lies within another body, or is inside out.
 pub(super) fn check_orientation(
     surface: &Surface,
     inside: &[Vec<Interval>; 3],

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-/// Boxes are enlarged by this much, so that rounding (1e-10 cells in the largest grids) loses nothing. What is found
-/// too much does no harm: pieces are joined along edges of the surface, never because they are near each other.
+/// Margin of boxes (in cells) that exceeds rounding (1e-10 cells in the largest grids), so that no overlap is missed.
+/// Additional overlaps are harmless, because pieces are joined along edges of the surface, never by proximity.
 pub(super) const SLACK: f64 = 1e-9;
 
-/// A box.
+/// Axis-aligned box.
 #[derive(Clone, Copy)]
 pub(super) struct Block {
     center: DVec3,
@@ -14,17 +14,17 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// The box between two corners.
+    /// Creates the box between two corners.
     pub fn new(low: DVec3, high: DVec3) -> Self {
         Self { center: 0.5 * (low + high), half: 0.5 * (high - low) }
     }
 
-    /// A block of cells, the last ones excluded.
+    /// Creates the box of a block of cells, the last ones excluded.
     pub fn cells(from: [u32; 3], to: [u32; 3]) -> Self {
         Self::new(DVec3::from_array(from.map(f64::from)), DVec3::from_array(to.map(f64::from)))
     }
 
-    /// The same box, larger on all sides.
+    /// Enlarges the box on all sides.
     pub fn enlarged(self, by: f64) -> Self {
         Self { half: self.half + by, ..self }
     }
@@ -56,7 +56,7 @@ impl Block {
         low > reach || high < -reach
     }
 
-    /// The part of a triangle within the box: its centroid and its area vector (along the normal).
+    /// Clips a triangle to the box; returns the centroid and the area vector (along the normal).
     pub fn clip(&self, corners: [DVec3; 3]) -> (DVec3, DVec3) {
         let mut polygon = corners.map(|corner| corner - self.center).to_vec();
         let mut next = Vec::with_capacity(9);

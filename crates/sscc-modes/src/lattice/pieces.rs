@@ -6,21 +6,21 @@ use super::grid::{Grid, cell_along};
 
 /// The part of an interval within one cell.
 pub(super) struct Piece<'a> {
-    /// The axis along which the line goes.
+    /// Axis of the line.
     pub axis: usize,
-    /// Place of the cell in the list.
+    /// Index of the cell.
     pub cell: usize,
     /// Coordinates of its ends along the axis, within the cell: from 0 to 1.
     pub ends: [f64; 2],
-    /// The line among those of the cell.
+    /// Number of the line within the cell.
     pub line: [u32; 2],
-    /// The triangles at its ends, where they are in this cell.
+    /// Triangles at its ends, if the ends are in this cell.
     triangles: [Option<u32>; 2],
     cells: &'a Cells,
 }
 
 impl Piece<'_> {
-    /// The elements of its cell that it passes.
+    /// Returns the elements of its cell that the piece passes.
     pub fn elements(&self) -> impl Iterator<Item = u32> {
         let first = self.cells.first_element(self.cell);
         let mut step = [1, SAMPLES, SAMPLES * SAMPLES];
@@ -35,14 +35,14 @@ impl Piece<'_> {
         samples.chain(self.triangles())
     }
 
-    /// The elements of the triangles at its ends, those in this cell.
+    /// Returns the elements of the triangles at its ends in this cell.
     pub fn triangles(&self) -> impl Iterator<Item = u32> {
         self.triangles.iter().flatten().filter_map(|t| self.cells.find_triangle(self.cell, *t))
     }
 }
 
-/// Calls for each piece of the intervals of an axis; with the piece before it, if that is of the same interval. Of
-/// the lines that pass between cells that lie wholly inside, one stands for all.
+/// Calls `call` with each piece of the intervals of an axis, and with the piece before it in the same interval. Between
+/// cells that lie wholly inside, only one line is reported.
 pub(super) fn for_each_piece(
     grid: &Grid,
     cells: &Cells,
@@ -62,7 +62,7 @@ pub(super) fn for_each_piece(
                 Some(piece) => Some(cells.next[piece.cell][axis]).filter(|c| *c != NONE).map(|c| c as usize),
                 None => cells.find(grid.key(place)),
             };
-            // An end within rounding of a border may lie in a cell that is not touched.
+            // By rounding, an end at a border may lie in a cell that the solid does not touch.
             let Some(cell) = cell else {
                 last = None;
                 continue;
@@ -84,6 +84,6 @@ pub(super) fn for_each_piece(
     }
 }
 
-/// The samples of a cell, as bits.
+/// Set of samples of a cell, as bits.
 pub(super) type SampleSet = u64;
 const _: () = assert!(CELL_SAMPLES == SampleSet::BITS);

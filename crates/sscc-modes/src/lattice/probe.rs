@@ -1,9 +1,9 @@
 //! Additional probes for pieces of a cell that the sample lines have not connected.
 //!
-//! Where a flat side cuts the corner off a cell, or the corner of a cell cuts a little off a thin wall, no line may
-//! meet the patch there, though it belongs to the same piece as the rest of the cell. So from each patch
-//! - segments go to samples of the other pieces: one that meets no triangle joins them;
-//! - if no line has met it, a line goes inward to the other side.
+//! If a flat side cuts off the corner of a cell, or the corner of a cell cuts off part of a thin wall, possibly no sample
+//! line meets the patch there, though it belongs to the same piece as the rest of the cell. From each patch
+//! - segments to samples of the other pieces join the pieces if they meet no triangle;
+//! - a line inward to the opposite side joins both sides, if no sample line met the patch.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -17,22 +17,22 @@ use super::pieces::SampleSet;
 pub(super) struct Probe<'a> {
     /// All cells.
     pub cells: &'a Cells,
-    /// Place of this one in the list.
+    /// Index of this cell.
     pub cell: usize,
-    /// Its corner with the smallest coordinates.
+    /// Corner of the cell with the smallest coordinates.
     pub low: DVec3,
     /// Corners of each of its triangles.
     pub corners: &'a [[DVec3; 3]],
     /// Centroid and area vector of the part of each triangle within the cell.
     pub parts: &'a [(DVec3, DVec3)],
-    /// The samples inside the solid.
+    /// Samples inside the solid.
     pub samples: SampleSet,
-    /// Which elements a line has met.
+    /// Whether a sample line met each element.
     pub pierced: &'a [bool],
 }
 
 impl Probe<'_> {
-    /// Joins what can be seen to be connected.
+    /// Joins pieces that probes show to be connected.
     pub fn join(&self, sets: &mut DisjointSets) {
         let triangles = self.corners.len();
         let element = |i: usize| self.cells.triangle_element(self.cell, i);
@@ -51,7 +51,7 @@ impl Probe<'_> {
         }
     }
 
-    /// Joins a triangle with the samples seen from its middle, inward.
+    /// Joins a triangle with the samples that are visible inward from its centroid.
     fn join_samples(&self, own: usize, sets: &mut DisjointSets) {
         let (start, area) = self.parts[own];
         let first = self.cells.first_element(self.cell);
@@ -62,15 +62,15 @@ impl Probe<'_> {
             }
             let place = [number % SAMPLES, number / SAMPLES % SAMPLES, number / (SAMPLES * SAMPLES)];
             let sample = self.low + DVec3::from_array(place.map(sample_at));
-            let is_seen = (sample - start).dot(area) < 0.0
+            let is_visible = (sample - start).dot(area) < 0.0
                 && (0..self.corners.len()).all(|i| i == own || !blocks(self.corners[i], start, sample));
-            if is_seen {
+            if is_visible {
                 sets.unite(of, first + number);
             }
         }
     }
 
-    /// The triangle at which a line from the middle of a triangle, inward, leaves the solid within the cell.
+    /// Returns the triangle at which a line inward from the centroid of a triangle leaves the solid within the cell.
     fn opposite(&self, own: usize) -> Option<usize> {
         let (start, area) = self.parts[own];
         let axis = area.abs().max_position();
@@ -95,6 +95,6 @@ fn blocks(corners: [DVec3; 3], from: DVec3, to: DVec3) -> bool {
     if orient3d(a, b, c, p) * orient3d(a, b, c, q) > 0.0 {
         return false;
     }
-    let turns = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
-    turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0)
+    let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }

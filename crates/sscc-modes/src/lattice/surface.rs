@@ -7,16 +7,16 @@ use sscc::{ContactFilter, Method, Modes, Neighbours, Progress, Query, ReducedMod
 
 use crate::ModesError;
 
-/// A closed surface, oriented outward, and its measures.
+/// Closed surface, oriented outward, and its measures.
 pub(super) struct Surface {
-    /// The faces of the mesh in its order, all turned over where the mesh is oriented inward.
+    /// Faces of the mesh in its order, all reversed if the mesh is oriented inward.
     pub faces: Vec<[u32; 3]>,
-    /// For each face and each of its edges (from corner k to k + 1) the next face at this edge. The faces
-    /// at an edge are a ring, nearly always of two.
+    /// Next face at each edge of each face (from corner k to k + 1). The faces at an edge form a ring, nearly always of
+    /// two.
     pub across: Vec<[u32; 3]>,
-    /// Whether it is closed only when vertices of equal position are one: files may split them along seams.
+    /// Whether the surface is closed only with vertices of equal position welded; files may split them along seams.
     pub is_split: bool,
-    /// The middle of the bounding box (model unit). Vertices that no face uses do not count.
+    /// Middle of the bounding box (model unit), without unused vertices.
     pub middle: DVec3,
     /// Sides of the bounding box (model unit).
     pub extent: DVec3,
@@ -27,8 +27,10 @@ pub(super) struct Surface {
 }
 
 impl Surface {
+    /// Checks and measures the surface of a mesh.
+    ///
     /// # Errors
-    /// When the surface is open, not oriented alike, or without volume.
+    /// When the surface is open, not consistently oriented, or without volume.
     pub fn new(mesh: &TriMesh) -> Result<Self, ModesError> {
         let (across, is_split) = match pair_edges(mesh.faces()) {
             Ok(across) => (across, false),
@@ -39,14 +41,14 @@ impl Surface {
         let low = used().fold(DVec3::INFINITY, DVec3::min);
         let extent = used().fold(DVec3::NEG_INFINITY, DVec3::max) - low;
         let (middle, longest) = (low + 0.5 * extent, extent.max_element());
-        // Twice the area vectors and six times the volume, in the unit of the longest side.
+        // Area and volume in the unit of the longest side.
         let (mut volume, mut area) = (0.0, 0.0);
         for face in mesh.faces() {
             let [a, b, c] = face.map(|v| (p[v as usize] - middle) / longest);
             volume += a.dot(b.cross(c)) / 6.0;
             area += (b - a).cross(c - a).length() / 2.0;
         }
-        // What rounding makes of a flat surface.
+        // Volume of a flat surface by rounding.
         let noise = f64::EPSILON * area;
         if extent.min_element() <= 0.0 || volume.is_nan() || volume.abs() <= noise {
             return Err(ModesError::NoVolume);
@@ -61,7 +63,7 @@ impl Surface {
     }
 }
 
-/// The ring of faces at each edge.
+/// Returns the next face at each edge of each face.
 fn pair_edges(faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, ModesError> {
     let mut edges = Vec::with_capacity(3 * faces.len());
     for (number, face) in (0_u32..).zip(faces) {
@@ -75,7 +77,7 @@ fn pair_edges(faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, ModesError> {
     for ring in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let (from, to, ..) = ring[0];
         let forward = ring.iter().filter(|edge| edge.4).count();
-        // A face that repeats a vertex has an edge from there to there: nothing to close.
+        // A face that repeats a vertex has an edge of length 0, which is closed.
         if from != to && 2 * forward != ring.len() {
             return Err(ModesError::OpenEdge { from, to, forward, backward: ring.len() - forward });
         }
@@ -86,23 +88,23 @@ fn pair_edges(faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, ModesError> {
     Ok(across)
 }
 
-/// The faces over the first vertex of each position.
+/// Returns the faces with each vertex replaced by the first vertex of its position.
 fn welded(mesh: &TriMesh) -> Vec<[u32; 3]> {
     let mut first = HashMap::new();
     let classes: Vec<u32> = (0_u32..)
         .zip(mesh.rest_positions())
-        // 0 + -0 is 0.
+        // Adding 0 maps -0 to 0.
         .map(|(v, p)| *first.entry((*p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(v))
         .collect();
     mesh.faces().iter().map(|face| face.map(|v| classes[v as usize])).collect()
 }
 
-/// Whether triangles without a common vertex collide at rest.
+/// Checks that triangles without a common vertex do not collide at rest.
 ///
 /// # Errors
-/// [`ModesError::CollidesAtRest`] if they do; when cancelled.
+/// [`ModesError::CollidesAtRest`] if two collide; when cancelled.
 pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress) -> Result<(), ModesError> {
-    // A model needs a mode; any mode serves at q = 0.
+    // A model needs a mode; any mode is valid at q = 0.
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
     let model = ReducedModel::new(mesh.clone(), modes)?;
     let filter = ContactFilter::new(Neighbours::Exclude, is_split);

@@ -1,30 +1,30 @@
-//! A tube of varying thickness along an open curve, closed at its ends.
+//! Tube of varying thickness along an open curve, closed at its ends.
 
 use glam::DVec3;
 use sscc::TriMesh;
 
 use super::tube::{band, frame, unit_circle};
 
-/// Steps for each ring when lengths along the tube are added up.
+/// Steps per ring for the length of the tube.
 const LENGTH_STEPS: usize = 16;
 
-/// Where the tube is thinner than this share of its thickest place, at the ends, one ring is enough.
-const THIN: f64 = 0.03;
+/// Thickness at the ends, relative to the maximum, below which one ring is sufficient.
+const THIN_SHARE: f64 = 0.03;
 
-/// How a capped tube is cut into triangles.
+/// Tessellation of a capped tube.
 #[derive(Clone, Copy)]
 pub(super) struct CappedTube {
-    /// Number of rings between the two end points. Their distance follows the tube's thickness, so that
-    /// triangles are alike. Every second ring is turned by half a vertex.
+    /// Number of rings between the two end points. Their distance is proportional to the thickness, so that triangles
+    /// are similar. Every second ring is rotated by half a vertex.
     pub rings: usize,
-    /// Vertices of each ring.
+    /// Number of vertices of each ring.
     pub around: usize,
 }
 
 impl CappedTube {
-    /// Sweeps the tube along `curve` (parameter 0 to 1, and a little beyond; smooth and nowhere vertical). `section`
-    /// gives half the width (level) and half the height (square to it) at a share of the curve's length, both 0
-    /// at its ends. Closed, `2 rings around` triangles, oriented outward, genus 0.
+    /// Sweeps the tube along `curve` (parameter 0 to 1, and slightly beyond; smooth and nowhere vertical). `section` returns
+    /// half the width (horizontal) and half the height (perpendicular to it) at a share of the curve's length, both 0 at
+    /// its ends. The mesh is closed, has `2 rings around` triangles, is oriented outward and has genus 0.
     ///
     /// # Panics
     /// When the curve gives a position that is not finite.
@@ -43,7 +43,7 @@ impl CappedTube {
         TriMesh::new(vertices, self.faces()).expect("a tube along a finite curve is a valid mesh")
     }
 
-    /// Bands between the rings, and a fan at either end.
+    /// Returns bands between the rings, and a fan at each end.
     fn faces(self) -> Vec<[u32; 3]> {
         let around = self.around as u32;
         let ring = |i: usize| i as u32 * around;
@@ -55,8 +55,8 @@ impl CappedTube {
         bands.chain(start_fan).chain(end_fan).collect()
     }
 
-    /// Parameter and share of the curve's length for each ring. Rings are evenly spaced in length along the
-    /// surface over thickness.
+    /// Returns parameter and share of the curve's length for each ring. Rings are evenly spaced in length along the surface
+    /// over thickness.
     fn places(self, curve: impl Fn(f64) -> DVec3, section: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let steps = self.rings * LENGTH_STEPS;
         let parameter = |i: usize| i as f64 / steps as f64;
@@ -67,13 +67,13 @@ impl CappedTube {
         let length = lengths[steps];
         let radius = |share: f64| 0.5 * section(share).iter().sum::<f64>();
         let radii: Vec<f64> = lengths.iter().map(|l| radius(l / length)).collect();
-        let thin = THIN * radii.iter().copied().fold(0.0, f64::max);
+        let thin = THIN_SHARE * radii.iter().copied().fold(0.0, f64::max);
 
         let mut rings = vec![0.0]; // the number of rings up to each step, times a constant
         for i in 0..steps {
             let (step, change) = (lengths[i + 1] - lengths[i], radii[i + 1] - radii[i]);
             let middle = 0.5 * (radii[i] + radii[i + 1]);
-            // From the end to where the tube is no longer thin: as much as a ring as wide as a triangle.
+            // A thin end counts as one ring with the width of a triangle.
             let scale = if middle < thin { thin * self.around as f64 / 6.0 } else { middle };
             rings.push(rings[i] + (step * step + change * change).sqrt() / scale);
         }

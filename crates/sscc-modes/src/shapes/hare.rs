@@ -1,6 +1,6 @@
-//! A crouching hare with long ears laid back, in place of the paper's bunny (Table 1: 14,964 triangles).
+//! Crouching hare with long ears laid back, in place of the paper's bunny (Table 1: 14,964 triangles).
 //!
-//! The ears are two upright blades close to each other and to the back: a modest bend brings them together.
+//! The ears are two upright blades close to each other and to the back, so a moderate bend makes them collide.
 
 use std::f64::consts::PI;
 
@@ -11,46 +11,47 @@ use super::implicit::{Implicit, Part, Primitive};
 use super::marching::Lattice;
 use super::remesh::{decimate, relax};
 
-/// Triangles of the hare.
+/// Number of triangles of the hare.
 const FACES: usize = 14_964;
 
-/// Distance of lattice points (metre): 53,296 triangles, enough for collapses to choose from.
+/// Distance of lattice points (metre). It gives 53,296 triangles before decimation.
 const SPACING: f64 = 0.0095;
 
-/// Radius of bends (metre) from which on triangles become smaller: about that of the feet and of the ears' edges.
-const BEND: f64 = 0.015;
+/// Radius of curvature (metre) below which triangles become smaller: about that of the feet and of the ears' edges.
+const BEND_RADIUS: f64 = 0.015;
 
-/// How many times higher than thick the ears are.
-const FLAT: f64 = 1.65;
+/// Ratio of height to thickness of the ears.
+const EAR_FLATTENING: f64 = 1.65;
 
-/// Width of the soft seam between an ear and the rest (metre): narrower than the gaps.
+/// Width of the smooth seam between an ear and the rest (metre), less than the gaps.
 const EAR_BLEND: f64 = 0.025;
 
-/// Rounds of flips and smoothing.
-const ROUNDS: usize = 6;
+/// Number of iterations of flips and smoothing.
+const RELAX_ITERATIONS: usize = 6;
 
-/// The embedded hare: 14,964 triangles, 7,484 vertices, metres. One closed component (a sphere), oriented outward,
-/// free of self-intersections. It looks along x, z is up, its feet stand near z = 0. About 0.64 long.
+/// Returns the hare: 14,964 triangles, 7,484 vertices, in metres. It is one closed component (a sphere), oriented outward,
+/// without self-intersections. It faces along x, z is up, and its feet are near z = 0. Its length is about 0.64.
 ///
-/// The surface is marched out of an implicit solid, then decimated and relaxed. Takes about half a second.
+/// Marching tetrahedra extract the surface of an implicit solid, which is then decimated and relaxed. Takes about half a
+/// second.
 ///
-/// The ears are 0.042 thick at most, 0.028 apart, and 0.025 above the back.
+/// The ears are at most 0.042 thick, 0.028 apart, and 0.025 above the back.
 pub fn hare() -> TriMesh {
     let solid = solid();
     let lattice =
         Lattice { low: DVec3::new(-0.3371, -0.1713, -0.0167), spacing: SPACING, size: [72, 36, 40] };
     let mut surface = lattice.extract(&solid);
-    decimate(&mut surface, &solid, FACES, BEND);
-    relax(&mut surface, &solid, ROUNDS);
+    decimate(&mut surface, &solid, FACES, BEND_RADIUS);
+    relax(&mut surface, &solid, RELAX_ITERATIONS);
     surface.into_mesh().expect("the hare is a valid mesh")
 }
 
-/// The hare's parts, joined softly.
+/// Returns the smooth union of the hare's parts.
 fn solid() -> Implicit {
     Implicit::new([(body(), EAR_BLEND), (ear(1.0), EAR_BLEND), (ear(-1.0), EAR_BLEND)])
 }
 
-/// All but the ears (metre).
+/// Returns all parts but the ears (metre).
 fn body() -> Vec<Part> {
     let v = DVec3::new;
     let egg = |blend, centre, radii, forward| Part {
@@ -85,8 +86,8 @@ fn body() -> Vec<Part> {
     parts
 }
 
-/// One ear (side 1: left, -1: right): a flat, bent chain of limbs from the top of the head back over the
-/// shoulders (metre).
+/// Returns one ear (side 1: left, -1: right): a flat, bent chain of limbs from the top of the head over the shoulders
+/// (metre).
 fn ear(side: f64) -> Vec<Part> {
     const PIECES: usize = 8;
     let thin = DVec3::new(0.0, side, -0.12).normalize();
@@ -94,7 +95,7 @@ fn ear(side: f64) -> Vec<Part> {
         let bow = libm::sin(PI * t);
         DVec3::new(0.208 - 0.350 * t, side * (0.027 + 0.009 * bow), 0.312 - 0.022 * bow - 0.004 * t)
     };
-    // Half the height of the blade.
+    // Half the height of the ear.
     let half_height = |t: f64| {
         let swell = libm::sin(PI * (0.05 + 0.90 * t));
         0.016 + 0.019 * swell * swell
@@ -102,7 +103,7 @@ fn ear(side: f64) -> Vec<Part> {
     let piece = |piece| {
         let [t0, t1] = [piece, piece + 1].map(|k| k as f64 / PIECES as f64);
         let (ends, radii) = ([at(t0), at(t1)], [half_height(t0), half_height(t1)]);
-        Part { primitive: Primitive::Limb { ends, radii, thin, flat: FLAT }, blend: 0.002 }
+        Part { primitive: Primitive::Limb { ends, radii, thin, flat: EAR_FLATTENING }, blend: 0.002 }
     };
     (0..PIECES).map(piece).collect()
 }
@@ -111,8 +112,8 @@ fn ear(side: f64) -> Vec<Part> {
 mod tests {
     use super::*;
 
-    /// An ear's least distance from vertices of the mesh that belong to `others`, `x` metres or more behind the
-    /// root of the ears (nearer to it they join the head).
+    /// Returns the minimum distance of an ear from vertices of `others`, at least `x` metres behind the root of the ears,
+    /// where they join the head.
     fn gap(others: Vec<Part>, x: f64) -> f64 {
         let (left, others) = (Implicit::new([(ear(1.0), EAR_BLEND)]), Implicit::new([(others, EAR_BLEND)]));
         let mesh = hare();
@@ -123,7 +124,7 @@ mod tests {
 
     #[test]
     fn ears_come_close_to_each_other_and_to_the_back() {
-        let thickness = 2.0 * 0.035 / FLAT;
+        let thickness = 2.0 * 0.035 / EAR_FLATTENING;
         let (between, above) = (gap(ear(-1.0), 0.1), gap(body(), 0.1));
         assert!((0.5..1.0).contains(&(between / thickness)), "{between} of {thickness}");
         assert!((0.5..1.0).contains(&(above / thickness)), "{above} of {thickness}");

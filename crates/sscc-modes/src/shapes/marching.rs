@@ -1,37 +1,37 @@
-//! A triangle surface of an implicit solid, by marching through tetrahedra.
+//! Surface of an implicit solid by marching tetrahedra.
 //!
-//! A cubic lattice, each cube cut along its diagonal into six tetrahedra, alike in all cubes: so the cuts of
-//! neighbouring cubes agree, a tetrahedron is cut in at most one triangle or quadrilateral, and the surface is
-//! closed and manifold without any ambiguous case.
+//! Each cube of a lattice is split along its diagonal into six tetrahedra, in the same way for all cubes. The faces of
+//! neighbouring cubes therefore match, the surface cuts a tetrahedron in at most one triangle or quadrilateral, and the
+//! surface is closed and manifold without ambiguous cases.
 
 use glam::DVec3;
 
 use super::implicit::Implicit;
 use super::surface::Surface;
 
-/// The corners of a cube are numbered by bits: 1 for a step along x, 2 along y, 4 along z. A tetrahedron is a
-/// path from corner 0 to corner 7. The first three have positive volume, the others negative.
+/// Tetrahedra of a cube, each a path from corner 0 to corner 7. Bits number the corners: 1 for a step along x, 2 along y,
+/// 4 along z. The first three tetrahedra have positive volume, the others negative.
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 2, 3, 7], [0, 4, 6, 7], [0, 1, 5, 7]];
 
-/// A lattice edge is cut at least this share of its length away from its ends, so that cuts do not coincide.
-const LEAST_SHARE: f64 = 0.1;
+/// Minimum distance of a cut from the ends of a lattice edge, relative to its length, so that cuts do not coincide.
+const MIN_SHARE: f64 = 0.1;
 
 /// Placeholder for no vertex.
 const NONE: u32 = u32::MAX;
 
-/// A lattice of `size` points, `spacing` (model unit) apart, the first one at `low`.
+/// Lattice of `size` points, `spacing` (model unit) apart, the first one at `low`.
 pub(super) struct Lattice {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub low: DVec3,
     /// Distance of neighbouring points (model unit).
     pub spacing: f64,
-    /// Points along each axis.
+    /// Number of points along each axis.
     pub size: [usize; 3],
 }
 
 impl Lattice {
-    /// The surface where the function changes its sign, oriented outward. The solid must lie within the lattice.
+    /// Returns the surface where the function changes its sign, oriented outward. The solid must lie within the lattice.
     pub fn extract(&self, solid: &Implicit) -> Surface {
         let [nx, ny, nz] = self.size;
         let steps = [1, nx, nx * ny];
@@ -44,7 +44,7 @@ impl Lattice {
             cube + (0..3).map(|axis| (bits >> axis & 1) * steps[axis]).sum::<usize>()
         };
 
-        // The vertex on the lattice edge from a point in the direction of bits.
+        // Vertex on the lattice edge from a point in the direction given by bits.
         let mut vertex_of = vec![[NONE; 8]; values.len()];
         let (mut points, mut normals) = (Vec::new(), Vec::new());
         let mut faces = Vec::new();
@@ -59,14 +59,14 @@ impl Lattice {
             }
             for (number, path) in TETRAHEDRA.iter().enumerate() {
                 let mut vertex = |from: usize, to: usize| {
-                    // The bits grow along a path, so the smaller corner comes first.
+                    // Numbers of corners ascend along a path, so the smaller corner comes first.
                     let (from, to) = (from.min(to), from.max(to));
                     let (a, b) = (corner(cube, from), corner(cube, to));
                     let entry = &mut vertex_of[a][to ^ from];
                     if *entry == NONE {
                         *entry = points.len() as u32;
                         let share = values[a] / (values[a] - values[b]);
-                        let cut = point(a).lerp(point(b), share.clamp(LEAST_SHARE, 1.0 - LEAST_SHARE));
+                        let cut = point(a).lerp(point(b), share.clamp(MIN_SHARE, 1.0 - MIN_SHARE));
                         let (on_surface, normal) = solid.project(cut);
                         points.push(on_surface);
                         normals.push(normal);
@@ -74,7 +74,7 @@ impl Lattice {
                     *entry
                 };
                 let positive = number < 3;
-                // Inner corners first.
+                // Corners inside the solid come first.
                 let mut order = [0, 1, 2, 3];
                 order.sort_by_key(|&i| !inside[path[i]]);
                 let [a, b, c, d] = order.map(|i| path[i]);

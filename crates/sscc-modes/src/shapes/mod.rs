@@ -1,4 +1,4 @@
-//! Example shapes, made in code: the same bits on every machine.
+//! Example shapes, computed with the same bits on every machine.
 
 mod capped_tube;
 mod elastic;

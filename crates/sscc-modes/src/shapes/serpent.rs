@@ -1,5 +1,7 @@
-//! A coiled serpent, in place of the paper's dragon (about 77,000 triangles): a long tapering tube in narrowing coils
-//! that nearly touch, so that a modest deformation brings neighbouring ones together in many places.
+//! Coiled serpent, in place of the paper's dragon (about 77,000 triangles).
+//!
+//! The body is a long tapering tube in narrowing coils that nearly touch, so a moderate deformation makes neighbouring
+//! coils collide in many places.
 
 use std::f64::consts::PI;
 
@@ -8,33 +10,33 @@ use sscc::TriMesh;
 
 use super::capped_tube::CappedTube;
 
-/// Rings along the body, and vertices of each: 77,184 triangles, nearly as long as wide.
+/// Number of rings along the body, and of vertices of each: 77,184 triangles of aspect ratio about 1.
 const RINGS: usize = 1206;
 const AROUND: usize = 32;
 
 /// Radius of the body at its thickest (metre).
 const BODY_RADIUS: f64 = 0.06;
 
-/// Distance of the centrelines of neighbouring coils, in body radii: 2 would touch.
+/// Distance of the centrelines of neighbouring coils, in body radii; at 2 they touch.
 const COIL_DISTANCE: f64 = 2.3;
 
-/// Of that distance, the part inward (the rest is upward), in body radii.
+/// Inward part of this distance (the rest is upward), in body radii.
 const COIL_INWARD: f64 = 1.35;
 
-/// Radius of the outermost coil's centreline (metre) where the body is on the ground.
+/// Radius of the centreline of the outermost coil (metre).
 const OUTER_RADIUS: f64 = 0.55;
 
-/// Turns of the coil, and the spline's control points in each.
+/// Number of turns of the coil, and of control points of the spline in each.
 const TURNS: f64 = 4.6;
 const CONTROLS_PER_TURN: f64 = 18.0;
 
-/// How far the body winds in and out (body radii), and how often in a turn. Not a whole number, so that
-/// neighbouring coils wind differently and their gap varies.
+/// Amplitude of the radial oscillation of the body (body radii), and number of periods per turn. The number is not whole,
+/// so that the gap of neighbouring coils varies.
 const WINDING: f64 = 0.13;
 const WINDINGS_PER_TURN: f64 = 3.5;
 
-/// The raised neck and the head after the last coil: control points in metres, relative to the end of the coil;
-/// along it, to its left, upward.
+/// Control points of the raised neck and the head after the last coil (metre), relative to the end of the coil: forward,
+/// left, upward.
 const NECK: [[f64; 3]; 6] = [
     [0.10, 0.00, 0.03],
     [0.20, 0.01, 0.09],
@@ -44,8 +46,7 @@ const NECK: [[f64; 3]; 6] = [
     [0.53, -0.23, 0.19],
 ];
 
-/// Half the width and half the height (body radii) at some shares of the length: tail, body, neck, head. Smooth
-/// steps between.
+/// Profile of the body: share of the length, half the width and half the height (body radii), with smooth steps between.
 const PROFILE: [[f64; 3]; 7] = [
     [0.0, 0.10, 0.10],
     [0.14, 0.85, 0.85],
@@ -56,22 +57,22 @@ const PROFILE: [[f64; 3]; 7] = [
     [1.0, 0.50, 0.40],
 ];
 
-/// The shares of the length over which the tail and the snout are rounded.
+/// Shares of the length over which the tail and the snout are rounded.
 const TAIL_END: f64 = 0.002;
 const SNOUT_END: f64 = 0.006;
 
-/// The embedded serpent: 77,184 triangles, 38,594 vertices, metres. One closed component (a sphere), oriented
-/// outward, free of self-intersections. The coils wind about the z axis, upward and inward from the
-/// tail to the head. About 1.1 wide and 0.75 high.
+/// Returns the serpent: 77,184 triangles, 38,594 vertices, in metres. It is one closed component (a sphere), oriented
+/// outward, without self-intersections. The coils wind about the z axis, upward and inward from the tail to the head. It
+/// is about 1.1 wide and 0.75 high.
 ///
-/// Neighbouring coils are about 0.17 to 0.5 of the body's radius apart; in 19 places the gap has a minimum of
-/// less than 0.3. Takes some ten milliseconds.
+/// The gap between neighbouring coils is about 0.17 to 0.5 body radii, with 19 local minima below 0.3. Takes about ten
+/// milliseconds.
 pub fn serpent() -> TriMesh {
     let controls = controls();
     CappedTube { rings: RINGS, around: AROUND }.along(|t| spline(&controls, t), section)
 }
 
-/// Half the width and half the height of the body (metre) at a share of its length from the tail.
+/// Returns half the width and half the height of the body (metre) at a share of its length from the tail.
 fn section(share: f64) -> [f64; 2] {
     let i = PROFILE.partition_point(|knot| knot[0] <= share).clamp(1, PROFILE.len() - 1);
     let ([from, w0, h0], [to, w1, h1]) = (PROFILE[i - 1], PROFILE[i]);
@@ -81,13 +82,13 @@ fn section(share: f64) -> [f64; 2] {
     [w0 + (w1 - w0) * smooth, h0 + (h1 - h0) * smooth].map(|size| BODY_RADIUS * size * round)
 }
 
-/// A quarter of a circle: from 0 at 0 up to 1 at 1, then 1.
+/// Returns a quarter of a circle, from 0 at 0 to 1 at 1, then 1.
 fn round_end(x: f64) -> f64 {
     let rest = 1.0 - x.clamp(0.0, 1.0);
     (1.0 - rest * rest).sqrt()
 }
 
-/// Control points of the centreline, from the tail to the snout.
+/// Returns the control points of the centreline, from the tail to the snout.
 fn controls() -> Vec<DVec3> {
     let upward = (COIL_DISTANCE * COIL_DISTANCE - COIL_INWARD * COIL_INWARD).sqrt();
     let coil = |i: f64| {
@@ -107,7 +108,7 @@ fn controls() -> Vec<DVec3> {
     points
 }
 
-/// The uniform cubic B-spline of control points (two continuous derivatives), `t` from 0 to 1.
+/// Evaluates the uniform cubic B-spline of control points (two continuous derivatives), `t` from 0 to 1.
 fn spline(controls: &[DVec3], t: f64) -> DVec3 {
     let pieces = controls.len() - 3;
     let at = t * pieces as f64;

@@ -1,9 +1,9 @@
-//! A double-helix spring, in place of the paper's (Table 1: 16,000 triangles; Figure 13).
+//! Double-helix spring, in place of the paper's (Table 1: 16,000 triangles; Figure 13).
 //!
-//! One closed tube. It runs up as one helix and down as a second one, half a turn behind, so that the
-//! strands alternate along the axis. At either end the two strands swing inward and join in an S across
-//! the axis. In cylinder coordinates the centreline is `(rho, phi, h phi)` where, along the loop, phi is a
-//! triangle wave with rounded peaks and rho a square wave with smooth steps at those peaks.
+//! The spring is one closed tube. It goes up as one helix and down as a second one, half a turn behind, so the strands
+//! alternate along the axis. At each end the two strands bend inward and join in an S across the axis. In cylindrical
+//! coordinates the centreline is `(rho, phi, h phi)`, where phi is a triangle wave with rounded peaks and rho a square
+//! wave with smooth steps at those peaks.
 
 use std::f64::consts::PI;
 
@@ -15,34 +15,34 @@ use super::tube::Tube;
 /// Radius of the tube (metre).
 const TUBE_RADIUS: f64 = 0.03;
 
-/// Radius of the helices: the tube's centreline is this far from the axis (metre).
+/// Radius of the helices: distance of the tube's centreline from the axis (metre).
 const COIL_RADIUS: f64 = 0.18;
 
-/// Rise of a strand in one turn (metre). The other strand passes half way, so neighbouring coils are 0.091
-/// apart along the axis and 0.0898 square to the strands: the gap is 0.0298, about one tube radius.
+/// Rise of a strand in one turn (metre). The other strand is half way between, so neighbouring coils are 0.091 apart along
+/// the axis and 0.0898 perpendicular to the strands. The gap is 0.0298, about one tube radius.
 const PITCH: f64 = 0.182;
 
-/// Turns of each strand, joins included.
+/// Number of turns of each strand, joins included.
 const TURNS: f64 = 5.0;
 
-/// The angle (radian) over which a strand swings from the coil to the axis: long enough that the S
-/// bends with a radius of more than two tube radii everywhere.
+/// Angle (radian) over which a strand bends from the coil to the axis. The radius of curvature of the S is more than two
+/// tube radii everywhere.
 const JOIN_ANGLE: f64 = 0.6 * PI;
 
-/// Rings along the tube, and vertices of each: 16,000 triangles, about twice as long as wide.
+/// Number of rings along the tube, and of vertices of each: 16,000 triangles of aspect ratio about 2.
 const RINGS: usize = 500;
 const AROUND: usize = 16;
 
-/// The embedded spring: 16,000 triangles, 8,000 vertices, metres. One closed component (a torus),
-/// oriented outward, free of self-intersections, its axis along z and its centre at the origin.
+/// Returns the spring: 16,000 triangles, 8,000 vertices, in metres. It is one closed component (a torus), oriented
+/// outward, without self-intersections. Its axis is along z and its centre at the origin.
 ///
-/// About 0.42 wide and 0.93 high. Neighbouring coils are about one tube radius (0.03) apart, so a
-/// modest deformation brings them together. Takes a millisecond or so.
+/// The spring is about 0.42 wide and 0.93 high. Neighbouring coils are about one tube radius (0.03) apart, so a moderate
+/// deformation makes them collide. Takes about a millisecond.
 pub fn spring() -> TriMesh {
     spring_of(RINGS, AROUND)
 }
 
-/// The same shape in other numbers of triangles, `2 rings around`: the [`spring`] has 500 rings of 16 vertices.
+/// Returns the same shape with `2 rings around` triangles; the [`spring`] has 500 rings of 16 vertices.
 ///
 /// # Panics
 /// When there are fewer than 4 rings or an odd number, or fewer than 3 vertices in each.
@@ -50,12 +50,12 @@ pub fn spring_of(rings: usize, around: usize) -> TriMesh {
     Tube { radius: TUBE_RADIUS, rings, around }.along(centreline)
 }
 
-/// The centreline: `t` from 0 (bottom, on the axis) up to 1/2 (top, on the axis) and down to 1.
+/// Returns the centreline: `t` from 0 (bottom, on the axis) up to 1/2 (top, on the axis) and down to 1.
 fn centreline(t: f64) -> DVec3 {
     let half = PI * TURNS; // phi goes from -half to half and back
     let from_top = 4.0 * half * (t - 0.5); // negative on the way up
     let (sign, down) = (if from_top < 0.0 { 1.0 } else { -1.0 }, from_top.abs());
-    // Both ends look the same: measure from the nearer one. Beyond the bottom the strand is the other one.
+    // Both ends are congruent, so the nearer one is the reference. Beyond the bottom, the other strand begins.
     let from_bottom = 2.0 * half - down;
     let from_end = down.min(from_bottom);
     let phi_from_end = half - rounded(from_end);
@@ -64,13 +64,13 @@ fn centreline(t: f64) -> DVec3 {
     DVec3::new(rho * libm::cos(phi), rho * libm::sin(phi), PITCH / (2.0 * PI) * phi)
 }
 
-/// `|x|`, made round within the join angle (two continuous derivatives).
+/// Returns `|x|`, rounded within the join angle (two continuous derivatives).
 fn rounded(x: f64) -> f64 {
     let s = x / JOIN_ANGLE;
     if s.abs() >= 1.0 { x.abs() } else { JOIN_ANGLE * (3.0 + s * s * (6.0 - s * s)) / 8.0 }
 }
 
-/// The sign of x, made a smooth odd step within the join angle (two continuous derivatives).
+/// Returns the sign of x, as a smooth odd step within the join angle (two continuous derivatives).
 fn step(x: f64) -> f64 {
     let s = (x / JOIN_ANGLE).clamp(-1.0, 1.0);
     s * (15.0 + s * s * (3.0 * s * s - 10.0)) / 8.0
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tube_never_bends_onto_itself() {
+    fn the_radius_of_curvature_exceeds_two_tube_radii() {
         let p = samples();
         for i in 0..SAMPLES {
             let [a, b, c] = [0, 1, 2].map(|k| p[(i + k) % SAMPLES]);
@@ -101,13 +101,13 @@ mod tests {
     #[test]
     fn coils_are_one_tube_radius_apart() {
         let p = samples();
-        // Half a turn along the strand leads to the other side of the coil, nearer than that is the same coil.
+        // Points within half a turn along the strand belong to the same coil.
         let same_coil = SAMPLES / (4.0 * TURNS) as usize;
         for (i, a) in p.iter().enumerate() {
-            let apart = (same_coil..=SAMPLES - same_coil)
+            let distance = (same_coil..=SAMPLES - same_coil)
                 .map(|k| (*a - p[(i + k) % SAMPLES]).length())
                 .fold(f64::INFINITY, f64::min);
-            let gap = (apart - 2.0 * TUBE_RADIUS) / TUBE_RADIUS;
+            let gap = (distance - 2.0 * TUBE_RADIUS) / TUBE_RADIUS;
             assert!(gap > 0.98, "sample {i}: {gap}");
             let in_a_join = i % (SAMPLES / 2) < same_coil || i % (SAMPLES / 2) > SAMPLES / 2 - same_coil;
             assert!(in_a_join || gap < 1.02, "sample {i}: {gap}");
@@ -115,14 +115,14 @@ mod tests {
     }
 
     #[test]
-    fn both_ends_and_both_strands_are_alike() {
+    fn both_ends_and_both_strands_are_congruent() {
         for i in 0..100 {
             let t = i as f64 / 200.0;
             let a = centreline(t);
-            // Half a turn about the axis takes one strand to the other,
+            // A rotation by half a turn about the axis maps one strand to the other.
             let b = centreline(1.0 - t);
             assert!((a - DVec3::new(-b.x, -b.y, b.z)).length() < 1e-13, "{t}");
-            // and half a turn about x takes one end to the other.
+            // A rotation by half a turn about x maps one end to the other.
             let c = centreline(0.5 - t);
             assert!((a - DVec3::new(c.x, -c.y, -c.z)).length() < 1e-13, "{t}");
         }

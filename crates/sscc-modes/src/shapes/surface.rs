@@ -1,4 +1,4 @@
-//! A closed triangle surface whose edges can be collapsed and flipped.
+//! Closed triangle surface with edge collapses and flips.
 
 use glam::DVec3;
 use sscc::TriMesh;
@@ -10,13 +10,13 @@ pub(super) struct Surface {
     /// Outward unit normals of the vertices.
     pub normals: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// For each vertex, its faces.
+    /// Faces of each vertex.
     around: Vec<Vec<u32>>,
     count: usize,
 }
 
 impl Surface {
-    /// Takes positions, outward unit normals, and the faces of a closed manifold.
+    /// Creates a surface from positions, outward unit normals, and the faces of a closed manifold.
     pub fn new(points: Vec<DVec3>, normals: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
         let mut around = vec![Vec::new(); points.len()];
         for (face, corners) in faces.iter().enumerate() {
@@ -27,40 +27,40 @@ impl Surface {
         Self { points, normals, count: faces.len(), faces, around }
     }
 
-    /// Number of faces.
+    /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.count
     }
 
-    /// The faces of a vertex (corners).
+    /// Returns the corners of the faces of a vertex.
     pub fn faces_of(&self, v: u32) -> impl Iterator<Item = [u32; 3]> {
         self.around[v as usize].iter().map(|f| self.faces[*f as usize])
     }
 
-    /// The neighbours of a vertex, each once: in every face the corner after v.
+    /// Returns the neighbours of a vertex, each once: in every face the corner after v.
     pub fn neighbours(&self, v: u32) -> impl Iterator<Item = u32> {
-        self.faces_of(v).map(move |f| after(f, v))
+        self.faces_of(v).map(move |f| next_corner(f, v))
     }
 
-    /// Number of neighbours; 0 for a vertex that is no longer used.
+    /// Returns the number of neighbours; 0 for a removed vertex.
     pub fn valence(&self, v: u32) -> usize {
         self.around[v as usize].len()
     }
 
-    /// The face to the left of the edge from a to b: its third corner.
+    /// Returns the third corner of the face to the left of the edge from a to b.
     pub fn opposite(&self, a: u32, b: u32) -> Option<u32> {
-        self.faces_of(a).find(|f| after(*f, a) == b).map(|f| after(f, b))
+        self.faces_of(a).find(|f| next_corner(*f, a) == b).map(|f| next_corner(f, b))
     }
 
-    /// Whether collapsing the edge keeps the surface a manifold of the same kind: its ends have no common
-    /// neighbours but the two corners opposite (the link condition), and those keep at least three neighbours.
+    /// Whether collapsing an edge preserves the manifold topology: its ends have no common neighbours but the two opposite
+    /// corners (the link condition), and those keep at least three neighbours.
     pub fn may_collapse(&self, a: u32, b: u32) -> bool {
         let mut common = self.neighbours(a).filter(|v| self.neighbours(b).any(|w| w == *v));
         let two = common.by_ref().take(2).all(|v| self.valence(v) > 3);
         two && common.next().is_none()
     }
 
-    /// Moves b into a. Two faces vanish.
+    /// Merges b into a, which removes two faces.
     pub fn collapse(&mut self, a: u32, b: u32) {
         for face in std::mem::take(&mut self.around[b as usize]) {
             let corners = self.faces[face as usize];
@@ -76,10 +76,10 @@ impl Surface {
         }
     }
 
-    /// Replaces the edge from a to b by the one between the corners opposite, c (left) and d (right).
+    /// Replaces the edge from a to b by the edge between the opposite corners c (left) and d (right).
     pub fn flip(&mut self, [a, b]: [u32; 2], [c, d]: [u32; 2]) {
-        let left = self.around[a as usize].iter().copied().find(|f| after_in(self.faces[*f as usize], a, b));
-        let right = self.around[a as usize].iter().copied().find(|f| after_in(self.faces[*f as usize], b, a));
+        let left = self.around[a as usize].iter().copied().find(|f| has_edge(self.faces[*f as usize], a, b));
+        let right = self.around[a as usize].iter().copied().find(|f| has_edge(self.faces[*f as usize], b, a));
         let (Some(left), Some(right)) = (left, right) else { return };
         self.faces[left as usize] = [a, d, c];
         self.faces[right as usize] = [b, c, d];
@@ -89,14 +89,14 @@ impl Surface {
         self.around[d as usize].push(left);
     }
 
-    /// The edges, each once (the smaller end first), in the order of their vertices.
+    /// Returns the edges, each once (the smaller end first), in the order of their vertices.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         (0..self.points.len() as u32)
             .flat_map(|a| self.neighbours(a).filter(move |b| a < *b).map(move |b| [a, b]))
             .collect()
     }
 
-    /// The mesh, without the vertices that no face uses; `None` when that is no valid mesh.
+    /// Returns the mesh without unused vertices; None if it is not a valid mesh.
     pub fn into_mesh(self) -> Option<TriMesh> {
         let mut number = vec![0; self.points.len()];
         let mut positions = Vec::new();
@@ -106,15 +106,15 @@ impl Surface {
                 positions.push(*point);
             }
         }
-        let alive =
+        let is_used =
             |(f, corners): &(usize, &[u32; 3])| self.around[corners[0] as usize].contains(&(*f as u32));
-        let faces = self.faces.iter().enumerate().filter(alive);
+        let faces = self.faces.iter().enumerate().filter(is_used);
         TriMesh::new(positions, faces.map(|(_, c)| c.map(|v| number[v as usize])).collect()).ok()
     }
 }
 
-/// The corner after v.
-fn after([a, b, c]: [u32; 3], v: u32) -> u32 {
+/// Returns the corner after v.
+fn next_corner([a, b, c]: [u32; 3], v: u32) -> u32 {
     if a == v {
         b
     } else if b == v {
@@ -125,6 +125,6 @@ fn after([a, b, c]: [u32; 3], v: u32) -> u32 {
 }
 
 /// Whether a face has the edge from a to b.
-fn after_in(face: [u32; 3], a: u32, b: u32) -> bool {
-    face.contains(&a) && after(face, a) == b
+fn has_edge(face: [u32; 3], a: u32, b: u32) -> bool {
+    face.contains(&a) && next_corner(face, a) == b
 }

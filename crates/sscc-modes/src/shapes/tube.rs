@@ -1,33 +1,33 @@
-//! A round tube along a closed curve.
+//! Round tube along a closed curve.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-/// Half the parameter step of the central difference that gives the direction of a curve. Its error
-/// (about 1e-7) only tilts the rings; no proof depends on it.
+/// Half the parameter step of the central difference for the direction of a curve. Its error (about 1e-7) only tilts the
+/// rings; no proof depends on it.
 const HALF_STEP: f64 = 1e-5;
 
-/// Steps for each ring when the arc length of the curve is added up.
+/// Steps per ring for the arc length of the curve.
 const LENGTH_STEPS: usize = 16;
 
-/// How a tube is cut into triangles.
+/// Tessellation of a tube.
 #[derive(Clone, Copy)]
 pub(super) struct Tube {
     /// Radius on which the vertices lie.
     pub radius: f64,
-    /// Number of rings along the curve, evenly spaced by arc length. Must be even: every second ring is
-    /// turned by half a vertex, so that triangles are nearly isosceles and the last ring meets the first.
+    /// Number of rings along the curve, evenly spaced by arc length. It must be even: every second ring is rotated by half
+    /// a vertex, so that triangles are nearly isosceles and the last ring matches the first.
     pub rings: usize,
-    /// Vertices of each ring.
+    /// Number of vertices of each ring.
     pub around: usize,
 }
 
 impl Tube {
-    /// Sweeps the tube along `curve` (parameter 0 to 1; the curve must be closed, smooth and nowhere
-    /// vertical, since rings are aligned by the z axis: so the seam matches without twist). Closed,
-    /// `2 rings around` triangles, oriented outward, genus 1.
+    /// Sweeps the tube along `curve` (parameter 0 to 1). The curve must be closed, smooth and nowhere vertical, because the
+    /// z axis aligns the rings, which makes the seam match without twist. The mesh is closed, has `2 rings around`
+    /// triangles, is oriented outward and has genus 1.
     ///
     /// # Panics
     /// When the curve gives a position that is not finite.
@@ -46,28 +46,28 @@ impl Tube {
         TriMesh::new(vertices, self.faces()).expect("a tube along a finite curve is a valid mesh")
     }
 
-    /// Two triangles for each vertex: with the next vertex of its ring, and with the next ring.
+    /// Returns two triangles for each vertex: with the next vertex of its ring, and with the next ring.
     fn faces(self) -> Vec<[u32; 3]> {
         let ring = |ring: usize| (ring % self.rings * self.around) as u32;
         (0..self.rings).flat_map(|i| band(self.around, i, ring(i), ring(i + 1))).collect()
     }
 }
 
-/// Cosines and sines of `2 around` even angles: the even ones for even rings, the odd ones for odd rings.
+/// Returns cosines and sines of `2 around` evenly spaced angles: even ones for even rings, odd ones for odd rings.
 pub(super) fn unit_circle(around: usize) -> Vec<(f64, f64)> {
     let angles = (0..2 * around).map(|k| PI * k as f64 / around as f64);
     angles.map(|angle| (libm::cos(angle), libm::sin(angle))).collect()
 }
 
-/// Two unit directions square to the curve at t, the first one level.
+/// Returns two unit directions perpendicular to the curve at t, the first one horizontal.
 pub(super) fn frame(curve: impl Fn(f64) -> DVec3, t: f64) -> [DVec3; 2] {
     let forward = (curve(t + HALF_STEP) - curve(t - HALF_STEP)).normalize();
     let side = DVec3::Z.cross(forward).normalize();
     [side, forward.cross(side)]
 }
 
-/// The triangles between a ring of `around` vertices that starts with vertex `a` and the next ring, which starts
-/// with `b`. Rings of odd number are turned by half a vertex.
+/// Returns the triangles between a ring of `around` vertices that starts with vertex `a` and the next ring, which starts
+/// with `b`. Rings of odd number are rotated by half a vertex.
 pub(super) fn band(around: usize, number: usize, a: u32, b: u32) -> impl Iterator<Item = [u32; 3]> {
     (0..around).flat_map(move |k| {
         let (k, next) = (k as u32, ((k + 1) % around) as u32);
@@ -79,7 +79,7 @@ pub(super) fn band(around: usize, number: usize, a: u32, b: u32) -> impl Iterato
     })
 }
 
-/// Parameters of `count` points of a closed curve, evenly spaced by arc length, the first at 0.
+/// Returns the parameters of `count` points of a closed curve, evenly spaced by arc length, the first at 0.
 fn even_parameters(curve: impl Fn(f64) -> DVec3, count: usize) -> Vec<f64> {
     let steps = count * LENGTH_STEPS;
     let mut lengths = vec![0.0]; // from parameter 0 to parameter i / steps

@@ -3,27 +3,28 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
-/// The number of a vertex without a row: it is fixed.
+/// Row number of a fixed vertex, which has no row.
 pub(crate) const FIXED: u32 = u32::MAX;
 
-/// Rows that one thread copies at once.
-const ROWS: usize = 1024;
+/// Number of rows per task of a copy.
+const ROWS_PER_TASK: usize = 1024;
 
-/// Both triangles, row after row of blocks.
+/// Symmetric sparse matrix with both triangles, row after row of blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockSparse {
-    /// Where each row starts, and where the last one ends.
+    /// Start of each row, and the end of the last one.
     starts: Vec<usize>,
-    /// The column of each block, ascending within a row.
+    /// Column of each block, ascending within a row.
     columns: Vec<u32>,
-    /// Row-major.
+    /// Blocks, row-major.
     blocks: Vec<[f64; 9]>,
 }
 
 impl BlockSparse {
-    /// Zeros on the diagonal and wherever two vertices share an element. [`FIXED`] vertices are skipped.
+    /// Creates a matrix of zeros with blocks on the diagonal and for vertices that share an element. [`FIXED`] vertices
+    /// are skipped.
     pub fn with_pattern<'a>(rows: usize, elements: impl Iterator<Item = &'a [u32]>) -> Self {
-        let tidy = |row: &mut Vec<u32>| {
+        let sort = |row: &mut Vec<u32>| {
             row.sort_unstable();
             row.dedup();
         };
@@ -32,16 +33,16 @@ impl BlockSparse {
             for i in element.iter().filter(|i| **i != FIXED) {
                 let row = &mut neighbours[*i as usize];
                 row.extend(element.iter().filter(|j| **j != FIXED));
-                // Vertices of many elements need little memory and time.
+                // Removing duplicates before growing limits memory and time for vertices of many elements.
                 if row.len() + element.len() > row.capacity() {
-                    tidy(row);
+                    sort(row);
                     row.reserve(row.len() + element.len());
                 }
             }
         }
         let (mut starts, mut columns) = (vec![0], Vec::new());
         for mut row in neighbours {
-            tidy(&mut row);
+            sort(&mut row);
             columns.extend_from_slice(&row);
             starts.push(columns.len());
         }
@@ -49,22 +50,22 @@ impl BlockSparse {
         Self { starts, columns, blocks }
     }
 
-    /// Number of rows of blocks: a third of the rows.
+    /// Returns the number of rows of blocks: a third of the rows.
     pub fn rows(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// The columns of a row's blocks, ascending.
+    /// Returns the columns of a row's blocks, ascending.
     pub fn columns(&self, row: usize) -> &[u32] {
         &self.columns[self.starts[row]..self.starts[row + 1]]
     }
 
-    /// The blocks of a row, one for each of its columns.
+    /// Returns the blocks of a row, one for each of its columns.
     pub fn blocks(&self, row: usize) -> &[[f64; 9]] {
         &self.blocks[self.starts[row]..self.starts[row + 1]]
     }
 
-    /// Adds to one block. The caller adds the transpose to the mirrored one.
+    /// Adds to one block. The caller must add the transpose to the mirrored block.
     ///
     /// # Panics
     /// When the pattern has no such block.
@@ -75,7 +76,7 @@ impl BlockSparse {
         self.blocks[at].iter_mut().zip(block).for_each(|(sum, x)| *sum += x);
     }
 
-    /// `a self + b other`. Both have the same pattern.
+    /// Returns `a self + b other`. Both must have the same pattern.
     pub fn combined(&self, a: f64, other: &Self, b: f64) -> Self {
         debug_assert_eq!(self.columns, other.columns);
         let sum = |(x, y): (&[f64; 9], &[f64; 9])| std::array::from_fn(|k| a * x[k] + b * y[k]);
@@ -83,25 +84,25 @@ impl BlockSparse {
         Self { starts: self.starts.clone(), columns: self.columns.clone(), blocks }
     }
 
-    /// The sum of the diagonal.
+    /// Returns the sum of the diagonal.
     pub fn trace(&self) -> f64 {
         (0..self.rows()).map(|row| self.diagonal(row).iter().sum::<f64>()).sum()
     }
 
-    /// The least and the largest entry of the diagonal.
+    /// Returns the smallest and the largest entry of the diagonal.
     pub fn diagonal_range(&self) -> (f64, f64) {
         let entries = (0..self.rows()).flat_map(|row| self.diagonal(row));
-        entries.fold((f64::INFINITY, 0.0), |(least, most), x| (x.min(least), x.max(most)))
+        entries.fold((f64::INFINITY, 0.0), |(low, high), x| (x.min(low), x.max(high)))
     }
 
-    /// The three entries of the diagonal in a row of blocks.
+    /// Returns the three entries of the diagonal in a row of blocks.
     fn diagonal(&self, row: usize) -> [f64; 3] {
         let at = self.columns(row).binary_search(&(row as u32)).unwrap_or_default();
         let block = &self.blocks(row)[at];
         [block[0], block[4], block[8]]
     }
 
-    /// The product with a matrix of `3 rows` rows. Each entry is one sum in the order of the columns, whatever the
+    /// Returns the product with a matrix of `3 rows` rows. Each entry is one sum in the order of the columns, for any
     /// number of threads.
     pub fn multiply(&self, x: MatRef<f64>) -> Mat<f64> {
         let width = x.ncols();
@@ -110,11 +111,13 @@ impl BlockSparse {
         }
         // Row-major copies, because a block takes three whole rows of x.
         let mut packed = vec![0.0; x.nrows() * width];
-        packed.par_chunks_mut(ROWS * width).zip(x.par_row_chunks(ROWS)).for_each(|(packed, x)| {
-            for (j, column) in x.col_iter().enumerate() {
-                packed[j..].iter_mut().step_by(width).zip(column.iter()).for_each(|(to, x)| *to = *x);
-            }
-        });
+        packed.par_chunks_mut(ROWS_PER_TASK * width).zip(x.par_row_chunks(ROWS_PER_TASK)).for_each(
+            |(packed, x)| {
+                for (j, column) in x.col_iter().enumerate() {
+                    packed[j..].iter_mut().step_by(width).zip(column.iter()).for_each(|(to, x)| *to = *x);
+                }
+            },
+        );
         let mut product = vec![0.0; packed.len()];
         product.par_chunks_mut(3 * width).enumerate().for_each(|(row, sums)| {
             for (column, block) in self.columns(row).iter().zip(self.blocks(row)) {
@@ -129,20 +132,22 @@ impl BlockSparse {
             }
         });
         let mut unpacked = Mat::zeros(x.nrows(), width);
-        unpacked.par_row_chunks_mut(ROWS).zip(product.par_chunks(ROWS * width)).for_each(|(to, from)| {
-            for (j, column) in to.col_iter_mut().enumerate() {
-                column.iter_mut().zip(from[j..].iter().step_by(width)).for_each(|(to, x)| *to = *x);
-            }
-        });
+        unpacked.par_row_chunks_mut(ROWS_PER_TASK).zip(product.par_chunks(ROWS_PER_TASK * width)).for_each(
+            |(to, from)| {
+                for (j, column) in to.col_iter_mut().enumerate() {
+                    column.iter_mut().zip(from[j..].iter().step_by(width)).for_each(|(to, x)| *to = *x);
+                }
+            },
+        );
         unpacked
     }
 
-    /// The lower triangle, compressed by columns: where each column starts, the rows, ascending, and the entries.
+    /// Returns the lower triangle, compressed by columns: starts of columns, rows (ascending) and entries.
     pub fn lower(&self) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
         let (mut starts, mut rows, mut entries) = (vec![0], Vec::new(), Vec::new());
         for column in 0..3 * self.rows() {
             let (vertex, axis) = (column / 3, column % 3);
-            // By symmetry the column is a row.
+            // By symmetry, the column equals a row.
             for (other, block) in self.columns(vertex).iter().zip(self.blocks(vertex)) {
                 for (k, entry) in block[3 * axis..3 * axis + 3].iter().enumerate() {
                     let row = 3 * *other as usize + k;
@@ -164,7 +169,7 @@ mod tests {
     use crate::eigen::lattice::{dense, random_matrix};
 
     #[test]
-    fn the_product_is_that_of_the_dense_matrix() {
+    fn the_product_matches_the_dense_matrix() {
         let elements: [&[u32]; 4] = [&[0, 1, FIXED], &[1, 3, 2], &[4], &[2, FIXED, 4, 2]];
         let mut matrix = BlockSparse::with_pattern(6, elements.into_iter());
         assert_eq!(matrix.rows(), 6);
@@ -190,7 +195,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "not in the pattern")]
-    fn a_block_outside_the_pattern_is_refused() {
+    fn a_block_outside_the_pattern_is_rejected() {
         BlockSparse::with_pattern(2, std::iter::empty()).add(0, 1, &[0.0; 9]);
     }
 }

@@ -4,25 +4,25 @@ use glam::DVec3;
 
 use super::BlockSparse;
 
-/// Sets of at most so many vertices are not split: within a dense block the order does not matter.
-const LEAF: usize = 64;
+/// Maximum number of vertices of a set that is not split; the order within a dense block does not matter.
+const MAX_LEAF_VERTICES: usize = 64;
 
-/// A cut leaves at least this share of the vertices on either side. A plane of a lattice is moved to one side as a
-/// whole, so that the separator is flat, as long as that holds.
-const LEAST_SHARE: f64 = 0.25;
+/// Minimum share of the vertices on either side of a cut. Within this limit, a plane of a lattice goes to one side as a
+/// whole, so that the separator is flat.
+const MIN_SHARE: f64 = 0.25;
 
-/// The vertices in order of elimination: halves first, then what separates them (George 1973). The cut is across
-/// the longest axis, next to the median; the separator is the side's vertices that touch the other side, of the side
-/// that has fewer of those.
+/// Returns the vertices in order of elimination: halves first, then their separator (George 1973). The cut is across the
+/// longest axis, next to the median. The separator consists of the vertices of one side that touch the other, on the side
+/// with fewer of them.
 pub(crate) fn nested_dissection(matrix: &BlockSparse, positions: &[DVec3]) -> Vec<usize> {
     let mut order = Vec::with_capacity(positions.len());
-    // Which set each vertex belongs to: the number of the cut, times two, and the side.
+    // Set of each vertex: twice the number of the cut, plus the side.
     let mut side = vec![0_usize; positions.len()];
     let mut cuts = 0;
-    // What is still to be ordered, last first. Separators wait below their halves, and are not cut again.
-    let mut waiting = vec![((0..positions.len()).collect::<Vec<usize>>(), true)];
-    while let Some((mut set, divisible)) = waiting.pop() {
-        if !divisible || set.len() <= LEAF {
+    // Stack of sets to order. Separators are below their halves and are not split again.
+    let mut stack = vec![((0..positions.len()).collect::<Vec<usize>>(), true)];
+    while let Some((mut set, divisible)) = stack.pop() {
+        if !divisible || set.len() <= MAX_LEAF_VERTICES {
             order.extend(set);
             continue;
         }
@@ -43,12 +43,12 @@ pub(crate) fn nested_dissection(matrix: &BlockSparse, positions: &[DVec3]) -> Ve
         } else {
             (high_border, set, high_rest)
         };
-        waiting.extend([(separator, false), (second, true), (first, true)]);
+        stack.extend([(separator, false), (second, true), (first, true)]);
     }
     order
 }
 
-/// Sorts vertices along their longest axis; where to cut.
+/// Sorts vertices along their longest axis; returns the index of the cut.
 fn sort_and_cut(set: &mut [usize], positions: &[DVec3]) -> usize {
     let low = set.iter().fold(DVec3::INFINITY, |m, v| m.min(positions[*v]));
     let high = set.iter().fold(DVec3::NEG_INFINITY, |m, v| m.max(positions[*v]));
@@ -56,13 +56,13 @@ fn sort_and_cut(set: &mut [usize], positions: &[DVec3]) -> usize {
     let axis = (0..3).fold(0, |best, k| if extent[k] > extent[best] { k } else { best });
     set.sort_unstable_by(|a, b| positions[*a][axis].total_cmp(&positions[*b][axis]).then(a.cmp(b)));
     let middle = positions[set[set.len() / 2]][axis];
-    // Coordinates of one plane may differ by rounding.
+    // Coordinates in one plane may differ by rounding.
     let slack = 1e-9 * extent[axis];
     let before = set.partition_point(|v| positions[*v][axis] < middle - slack);
     let after = set.partition_point(|v| positions[*v][axis] <= middle + slack);
     let balance = |at: usize| at.min(set.len() - at);
     let best = if balance(before) >= balance(after) { before } else { after };
-    if balance(best) as f64 >= LEAST_SHARE * set.len() as f64 { best } else { set.len() / 2 }
+    if balance(best) as f64 >= MIN_SHARE * set.len() as f64 { best } else { set.len() / 2 }
 }
 
 #[cfg(test)]

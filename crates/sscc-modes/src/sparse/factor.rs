@@ -19,20 +19,20 @@ use super::dissection::nested_dissection;
 use crate::ModesError;
 
 /// Number of right-hand sides per task. The factor is read once per group: see `docs/notes/2026-11-23-lanczos.md`.
-const GROUP: usize = 8;
+const COLUMNS_PER_TASK: usize = 8;
 
-/// The order of elimination, and where the entries of the factor are: for all matrices of one pattern.
+/// Symbolic factorization for all matrices of one pattern: the order of elimination and the entries of the factor.
 #[derive(Clone)]
 pub(crate) struct Analysis(Arc<SymbolicCholesky<usize>>);
 
-/// The factor of a positive definite matrix.
+/// Cholesky factor of a positive definite matrix.
 pub(crate) struct Cholesky {
     analysis: Analysis,
     values: Vec<f64>,
 }
 
 impl Analysis {
-    /// By nested dissection. `positions` are those of the vertices (one for each row of blocks).
+    /// Analyses a pattern with nested dissection. `positions` has one vertex for each row of blocks.
     ///
     /// # Errors
     /// When memory is short.
@@ -40,7 +40,7 @@ impl Analysis {
         Self::with_order(matrix, &nested_dissection(matrix, positions))
     }
 
-    /// Eliminates the vertices in a given order.
+    /// Analyses a pattern for a given order of vertices.
     pub fn with_order(matrix: &BlockSparse, vertices: &[usize]) -> Result<Self, ModesError> {
         let size = 3 * matrix.rows();
         let forward: Vec<usize> = vertices.iter().flat_map(|v| [3 * v, 3 * v + 1, 3 * v + 2]).collect();
@@ -60,25 +60,25 @@ impl Analysis {
         .map_err(|_| ModesError::Memory)
     }
 
-    /// Number of entries of a factor.
+    /// Returns the number of entries of a factor.
     pub fn entries(&self) -> usize {
         self.0.len_val()
     }
 
-    /// Symbolic factorization of faer.
+    /// Returns the symbolic factorization of faer.
     pub(super) fn symbolic(&self) -> &SymbolicCholesky<usize> {
         &self.0
     }
 
-    /// Room for the entries of a factor.
-    pub(super) fn room(&self) -> Result<Vec<f64>, ModesError> {
+    /// Allocates the entries of a factor.
+    pub(super) fn allocate(&self) -> Result<Vec<f64>, ModesError> {
         let mut values = Vec::new();
         values.try_reserve_exact(self.entries()).map_err(|_| ModesError::Memory)?;
         values.resize(self.entries(), 0.0);
         Ok(values)
     }
 
-    /// The factor of a matrix of the pattern.
+    /// Factors a matrix of the pattern.
     ///
     /// # Errors
     /// When the matrix is not positive definite, or memory is short.
@@ -86,7 +86,7 @@ impl Analysis {
         let (starts, rows, entries) = matrix.lower();
         let size = 3 * matrix.rows();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &starts, None, &rows);
-        let mut values = self.room()?;
+        let mut values = self.allocate()?;
         let scratch = self.0.factorize_numeric_llt_scratch::<f64>(threads(), Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
         self.0
@@ -108,15 +108,15 @@ impl Analysis {
 }
 
 impl Cholesky {
-    /// Replaces all columns by the solutions for them.
+    /// Replaces all columns by their solutions.
     ///
     /// # Errors
     /// When memory is short.
     pub fn solve(&self, x: &mut Mat<f64>) -> Result<(), ModesError> {
         let symbolic = self.analysis.symbolic();
         let factor = LltRef::new(symbolic, &self.values);
-        // Each column is the same whichever thread solves it.
-        x.par_col_chunks_mut(GROUP).try_for_each(|group| {
+        // Each column gives the same result on any thread.
+        x.par_col_chunks_mut(COLUMNS_PER_TASK).try_for_each(|group| {
             let scratch = symbolic.solve_in_place_scratch::<f64>(group.ncols(), Par::Seq);
             let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
             factor.solve_in_place_with_conj(Conj::No, group, Par::Seq, MemStack::new(&mut memory));
@@ -125,7 +125,7 @@ impl Cholesky {
     }
 }
 
-/// Threads for factorising.
+/// Returns the parallelism of factorizations.
 pub(super) fn threads() -> Par {
     Par::rayon(0)
 }
@@ -136,7 +136,7 @@ mod tests {
     use crate::eigen::lattice::{Lattice, dense, random_matrix};
 
     #[test]
-    fn solutions_are_those_of_the_dense_matrix() {
+    fn solutions_match_the_dense_matrix() {
         for body in [Lattice::clamped(6, 5, 4), Lattice::free(5, 5, 5)] {
             let matrix = body.stiffness.combined(1.0, &body.mass, 0.01);
             let factor = Analysis::new(&matrix, &body.positions).unwrap().factor(&matrix).unwrap();
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_matrix_is_refused_with_a_vertex() {
+    fn an_indefinite_matrix_is_rejected_with_a_vertex() {
         let body = Lattice::clamped(6, 5, 4);
         let mut matrix = body.stiffness.clone();
         matrix.add(17, 17, &[-100.0, 0.0, 0.0, 0.0, -100.0, 0.0, 0.0, 0.0, -100.0]);
@@ -160,7 +160,7 @@ mod tests {
 
     /// faer does not guarantee this; the documentation of the crate relies on it.
     #[test]
-    fn the_number_of_threads_does_not_change_a_bit() {
+    fn results_do_not_depend_on_the_number_of_threads() {
         let body = Lattice::clamped(12, 12, 12);
         let matrix = body.stiffness.combined(1.0, &body.mass, 0.01);
         let values = |threads: usize| {

@@ -10,16 +10,16 @@ use super::BlockSparse;
 use super::factor::{Analysis, threads};
 use crate::ModesError;
 
-/// A pivot of at most this share of the largest entry may have either sign.
-const NO_PIVOT: f64 = 1e-14;
+/// Minimum pivot of certain sign, relative to the largest entry.
+const MIN_PIVOT: f64 = 1e-14;
 
-/// The factor is that of a matrix which differs by about this share of the largest row sum, at most. Pivots are
-/// chosen within a supernode only, so larger errors are possible; 1e-16 is usual.
-const BACKWARD_ERROR: f64 = 1e-13;
+/// Maximum backward error of the factor, relative to the largest row sum. Pivots are chosen only within a supernode, so
+/// larger errors are possible; 1e-16 is usual.
+const MAX_BACKWARD_ERROR: f64 = 1e-13;
 
-/// How many eigenvalues are negative: as many as there are negative pivots (Sylvester's law of inertia). The pivots
-/// have one or two rows (Bunch and Kaufman 1977), within each supernode. None where the matrix is so close to a
-/// singular one, or the pivots are so bad, that rounding decides: shift it a little.
+/// Returns the number of negative eigenvalues, which equals the number of negative pivots (Sylvester's law of inertia).
+/// The pivots have one or two rows (Bunch and Kaufman 1977), within each supernode. None if the result is uncertain by
+/// rounding, because the matrix is nearly singular or the pivots are small: try another shift.
 ///
 /// # Errors
 /// When memory is short.
@@ -32,7 +32,7 @@ pub(crate) fn count_negative_eigenvalues(
     let (starts, rows, entries) = matrix.lower();
     let size = 3 * matrix.rows();
     let pattern = SymbolicSparseColMatRef::new_checked(size, size, &starts, None, &rows);
-    let mut values = analysis.room()?;
+    let mut values = analysis.allocate()?;
     let mut below = vec![0.0; size];
     let (mut forward, mut inverse) = (vec![0; size], vec![0; size]);
     let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(threads(), Default::default());
@@ -49,14 +49,14 @@ pub(crate) fn count_negative_eigenvalues(
         Default::default(),
     );
     drop(memory);
-    let least = NO_PIVOT * entries.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let threshold = MIN_PIVOT * entries.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let mut negative = 0;
     for node in 0..nodes.n_supernodes() {
         let (first, end) = (nodes.supernode_begin()[node], nodes.supernode_end()[node]);
         let at = nodes.col_ptr_for_val()[node];
         let height = (nodes.col_ptr_for_val()[node + 1] - at) / (end - first);
         let diagonal: Vec<f64> = (0..end - first).map(|k| values[at + k * height + k]).collect();
-        match negative_pivots(&diagonal, &below[first..end], least) {
+        match negative_pivots(&diagonal, &below[first..end], threshold) {
             Some(count) => negative += count,
             None => return Ok(None),
         }
@@ -69,25 +69,25 @@ pub(crate) fn count_negative_eigenvalues(
     let mut memory = MemBuffer::try_new(scratch).map_err(|_| ModesError::Memory)?;
     factor.solve_in_place_with_conj(Conj::No, solution.as_mut(), Par::Seq, MemStack::new(&mut memory));
     let residual = (matrix.multiply(solution.as_ref()) - wanted).norm_max();
-    let good = residual <= BACKWARD_ERROR * largest_row_sum(matrix) * solution.norm_max();
-    Ok(good.then_some(negative))
+    let is_accurate = residual <= MAX_BACKWARD_ERROR * largest_row_sum(matrix) * solution.norm_max();
+    Ok(is_accurate.then_some(negative))
 }
 
-/// The negative ones among pivots of one row, and of two where `below` the diagonal is not 0. None when one is tiny,
-/// or not a number.
-fn negative_pivots(diagonal: &[f64], below: &[f64], least: f64) -> Option<usize> {
+/// Counts negative pivots, of one row, or of two rows where `below` the diagonal is not 0. None if a pivot is tiny or not
+/// finite.
+fn negative_pivots(diagonal: &[f64], below: &[f64], threshold: f64) -> Option<usize> {
     let (mut negative, mut k) = (0, 0);
     while k < diagonal.len() {
         if below[k] == 0.0 {
-            let sound = diagonal[k].abs() > least && diagonal[k].is_finite();
-            negative += usize::from(sound.then_some(diagonal[k])? < 0.0);
+            let is_certain = diagonal[k].abs() > threshold && diagonal[k].is_finite();
+            negative += usize::from(is_certain.then_some(diagonal[k])? < 0.0);
             k += 1;
         } else {
             let (a, b, c) = (diagonal[k], below[k], *diagonal.get(k + 1)?);
             let determinant = a * c - b * b;
             let scale = a.abs().max(b.abs()).max(c.abs());
-            let sound = determinant.abs() > least * scale && determinant.is_finite();
-            negative += match sound.then_some(determinant)? < 0.0 {
+            let is_certain = determinant.abs() > threshold * scale && determinant.is_finite();
+            negative += match is_certain.then_some(determinant)? < 0.0 {
                 true => 1,
                 false => 2 * usize::from(a < 0.0),
             };
@@ -97,7 +97,7 @@ fn negative_pivots(diagonal: &[f64], below: &[f64], least: f64) -> Option<usize>
     Some(negative)
 }
 
-/// A bound of the largest eigenvalue.
+/// Returns an upper bound of the largest eigenvalue.
 fn largest_row_sum(matrix: &BlockSparse) -> f64 {
     let sum = |(row, axis): (usize, usize)| -> f64 {
         matrix.blocks(row).iter().flat_map(|b| &b[3 * axis..3 * axis + 3]).map(|x| x.abs()).sum()
@@ -117,7 +117,7 @@ mod tests {
         let analysis = Analysis::new(&body.stiffness, &body.positions).unwrap();
         let mut counted = 0;
         for seed in 0..40 {
-            // Zero diagonals at first, which need pivots of two rows; then ever larger ones, of both signs.
+            // The first diagonals are 0 and need pivots of two rows; later ones grow, with both signs.
             let matrix = random_blocks(&body.stiffness, seed, 0.25 * (seed / 8) as f64);
             let values = dense(&matrix).self_adjoint_eigenvalues(Side::Lower).unwrap();
             let wanted = values.iter().filter(|x| **x < 0.0).count();

@@ -3,11 +3,11 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
-/// A small generator of random numbers (splitmix64).
+/// Generator of pseudo-random numbers (splitmix64).
 pub struct Random(pub u64);
 
 impl Random {
-    /// Between -1 and 1.
+    /// Returns a number between -1 and 1.
     pub fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -16,7 +16,7 @@ impl Random {
         (z ^ (z >> 31)) as i64 as f64 / 2.0_f64.powi(63)
     }
 
-    /// In the cube from -1 to 1.
+    /// Returns a vector in the cube from -1 to 1.
     pub fn vector(&mut self) -> DVec3 {
         DVec3::from_array(std::array::from_fn(|_| self.number()))
     }
@@ -26,12 +26,12 @@ fn valid(positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> TriMesh {
     TriMesh::new(positions, faces).expect("a test surface is a valid mesh")
 }
 
-/// The same faces with every vertex mapped.
+/// Maps every vertex; faces are unchanged.
 pub fn moved(mesh: &TriMesh, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     valid(mesh.rest_positions().iter().map(|p| map(*p)).collect(), mesh.faces().to_vec())
 }
 
-/// The surface of the cube from -1 to 1, n x n squares on each side, vertices shared.
+/// Returns the surface of the cube from -1 to 1, with n x n squares on each side and shared vertices.
 pub fn cube(n: i32) -> TriMesh {
     let mut positions: Vec<DVec3> = Vec::new();
     let mut faces = Vec::new();
@@ -53,21 +53,21 @@ pub fn cube(n: i32) -> TriMesh {
                     index(DVec3::from_array(p))
                 };
                 let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-                // Four triangles would be symmetric; two with diagonals towards the axes are as good.
-                let alike = (2 * i + 1 < n) == (2 * j + 1 < n);
-                faces.extend(if alike { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+                // The diagonals point towards the axes, which keeps the symmetry of the cube.
+                let is_diagonal = (2 * i + 1 < n) == (2 * j + 1 < n);
+                faces.extend(if is_diagonal { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
             }
         }
     }
     valid(positions, faces)
 }
 
-/// The unit sphere: a cube blown up.
+/// Returns the unit sphere: a projected cube.
 pub fn sphere() -> TriMesh {
     moved(&cube(6), DVec3::normalize)
 }
 
-/// A closed surface without any symmetry.
+/// Returns a closed surface without symmetry.
 pub fn bumpy(seed: u64) -> TriMesh {
     let mut random = Random(seed);
     let radii: Vec<f64> = (0..cube(5).rest_positions().len()).map(|_| 1.0 + 0.4 * random.number()).collect();
@@ -76,7 +76,7 @@ pub fn bumpy(seed: u64) -> TriMesh {
     valid(positions, sphere.faces().to_vec())
 }
 
-/// A bent strip in the plane z = 0: no two of xx, xy, yy, x, y, 1 are dependent on it.
+/// Returns a bent patch in the plane z = 0, on which xx, xy, yy, x, y, 1 are linearly independent.
 pub fn plane() -> TriMesh {
     let bottom = |p: &[u32; 3], q: &[DVec3]| p.iter().all(|v| q[*v as usize].z == -1.0);
     let cube = cube(5);

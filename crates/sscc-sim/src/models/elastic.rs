@@ -8,12 +8,12 @@ use super::new_model::{NewModel, SolidFacts};
 use super::source::SolidSource;
 use crate::SimError;
 
-/// Modes, if no number is given.
+/// Default numbers of modes.
 const LINEAR_RANK: usize = 20;
 const NONLINEAR_RANK: usize = 30;
 
-/// Polynomial modes take neither a rank nor fixed vertices.
-pub const POLYNOMIALS_ARE_FREE: &str = "polynomial modes are always all 24, and move every vertex";
+/// Cause of the error if polynomial modes are requested with a rank or with fixed vertices.
+pub const POLYNOMIAL_MODES_ERROR: &str = "polynomial modes are always all 24, and move every vertex";
 
 /// Kinds of modes of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum ModesKind {
 }
 
 impl ModesKind {
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -37,14 +37,14 @@ impl ModesKind {
     }
 }
 
-/// Modes of a solid, and as modes of its surface.
+/// Modes of a solid, and the same modes on its surface.
 pub(crate) struct ElasticModes {
     pub solid: SolidModes,
     pub on_surface: Modes,
 }
 
 impl ElasticModes {
-    /// Computes them; takes up to some minutes.
+    /// Computes the modes; takes up to some minutes.
     pub fn new(
         source: &SolidSource,
         kind: ModesKind,
@@ -74,12 +74,12 @@ impl ElasticModes {
     }
 }
 
-/// A model of a solid with fixed vertices (of the solid, ascending). Without a rank it has 20 linear or 30 nonlinear
-/// modes. `name` is that of the source, for the provenance.
+/// Computes a model of a solid with fixed vertices (numbers of the solid, ascending). Without a rank it has 20 linear
+/// or 30 nonlinear modes. `name` is that of the source, for the provenance.
 ///
 /// # Errors
-/// When polynomial modes are to have a rank or fixed vertices, the material is out of range, there are not so many modes,
-/// or `progress` cancels.
+/// When polynomial modes are requested with a rank or fixed vertices, the material is out of range, the solid has fewer
+/// modes, or `progress` cancels.
 pub fn elastic_model(
     kind: ModesKind,
     rank: Option<usize>,
@@ -89,7 +89,7 @@ pub fn elastic_model(
     progress: &dyn Progress,
 ) -> Result<NewModel, SimError> {
     if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
-        return Err(SimError::refused("--rank and --fix", POLYNOMIALS_ARE_FREE));
+        return Err(SimError::refused("--rank and --fix", POLYNOMIAL_MODES_ERROR));
     }
     let ElasticModes { solid: found, on_surface } = ElasticModes::new(&source, kind, rank, fixed, progress)?;
     let solid = source.solid();

@@ -1,4 +1,4 @@
-//! Vertices that `--weld` would join.
+//! Test for vertices that `--weld` would join.
 
 use std::cmp::Ordering;
 

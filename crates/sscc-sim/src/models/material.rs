@@ -5,14 +5,15 @@ use sscc_solid::{Material, PartialMaterial};
 /// Where the numbers of a body's material come from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialOrigin {
-    /// For the model's provenance.
+    /// Text for the model's provenance.
     pub provenance: String,
     /// Requested numbers that override numbers of the file.
     pub replaced: Option<PartialMaterial>,
 }
 
 impl MaterialOrigin {
-    /// `stated` are the numbers that a file states for the materials of the body's elements; `given` replaces them.
+    /// Describes a material: `stated` are the numbers of a file for the materials of the body's elements, and the
+    /// numbers of `given` replace them.
     pub fn new(given: &PartialMaterial, stated: &[PartialMaterial]) -> Self {
         let known = stated.iter().fold(PartialMaterial::default(), |known, stated| known.or(stated));
         let replaced = PartialMaterial {
@@ -26,7 +27,7 @@ impl MaterialOrigin {
             poisson_ratio: default.poisson_ratio.filter(|_| known.poisson_ratio.is_none()),
             density: default.density.filter(|_| known.density.is_none()),
         };
-        // The numbers that are not the file's.
+        // Numbers that do not come from the file.
         let others = given.or(&missing);
         let provenance = if others == given.or(&default) {
             others.to_string()
@@ -50,37 +51,38 @@ mod tests {
     }
 
     #[test]
-    fn provenance_tells_the_numbers_that_are_not_from_the_file() {
+    fn provenance_names_the_numbers_that_are_not_from_the_file() {
         let known = |name: &str| -> PartialMaterial {
             MATERIALS.iter().find(|material| material.name == name).unwrap().elastic.into()
         };
         let [steel, glass] = ["steel", "glass"].map(known);
         let youngs = PartialMaterial { youngs_modulus: Some(3.0), ..Default::default() };
         let density = PartialMaterial { density: Some(3.0), ..Default::default() };
-        let origin = |asked: Option<PartialMaterial>, file: &[PartialMaterial]| {
-            let asked = asked.unwrap_or_default();
-            let MaterialOrigin { provenance, replaced } = MaterialOrigin::new(&asked, file);
+        let origin = |given: Option<PartialMaterial>, file: &[PartialMaterial]| {
+            let given = given.unwrap_or_default();
+            let MaterialOrigin { provenance, replaced } = MaterialOrigin::new(&given, file);
             (provenance, replaced.map(|replaced| replaced.to_string()))
         };
-        let told = |provenance: &str, replaced: Option<&str>| (provenance.into(), replaced.map(Into::into));
-        let (silent, soft) = (file(None, None), file(Some(5.0), None));
+        let expected =
+            |provenance: &str, replaced: Option<&str>| (provenance.into(), replaced.map(Into::into));
+        let (unknown, soft) = (file(None, None), file(Some(5.0), None));
         let whole = PartialMaterial { poisson_ratio: Some(0.1), ..file(Some(5.0), Some(7.0)) };
         let usual = "youngs=1e6 poisson=0.4 density=1000";
-        for file in [&[][..], &[silent]] {
-            assert_eq!(origin(None, file), told(usual, None));
-            assert_eq!(origin(Some(steel), file), told(&steel.to_string(), None));
+        for file in [&[][..], &[unknown]] {
+            assert_eq!(origin(None, file), expected(usual, None));
+            assert_eq!(origin(Some(steel), file), expected(&steel.to_string(), None));
         }
-        assert_eq!(origin(None, &[whole]), told("materials of the file", None));
+        assert_eq!(origin(None, &[whole]), expected("materials of the file", None));
         assert_eq!(origin(Some(glass), &[whole]).1.unwrap(), "youngs=6.2e10 poisson=0.2 density=2600");
-        let both = &[silent, soft];
-        assert_eq!(origin(None, both), told("materials of the file with poisson=0.4 density=1000", None));
+        let both = &[unknown, soft];
+        assert_eq!(origin(None, both), expected("materials of the file with poisson=0.4 density=1000", None));
         assert_eq!(
             origin(Some(density), both),
-            told("materials of the file with poisson=0.4 density=3", None)
+            expected("materials of the file with poisson=0.4 density=3", None)
         );
         assert_eq!(
             origin(Some(youngs), both),
-            told("youngs=3e0 poisson=0.4 density=1000", Some("youngs=3e0"))
+            expected("youngs=3e0 poisson=0.4 density=1000", Some("youngs=3e0"))
         );
     }
 }

@@ -9,7 +9,7 @@ mod polynomial;
 mod source;
 
 pub(crate) use elastic::ElasticModes;
-pub use elastic::{ModesKind, POLYNOMIALS_ARE_FREE, elastic_model};
+pub use elastic::{ModesKind, POLYNOMIAL_MODES_ERROR, elastic_model};
 pub use equal_vertices::has_equal_vertices;
 pub use material::MaterialOrigin;
 pub use new_model::{Components, NewModel, SolidFacts};

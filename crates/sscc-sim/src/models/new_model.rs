@@ -1,4 +1,4 @@
-//! A new model, with the facts that were found while it was made.
+//! A new model, with facts about its computation.
 
 use serde::Serialize;
 use sscc::ReducedModel;
@@ -8,15 +8,15 @@ use sscc_io::ModelInfo;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct NewModel {
-    /// The model; of a solid its metric is the strain energy, else the displacement.
+    /// The model. Its metric is the strain energy for a solid, else the displacement.
     pub model: ReducedModel,
-    /// Provenance; of a solid also the stiffness and the forces.
+    /// Provenance; for a solid also the stiffness and the forces.
     pub info: ModelInfo,
     /// Whether vertices are split along seams, so that certificates should weld them.
     pub is_split: bool,
-    /// Of a solid: its size and frequencies.
+    /// Size and frequencies of a solid.
     pub solid: Option<SolidFacts>,
-    /// Of principal components: their share of the variance.
+    /// Variance of principal components.
     pub components: Option<Components>,
 }
 
@@ -27,7 +27,7 @@ pub struct SolidFacts {
     pub elements: usize,
     /// Coordinates of vertices that are not fixed.
     pub degrees_of_freedom: usize,
-    /// Of each mode (Hz).
+    /// Frequency of each mode (Hz).
     pub frequencies: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ pub struct SolidFacts {
 pub struct Components {
     /// Number of frames.
     pub frames: usize,
-    /// The share of the variance that all modes together explain.
+    /// Share of the variance that all modes together explain.
     pub explained: f64,
     /// The standard deviation of each mode.
     pub deviations: Vec<f64>,

@@ -1,4 +1,4 @@
-//! The mean and the principal components of the frames of an animation.
+//! Models from the mean and the principal components of the frames of an animation.
 
 use glam::DVec3;
 use sscc::{Progress, ReducedModel, TriMesh};
@@ -8,11 +8,11 @@ use sscc_modes::pca_modes;
 use super::new_model::{Components, NewModel};
 use crate::SimError;
 
-/// The mean and the principal components of frames with the faces of `mesh`; without a rank as many as explain 99.9% of
-/// the variance. `name` describes the frames, for the provenance.
+/// Computes a model from the mean and the principal components of frames with the faces of `mesh`. Without a rank it
+/// has as many components as explain 99.9% of the variance. `name` describes the frames, for the provenance.
 ///
 /// # Errors
-/// When there are too few frames, none of them differ, or `progress` cancels.
+/// When there are too few frames, all frames are equal, or `progress` cancels.
 pub fn pca_model(
     mesh: &TriMesh,
     frames: &[Vec<DVec3>],

@@ -1,4 +1,4 @@
-//! Polynomial modes of a surface alone.
+//! Models with polynomial modes of a surface alone.
 
 use sscc::{ReducedModel, TriMesh};
 use sscc_io::ModelInfo;
@@ -7,8 +7,8 @@ use sscc_modes::polynomial_modes;
 use super::new_model::NewModel;
 use crate::SimError;
 
-/// Polynomial modes of a surface, without a volume and without stiffness. `name` is that of the surface, for the
-/// provenance.
+/// Computes a model with polynomial modes of a surface, without a volume and without stiffness. `name` is that of the
+/// surface, for the provenance.
 ///
 /// # Errors
 /// When the surface has no area, or is too far from the origin for its size.

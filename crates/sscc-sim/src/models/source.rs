@@ -5,24 +5,24 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_io::{read_mesh, read_volume_mesh};
-use sscc_modes::Embedded;
+use sscc_modes::EmbeddedSurface;
 use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid};
 
 use super::material::MaterialOrigin;
 use crate::SimError;
 
-/// A solid with its surface, from a file or around a surface.
+/// A solid with its surface: from a file, or a lattice around a surface.
 pub enum SolidSource {
     /// A lattice around a surface.
     Around {
         /// The surface.
         mesh: TriMesh,
         /// The lattice, and how it moves the surface.
-        embedded: Embedded,
+        embedded: EmbeddedSurface,
         /// Where its material comes from.
         material: MaterialOrigin,
     },
-    /// From a file, with its boundary.
+    /// A solid from a file, with its boundary.
     Whole {
         /// Its elements, with their vertices in the file.
         meshed: MeshedSolid,
@@ -33,7 +33,7 @@ pub enum SolidSource {
     },
 }
 
-/// Whether a file holds a volumetric mesh, by its ending.
+/// Whether a file has a volumetric mesh, by its extension.
 pub fn is_solid(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     ["mesh", "veg", "msh", "node", "ele"].contains(&ending.as_str())
@@ -50,12 +50,12 @@ impl SolidSource {
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
-        let embedded = Embedded::new(&mesh, cells, Material::new(material)?, progress)?;
+        let embedded = EmbeddedSurface::new(&mesh, cells, Material::new(material)?, progress)?;
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 
-    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side. Numbers
-    /// of `material` override those of the file.
+    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
+    /// Numbers of `material` override those of the file.
     ///
     /// # Errors
     /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
@@ -71,10 +71,7 @@ impl SolidSource {
         }
         let file = read_volume_mesh(path)?;
         if resolution.is_some() {
-            return Err(SimError::refused(
-                "--resolution is for surfaces",
-                "this file brings its own elements",
-            ));
+            return Err(SimError::refused("--resolution is for surfaces", "this file has its own elements"));
         }
         let meshed = file.solid(material)?;
         let material = MaterialOrigin::new(material, &meshed.stated);
@@ -82,7 +79,7 @@ impl SolidSource {
         Ok(Self::Whole { meshed, boundary, material })
     }
 
-    /// The elements.
+    /// Returns the solid.
     pub fn solid(&self) -> &Solid {
         match self {
             Self::Around { embedded, .. } => embedded.solid(),
@@ -90,24 +87,24 @@ impl SolidSource {
         }
     }
 
-    /// Where its material comes from.
+    /// Returns the origin of its material.
     pub fn material(&self) -> &MaterialOrigin {
         match self {
             Self::Around { material, .. } | Self::Whole { material, .. } => material,
         }
     }
 
-    /// A note for people on elements that were left out.
+    /// Returns a note on elements that were left out, if any.
     pub fn note(&self) -> Option<String> {
         match self {
             Self::Whole { meshed: MeshedSolid { outside, .. }, .. } if *outside > 0 => {
-                Some(format!("{outside} tetrahedra outside the surface that the file lists are left out"))
+                Some(format!("{outside} tetrahedra outside the surface of the file are left out"))
             }
             _ => None,
         }
     }
 
-    /// Whether its file split vertices along seams.
+    /// Whether vertices of the surface are split along seams.
     pub fn is_split(&self) -> bool {
         matches!(self, Self::Around { embedded, .. } if embedded.is_split())
     }
@@ -117,7 +114,7 @@ impl SolidSource {
         matches!(self, Self::Around { .. })
     }
 
-    /// The surface.
+    /// Returns the surface.
     pub fn mesh(&self) -> &TriMesh {
         match self {
             Self::Around { mesh, .. } => mesh,
@@ -125,7 +122,7 @@ impl SolidSource {
         }
     }
 
-    /// The surface alone.
+    /// Returns the surface alone.
     pub fn into_mesh(self) -> TriMesh {
         match self {
             Self::Around { mesh, .. } => mesh,
@@ -133,10 +130,10 @@ impl SolidSource {
         }
     }
 
-    /// Modes of the solid as modes of the surface.
+    /// Returns modes of the solid as modes of the surface.
     ///
     /// # Errors
-    /// When the modes are of another solid.
+    /// When the modes belong to another solid.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SimError> {
         match self {
             Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
@@ -144,7 +141,7 @@ impl SolidSource {
         }
     }
 
-    /// The vertices of the solid that hold a vertex of the file.
+    /// Returns the vertices of the solid that move a vertex of the file.
     ///
     /// # Errors
     /// When the file has fewer vertices.

@@ -1,4 +1,4 @@
-//! The motion of a simulation as an animation.
+//! Writes the motion of a simulation as a glTF animation.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::run::FinishedRun;
 use crate::scenes::BodySpec;
 
-/// The motion as glTF: rigid motions and weights of morph targets.
+/// Writes rigid motions and weights of morph targets as glTF.
 pub fn animation(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { scene, prepared, history, .. } = run;
     let frames = key_frames(history.len(), scene.step, scene.frames_per_second);

@@ -1,4 +1,4 @@
-//! The motion of a simulation and its costs as arrays in archives.
+//! Writes the motion of a simulation and its costs as arrays in `.npz` archives.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use sscc_io::{NamedArray, write_npz};
 use crate::error::Result;
 use crate::run::{FinishedRun, STEP_PARTS};
 
-/// The whole motion, bit for bit.
+/// Writes the whole motion, bit for bit.
 pub fn trajectories(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { scene, prepared, history, .. } = run;
     let (states, bodies) = (history.len(), history.layout().bodies());
@@ -61,7 +61,7 @@ pub fn trajectories(path: &Path, run: &FinishedRun) -> Result<()> {
     Ok(write_npz(path, &arrays)?)
 }
 
-/// The costs of each step, and of the traditional method at some of them.
+/// Writes the costs of each step, and of the traditional method at some steps.
 pub fn costs(path: &Path, run: &FinishedRun) -> Result<()> {
     let FinishedRun { history, .. } = run;
     let time: Vec<f64> = (0..history.len()).map(|state| run.time(state)).collect();
@@ -84,7 +84,7 @@ pub fn costs(path: &Path, run: &FinishedRun) -> Result<()> {
     Ok(write_npz(path, &arrays)?)
 }
 
-/// An array of one axis.
+/// Returns an array of one axis.
 fn line<'a>(name: &'a str, values: &'a [f64]) -> NamedArray<'a> {
     NamedArray { name, shape: vec![values.len()], values }
 }

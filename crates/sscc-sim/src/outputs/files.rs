@@ -1,4 +1,4 @@
-//! The files of a simulation, written from its states.
+//! Writes the files of a simulation from its states.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use crate::error::{Result, SimError};
 use crate::files::OUTPUT_FILES;
 use crate::run::FinishedRun;
 
-/// Files in the folder of a simulation, and why some were not written: of a motion that diverges some numbers may fit no
-/// file.
+/// Files in the folder of a simulation, and errors of those that were not written. Numbers of a motion that diverges
+/// may not fit a file format.
 pub struct Outputs {
     folder: PathBuf,
-    /// Places in [`OUTPUT_FILES`] of those that were written.
+    /// Indices in [`OUTPUT_FILES`] of the files that were written.
     written: Vec<usize>,
     unwritten: Vec<(usize, SimError)>,
 }
@@ -42,7 +42,7 @@ impl Outputs {
         outputs
     }
 
-    /// Writes the report, or keeps why it could not be made.
+    /// Writes the report, or stores its error.
     pub fn add_report(&mut self, html: Result<String, impl Display>) {
         self.add("report.html", |path| {
             let html = html.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
@@ -50,6 +50,7 @@ impl Outputs {
         });
     }
 
+    /// Writes one file, or stores its error.
     fn add(&mut self, name: &str, write: impl FnOnce(&Path) -> Result<()>) {
         let place = OUTPUT_FILES.iter().position(|known| *known == name).unwrap_or(OUTPUT_FILES.len() - 1);
         match write(&self.folder.join(OUTPUT_FILES[place])) {
@@ -59,15 +60,15 @@ impl Outputs {
         self.written.sort_unstable();
     }
 
-    /// The files that were written.
+    /// Returns the files that were written.
     pub fn files(&self) -> Vec<PathBuf> {
         self.written.iter().map(|place| self.folder.join(OUTPUT_FILES[*place])).collect()
     }
 
-    /// Ends the simulation.
+    /// Returns the result of the simulation.
     ///
     /// # Errors
-    /// When the simulation ended early, or some file could not be written: the first of them.
+    /// When the simulation ended early, or a file was not written; the error is that of the first such file.
     pub fn finish(self, run: FinishedRun) -> Result<(), SimError> {
         let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place).map(|(_, error)| error);
         match (run.failure, unwritten) {

@@ -1,4 +1,4 @@
-//! A folder of models and certificates that are kept from run to run, each under a hash of its inputs.
+//! Cache folder of models and certificates, each under a hash of its inputs.
 
 use std::env;
 use std::fs;
@@ -12,10 +12,10 @@ use crate::text::one_line;
 use crate::watch::check_cancelled;
 use crate::{SimError, Watch};
 
-/// A folder of files that can be made again.
+/// Folder of files that can be computed again.
 pub struct Cache {
     folder: PathBuf,
-    /// The hash of this program, once it was computed.
+    /// Hash of this program, after its first use.
     program: OnceLock<String>,
 }
 
@@ -23,7 +23,7 @@ impl Cache {
     /// Opens the folder `wanted`, else `sscc` in the system's cache folder.
     ///
     /// # Errors
-    /// When it cannot be written to.
+    /// When the folder cannot be written to.
     pub fn open(wanted: Option<&Path>) -> Result<Self, SimError> {
         let folder = wanted.map_or_else(|| system_folder().join("sscc"), Path::to_owned);
         let open = || {
@@ -31,21 +31,21 @@ impl Cache {
             check_writable(&folder)
         };
         open().map_err(|cause| SimError::System {
-            place: format!("{}: no folder that can be written to; choose one by --cache", folder.display()),
+            place: format!("{}: cannot write to this folder; choose one with --cache", folder.display()),
             cause,
         })?;
         Ok(Self { folder, program: OnceLock::new() })
     }
 
-    /// Where the files are.
+    /// Returns the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The hash of this program's file: cached certificates and their cost belong to one build.
+    /// Returns the hash of this program's file. Cached certificates and their cost belong to one build.
     ///
     /// # Errors
-    /// When the system does not let it read its own file.
+    /// When the program cannot read its own file.
     pub fn program(&self) -> Result<&str, SimError> {
         if let Some(hash) = self.program.get() {
             return Ok(hash);
@@ -58,7 +58,7 @@ impl Cache {
         Ok(self.program.get_or_init(|| hasher.finalize().to_hex().to_string()))
     }
 
-    /// Reads a file, or makes and writes it where it is missing or damaged.
+    /// Reads a file. Makes and writes it if it is missing or damaged.
     pub(crate) fn get<T>(
         &self,
         name: &str,
@@ -81,7 +81,7 @@ impl Cache {
     }
 }
 
-/// The cache folder of this system.
+/// Returns the user's cache folder by the convention of this system.
 fn system_folder() -> PathBuf {
     let named = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let at_home = |folder: &str| env::home_dir().map(|home| home.join(folder));

@@ -1,4 +1,4 @@
-//! A model with its certificates: made once, then from the cache.
+//! Models with certificates: computed once, then read from the cache.
 
 use sscc::{CertifyOptions, ReducedModel};
 use sscc_io::{ModelInfo, read_model, write_model};
@@ -16,7 +16,7 @@ pub struct CertifiedModel {
     pub name: String,
     /// Where its shape comes from.
     pub source: String,
-    /// A note for people, such as which shape stands in for another.
+    /// A note for people, for example on an embedded shape in place of a file.
     pub note: Option<String>,
     /// The model.
     pub model: ReducedModel,
@@ -24,12 +24,12 @@ pub struct CertifiedModel {
     pub elasticity: Elasticity,
     /// Certificates of the default budget.
     pub full: TimedCertificates,
-    /// One radius for each node, as in the paper; only where it is compared.
+    /// Certificates as in the paper (one radius for each node), for benches that compare them.
     pub paper: Option<TimedCertificates>,
 }
 
 impl CertifiedModel {
-    /// From the cache, or made now.
+    /// Reads the model from the cache, or computes it.
     ///
     /// # Errors
     /// When the modes or certificates cannot be computed or written, or `watch` cancels.
@@ -42,10 +42,10 @@ impl CertifiedModel {
         Ok(Self { name: name.clone(), source, note, model, elasticity, full, paper: None })
     }
 
-    /// The same with certificates as in the paper.
+    /// Returns the model with certificates as in the paper, too.
     ///
     /// # Errors
-    /// As of [`CertifiedModel::get`].
+    /// The errors of [`CertifiedModel::get`].
     pub fn with_paper(self, cache: &Cache, watch: &dyn Watch) -> Result<Self, SimError> {
         let metric = self.full.certificates.metric();
         let paper = TimedCertificates::get(cache, &self.name, &self.model, metric, &self.source, 0, watch)?;
@@ -59,7 +59,7 @@ impl CertifiedModel {
     }
 }
 
-/// Modes of a shape with their stiffness, from the cache or made now.
+/// Returns the modes of a shape with their stiffness, from the cache or computed.
 pub(crate) fn recipe_modes(
     loaded: &LoadedRecipe<'_>,
     modes: ModesSpec,
@@ -78,7 +78,7 @@ pub(crate) fn recipe_modes(
     let elasticity = info.elasticity.ok_or_else(|| {
         SimError::refused(
             cache.folder().join(name).display(),
-            "a model of the cache without its stiffness; remove it",
+            "this model of the cache has no stiffness; remove the file",
         )
     })?;
     Ok((model, elasticity))

@@ -1,23 +1,25 @@
-//! Names of files in a cache.
+//! Keys of files in the cache.
 
 use std::fmt::{self, Display};
 
 use sscc::{ReducedModel, TriMesh};
 
-/// The hash of all inputs of a cached file, and of the version of this program.
+/// Hash of all inputs of a cached file and of the version of this program.
 pub struct Key(blake3::Hasher);
 
 impl Key {
-    /// The key of a file of this kind.
+    /// Begins the key of a file of this kind.
     pub fn new(kind: &str) -> Self {
         Self(blake3::Hasher::new()).text(kind).text(env!("CARGO_PKG_VERSION"))
     }
 
+    /// Adds a text.
     pub fn text(mut self, text: &str) -> Self {
         self.0.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
         self
     }
 
+    /// Adds a mesh.
     pub fn mesh(mut self, mesh: &TriMesh) -> Self {
         self.0.update(&(mesh.faces().len() as u64).to_le_bytes());
         for v in mesh.faces().as_flattened() {
@@ -29,7 +31,7 @@ impl Key {
         self
     }
 
-    /// The model, with all inputs of its certificates.
+    /// Adds a model with all inputs of its certificates.
     pub fn model(self, model: &ReducedModel) -> Self {
         let digest = sscc::Digest::of(model, &sscc::Scope::of(model));
         self.text(&format!("{digest:?}"))

@@ -1,4 +1,4 @@
-//! A recipe with its shape, and the modes that are computed from it.
+//! Loads the shape of a recipe and computes its modes.
 
 use std::cell::OnceCell;
 use std::path::Path;
@@ -15,25 +15,26 @@ use crate::error::At;
 use crate::models::{ElasticModes, ModesKind, SolidSource};
 use crate::{SimError, Stage, Watch};
 
-/// A recipe with its shape, before any long work.
+/// A recipe with its shape; modes are not computed yet.
 pub struct LoadedRecipe<'a> {
     recipe: &'a Recipe,
-    /// Of elements whose file names none.
+    /// Material of elements whose file names none.
     material: Material,
     matter: Matter,
     /// Where the shape comes from.
     pub source: String,
-    /// A note for people: the file that an embedded shape stands in for, or the numbers of a file that the material
+    /// A note for people: the file that an embedded shape replaces, or the numbers of a file that the material
     /// overrides.
     pub note: Option<String>,
-    /// From its own axes to those of a shape that stands upright, z up.
+    /// Rotation from the axes of the file to those of an upright shape, z up.
     pub upright: DQuat,
     /// The lattice around a surface.
     around: OnceCell<SolidSource>,
 }
 
 impl<'a> LoadedRecipe<'a> {
-    /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes stand in for them.
+    /// Reads or generates the shape. `models` is the folder of real models; without it embedded shapes replace
+    /// them.
     ///
     /// # Errors
     /// When a file cannot be read, a size or resolution is given for a solid, the material is out of range, or `watch`
@@ -47,12 +48,15 @@ impl<'a> LoadedRecipe<'a> {
         match (&mut matter, recipe.size) {
             (Matter::Surface(mesh), Some(size)) => *mesh = resized(mesh, size)?,
             (Matter::Solid(_), Some(_)) => {
-                return Err(SimError::refused(source, "size is for surfaces; a solid's file has its own"));
+                return Err(SimError::refused(
+                    source,
+                    "size is for surfaces; the file of a solid has its own size",
+                ));
             }
             (_, None) => {}
         }
         if recipe.cells.is_some() && matches!(matter, Matter::Solid(_)) {
-            let cause = "resolution is for surfaces; a solid's file brings its own elements";
+            let cause = "resolution is for surfaces; the file of a solid has its own elements";
             return Err(SimError::refused(source, cause));
         }
         // The files have y up, embedded shapes z.
@@ -63,21 +67,21 @@ impl<'a> LoadedRecipe<'a> {
         Ok(Self { recipe, material, matter, source, note, upright, around: OnceCell::new() })
     }
 
-    /// The recipe.
+    /// Returns the recipe.
     pub fn recipe(&self) -> &Recipe {
         self.recipe
     }
 
-    /// The key of a cached file that is made from this solid.
-    pub(crate) fn key(&self, what: &str) -> Key {
-        let key = Key::new(what).text(&format!("{:?} {:?}", self.material, self.recipe.cells()));
+    /// Returns the key of a cached file that depends on this solid.
+    pub(crate) fn key(&self, kind: &str) -> Key {
+        let key = Key::new(kind).text(&format!("{:?} {:?}", self.material, self.recipe.cells()));
         match &self.matter {
             Matter::Surface(mesh) => key.mesh(mesh),
             Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
         }
     }
 
-    /// The solid with its surface.
+    /// Returns the solid with its surface; builds the lattice at the first call.
     pub(crate) fn solid(&self, watch: &dyn Watch) -> Result<&SolidSource, SimError> {
         let mesh = match &self.matter {
             Matter::Solid(source) => return Ok(source),
@@ -114,13 +118,16 @@ impl<'a> LoadedRecipe<'a> {
     }
 }
 
-/// The same shape, the longest side of its box so long.
+/// Returns the shape, scaled so that the longest side of its AABB is `size`.
 fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh, SimError> {
     let rest = mesh.rest_positions();
     let (lower, upper) = rest.iter().fold((rest[0], rest[0]), |(a, b), p| (a.min(*p), b.max(*p)));
     let scale = size / (upper - lower).max_element();
     if !scale.is_finite() || scale <= 0.0 {
-        return Err(SimError::refused("size", format!("a shape of no size cannot be made {size:e} long")));
+        return Err(SimError::refused(
+            "size",
+            format!("this shape cannot be scaled to {size:e}: it has no extent"),
+        ));
     }
     Ok(TriMesh::new(rest.iter().map(|p| p * scale).collect(), mesh.faces().to_vec())?)
 }
@@ -133,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_tells_the_cells_that_a_shape_has_by_itself() {
+    fn a_key_depends_on_the_default_cells_of_a_shape() {
         let key = |cells| {
             let recipe = Recipe { cells, ..Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6)) };
             LoadedRecipe::load(&recipe, None, &()).unwrap().key("model").to_string()
@@ -147,7 +154,7 @@ mod tests {
         *MATERIAL soft\nENU, 1000, 1e6, 0.4\n*REGION\nallElements, soft\n";
 
     #[test]
-    fn a_scenes_material_goes_before_that_of_the_file() {
+    fn the_material_of_a_scene_overrides_that_of_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("soft.veg");
         std::fs::write(&file, SOFT).unwrap();
@@ -164,8 +171,8 @@ mod tests {
         let (stiff, note, of_stiff) =
             first(PartialMaterial { youngs_modulus: Some(4e6), ..Default::default() });
         assert!((stiff / own - 4.0).abs() < 1e-9, "{own} {stiff}");
-        let said = "the scene's material overrides what soft.veg states: youngs=4e6";
-        assert_eq!(note.as_deref(), Some(said));
+        let expected = "the scene's material overrides numbers of soft.veg: youngs=4e6";
+        assert_eq!(note.as_deref(), Some(expected));
         assert_ne!(key, of_stiff);
     }
 

@@ -1,4 +1,5 @@
-//! Models by recipe: a shape, a material and a kind of modes. Made once with their certificates, then from a cache.
+//! Models from recipes (a shape, a material and a kind of modes), computed once with certificates, then read from a
+//! cache.
 
 mod cache;
 mod certified_model;

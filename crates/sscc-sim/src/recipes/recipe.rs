@@ -18,9 +18,9 @@ pub struct Recipe {
     pub modes: ModesSpec,
     /// Overrides the materials in the file of a solid.
     pub material: PartialMaterial,
-    /// Cubes along the longest side of the lattice around a surface; none: as many as the shape has by default.
+    /// Cubes along the longest side of the lattice around a surface; none: the default of the shape.
     pub cells: Option<usize>,
-    /// The longest side of the box around a surface; none: as it is.
+    /// Longest side of the AABB of a surface; none: not scaled.
     pub size: Option<f64>,
     /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
     pub spread: Option<Vec<f64>>,
@@ -29,9 +29,9 @@ pub struct Recipe {
 /// Modes of a free elastic body.
 #[derive(Clone, Copy, Debug)]
 pub enum ModesSpec {
-    /// So many natural vibrations.
+    /// This number of natural vibrations.
     Linear(usize),
-    /// So many modes for large deformations.
+    /// This number of modes for large deformations.
     Nonlinear(usize),
     /// The 24 quadratic polynomials.
     Polynomial,
@@ -51,7 +51,7 @@ impl ModesSpec {
 const SPRING_CELLS: usize = 30;
 
 impl Recipe {
-    /// A recipe with the default material, the shape's own size and its usual lattice.
+    /// Creates a recipe with the default material, the shape's own size and its default lattice.
     pub fn new(name: impl Into<String>, shape: Shape, modes: ModesSpec) -> Self {
         Self {
             name: name.into(),
@@ -64,19 +64,19 @@ impl Recipe {
         }
     }
 
-    /// Cubes along the longest side of the lattice; none: as many as any surface has.
+    /// Returns the cubes along the longest side of the lattice; None: the default of all surfaces.
     pub(super) fn cells(&self) -> Option<usize> {
-        let usual = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
-        self.cells.or(usual)
+        let default = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
+        self.cells.or(default)
     }
 
-    /// The metric of the certificates of its model.
+    /// Returns the metric for the certificates of its model.
     ///
     /// # Errors
     /// When the spread has a number out of range.
     pub fn metric(&self, model: &ReducedModel) -> Result<Metric, SimError> {
         let Some(spread) = &self.spread else { return Ok(model.metric().clone()) };
-        let scales = spread.iter().map(|far| 1.0 / far).collect();
+        let scales = spread.iter().map(|amplitude| 1.0 / amplitude).collect();
         Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: spread", self.name))
     }
 }

@@ -1,4 +1,4 @@
-//! Shapes that recipes begin with: embedded ones, and files.
+//! Shapes of recipes: embedded ones and files.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,10 @@ use crate::models::{SolidSource, is_solid};
 /// Rings of the embedded spring, and vertices of each.
 pub const SPRING_RINGS: [usize; 2] = [500, 16];
 
-/// A shape to begin with.
+/// Shape of a recipe.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// The embedded spring, finer or coarser.
+    /// The embedded spring with a given resolution.
     Spring {
         /// Number of rings.
         rings: usize,
@@ -33,9 +33,9 @@ pub enum Shape {
     File(PathBuf),
 }
 
-/// The content of a shape.
+/// Content of a loaded shape.
 pub(super) enum Matter {
-    /// A surface, without any volume yet.
+    /// A surface, without a lattice.
     Surface(TriMesh),
     /// A solid from a file.
     Solid(Box<SolidSource>),
@@ -52,10 +52,10 @@ pub(super) struct LoadedShape {
 impl Shape {
     /// The embedded spring of 16,000 triangles.
     pub const SPRING: Self = Self::Spring { rings: SPRING_RINGS[0], around: SPRING_RINGS[1] };
-    /// A quarter of the triangles.
+    /// The embedded spring of 4,000 triangles.
     pub const SMALL_SPRING: Self = Self::Spring { rings: SPRING_RINGS[0] / 2, around: SPRING_RINGS[1] / 2 };
 
-    /// Reads or generates it. `models` is the folder of real models.
+    /// Reads or generates the shape. `models` is the folder of real models.
     pub(super) fn load(
         &self,
         models: Option<&Path>,
@@ -76,7 +76,7 @@ impl Shape {
                 let solid = SolidSource::read(path, None, material, progress).in_file(path)?;
                 let replaced = solid.material().replaced.as_ref();
                 let note = replaced
-                    .map(|replaced| format!("the scene's material overrides what {name} states: {replaced}"));
+                    .map(|replaced| format!("the scene's material overrides numbers of {name}: {replaced}"));
                 return Ok(LoadedShape { matter: Matter::Solid(Box::new(solid)), source: name, note });
             }
             Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
@@ -93,10 +93,10 @@ impl Shape {
     }
 }
 
-/// The folder of real models: `wanted`, else the one that the environment variable `SSCC_MODELS` names, else none.
+/// Returns the folder of real models: `wanted`, else that of the environment variable `SSCC_MODELS`, else None.
 ///
 /// # Errors
-/// When there is no such folder.
+/// When the folder does not exist.
 pub fn models_folder(wanted: Option<&Path>) -> Result<Option<PathBuf>, SimError> {
     let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
     let (folder, named_by) = match (wanted, named) {

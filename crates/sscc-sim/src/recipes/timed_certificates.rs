@@ -1,4 +1,4 @@
-//! Certificates with their cost: computed once, then from the cache.
+//! Certificates with their cost: computed once, then read from the cache.
 
 use std::path::Path;
 use std::time::Instant;
@@ -24,19 +24,19 @@ pub struct TimedCertificates {
 /// The cost of computing certificates.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct CertificateCost {
-    /// By the wall clock.
+    /// Wall-clock time (s).
     pub seconds: f64,
     /// Threads that computed them.
     pub threads: usize,
-    /// The most memory of the whole process meanwhile; none where the system does not tell.
+    /// Peak memory of the whole process during the computation (bytes); None if the system does not report it.
     pub peak_bytes: Option<u64>,
-    /// Pairs of nodes in their tree: a file without them would measure another method.
+    /// Number of node pairs in the pair tree. A file with another number would measure another method.
     pairs: usize,
 }
 
 impl TimedCertificates {
-    /// From the cache, or computed now with the metric and the budget (bytes for each triangle). `source` is where the
-    /// model is from, for errors.
+    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle).
+    /// `source` names the origin of the model in errors.
     pub(crate) fn get(
         cache: &Cache,
         name: &str,
@@ -46,8 +46,8 @@ impl TimedCertificates {
         budget: usize,
         watch: &dyn Watch,
     ) -> Result<Self, SimError> {
-        let asked = format!("{budget} {metric:?}");
-        let key = Key::new("certificates").text(cache.program()?).text(&asked).model(model);
+        let options = format!("{budget} {metric:?}");
+        let key = Key::new("certificates").text(cache.program()?).text(&options).model(model);
         cache.get(
             &format!("{name}-{key}.sscc.safetensors"),
             watch,
@@ -82,7 +82,7 @@ impl TimedCertificates {
             .map_err(|error| SimError::refused(beside.display(), error.to_string()))?;
         let pairs = certificates.parts().pair_tree.len();
         if pairs != cost.pairs {
-            let cause = format!("its pair tree has {pairs} pairs, not {}", cost.pairs);
+            let cause = format!("the pair tree has {pairs} pairs, not {}", cost.pairs);
             return Err(SimError::refused(path.display(), cause));
         }
         Ok(Self { certificates, cost })

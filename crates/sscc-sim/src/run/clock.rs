@@ -1,11 +1,11 @@
-//! The cost of the parts of a step in processor time, in which other programs do not count.
+//! Clock that measures the parts of a step in processor time, which excludes other programs.
 //!
-//! Reading the processor's clock takes a system call, about 0.2 microseconds; reading the wall's clock takes a tenth of
-//! that. Parts of short steps last less than either allows, so one reading of the processor's clock serves a block of
-//! steps, and the parts of these steps share it in proportion to the wall's clock. That keeps the mean of each part
-//! right: let a part work `c` of the block's `C` seconds, and let another program take `g` seconds at a moment that falls
-//! on every moment of work alike. The part gets `(c + g) C / (C + g)` with probability `c / C`, else `c C / (C + g)`:
-//! `c` in the mean. A single step may get up to a block too much or too little.
+//! Reading the processor clock takes a system call, which is too slow for the parts of short steps. One reading of the
+//! processor clock therefore serves a block of steps, and the parts of these steps share it in proportion to the wall
+//! clock (docs/notes/2026-11-23-processor-time.md). The mean of each part is unbiased: let a part work `c` of the
+//! block's `C` seconds, and let another program take `g` seconds at a uniformly distributed moment of the work. The
+//! part gets `(c + g) C / (C + g)` with probability `c / C`, else `c C / (C + g)`; the mean is `c`. The error of a
+//! single step is at most one block.
 
 use std::time::Instant;
 
@@ -13,15 +13,16 @@ use cpu_time::{ProcessTime, ThreadTime};
 
 use super::history::STEP_PARTS;
 
-/// A block lasts at least so long (s): one reading of the processor's clock is 0.2% of it.
-const BLOCK: f64 = 1e-4;
+/// Minimum duration of a block (s). One reading of the processor clock takes 0.2% of it.
+const MIN_BLOCK: f64 = 1e-4;
 
-/// Two clocks that tell seconds; tests put their own in place.
+/// Wall clock and processor clock, in seconds. Tests have an implementation of their own.
 pub trait Clocks {
+    /// Wall-clock time (s).
     fn wall(&self) -> f64;
-    /// Processor time of all threads that work on a step.
+    /// Processor time of all threads that work on a step (s).
     fn processor(&self) -> f64;
-    /// Whether one thread does all the work, so that its parts share processor time as they share the wall's.
+    /// Whether one thread does all the work. The parts then share processor time in proportion to wall-clock time.
     fn is_one_thread(&self) -> bool;
 }
 
@@ -32,7 +33,8 @@ pub struct SystemClocks {
 }
 
 impl SystemClocks {
-    /// Of this thread, if it does all the work, else of the whole process: another simulation in it then counts as well.
+    /// Creates clocks of this thread if it does all the work, else of the whole process. The latter include other
+    /// simulations in the process.
     pub fn new(is_one_thread: bool) -> Self {
         Self { begin: Instant::now(), is_one_thread }
     }
@@ -60,19 +62,19 @@ impl Clocks for SystemClocks {
 /// Times the parts of steps, block by block.
 pub struct StepClock<C> {
     clocks: C,
-    /// The part at work, and when it began.
+    /// The current part, and the time at which it began.
     part: Option<usize>,
     since: f64,
     /// The parts of this step, before they are scaled.
     parts: [f64; STEP_PARTS.len()],
-    /// By the wall's and by the processor's clock: when the block began.
+    /// Wall-clock and processor time at which the block began.
     block: Option<[f64; 2]>,
 }
 
-/// The parts of a step, and its seconds by the wall's clock.
+/// Times of the parts of a step, and its wall-clock time (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTimes {
-    /// Not yet processor time: the factor of their block, from [`StepClock::settle`], is missing.
+    /// Times of the parts, to be multiplied by the factor of their block, from [`StepClock::end_block`].
     pub parts: [f64; STEP_PARTS.len()],
     pub wall: f64,
 }
@@ -82,10 +84,10 @@ impl<C: Clocks> StepClock<C> {
         Self { clocks, part: None, since: 0.0, parts: [0.0; STEP_PARTS.len()], block: None }
     }
 
-    /// A step begins; gives when, by the wall's clock.
+    /// Begins a step. Returns its wall-clock time.
     pub fn begin(&mut self) -> f64 {
         if self.block.is_none() {
-            // The wall's clock last: the other one's reading is no part of the block.
+            // The wall clock is read last, so that the block excludes the reading of the processor clock.
             let processor = self.clocks.processor();
             self.block = Some([self.clocks.wall(), processor]);
         }
@@ -93,9 +95,10 @@ impl<C: Clocks> StepClock<C> {
         self.clocks.wall()
     }
 
-    /// A part begins, or none.
+    /// Begins a part, or none.
     pub fn enter(&mut self, part: Option<usize>) {
-        // Several threads work in some parts and one in others: there the wall's clock cannot tell the parts' shares.
+        // With several threads, some parts run on one thread: wall-clock time is then not proportional to processor
+        // time.
         let now = if self.clocks.is_one_thread() { self.clocks.wall() } else { self.clocks.processor() };
         if let Some(part) = self.part {
             self.parts[part] += now - self.since;
@@ -103,7 +106,7 @@ impl<C: Clocks> StepClock<C> {
         (self.part, self.since) = (part, now);
     }
 
-    /// The step that began at `begin` is over.
+    /// Ends the step that began at `begin`.
     pub fn end(&mut self, begin: f64) -> StepTimes {
         self.enter(None);
         StepTimes { parts: self.parts, wall: self.clocks.wall() - begin }
@@ -111,11 +114,11 @@ impl<C: Clocks> StepClock<C> {
 
     /// Whether the block has lasted long enough for a reading of the processor's clock.
     pub fn is_due(&self) -> bool {
-        self.block.is_some_and(|[wall, _]| self.clocks.wall() - wall >= BLOCK)
+        self.block.is_some_and(|[wall, _]| self.clocks.wall() - wall >= MIN_BLOCK)
     }
 
-    /// Ends the block, and gives the factor from the parts of its steps to processor time.
-    pub fn settle(&mut self) -> f64 {
+    /// Ends the block. Returns the factor from the times of the parts to processor time.
+    pub fn end_block(&mut self) -> f64 {
         let Some([wall, processor]) = self.block.take() else { return 1.0 };
         if !self.clocks.is_one_thread() {
             return 1.0;
@@ -131,7 +134,7 @@ pub mod tests {
 
     use super::*;
 
-    /// A thread that works, while others now and then take the processor from it; reading takes no time.
+    /// Clocks of a thread from which other programs take the processor at times; reading them takes no time.
     #[derive(Default)]
     pub struct Scripted {
         pub wall: Cell<f64>,
@@ -140,7 +143,7 @@ pub mod tests {
     }
 
     impl Scripted {
-        /// Works for so long, on so many threads.
+        /// Works for some seconds on some threads.
         fn work(&self, seconds: f64, threads: f64) {
             self.wall.set(self.wall.get() + seconds);
             self.processor.set(self.processor.get() + seconds * threads);
@@ -165,7 +168,7 @@ pub mod tests {
         }
     }
 
-    /// A step whose first parts work for so long; before each of them another program may take the processor.
+    /// A step whose first parts work for the seconds of `work`; before each, another program takes those of `taken`.
     fn step(clock: &mut StepClock<&Scripted>, time: &Scripted, work: &[f64], taken: &[f64]) -> StepTimes {
         let begin = clock.begin();
         for (part, (work, taken)) in work.iter().zip(taken).enumerate() {
@@ -190,25 +193,26 @@ pub mod tests {
         time.work(5e-4, 1.0);
         let more = step(&mut clock, &time, &[2e-6, 4e-6], &[0.0; 2]);
         assert!(clock.is_due());
-        let factor = clock.settle();
+        let factor = clock.end_block();
         assert!(is_near(factor, 1.0));
         assert!(is_near(times.parts[0], 1e-6) && is_near(times.parts[1], 3e-6) && is_near(times.wall, 4e-6));
         assert!(is_near(more.parts[0], 2e-6) && is_near(more.wall, 6e-6));
-        assert_eq!((clock.is_due(), clock.settle()), (false, 1.0));
+        assert_eq!((clock.is_due(), clock.end_block()), (false, 1.0));
     }
 
     #[test]
-    fn what_other_programs_take_is_no_cost() {
-        // One part works for a thousand times as long as another program leaves it alone.
+    fn time_of_other_programs_is_no_cost() {
+        // Another program takes a thousand times as long as the step works.
         let time = Scripted::default();
         let mut clock = StepClock::new(&time);
         let times = step(&mut clock, &time, &[1e-4, 3e-4], &[0.4, 0.0]);
-        let factor = clock.settle();
+        let factor = clock.end_block();
         let sum: f64 = times.parts.iter().map(|part| part * factor).sum();
         assert!(is_near(sum, 4e-4), "{sum}");
         assert!(is_near(times.wall, 0.4004));
 
-        // Of blocks in which it takes the processor in each part as often as that part lasts, each part's mean is right.
+        // The other program takes the processor in each part with a frequency proportional to the part's duration. The
+        // mean of each part is then right.
         let work = [1e-4, 3e-4, 6e-4];
         let mut sums = [0.0; 3];
         for block in 0..10 {
@@ -218,7 +222,7 @@ pub mod tests {
                 _ => [0.0, 0.0, 0.7],
             };
             let times = step(&mut clock, &time, &work, &taken);
-            let factor = clock.settle();
+            let factor = clock.end_block();
             (0..3).for_each(|part| sums[part] += times.parts[part] * factor / 10.0);
         }
         assert!((0..3).all(|part| is_near(sums[part], work[part])), "{sums:?}");
@@ -235,7 +239,7 @@ pub mod tests {
         clock.enter(Some(1));
         time.work(1e-3, 1.0);
         let times = clock.end(begin);
-        assert_eq!(clock.settle(), 1.0);
+        assert_eq!(clock.end_block(), 1.0);
         assert!(is_near(times.parts[0], 4e-3) && is_near(times.parts[1], 1e-3), "{times:?}");
         assert!(is_near(times.wall, 0.202));
     }

@@ -1,4 +1,4 @@
-//! The data of a simulation after its last step, from which files and the report are made.
+//! Data of a simulation after its last step; files and the report are made from them.
 
 use std::path::PathBuf;
 
@@ -20,14 +20,14 @@ pub struct FinishedRun {
     pub history: History,
     /// Its results in numbers.
     pub summary: Summary,
-    /// States at which the traditional method was measured, and its seconds for all bodies.
+    /// States at which the traditional method was measured, with its processor time for all bodies (s).
     pub traditional: Vec<(usize, f64)>,
-    /// Why it ended early, if it did.
+    /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,
 }
 
 impl FinishedRun {
-    /// When a state was (s).
+    /// Returns the time of a state (s).
     pub fn time(&self, state: usize) -> f64 {
         state as f64 * self.scene.step
     }

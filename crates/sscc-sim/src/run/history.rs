@@ -1,28 +1,28 @@
-//! The states of a simulation and the record of each step, in one array of numbers.
+//! States of a simulation and the record of each step, in one array of numbers.
 
 use glam::{DQuat, DVec3};
 
 /// The parts of a step that are timed, in the order of [`StepRecord::seconds`].
 pub const STEP_PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
 
-/// Numbers of a step beside those of its bodies.
-const OF_STEP: usize = STEP_PARTS.len() + 4;
+/// Count of numbers of a step, without those of its bodies.
+const STEP_NUMBERS: usize = STEP_PARTS.len() + 4;
 
-/// Numbers of a body beside its q.
-const OF_BODY: usize = 8;
+/// Count of numbers of a body, without its q.
+const BODY_NUMBERS: usize = 8;
 
-/// A step: its cost, its sound, and energy and contacts of the state that it begins with.
+/// Record of a step: its cost and its sound, with energy and collisions of the state at its beginning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepRecord {
     /// Processor time of each part (s).
     pub seconds: [f64; STEP_PARTS.len()],
     /// Wall-clock time of the step (s).
     pub wall: f64,
-    /// Kinetic, elastic and potential energy; not a number at the steps at which it was not computed.
+    /// Kinetic, elastic and potential energy; NaN where it was not computed.
     pub energy: f64,
-    /// The sample of the sound during the step; 0 without.
+    /// Sample of the sound during the step; 0 without sound.
     pub sound: f64,
-    /// Pairs of triangles of different bodies that collide in the state.
+    /// Number of colliding triangle pairs between bodies in the state.
     pub inter_pairs: usize,
 }
 
@@ -37,8 +37,8 @@ impl StepRecord {
         self.seconds.iter().sum()
     }
 
-    fn numbers(&self) -> [f64; OF_STEP] {
-        let mut numbers = [self.energy; OF_STEP];
+    fn numbers(&self) -> [f64; STEP_NUMBERS] {
+        let mut numbers = [self.energy; STEP_NUMBERS];
         numbers[..STEP_PARTS.len()].copy_from_slice(&self.seconds);
         numbers[STEP_PARTS.len() + 1] = self.sound;
         numbers[STEP_PARTS.len() + 2] = self.inter_pairs as f64;
@@ -50,49 +50,49 @@ impl StepRecord {
 /// A body in a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyRecord<'a> {
-    /// Pairs of triangles in which it collides with itself.
+    /// Number of colliding triangle pairs within the body.
     pub pairs: usize,
     /// Its centre of mass.
     pub position: DVec3,
-    /// From the axes of its model to those of the world.
+    /// Rotation from the axes of its model to those of the world.
     pub orientation: DQuat,
     /// Its reduced coordinates.
     pub q: &'a [f64],
 }
 
-/// How a step is laid out in numbers.
+/// Layout of the numbers of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StateLayout {
-    /// Where each body's numbers begin; then the length of a step.
+    /// Index of the first number of each body, then the length of a step.
     starts: Vec<usize>,
 }
 
 impl StateLayout {
-    /// For bodies of these ranks.
+    /// Creates the layout for bodies of these ranks.
     pub fn new(ranks: impl IntoIterator<Item = usize>) -> Self {
-        let mut starts = vec![OF_STEP];
+        let mut starts = vec![STEP_NUMBERS];
         for rank in ranks {
-            starts.push(starts[starts.len() - 1] + OF_BODY + rank);
+            starts.push(starts[starts.len() - 1] + BODY_NUMBERS + rank);
         }
         Self { starts }
     }
 
-    /// Number of bodies.
+    /// Returns the number of bodies.
     pub fn bodies(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Number of modes of a body.
+    /// Returns the number of modes of a body.
     pub fn rank(&self, body: usize) -> usize {
-        self.starts[body + 1] - self.starts[body] - OF_BODY
+        self.starts[body + 1] - self.starts[body] - BODY_NUMBERS
     }
 
-    /// Numbers in a step.
+    /// Returns the count of numbers of a step.
     pub fn width(&self) -> usize {
         self.starts[self.bodies()]
     }
 
-    /// Appends a step; `bodies` are as many as there are, of their ranks.
+    /// Appends a step to `numbers`. `bodies` must fit the layout.
     pub fn push<'a>(
         &self,
         facts: StepRecord,
@@ -109,15 +109,15 @@ impl StateLayout {
         debug_assert_eq!(numbers.len() % self.width(), 0);
     }
 
-    /// Sets the numbers of a state that are known after the step only: its record, and the pairs of each body.
+    /// Sets the numbers of a state that are known after its step: the record, and the pairs of each body.
     pub fn complete(&self, facts: StepRecord, pairs: impl Iterator<Item = usize>, state: &mut [f64]) {
-        state[..OF_STEP].copy_from_slice(&facts.numbers());
+        state[..STEP_NUMBERS].copy_from_slice(&facts.numbers());
         for (start, pairs) in self.starts.iter().zip(pairs) {
             state[*start] = pairs as f64;
         }
     }
 
-    /// Multiplies the seconds of the parts of all states that are given.
+    /// Multiplies the seconds of all parts in `states` by a factor.
     pub fn scale_seconds(&self, factor: f64, states: &mut [f64]) {
         for state in states.chunks_exact_mut(self.width()) {
             state[..STEP_PARTS.len()].iter_mut().for_each(|seconds| *seconds *= factor);
@@ -125,7 +125,7 @@ impl StateLayout {
     }
 }
 
-/// The states of a simulation so far, the first of them its beginning.
+/// States of a simulation, from its beginning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
     layout: StateLayout,
@@ -133,24 +133,24 @@ pub struct History {
 }
 
 impl History {
-    /// Of the numbers of whole steps.
+    /// Creates the history from the numbers of whole steps.
     pub fn new(layout: StateLayout, numbers: Vec<f64>) -> Self {
         debug_assert_eq!(numbers.len() % layout.width(), 0);
         Self { layout, numbers }
     }
 
-    /// At most so many states.
+    /// Returns the first `states` states, or all if there are fewer.
     pub fn first(mut self, states: usize) -> Self {
         self.numbers.truncate(states.saturating_mul(self.layout.width()));
         self
     }
 
-    /// How its steps are laid out.
+    /// Returns the layout of its steps.
     pub fn layout(&self) -> &StateLayout {
         &self.layout
     }
 
-    /// Number of states.
+    /// Returns the number of states.
     pub fn len(&self) -> usize {
         self.numbers.len() / self.layout.width()
     }
@@ -164,7 +164,7 @@ impl History {
         &self.numbers[state * self.layout.width()..][..self.layout.width()]
     }
 
-    /// The record of the step that begins with a state.
+    /// Returns the record of the step that begins with a state.
     pub fn step(&self, state: usize) -> StepRecord {
         let of = self.of(state);
         let seconds = std::array::from_fn(|part| of[part]);
@@ -172,28 +172,28 @@ impl History {
         StepRecord { seconds, wall, energy, sound, inter_pairs: inter_pairs as usize }
     }
 
-    /// A body in a state.
+    /// Returns a body in a state.
     pub fn body(&self, state: usize, body: usize) -> BodyRecord<'_> {
         let of = &self.of(state)[self.layout.starts[body]..self.layout.starts[body + 1]];
         BodyRecord {
             pairs: of[0] as usize,
             position: DVec3::new(of[1], of[2], of[3]),
             orientation: DQuat::from_array([of[4], of[5], of[6], of[7]]),
-            q: &of[OF_BODY..],
+            q: &of[BODY_NUMBERS..],
         }
     }
 
-    /// All bodies in a state.
+    /// Returns all bodies in a state.
     pub fn bodies(&self, state: usize) -> impl Iterator<Item = BodyRecord<'_>> {
         (0..self.layout.bodies()).map(move |body| self.body(state, body))
     }
 
-    /// Pairs of triangles in which bodies collide with themselves.
+    /// Returns the number of colliding triangle pairs within bodies.
     pub fn self_pairs(&self, state: usize) -> usize {
         self.bodies(state).map(|body| body.pairs).sum()
     }
 
-    /// How many bodies collide with themselves.
+    /// Returns the number of bodies that collide with themselves.
     pub fn colliding_bodies(&self, state: usize) -> usize {
         self.bodies(state).filter(|body| body.pairs > 0).count()
     }
@@ -204,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_put_in_comes_out() {
+    fn a_history_returns_the_steps_that_were_appended() {
         let layout = StateLayout::new([2, 0]);
         let facts = |x: f64| StepRecord {
             seconds: std::array::from_fn(|part| x + part as f64),

@@ -1,8 +1,8 @@
-//! The log of a simulation's states, and the checkpoint from which a stopped simulation continues.
+//! Log of the states of a simulation, and the checkpoint from which a stopped simulation continues.
 //!
-//! States are appended, all of one size. A checkpoint holds their number, their hash, and the memory of the world and its
-//! sounds. States after the last checkpoint are cut off and simulated again, to the same bits, so a checkpoint can be
-//! written seldom. Its cost does not grow with the number of states.
+//! The log appends states of one size. A checkpoint holds their number, their hash, and the memory of the world and its
+//! sounds. A continued simulation cuts off the states after the last checkpoint and computes them again, to the same
+//! bits, so few checkpoints are enough. The cost of a checkpoint does not grow with the number of states.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -18,11 +18,11 @@ use crate::files::remove_file;
 const LOG: &str = "states.log";
 const CHECKPOINT: &str = "checkpoint.bin";
 
-/// Both files begin with the digest of the simulation.
+/// Size of the simulation's digest, with which both files begin (bytes).
 const DIGEST: usize = 32;
 
-/// A checkpoint holds a hash of the states, and ends with one of all before.
-const SEAL: usize = 32;
+/// Size of a hash (bytes). A checkpoint holds a hash of the states, and ends with a hash of all bytes before.
+const HASH: usize = 32;
 
 /// The states of a simulation, on disk.
 pub struct StateLog {
@@ -47,8 +47,8 @@ pub struct Checkpoint {
 }
 
 impl StateLog {
-    /// Opens the log of a folder, with its checkpoint if it has one; to begin again, both are emptied. `digest` is that of
-    /// the simulation.
+    /// Opens the log of a folder. Returns it with the checkpoint, if the folder has one. `again` removes both before.
+    /// `digest` is that of the simulation.
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.
@@ -62,10 +62,10 @@ impl StateLog {
         let mut options = OpenOptions::new();
         let mut file =
             options.read(true).write(true).create(true).truncate(false).open(&path).system(&path)?;
-        // Two at once would write into each other's states.
+        // Two simulations at once would overwrite each other's states.
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
-                return Err(SimError::refused(path.display(), "another simulation is writing to it"));
+                return Err(SimError::refused(path.display(), "another simulation is writing to this file"));
             }
             Err(TryLockError::Error(error)) => return Err(error).system(&path),
             Ok(()) => {}
@@ -77,8 +77,8 @@ impl StateLog {
         let mut first = Vec::new();
         (&mut file).take(DIGEST as u64).read_to_end(&mut first).system(&path)?;
         if first.len() == DIGEST && first != digest {
-            let cause = "it is of another scene, other models or another version of this program: choose another \
-                folder, or begin again by --restart";
+            let cause = "this file belongs to another scene, other models or another version of this program: choose \
+                another folder, or begin again with --restart";
             return Err(SimError::refused(path.display(), cause));
         }
         let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0, hasher: Hasher::new() };
@@ -97,12 +97,12 @@ impl StateLog {
         Ok((log, checkpoint))
     }
 
-    /// Whether the folder has a checkpoint.
+    /// Returns whether the folder has a checkpoint.
     pub fn is_begun(folder: &Path) -> bool {
         folder.join(CHECKPOINT).exists()
     }
 
-    /// The checkpoint of the folder, if it is whole, of this simulation, and the log has its states.
+    /// Reads the checkpoint of the folder, if there is one. Checks its hash, its digest, and the states in the log.
     fn checkpoint(&mut self) -> Result<Option<Checkpoint>> {
         let path = self.folder.join(CHECKPOINT);
         if !path.exists() {
@@ -110,21 +110,21 @@ impl StateLog {
         }
         let bytes = read_whole(&path)?;
         let damaged = || damaged(&path);
-        let (rest, seal) = bytes.split_at_checked(bytes.len().saturating_sub(SEAL)).ok_or_else(damaged)?;
+        let (rest, seal) = bytes.split_at_checked(bytes.len().saturating_sub(HASH)).ok_or_else(damaged)?;
         if blake3::hash(rest).as_bytes() != seal {
             return Err(damaged());
         }
         let (digest, rest) = rest.split_at_checked(DIGEST).ok_or_else(damaged)?;
         if digest != self.digest {
-            return Err(SimError::refused(path.display(), "it is of another simulation"));
+            return Err(SimError::refused(path.display(), "this file belongs to another simulation"));
         }
-        let (of_states, rest) = rest.split_at_checked(SEAL).ok_or_else(damaged)?;
+        let (of_states, rest) = rest.split_at_checked(HASH).ok_or_else(damaged)?;
         let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { return Err(damaged()) };
         let states = usize::try_from(u64::from_le_bytes(*states)).map_err(|_| damaged())?;
         let log = self.path();
         let there = self.file.metadata().system(&log)?.len();
         let end = self.bytes(states).filter(|needed| *needed <= there).ok_or_else(|| {
-            let cause = "the log beside it has fewer states; begin again by --restart";
+            let cause = "the log beside this file has fewer states; begin again with --restart";
             SimError::refused(path.display(), cause)
         })?;
         let mut hasher = Hasher::new();
@@ -137,16 +137,16 @@ impl StateLog {
         Ok(Some(Checkpoint { states, hasher, memory }))
     }
 
-    /// Bytes of the log with so many states.
+    /// Returns the size of a log with this number of states (bytes).
     fn bytes(&self, states: usize) -> Option<u64> {
         let width = u64::try_from(8 * self.layout.width()).ok()?;
         u64::try_from(states).ok()?.checked_mul(width)?.checked_add(DIGEST as u64)
     }
 
-    /// Keeps so many states, and goes to the end.
+    /// Truncates the log to this number of states, and seeks its end.
     fn cut(&mut self, states: usize) -> Result<()> {
         let path = self.path();
-        let too_many = || SimError::refused(path.display(), format!("{states} states fit no file"));
+        let too_many = || SimError::refused(path.display(), format!("{states} states do not fit a file"));
         let end = self.bytes(states).ok_or_else(too_many)?;
         self.file.set_len(end).system(&path)?;
         self.file.seek(SeekFrom::Start(end)).system(&path)?;
@@ -158,7 +158,7 @@ impl StateLog {
         self.folder.join(LOG)
     }
 
-    /// Number of states.
+    /// Returns the number of states.
     pub(super) fn len(&self) -> usize {
         self.len
     }
@@ -174,7 +174,7 @@ impl StateLog {
 
     /// Writes a checkpoint of all states so far.
     pub(super) fn write_checkpoint(&mut self, memory: &[f64]) -> Result<()> {
-        // The states first: a checkpoint must not count states that are not on the disk.
+        // States are written first: a checkpoint must not count states that are not on the disk.
         self.file.sync_data().system(&self.path())?;
         let mut bytes = self.digest.to_vec();
         bytes.extend(self.hasher.finalize().as_bytes());
@@ -185,19 +185,19 @@ impl StateLog {
         Ok(write_whole(&self.folder.join(CHECKPOINT), &bytes)?)
     }
 
-    /// All states.
+    /// Reads all states.
     pub(super) fn history(&mut self) -> Result<History> {
         let path = self.path();
         let mut bytes = vec![0; self.len * self.layout.width() * 8];
         self.file.seek(SeekFrom::Start(DIGEST as u64)).system(&path)?;
-        self.file.read_exact(&mut bytes).system(&path)?; // and is at the end again
+        self.file.read_exact(&mut bytes).system(&path)?; // the file is at its end again
         let numbers = bytes.as_chunks().0.iter().map(|x| f64::from_le_bytes(*x)).collect();
         Ok(History::new(self.layout.clone(), numbers))
     }
 }
 
 fn damaged(path: &Path) -> SimError {
-    SimError::refused(path.display(), "it is damaged; begin again by --restart")
+    SimError::refused(path.display(), "this file is damaged; begin again with --restart")
 }
 
 #[cfg(test)]
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_killed_simulation_goes_on_from_its_checkpoint() {
+    fn a_killed_simulation_continues_from_its_checkpoint() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let (mut log, none) = open(path, 1).unwrap();
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_of_this_simulation_is_refused() {
+    fn files_of_other_simulations_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let (mut log, _) = open(path, 1).unwrap();
@@ -251,17 +251,17 @@ mod tests {
         log.write_checkpoint(&[1.0]).unwrap();
         drop(log);
         let message = |digest| open(path, digest).err().unwrap().to_string();
-        assert!(message(2).contains("another folder, or begin again by --restart"));
+        assert!(message(2).contains("another folder, or begin again with --restart"));
         let good = fs::read(path.join(CHECKPOINT)).unwrap();
         for at in [0, 33, 41, good.len() - 1] {
             let mut bad = good.clone();
             bad[at] ^= 1;
             fs::write(path.join(CHECKPOINT), bad).unwrap();
-            assert!(message(1).contains("it is damaged"));
+            assert!(message(1).contains("this file is damaged"));
         }
         for len in [1, 31, 64, 70, good.len() - 1] {
             fs::write(path.join(CHECKPOINT), &good[..len]).unwrap();
-            assert!(message(1).contains("it is damaged"), "{len}");
+            assert!(message(1).contains("this file is damaged"), "{len}");
         }
         fs::write(path.join(CHECKPOINT), &good).unwrap();
         let states = fs::read(path.join(LOG)).unwrap();
@@ -269,13 +269,13 @@ mod tests {
             let mut bad = states.clone();
             bad[at] ^= 1;
             fs::write(path.join(LOG), bad).unwrap();
-            assert!(message(1).contains("states.log: it is damaged"));
+            assert!(message(1).contains("states.log: this file is damaged"));
         }
         fs::write(path.join(LOG), &states).unwrap();
         assert!(open(path, 1).is_ok());
         fs::write(path.join(LOG), [1; DIGEST]).unwrap();
-        assert!(message(1).contains("the log beside it has fewer states"));
-        // Not while somebody writes to it.
+        assert!(message(1).contains("the log beside this file has fewer states"));
+        // A log that is being written is refused, too.
         let again = || StateLog::open(path, [2; DIGEST], StateLayout::new([1]), true);
         let (log, none) = again().unwrap();
         assert!(none.is_none() && log.len() == 0);

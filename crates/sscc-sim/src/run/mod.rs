@@ -1,4 +1,4 @@
-//! Simulations of scenes: preparation, steps, the log of states, costs and a summary.
+//! Runs simulations of scenes: preparation, steps, the log of states, costs and a summary.
 
 mod clock;
 mod finished;

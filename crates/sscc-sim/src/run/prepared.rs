@@ -1,4 +1,4 @@
-//! The models of a scene with certificates, masses and sounds: made once, then from the cache.
+//! Models of a scene with certificates, masses and sounds: computed once, then read from the cache.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -13,40 +13,40 @@ use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, recipe_mode
 use crate::scenes::{ModelSpec, Scene};
 use crate::watch::Watch;
 
-/// The most memory that the sounds of all bodies may take: 2 GB.
-const MOST_SOUND: usize = 2_000_000_000;
+/// Maximum memory for the sounds of all bodies (2 GB).
+const MAX_SOUND_BYTES: usize = 2_000_000_000;
 
-/// Bytes that a body takes for each of its triangles: positions and boxes of queries within it and beside others.
-const OF_TRIANGLE: usize = 500;
+/// Memory of a body for each of its triangles (bytes): positions and AABBs of queries within it and against others.
+const TRIANGLE_BYTES: usize = 500;
 
-/// The most memory that all bodies may take: 8 GB.
-const MOST_BODIES: usize = 8_000_000_000;
+/// Maximum memory for all bodies (8 GB).
+const MAX_BODY_BYTES: usize = 8_000_000_000;
 
 /// The models of a scene, in its order.
 pub struct PreparedScene {
-    /// One for each of the scene.
+    /// One model for each of the scene.
     pub models: Vec<PreparedModel>,
     /// The hash of this program.
     pub(super) program: String,
 }
 
-/// One model.
+/// One model of a scene.
 pub struct PreparedModel {
     /// The model and its certificates.
     pub certified: CertifiedModel,
     /// The shape of its bodies in a world.
     pub shape: Shape,
-    /// From the axes of its file to those of a shape that stands upright, z up.
+    /// Rotation from the axes of its file to those of an upright shape, z up.
     pub upright: DQuat,
     /// The sound of a body, if the scene has sound.
     pub sound: Option<SoundBank>,
 }
 
 impl PreparedScene {
-    /// From the cache, or made now. `models` is the folder of real models.
+    /// Reads the models from the cache, or computes them. `models` is the folder of real models.
     ///
     /// # Errors
-    /// When a model cannot be made, steps are too long for it, all bodies take too much memory, or `watch` cancels.
+    /// When a model cannot be computed, steps are too long for it, all bodies need too much memory, or `watch` cancels.
     pub fn get(
         scene: &Scene,
         models: Option<&Path>,
@@ -59,13 +59,13 @@ impl PreparedScene {
             scene.bodies.iter().map(|body| of(&models[body.model])).sum()
         };
         let triangles = sum(&|model| model.certified.model.mesh().faces().len());
-        let bytes = triangles * OF_TRIANGLE;
-        if bytes > MOST_BODIES {
+        let bytes = triangles * TRIANGLE_BYTES;
+        if bytes > MAX_BODY_BYTES {
             let cause = format!(
-                "about {} MB for all {} (limit {} MB); take fewer, or of fewer triangles",
+                "all {1} need about {0} MB (limit {2} MB); use fewer bodies, or models of fewer triangles",
                 bytes / 1_000_000,
                 scene.bodies.len(),
-                MOST_BODIES / 1_000_000
+                MAX_BODY_BYTES / 1_000_000
             );
             return Err(SimError::refused("bodies", cause));
         }
@@ -73,14 +73,14 @@ impl PreparedScene {
             let vertices = certified.model.mesh().rest_positions().len();
             sound.as_ref().map_or(0, |sound| 12 * sound.modes() * vertices)
         });
-        if sounds > MOST_SOUND {
-            let cause = format!("{} MB for all bodies; take fewer modes, or no sound", sounds / 1_000_000);
+        if sounds > MAX_SOUND_BYTES {
+            let cause = format!("all bodies need {} MB; use fewer modes, or no sound", sounds / 1_000_000);
             return Err(SimError::refused("sound", cause));
         }
         Ok(Self { models, program: cache.program()?.to_owned() })
     }
 
-    /// The hash of all inputs of a simulation, this program included.
+    /// Returns the hash of all inputs of a simulation, this program included.
     pub fn digest(&self, scene: &Scene) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.program.as_bytes()).update(scene.digest.as_bytes());
@@ -111,8 +111,8 @@ impl PreparedModel {
         let is_resolved = 2.0 * scene.step < period;
         if !is_resolved {
             let cause = format!(
-                "steps of {:.3e} s are longer than half a period of its first mode ({period:.3e} s): take more steps \
-                 in a second",
+                "steps of {:.3e} s are longer than half a period of its first mode ({period:.3e} s): use more steps \
+                 per second",
                 scene.step
             );
             return Err(SimError::refused(&certified.name, cause));
@@ -130,25 +130,28 @@ impl PreparedModel {
         Ok(Self { certified, shape, upright: loaded.upright, sound: sound.transpose()? })
     }
 
-    /// The point about which its bodies turn.
+    /// Returns the centre of mass, about which its bodies rotate.
     pub fn center(&self) -> DVec3 {
         self.shape.mass().center
     }
 }
 
-/// The forces that move a model's bodies.
+/// Returns the elastic forces on a model's bodies.
 fn elasticity(certified: &CertifiedModel, is_linear: bool) -> Result<Elasticity> {
     match &certified.elasticity {
         known if is_linear => Ok(known.linearized()),
         Elasticity::Linear(_) => {
-            let cause = format!("{} modes have no forces of large deformations", certified.model.rank());
+            let cause = format!(
+                "the {} modes have no forces of large deformations; use linear dynamics",
+                certified.model.rank()
+            );
             Err(SimError::refused(&certified.name, cause))
         }
         known => Ok(known.clone()),
     }
 }
 
-/// Mass, centre and inertia of a solid: 1, 3 and 9 numbers in a file.
+/// Returns mass, centre and inertia of a solid. The cached file has 1, 3 and 9 numbers.
 fn mass(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<MassProperties> {
     let name = format!("{}-{}.mass.json", loaded.recipe().name, loaded.key("mass"));
     let read = |path: &Path| {

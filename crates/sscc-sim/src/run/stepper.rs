@@ -1,14 +1,14 @@
-//! The steps of a world with its sounds, and the record of each step.
+//! Makes the steps of a world with its sounds, and records each step.
 
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, World};
 
 use super::clock::{Clocks, StepClock, StepTimes};
 use super::history::{BodyRecord, StateLayout, StepRecord};
 
-/// The energy is computed at every so many steps.
+/// Number of steps from one computation of the energy to the next.
 const ENERGY_STEPS: usize = 8;
 
-/// A world at work, with the states that are not yet in the log.
+/// A world that advances, with the states that are not yet in the log.
 pub struct Stepper<'a, C> {
     pub world: World<'a>,
     sounds: Vec<Option<SoundBank>>,
@@ -16,36 +16,36 @@ pub struct Stepper<'a, C> {
     clock: StepClock<C>,
     /// States that are not yet in the log.
     numbers: Vec<f64>,
-    /// Where the states begin whose costs are not yet processor time.
-    unsettled: usize,
+    /// Index of the first number whose block of costs has not ended.
+    block_start: usize,
 }
 
 impl<'a, C: Clocks> Stepper<'a, C> {
     pub fn new(world: World<'a>, sounds: Vec<Option<SoundBank>>, layout: StateLayout, clocks: C) -> Self {
-        Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), unsettled: 0 }
+        Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), block_start: 0 }
     }
 
     /// Removes the states that are not yet in the log, to append them.
     pub fn take(&mut self) -> Vec<f64> {
-        self.settle();
-        self.unsettled = 0;
+        self.end_block();
+        self.block_start = 0;
         std::mem::take(&mut self.numbers)
     }
 
-    /// Scales the costs of the last steps to processor time.
-    fn settle(&mut self) {
-        let factor = self.clock.settle();
-        self.layout.scale_seconds(factor, &mut self.numbers[self.unsettled..]);
-        self.unsettled = self.numbers.len();
+    /// Ends the block of costs: scales them to processor time.
+    fn end_block(&mut self) {
+        let factor = self.clock.end_block();
+        self.layout.scale_seconds(factor, &mut self.numbers[self.block_start..]);
+        self.block_start = self.numbers.len();
     }
 
-    /// Numbers that are not yet in the log.
-    pub fn pending(&self) -> usize {
+    /// Returns the count of numbers that are not yet in the log.
+    pub fn pending_numbers(&self) -> usize {
         self.numbers.len()
     }
 
-    /// States that are not yet in the log.
-    pub fn waiting(&self) -> usize {
+    /// Returns the number of states that are not yet in the log.
+    pub fn pending_states(&self) -> usize {
         self.numbers.len() / self.layout.width()
     }
 
@@ -65,20 +65,21 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         let clock = &mut self.clock;
         let advanced = self.world.advance(&mut |phase| clock.enter(part(phase)));
         self.clock.enter(Some(SOUND));
-        let sound = self.hear();
+        let sound = self.sample_sound();
         let StepTimes { parts: seconds, wall } = self.clock.end(begin);
-        let inter_pairs = self.world.inter_pairs().map(|met| met.pairs.len()).sum();
+        let inter_pairs = self.world.inter_pairs().map(|found| found.pairs.len()).sum();
         let facts = StepRecord { seconds, wall, energy, sound, inter_pairs };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);
         if self.clock.is_due() {
-            self.settle();
+            self.end_block();
         }
         // The last state is kept even if its step failed.
         advanced.map(drop)
     }
 
-    fn hear(&mut self) -> f64 {
+    /// Applies the impulses of the step to the sounds. Returns the sum of their samples.
+    fn sample_sound(&mut self) -> f64 {
         for impulse in self.world.impulses() {
             if let Some(bank) = &mut self.sounds[impulse.body] {
                 bank.strike(impulse);
@@ -87,7 +88,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         self.sounds.iter_mut().flatten().map(SoundBank::sample).sum()
     }
 
-    /// The state of world and sounds, for a checkpoint.
+    /// Returns the state of world and sounds, for a checkpoint.
     pub fn memory(&self) -> Vec<f64> {
         let mut memory = self.world.state().numbers;
         self.sounds.iter().flatten().for_each(|bank| memory.extend(bank.state()));
@@ -95,10 +96,10 @@ impl<'a, C: Clocks> Stepper<'a, C> {
     }
 }
 
-/// The part of [`STEP_PARTS`] that is sound.
+/// Index of sound in `STEP_PARTS`.
 const SOUND: usize = 5;
 
-/// The place in [`STEP_PARTS`] of a phase.
+/// Returns the index of a phase in `STEP_PARTS`.
 fn part(phase: Phase) -> Option<usize> {
     match phase {
         Phase::SelfCollision => Some(0),
@@ -120,20 +121,20 @@ mod tests {
 
     use super::*;
 
-    /// Each look at the wall's clock takes a millisecond, a tenth of which this thread works.
+    /// Clocks of a thread that works a tenth of the time. Each reading of the wall clock takes a millisecond.
     #[derive(Default)]
     struct Busy {
-        looks: Cell<u32>,
+        readings: Cell<u32>,
     }
 
     impl Clocks for Busy {
         fn wall(&self) -> f64 {
-            self.looks.set(self.looks.get() + 1);
-            1e-3 * f64::from(self.looks.get())
+            self.readings.set(self.readings.get() + 1);
+            1e-3 * f64::from(self.readings.get())
         }
 
         fn processor(&self) -> f64 {
-            1e-4 * f64::from(self.looks.get())
+            1e-4 * f64::from(self.readings.get())
         }
 
         fn is_one_thread(&self) -> bool {
@@ -150,7 +151,7 @@ mod tests {
         let history = History::new(layout, stepper.take());
         for state in 0..3 {
             let facts = history.step(state);
-            // Each part lasts from one look to the next.
+            // Each part lasts from one reading to the next.
             assert!(facts.seconds.iter().all(|seconds| (0.5e-4..1.5e-4).contains(seconds)), "{facts:?}");
             assert!(facts.wall > 6e-3, "{facts:?}");
         }

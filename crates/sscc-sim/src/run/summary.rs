@@ -1,4 +1,4 @@
-//! The results of a simulation in numbers: the keys of `sscc simulate --json`, and lines for people.
+//! Results of a simulation in numbers: the keys of `sscc simulate --json`, and lines for people.
 
 use serde::Serialize;
 
@@ -27,21 +27,21 @@ pub struct Summary {
     pub simulated_seconds: f64,
     /// Processor time of all steps (s).
     pub simulation_seconds: f64,
-    /// Simulated seconds in each second of wall-clock time.
+    /// Simulated seconds per second of wall-clock time.
     pub real_time_factor: f64,
-    /// Simulated seconds in each second of processor time, where one thread simulated all steps.
+    /// Simulated seconds per second of processor time, if one thread simulated all steps.
     pub real_time_factor_processor: Option<f64>,
     /// Number of steps in which some body collides with itself.
     pub colliding_steps: usize,
     /// Number of steps times number of bodies.
     pub body_steps: usize,
-    /// Of those, how many collide with themselves.
+    /// Number of those in which the body collides with itself.
     pub colliding_body_steps: usize,
-    /// In the last state, pairs of triangles that collide within bodies.
+    /// Number of colliding triangle pairs within bodies in the last state.
     pub last_self_pairs: usize,
-    /// In the last state, pairs of triangles that collide between bodies.
+    /// Number of colliding triangle pairs between bodies in the last state.
     pub last_inter_pairs: usize,
-    /// Share of the processor time that detects self-collisions.
+    /// Share of self-collision detection in the processor time.
     pub self_collision_share: f64,
     /// Kinetic, elastic and potential energy of the first state (J).
     pub energy_first: f64,
@@ -105,7 +105,7 @@ impl Summary {
             simulated_seconds: steps as f64 * scene.step,
             simulation_seconds: seconds,
             real_time_factor: steps as f64 * scene.step / wall,
-            // Several bodies are tested on other threads, too.
+            // Several bodies are tested on several threads.
             real_time_factor_processor: processor_seconds
                 .filter(|_| scene.bodies.len() == 1)
                 .map(|seconds| steps as f64 * scene.step / seconds),
@@ -122,13 +122,13 @@ impl Summary {
         }
     }
 
-    /// The object that `sscc simulate --json` prints.
+    /// Returns the object that `sscc simulate --json` prints.
     pub fn to_json(&self) -> String {
-        // It has text and numbers only; numbers that are not finite become null.
+        // Numbers that are not finite become null.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Lines for people.
+    /// Returns the results as lines for people.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for model in &self.models {
@@ -142,7 +142,7 @@ impl Summary {
         lines
     }
 
-    /// The same as rows of a table, and the machine.
+    /// Returns the results as rows of a table, with the machine.
     pub fn table(&self) -> Vec<(String, String)> {
         let row = |label: &str, value: String| (label.to_owned(), value);
         let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! The cost of the traditional method at some states of a simulation, for comparison.
+//! Measures the traditional method at some states of a simulation, for comparison.
 
 use cpu_time::ThreadTime;
 use sscc::{Method, Query};
@@ -9,14 +9,14 @@ use crate::error::Result;
 use crate::scenes::Scene;
 use crate::watch::{Stage, Watch, check_cancelled};
 
-/// States at most, evenly spread.
-const STATES: usize = 100;
+/// Maximum number of measured states, evenly spread.
+const MAX_STATES: usize = 100;
 
-/// Bodies in all of these states at most.
-const BODIES: usize = 2000;
+/// Maximum number of bodies in all of these states.
+const MAX_BODY_STATES: usize = 2000;
 
-/// Some states, evenly spread, and for each the processor time (s) of the traditional method for all bodies, on this
-/// thread.
+/// Returns some states, evenly spread, each with the processor time (s) of the traditional method for all bodies on
+/// this thread.
 pub fn traditional_costs(
     scene: &Scene,
     prepared: &PreparedScene,
@@ -28,7 +28,7 @@ pub fn traditional_costs(
         let certificates = &model.certified.full.certificates;
         queries.push(Query::with_method(&model.certified.model, certificates, Method::Traditional)?);
     }
-    let count = STATES.min(BODIES / scene.bodies.len()).clamp(1, history.len());
+    let count = MAX_STATES.min(MAX_BODY_STATES / scene.bodies.len()).clamp(1, history.len());
     watch.begin(Stage::Comparison);
     let mut costs = Vec::with_capacity(count);
     for sample in 0..count {

@@ -1,4 +1,4 @@
-//! The world of a scene: its bodies at the beginning, or at a checkpoint.
+//! Creates the world of a scene at its beginning, or restores it from a checkpoint.
 
 use sscc_dynamics::{SoundBank, Start, State, World};
 
@@ -6,7 +6,7 @@ use super::prepared::PreparedScene;
 use crate::error::{At, Result, SimError};
 use crate::scenes::{BodySpec, Scene};
 
-/// The bodies of a scene at its beginning.
+/// Returns the world of a scene at its beginning.
 pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>> {
     let mut world = World::new(scene.options())?;
     for (number, body) in scene.bodies.iter().enumerate() {
@@ -44,7 +44,7 @@ pub fn restore(
     for bank in sounds.iter_mut().flatten() {
         let (own, others) = rest
             .split_at_checked(bank.state().len())
-            .ok_or_else(|| SimError::refused("the checkpoint", "it is too short"))?;
+            .ok_or_else(|| SimError::refused("the checkpoint", "too short; begin again with --restart"))?;
         bank.restore(own).at(at)?;
         rest = others;
     }

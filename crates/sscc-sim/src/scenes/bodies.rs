@@ -1,4 +1,4 @@
-//! The bodies of a scene: `[[bodies]]`, each one or a grid of them.
+//! Reads the bodies of a scene: `[[bodies]]`, each a single body or a grid.
 
 use glam::{DQuat, DVec3};
 
@@ -7,35 +7,36 @@ use super::section::Section;
 use crate::error::Result;
 use crate::nearest::nearest;
 
-/// The most bodies of a scene.
-const MOST_BODIES: usize = 4096;
+/// Maximum number of bodies of a scene.
+const MAX_BODIES: usize = 4096;
 
 /// A body at the beginning of a scene.
 #[derive(Clone, Debug)]
 pub struct BodySpec {
     /// Index of its model.
     pub model: usize,
-    /// Where its centre of mass is (m).
+    /// Position of its centre of mass (m).
     pub position: DVec3,
-    /// From the axes of its model to those of the world.
+    /// Rotation from the axes of its model to those of the world.
     pub orientation: DQuat,
-    /// m/s.
+    /// Velocity (m/s).
     pub velocity: DVec3,
-    /// 1/s, in axes of the world.
+    /// Angular velocity (rad/s), in axes of the world.
     pub angular_velocity: DVec3,
-    /// How fast each mode moves (the first ones; the others rest).
+    /// Rates of the first modes (1/s); the other modes rest.
     pub shake: Vec<f64>,
 }
 
 const KEYS: [&str; 9] =
     ["model", "position", "rotation", "velocity", "angular_velocity", "shake", "grid", "spacing", "turn"];
 
+/// Reads all bodies of a scene.
 pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> {
     let mut bodies = Vec::new();
     for section in scene.sections("bodies", &KEYS)? {
         push(&section, models, &mut bodies)?;
-        if bodies.len() > MOST_BODIES {
-            return Err(scene.refused("bodies", format!("there are more than {MOST_BODIES}")));
+        if bodies.len() > MAX_BODIES {
+            return Err(scene.refused("bodies", format!("there are more than {MAX_BODIES}")));
         }
     }
     if bodies.is_empty() {
@@ -44,8 +45,9 @@ pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> 
     Ok(bodies)
 }
 
+/// Appends the bodies of one section.
 fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>) -> Result<()> {
-    let name = section.wanted("model", section.text("model")?)?;
+    let name = section.require("model", section.text("model")?)?;
     let Some(model) = models.iter().position(|model| model.recipe.name == name) else {
         let meant = nearest(name, models.iter().map(|model| model.recipe.name.as_str()));
         let cause = match meant {
@@ -78,18 +80,19 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         bodies.push(first);
         return Ok(());
     };
-    let is_count = |x: f64| x >= 1.0 && x.fract() == 0.0 && x <= MOST_BODIES as f64;
-    if !grid.to_array().into_iter().all(is_count) || grid.element_product() > MOST_BODIES as f64 {
-        let cause = format!("three whole numbers were expected, whose product is at most {MOST_BODIES}");
+    let is_count = |x: f64| x >= 1.0 && x.fract() == 0.0 && x <= MAX_BODIES as f64;
+    if !grid.to_array().into_iter().all(is_count) || grid.element_product() > MAX_BODIES as f64 {
+        let cause = format!("three whole numbers were expected, whose product is at most {MAX_BODIES}");
         return Err(section.refused("grid", cause));
     }
-    let spacing = section.wanted("spacing", spacing)?;
+    let spacing = section.require("spacing", spacing)?;
     let [nx, ny, nz] = grid.to_array().map(|x| x as usize);
     for (k, j, i) in (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i)))) {
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
             position: first.position + spacing * DVec3::new(i as f64, j as f64, k as f64),
-            // About its own upright axis: turned about the vertical, all would fall alike.
+            // Rotates about the body's own upright axis. After a rotation about the vertical, all bodies would fall
+            // alike.
             orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),
             ..first.clone()
         });
@@ -101,8 +104,8 @@ fn rotation(section: &Section<'_>) -> Result<DQuat> {
     let Some(rotation) = section.section("rotation", &["axis", "degrees"])? else {
         return Ok(DQuat::IDENTITY);
     };
-    let axis = rotation.wanted("axis", rotation.vector("axis")?)?;
-    let degrees = rotation.wanted("degrees", rotation.number("degrees")?)?;
+    let axis = rotation.require("axis", rotation.vector("axis")?)?;
+    let degrees = rotation.require("degrees", rotation.number("degrees")?)?;
     match axis.try_normalize() {
         Some(axis) => Ok(DQuat::from_axis_angle(axis, degrees.to_radians())),
         None => Err(rotation.refused("axis", "it has no direction")),

@@ -1,4 +1,4 @@
-//! The models of a scene: `[models.NAME]`.
+//! Reads the models of a scene: `[models.NAME]`.
 
 use std::path::Path;
 
@@ -9,33 +9,33 @@ use super::section::Section;
 use crate::error::Result;
 use crate::recipes::{ModesSpec, Recipe, Shape};
 
-/// The most modes of a body.
-pub const MOST_RANK: usize = 500;
+/// Maximum number of modes of a body.
+pub const MAX_RANK: usize = 500;
 
-/// The most cubes along the longest side of a lattice.
-const MOST_CELLS: usize = 2000;
+/// Maximum number of cubes along the longest side of a lattice.
+const MAX_CELLS: usize = 2000;
 
-/// A model that bodies are made of.
+/// A model of a scene.
 #[derive(Clone, Debug)]
 pub struct ModelSpec {
-    /// How it is made.
+    /// Shape, material and modes.
     pub recipe: Recipe,
-    /// Whether q moves by the stiffness at rest alone.
+    /// Whether the dynamics are linear: the stiffness is that at rest.
     pub is_linear: bool,
-    /// Of its modes.
+    /// Damping of its modes.
     pub damping: Damping,
 }
 
-/// Modes of the small spring.
+/// Number of modes of the small spring.
 pub const QUICK_RANK: usize = 20;
 
 impl ModelSpec {
-    /// The name of the array of its bodies' coordinates.
+    /// Returns the name of the array of its bodies' q in `trajectories.npz`.
     pub fn array_name(&self) -> String {
         format!("q_{}", self.recipe.name.replace('-', "_"))
     }
 
-    /// The small spring in its place.
+    /// Replaces the model by the small spring.
     pub fn quicken(&mut self) {
         let Recipe { shape, modes, cells, spread, .. } = &mut self.recipe;
         (*shape, *modes, *cells) = (Shape::SMALL_SPRING, ModesSpec::Linear(QUICK_RANK), None);
@@ -50,12 +50,14 @@ const KEYS: [&str; 10] =
 /// Names of embedded shapes, and of those that they stand in for.
 const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
 
+/// Reads all models of a scene. `folder` is that of the scene.
 pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
     let mut models: Vec<ModelSpec> = Vec::new();
     for (name, section) in scene.named("models", &KEYS)? {
         let model = one(name, &section, folder)?;
         if let Some(other) = models.iter().find(|other| other.array_name() == model.array_name()) {
-            let cause = format!("'{name}' and '{}' differ by _ and - only", other.recipe.name);
+            let cause =
+                format!("'{name}' and '{}' differ by _ and - only: rename one of them", other.recipe.name);
             return Err(section.refused("models", cause));
         }
         models.push(model);
@@ -65,11 +67,11 @@ pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
 
 fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
     if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') {
-        return Err(model.refused("models", "letters, digits, _ and - make the name of a model"));
+        return Err(model.refused("models", "the name of a model may have letters, digits, _ and - only"));
     }
     let shape = match (model.word("shape", &SHAPES.map(|name| (name, name)))?, model.text("file")?) {
         (Some(_), Some(_)) => {
-            return Err(model.refused("file", "it has a shape already: leave one of them out"));
+            return Err(model.refused("file", "the model has both shape and file: leave one of them out"));
         }
         (None, None) => return Err(model.refused("shape", "it is missing (or a file)")),
         (None, Some(file)) => Shape::File(folder.join(file)),
@@ -78,9 +80,9 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         (Some("bunny"), _) => Shape::Bunny,
         (Some(_), _) => Shape::Dragon,
     };
-    let rank = model.count("rank", MOST_RANK)?;
+    let rank = model.count("rank", MAX_RANK)?;
     let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
-    let (modes, is_linear) = match model.wanted("kind", word)? {
+    let (modes, is_linear) = match model.require("kind", word)? {
         "linear" => (ModesSpec::Linear(rank.unwrap_or(20)), true),
         "nonlinear" => (ModesSpec::Nonlinear(rank.unwrap_or(30)), false),
         _ if rank.is_some_and(|rank| rank != 24) => {
@@ -92,33 +94,33 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
     if let (ModesSpec::Linear(_), Some(false)) = (modes, dynamics) {
         return Err(model.refused("dynamics", "linear modes move linearly"));
     }
-    let (material, usual) = material(model)?;
+    let (material, default_damping) = material(model)?;
     let recipe = Recipe {
         name: name.into(),
         shape,
         modes,
         material,
-        cells: model.count("resolution", MOST_CELLS)?,
+        cells: model.count("resolution", MAX_CELLS)?,
         size: model.positive("size")?,
         spread: spread(model, modes.rank())?,
     };
-    let damping = damping(model)?.unwrap_or(usual);
+    let damping = damping(model)?.unwrap_or(default_damping);
     Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
 }
 
-/// `spread = [...]`, a number for each mode.
+/// Reads `spread = [...]`: the amplitude of each mode.
 fn spread(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
     let Some(spread) = model.numbers("spread")? else { return Ok(None) };
     if spread.len() != rank {
         return Err(model.refused("spread", format!("{} numbers for {rank} modes", spread.len())));
     }
-    if spread.iter().any(|far| *far <= 0.0) {
+    if spread.iter().any(|amplitude| *amplitude <= 0.0) {
         return Err(model.refused("spread", "numbers above 0 were expected"));
     }
     Ok(Some(spread))
 }
 
-/// `damping = { mass, stiffness }`
+/// Reads `damping = { mass, stiffness }`.
 pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
     let Some(damping) = section.section("damping", &["mass", "stiffness"])? else { return Ok(None) };
     Ok(Some(Damping {
@@ -127,11 +129,12 @@ pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
     }))
 }
 
-/// A material by its name, with its usual damping, or by its numbers; those left out are the file's.
+/// Reads a material: by its name, with the damping of that name, or by its numbers. Missing numbers are those of the
+/// file.
 fn material(model: &Section<'_>) -> Result<(PartialMaterial, Damping)> {
     if model.is_text("material") {
         let known = MATERIALS.map(|material| (material.name, material));
-        let found = model.wanted("material", model.word("material", &known)?)?;
+        let found = model.require("material", model.word("material", &known)?)?;
         return Ok((found.elastic.into(), found.damping));
     }
     let Some(material) = model.section("material", &["youngs", "poisson", "density"])? else {

@@ -1,4 +1,4 @@
-//! A scene and how its TOML file is read.
+//! Reads a scene from its TOML file.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -15,28 +15,28 @@ use super::models::{self, ModelSpec};
 use super::section::{Section, Text};
 use crate::error::{Result, SimError};
 
-/// The largest file: 1 MiB.
-const MOST_BYTES: usize = 1 << 20;
+/// Maximum size of a file (1 MiB).
+const MAX_BYTES: usize = 1 << 20;
 
-/// The most steps of a simulation.
-const MOST_STEPS: f64 = 1e9;
+/// Maximum number of steps of a simulation.
+const MAX_STEPS: f64 = 1e9;
 
-/// Samples of a sound in a second.
+/// Range of samples per second of a sound.
 const RATES: RangeInclusive<f64> = 8000.0..=192_000.0;
 
-/// The most samples of a sound, so that it fits a WAV file.
-const MOST_SAMPLES: f64 = 1e9;
+/// Maximum number of samples of a sound, so that it fits a WAV file.
+const MAX_SAMPLES: f64 = 1e9;
 
-/// A quick look shakes so many times as hard.
+/// Factor on the rates of modes in a quick run.
 const QUICK_SHAKE: f64 = 4.0;
 
-/// A contact must last so many steps of its period, else it is over before it is seen.
-const LEAST_CONTACT_STEPS: f64 = 4.0;
+/// Minimum number of steps in a period of contacts. Shorter contacts would end between two detections.
+const MIN_CONTACT_STEPS: f64 = 4.0;
 
-/// A scene, as its file says it: all numbers are finite and in their range.
+/// A scene. All numbers are finite and in their range.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The file's name without its ending.
+    /// Name of the file without its extension.
     pub name: String,
     /// Its author's description.
     pub about: String,
@@ -46,15 +46,15 @@ pub struct Scene {
     pub step: f64,
     /// Number of steps.
     pub steps: usize,
-    /// m/s^2.
+    /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// The ground, if there is any.
     pub ground: Option<Ground>,
-    /// How contacts push.
+    /// Options of contacts.
     pub contact: ContactOptions,
     /// The response to self-collisions.
     pub response: Response,
-    /// How self-collisions are detected.
+    /// Method of self-collision detection.
     pub detection: Detection,
     /// The models of its bodies.
     pub models: Vec<ModelSpec>,
@@ -62,18 +62,18 @@ pub struct Scene {
     pub bodies: Vec<BodySpec>,
     /// Its sound, if there is any.
     pub sound: Option<Sound>,
-    /// Key frames of the animation in a second.
+    /// Key frames of the animation per second.
     pub frames_per_second: f64,
 }
 
 /// The sound of all bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sound {
-    /// Modes of the sound, more than those that move.
+    /// Number of modes of the sound; more than those of the motion.
     pub modes: usize,
-    /// Of them; none: that of the body.
+    /// Damping of these modes; none: that of the body.
     pub damping: Option<Damping>,
-    /// So many times as high as the body's own frequencies: as if it were of a stiffer material.
+    /// Factor on the body's frequencies, as of a stiffer material.
     pub pitch: f64,
 }
 
@@ -93,14 +93,14 @@ const KEYS: [&str; 12] = [
 ];
 
 impl Scene {
-    /// The options of its world.
+    /// Returns the options of its world.
     pub fn options(&self) -> WorldOptions {
         let Self { step, gravity, ground, contact, response, .. } = *self;
         WorldOptions { step, gravity, ground, contact, response }
     }
 
-    /// For a quick look: a small spring in place of any model, for half a second, shaken harder so that it touches
-    /// itself.
+    /// Shortens the scene for a quick run: half a second, with the small spring in place of each model, shaken harder
+    /// so that it collides with itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();
@@ -116,46 +116,45 @@ impl Scene {
     /// Reads a scene. Names of files in it are relative to its own folder.
     ///
     /// # Errors
-    /// When the file cannot be read, is no TOML, has an unknown key (the error names the nearest known one), or a value
-    /// out of range; with the line.
+    /// When the file cannot be read or is not TOML, or has an unknown key or a value out of range. The error names the
+    /// line, and for an unknown key the nearest known one.
     pub fn read(path: &Path) -> Result<Self, SimError> {
         let bytes = read_whole(path)?;
-        if bytes.len() > MOST_BYTES {
-            let cause = format!("file has {} bytes; scenes may have at most {MOST_BYTES}", bytes.len());
+        if bytes.len() > MAX_BYTES {
+            let cause = format!("file has {} bytes; scenes may have at most {MAX_BYTES}", bytes.len());
             return Err(SimError::refused(path.display(), cause));
         }
         let text = str::from_utf8(&bytes).map_err(|error| {
-            SimError::refused(format_args!("{}: no text", path.display()), error.to_string())
+            SimError::refused(format_args!("{}: not a text file", path.display()), error.to_string())
         })?;
         Self::parse(path, text)
     }
 
-    /// As [`Scene::read`], of the text of a file of that name.
+    /// Reads a scene from the text of a file of this name.
     ///
     /// # Errors
-    /// As of [`Scene::read`].
+    /// Those of [`Scene::read`], except of reading the file.
     pub fn parse(path: &Path, text: &str) -> Result<Self, SimError> {
-        let whole = Text { path, text };
+        let source = Text { path, text };
         let table = DeTable::parse(text).map_err(|error| {
-            whole.refused(
+            source.refused(
                 &error.span().unwrap_or_default(),
                 error.message().lines().next().unwrap_or_default(),
             )
         })?;
-        let scene = Section::new(whole, &table, &KEYS)?;
-        let rate = scene.wanted("steps_per_second", scene.positive("steps_per_second")?)?;
-        let duration = scene.wanted("duration", scene.positive("duration")?)?;
+        let scene = Section::new(source, &table, &KEYS)?;
+        let rate = scene.require("steps_per_second", scene.positive("steps_per_second")?)?;
+        let duration = scene.require("duration", scene.positive("duration")?)?;
         let steps = (duration * rate).round();
-        if !(1.0..=MOST_STEPS).contains(&steps) {
-            return Err(
-                scene.refused("duration", format!("{steps:e} steps; from 1 to {MOST_STEPS:e} are possible"))
-            );
+        if !(1.0..=MAX_STEPS).contains(&steps) {
+            return Err(scene
+                .refused("duration", format!("{steps:e} steps; a scene may have from 1 to {MAX_STEPS:e}")));
         }
         let contact = contact(&scene)?;
-        if rate < LEAST_CONTACT_STEPS * contact.frequency {
+        if rate < MIN_CONTACT_STEPS * contact.frequency {
             let cause = format!(
-                "the period of contacts of {} Hz is less than {LEAST_CONTACT_STEPS} of these steps: take more, or \
-                 softer contacts",
+                "the period of contacts of {} Hz is less than {MIN_CONTACT_STEPS} of these steps: use more steps, or \
+                 a lower frequency",
                 contact.frequency
             );
             return Err(scene.refused("steps_per_second", cause));
@@ -182,7 +181,7 @@ impl Scene {
     }
 }
 
-/// Ways to look for self-collisions. All find the same, so nothing else changes with them.
+/// Methods of self-collision detection. All find the same pairs, so the motion does not depend on the method.
 const DETECTIONS: [(&str, Detection); 5] = [
     ("certified", Detection::Certified),
     ("kinetic", Detection::Kinetic),
@@ -191,7 +190,7 @@ const DETECTIONS: [(&str, Detection); 5] = [
     ("normal-cones", Detection::Method(Method::NormalCones)),
 ];
 
-/// z is up.
+/// Reads the ground; z is up.
 fn ground(scene: &Section<'_>) -> Result<Option<Ground>> {
     let Some(ground) = scene.section("ground", &["height", "friction"])? else { return Ok(None) };
     Ok(Some(Ground {
@@ -202,15 +201,15 @@ fn ground(scene: &Section<'_>) -> Result<Option<Ground>> {
 }
 
 fn contact(scene: &Section<'_>) -> Result<ContactOptions> {
-    let usual = ContactOptions::default();
+    let default = ContactOptions::default();
     let keys = ["frequency", "damping", "friction", "skin", "rounds"];
-    let Some(contact) = scene.section("contact", &keys)? else { return Ok(usual) };
+    let Some(contact) = scene.section("contact", &keys)? else { return Ok(default) };
     Ok(ContactOptions {
-        frequency: contact.positive("frequency")?.unwrap_or(usual.frequency),
-        damping: contact.not_negative("damping")?.unwrap_or(usual.damping),
-        friction: contact.not_negative("friction")?.unwrap_or(usual.friction),
+        frequency: contact.positive("frequency")?.unwrap_or(default.frequency),
+        damping: contact.not_negative("damping")?.unwrap_or(default.damping),
+        friction: contact.not_negative("friction")?.unwrap_or(default.friction),
         skin: contact.positive("skin")?,
-        rounds: contact.count("rounds", 1000)?.unwrap_or(usual.rounds),
+        rounds: contact.count("rounds", 1000)?.unwrap_or(default.rounds),
     })
 }
 
@@ -220,18 +219,18 @@ fn response(scene: &Section<'_>) -> Result<Response> {
     Ok(scene.word("response", &words)?.unwrap_or_default())
 }
 
-/// One sample is made at each step.
+/// Reads the sound. Each step makes one sample.
 fn sound(scene: &Section<'_>, rate: f64, steps: f64) -> Result<Option<Sound>> {
     let Some(sound) = scene.section("sound", &["modes", "damping", "pitch"])? else { return Ok(None) };
     if !RATES.contains(&rate) {
-        let cause = format!("sound needs from {} to {} samples in a second", RATES.start(), RATES.end());
+        let cause = format!("sound needs from {} to {} samples per second", RATES.start(), RATES.end());
         return Err(scene.refused("steps_per_second", cause));
     }
-    if steps > MOST_SAMPLES {
-        return Err(scene.refused("duration", format!("a sound has at most {MOST_SAMPLES:e} samples")));
+    if steps > MAX_SAMPLES {
+        return Err(scene.refused("duration", format!("a sound has at most {MAX_SAMPLES:e} samples")));
     }
     Ok(Some(Sound {
-        modes: sound.count("modes", models::MOST_RANK)?.unwrap_or(200),
+        modes: sound.count("modes", models::MAX_RANK)?.unwrap_or(200),
         damping: models::damping(&sound)?,
         pitch: sound.positive("pitch")?.unwrap_or(1.0),
     }))

@@ -1,4 +1,4 @@
-//! Tables of a scene file, with errors that name the file and the line.
+//! Reads tables of a scene file; errors name the file and the line.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use crate::error::{Result, SimError};
 use crate::nearest::nearest;
 use crate::text::one_line;
 
-/// The text of a file, to tell lines.
+/// Text of a file, from which errors compute the line.
 #[derive(Clone, Copy)]
 pub struct Text<'a> {
     pub path: &'a Path,
@@ -20,30 +20,32 @@ pub struct Text<'a> {
 }
 
 impl Text<'_> {
-    /// An error at a place in the text.
+    /// Returns an error at a place in the text.
     pub fn refused(self, span: &Range<usize>, cause: impl Display) -> SimError {
         let line = 1 + self.text.bytes().take(span.start).filter(|byte| *byte == b'\n').count();
         SimError::Scene { path: self.path.to_owned(), line, cause: cause.to_string() }
     }
 }
 
-/// A table all of whose keys are known.
+/// A table whose keys are all known.
 pub struct Section<'a> {
     text: Text<'a>,
     table: &'a DeTable<'a>,
-    /// Where it begins.
+    /// Place of the table in the text.
     span: Range<usize>,
 }
 
 impl<'a> Section<'a> {
+    /// Creates the section of a table.
+    ///
     /// # Errors
-    /// When the table has a key that is not one of those.
+    /// When the table has a key that is not in `keys`.
     pub fn new(text: Text<'a>, table: &'a Spanned<DeTable<'a>>, keys: &[&str]) -> Result<Self> {
         Self::within(text, table.get_ref(), table.span(), keys)
     }
 
     fn within(text: Text<'a>, table: &'a DeTable<'a>, span: Range<usize>, keys: &[&str]) -> Result<Self> {
-        // Tables are in the order of their keys; the first in the file is named.
+        // The table is sorted by key; the error names the unknown key that is first in the file.
         let unknown = table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
         match unknown.min_by_key(|key| key.span().start) {
             None => Ok(Self { text, table, span }),
@@ -60,33 +62,37 @@ impl<'a> Section<'a> {
         self.table.get(key)
     }
 
-    /// An error about a key, where it is; or about the table, where the key is missing.
+    /// Returns an error at a key, or at the table if the key is missing.
     pub fn refused(&self, key: &str, cause: impl Display) -> SimError {
         let span = self.value(key).map_or(self.span.clone(), Spanned::span);
         self.text.refused(&span, format_args!("{key}: {cause}"))
     }
 
-    /// Refuses a value of another type.
-    fn expected<T>(&self, key: &str, what: &str) -> Result<T> {
-        Err(self.refused(key, format_args!("{what} was expected")))
+    /// Returns the error of a value of another type.
+    fn expected<T>(&self, key: &str, description: &str) -> Result<T> {
+        Err(self.refused(key, format_args!("{description} was expected")))
     }
 
+    /// Returns the value of a required key.
+    ///
     /// # Errors
     /// When the key is missing.
-    pub fn wanted<T>(&self, key: &str, found: Option<T>) -> Result<T> {
+    pub fn require<T>(&self, key: &str, found: Option<T>) -> Result<T> {
         found.ok_or_else(|| self.refused(key, "it is missing"))
     }
 
+    /// Whether the table has the key.
     pub fn has(&self, key: &str) -> bool {
         self.value(key).is_some()
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub fn number(&self, key: &str) -> Result<Option<f64>> {
         let Some(value) = self.value(key) else { return Ok(None) };
         finite(value.get_ref()).map_or_else(|| self.expected(key, "a number"), |x| Ok(Some(x)))
     }
 
+    /// Reads a number above 0.
     pub fn positive(&self, key: &str) -> Result<Option<f64>> {
         match self.number(key)? {
             Some(x) if x <= 0.0 => self.expected(key, "a positive number"),
@@ -94,6 +100,7 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Reads a number of at least 0.
     pub fn not_negative(&self, key: &str) -> Result<Option<f64>> {
         match self.number(key)? {
             Some(x) if x < 0.0 => self.expected(key, "a number that is not negative"),
@@ -101,15 +108,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A whole number between 1 and `most`.
-    pub fn count(&self, key: &str, most: usize) -> Result<Option<usize>> {
+    /// Reads a whole number from 1 to `max`.
+    pub fn count(&self, key: &str, max: usize) -> Result<Option<usize>> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match whole(value.get_ref()) {
-            Some(count) if (1..=most).contains(&count) => Ok(Some(count)),
-            _ => self.expected(key, &format!("a whole number from 1 to {most}")),
+            Some(count) if (1..=max).contains(&count) => Ok(Some(count)),
+            _ => self.expected(key, &format!("a whole number from 1 to {max}")),
         }
     }
 
+    /// Reads a text.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>> {
         match self.value(key).map(Spanned::get_ref) {
             None => Ok(None),
@@ -118,12 +126,12 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Whether there is a text.
+    /// Whether the value of the key is a text.
     pub fn is_text(&self, key: &str) -> bool {
         self.value(key).is_some_and(|value| value.get_ref().is_str())
     }
 
-    /// One of some words.
+    /// Reads one of some words, and returns its meaning.
     pub fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
         let Some(typed) = self.text(key)? else { return Ok(None) };
         match words.iter().find(|(word, _)| *word == typed) {
@@ -135,12 +143,14 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Reads a list of finite numbers.
     pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {
         let Some(array) = self.array(key)? else { return Ok(None) };
         let numbers: Option<Vec<f64>> = array.iter().map(|value| finite(value.get_ref())).collect();
         numbers.map_or_else(|| self.expected(key, "a list of numbers"), |numbers| Ok(Some(numbers)))
     }
 
+    /// Reads a list of three finite numbers.
     pub fn vector(&self, key: &str) -> Result<Option<DVec3>> {
         match self.numbers(key)?.as_deref() {
             None => Ok(None),
@@ -157,7 +167,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A table within this one.
+    /// Reads a table within this one.
     pub fn section(&self, key: &str, keys: &[&str]) -> Result<Option<Section<'a>>> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
@@ -166,7 +176,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Tables of any names within a table, in the order of the file.
+    /// Reads tables of any names within a table, in the order of the file.
     pub fn named(&self, key: &str, keys: &[&str]) -> Result<Vec<(&'a str, Section<'a>)>> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let DeValue::Table(all) = value.get_ref() else { return self.expected(key, "a table") };
@@ -181,7 +191,7 @@ impl<'a> Section<'a> {
         Ok(found)
     }
 
-    /// A list of tables.
+    /// Reads a list of tables.
     pub fn sections(&self, key: &str, keys: &[&str]) -> Result<Vec<Section<'a>>> {
         let mut found = Vec::new();
         for value in self.array(key)?.into_iter().flat_map(|array| array.iter()) {

@@ -1,4 +1,4 @@
-//! The scenes that come with the program, and how one is found by its name.
+//! Scenes that come with the program, and their lookup by name.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::error::SimError;
 use crate::nearest::nearest;
 
-/// The scenes that come with the program, near those of the paper's Table 1.
+/// Names and texts of the scenes that come with the program, similar to those of the paper's Table 1.
 pub const SHIPPED: [(&str, &str); 5] = [
     ("spring", include_str!("../../../../scenes/spring.toml")),
     ("bunny16", include_str!("../../../../scenes/bunny16.toml")),
@@ -15,15 +15,15 @@ pub const SHIPPED: [(&str, &str); 5] = [
     ("dragon-polynomial", include_str!("../../../../scenes/dragon-polynomial.toml")),
 ];
 
-/// Reads a scene: a file, or one that comes with the program by its name.
+/// Reads a scene: a file, or a scene that comes with the program by its name.
 ///
 /// # Errors
-/// As of [`Scene::read`]; of a name that is neither, the nearest one is named.
+/// Those of [`Scene::read`]. If a name is neither, the error names the nearest one.
 pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
     let shipped = path.to_str().and_then(|name| SHIPPED.iter().find(|(known, _)| *known == name));
     match shipped {
         Some((name, text)) if !path.is_file() => Scene::parse(Path::new(&format!("{name}.toml")), text),
-        // A name alone may be meant for a scene that comes with the program.
+        // A name without an extension may be a mistyped name of a scene that comes with the program.
         None if path.extension().is_none() && !path.exists() => {
             let meant = nearest(&path.display().to_string(), SHIPPED.iter().map(|(name, _)| *name));
             let cause = format!("not found; did you mean '{}'?", meant.unwrap_or_default());

@@ -38,7 +38,7 @@ fn parse(text: &str) -> Result<Scene> {
 }
 
 #[test]
-fn a_scene_is_what_its_file_says() {
+fn a_scene_has_the_values_of_its_file() {
     let scene = parse(GOOD).unwrap();
     assert_eq!((scene.name.as_str(), scene.steps, scene.step, scene.bodies.len()), ("good", 250, 0.001, 7));
     assert_eq!((scene.gravity, scene.ground.unwrap().friction), (DVec3::new(0.0, 0.0, -9.81), 0.3));
@@ -57,7 +57,7 @@ fn a_scene_is_what_its_file_says() {
 }
 
 #[test]
-fn what_cannot_be_is_named_with_its_line() {
+fn errors_name_the_line_and_the_cause() {
     for (from, to, cause) in [
         ("gravity", "gravty", "line 5: unknown key 'gravty'; did you mean 'gravity'?"),
         ("size =", "sise =", "line 13: unknown key 'sise'; did you mean 'size'?"),
@@ -122,7 +122,7 @@ fn what_cannot_be_is_named_with_its_line() {
 }
 
 #[test]
-fn shipped_scenes_are_of_the_paper() {
+fn shipped_scenes_have_the_sizes_of_the_paper() {
     let scenes = SHIPPED.map(|(name, text)| Scene::parse(Path::new(name), text).unwrap());
     let facts = scenes.each_ref().map(|scene| {
         let [model] = &scene.models[..] else { panic!("{}", scene.name) };

@@ -15,11 +15,11 @@ use sscc_io::gltf::{NamedModel, Track, animation_to_bytes};
 
 use crate::ViewError;
 
-/// Key frames of a motion at the most.
-const MOST_FRAMES: usize = 100_000;
+/// Largest number of key frames of a motion.
+const MAX_FRAMES: usize = 100_000;
 
-/// Their numbers q at the most.
-const MOST_NUMBERS: usize = 8 << 20;
+/// Largest number of entries of q in all key frames of a motion.
+const MAX_NUMBERS: usize = 8 << 20;
 
 /// A motion as key frames.
 #[derive(Clone, Debug, Deserialize)]
@@ -32,14 +32,15 @@ pub struct AnimationRequest {
     times: Vec<f64>,
 }
 
+/// Returns a motion as a binary glTF file.
 pub(super) fn glb(
     name: &str,
     model: &ReducedModel,
     AnimationRequest { q, times }: &AnimationRequest,
 ) -> Result<Vec<u8>, ViewError> {
-    if q.len().saturating_mul(model.rank()) > MOST_NUMBERS {
+    if q.len().saturating_mul(model.rank()) > MAX_NUMBERS {
         return Err(ViewError::Request(format!(
-            "a motion has more than {MOST_NUMBERS} numbers: leave out frames"
+            "the motion has more than {MAX_NUMBERS} numbers: omit frames"
         )));
     }
     for q in q {
@@ -92,8 +93,10 @@ fn frames<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec
         fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Vec<T>, A::Error> {
             let mut frames = Vec::new();
             while let Some(frame) = entries.next_element()? {
-                if frames.len() == MOST_FRAMES {
-                    return Err(A::Error::custom(format!("a motion has more than {MOST_FRAMES} key frames")));
+                if frames.len() == MAX_FRAMES {
+                    return Err(A::Error::custom(format!(
+                        "the motion has more than {MAX_FRAMES} key frames"
+                    )));
                 }
                 frames.push(frame);
             }
@@ -111,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_numbers_of_a_motion_are_bounded() {
+    fn the_size_of_a_motion_is_limited() {
         const RANK: usize = 128;
         let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
         let modes = Modes::from_matrix(3, RANK, |row, k| (row + k) as f64).unwrap();
@@ -120,9 +123,9 @@ mod tests {
             let request = AnimationRequest { q: vec![Vec::new(); frames], times: Vec::new() };
             glb("plate", &model, &request).unwrap_err().to_string()
         };
-        let most = MOST_NUMBERS / RANK;
-        assert!(refused(most + 1).contains("more than 8388608 numbers"));
-        // So many may be: what is wrong then is that the rows are empty.
-        assert!(!refused(most).contains("8388608"));
+        let max = MAX_NUMBERS / RANK;
+        assert!(refused(max + 1).contains("more than 8388608 numbers"));
+        // This number is allowed: the error is then that the rows are empty.
+        assert!(!refused(max).contains("8388608"));
     }
 }

@@ -8,11 +8,11 @@ use sscc::{Certificates, Pair, Query};
 use super::nodes::{Frontier, frontier};
 use crate::ViewError;
 
-/// Pairs that are looked for: a shape that is crumpled beyond that need not be counted while it is dragged.
-pub(super) const MOST_FOUND: usize = 100_000;
+/// Largest number of pairs that a query searches, so that heavily colliding shapes still have quick answers.
+pub(super) const MAX_PAIRS: usize = 100_000;
 
-/// Pairs that are listed.
-pub(super) const MOST_LISTED: usize = 10_000;
+/// Largest number of pairs in an answer.
+pub(super) const MAX_LISTED_PAIRS: usize = 10_000;
 
 /// A discrete query.
 #[derive(Clone, Debug, Deserialize)]
@@ -22,7 +22,7 @@ pub struct CheckRequest {
     /// A number that the answer repeats, so that the page recognises late answers.
     #[serde(default)]
     pub serial: u64,
-    /// Whether the answer shall name the opened nodes.
+    /// Whether the answer lists the nodes that the certificates leave open.
     #[serde(default)]
     pub nodes: bool,
 }
@@ -38,7 +38,7 @@ pub struct CheckAnswer {
     pub colliding: bool,
     /// The number of colliding pairs; a lower bound if the answer is not complete.
     pub count: usize,
-    /// Whether the search ended without reaching its limit.
+    /// Whether the search ended before its limit.
     pub complete: bool,
     /// The first colliding pairs, sorted.
     pub pairs: Vec<Pair>,
@@ -61,13 +61,14 @@ pub struct CheckAnswer {
     pub nodes: Option<Frontier>,
 }
 
+/// Answers a discrete query.
 pub(super) fn check(
     query: &mut Query<'_>,
     certificates: &Certificates,
     request: &CheckRequest,
 ) -> Result<CheckAnswer, ViewError> {
     let CheckRequest { q, serial, nodes } = request;
-    let (found, microseconds) = timed(|| query.discrete_at_most(q, MOST_FOUND).map(|_| ()));
+    let (found, microseconds) = timed(|| query.discrete_at_most(q, MAX_PAIRS).map(|_| ()));
     found?;
     let (pairs, statistics, norm) = (query.pairs(), query.statistics(), query.norm());
     let mut triangles: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
@@ -80,7 +81,7 @@ pub(super) fn check(
         colliding: !pairs.is_empty(),
         count: pairs.len(),
         complete: statistics.complete,
-        pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec(),
+        pairs: pairs[..pairs.len().min(MAX_LISTED_PAIRS)].to_vec(),
         triangles,
         microseconds,
         root_certified: statistics.root_certified,

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use sscc::{Certificates, Error, Pair, Progress, Query, ReducedModel};
 
-use super::check::{MOST_FOUND, MOST_LISTED};
-use super::patience::Patience;
+use super::cancellation::Cancellation;
+use super::check::{MAX_LISTED_PAIRS, MAX_PAIRS};
 use crate::ViewError;
 
 /// A direction from the centre.
@@ -13,57 +13,59 @@ pub struct DirectionRequest {
     direction: Vec<f64>,
 }
 
-/// What is known of `centre + s direction`.
+/// The result of a search along `centre + s direction`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionAnswer {
-    /// Proven free at every s up to it, by certificates.
+    /// The safe scale: the certificates prove the shape free at every s up to it.
     certified: f64,
-    /// None where nothing meets up to `searched`.
-    first: Option<First>,
-    /// So far was looked, at every s: until some vertex has moved by half the box's diagonal, unless there was a
-    /// collision before, or time ran out.
+    /// The first collision; `None` if there is none up to `searched`.
+    first: Option<FirstCollision>,
+    /// The end of the search, which covers every s up to it: the first collision, the time limit, or the s at which
+    /// some vertex has moved by half the diagonal of the AABB.
     searched: f64,
-    /// Whether time did not run out.
+    /// Whether the search ended before its time limit.
     complete: bool,
 }
 
 /// The first collision.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct First {
-    /// The way to it is free.
+struct FirstCollision {
+    /// The s of the collision; the shape is free at every smaller s.
     scale: f64,
-    /// What collides there. Where nothing does, because sheets pass each other between two numbers: what meets.
+    /// The pairs that collide there. Thin sheets may pass each other between two numbers; then the pairs with the
+    /// earliest time of impact.
     pairs: Vec<Pair>,
 }
 
-/// The way is searched in so many pieces at the most.
-const PIECES: f64 = 64.0;
+/// Largest number of segments of a search.
+const MAX_SEGMENTS: f64 = 64.0;
 
-/// Continuous queries tell a time a little before the triangles meet. They are looked for so much farther, as shares
-/// of the whole way.
-const NUDGES: [f64; 8] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
+/// A time of impact may be slightly earlier than the contact. Discrete queries search for the contact at these
+/// offsets, as shares of the largest scale.
+const SEARCH_OFFSETS: [f64; 8] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
 
-/// What meets so soon after the first, as a share of a piece, meets with it.
-const TOGETHER: f64 = 1e-9;
+/// Impacts within this time of the first are simultaneous with it, as a share of a segment.
+const SIMULTANEITY: f64 = 1e-9;
 
+/// Searches the first collision along a direction from the centre.
 pub(super) fn along(
     mut query: Query<'_>,
     model: &ReducedModel,
     certificates: &Certificates,
     DirectionRequest { direction }: &DirectionRequest,
-    patience: &Patience<'_>,
+    cancellation: &Cancellation<'_>,
 ) -> Result<DirectionAnswer, ViewError> {
     let center = certificates.center();
     model.check_coordinates(direction)?;
     let at = |scale: f64| -> Vec<f64> { center.iter().zip(direction).map(|(c, d)| c + scale * d).collect() };
-    let certified = query.safe_scale(&at(1.0)).map_err(|error| patience.explain(error))?;
+    let certified = query.safe_scale(&at(1.0)).map_err(|error| cancellation.explain(error))?;
     let end = end(model, direction);
     let mut answer = DirectionAnswer { certified, first: None, searched: certified, complete: true };
     if certified.is_finite() && end.is_finite() {
         answer.searched = certified.min(end);
         while answer.first.is_none() && answer.searched < end {
-            let to = (answer.searched + end / PIECES).min(end);
-            let found = match patience.is_cancelled() {
+            let to = (answer.searched + end / MAX_SEGMENTS).min(end);
+            let found = match cancellation.is_cancelled() {
                 true => Err(Error::Cancelled),
                 false => meet(&mut query, &at, [answer.searched, to], end),
             };
@@ -72,41 +74,44 @@ pub(super) fn along(
                     answer.searched = first.as_ref().map_or(to, |first| first.scale);
                     answer.first = first;
                 }
-                // What was found until then holds.
-                Err(Error::Cancelled) if (patience.is_wanted)() && (patience.is_over)() => {
+                // The result until then is valid.
+                Err(Error::Cancelled) if (cancellation.is_wanted)() && (cancellation.is_over)() => {
                     answer.complete = false;
                     break;
                 }
-                Err(error) => return Err(patience.explain(error)),
+                Err(error) => return Err(cancellation.explain(error)),
             }
         }
     }
     Ok(answer)
 }
 
-/// The first collision between two scales.
+/// Returns the first collision between two scales.
 fn meet(
     query: &mut Query<'_>,
     at: &impl Fn(f64) -> Vec<f64>,
     [from, to]: [f64; 2],
     end: f64,
-) -> Result<Option<First>, Error> {
+) -> Result<Option<FirstCollision>, Error> {
     let impacts = query.continuous(&at(from), &at(to))?;
     let Some(time) = impacts.iter().map(|impact| impact.time).min_by(f64::total_cmp) else { return Ok(None) };
-    let together = impacts.iter().filter(|impact| impact.time <= time + TOGETHER);
-    let meeting = together.map(|impact| impact.pair).take(MOST_LISTED).collect();
+    let together = impacts.iter().filter(|impact| impact.time <= time + SIMULTANEITY);
+    let meeting = together.map(|impact| impact.pair).take(MAX_LISTED_PAIRS).collect();
     let met = from + time * (to - from);
-    for nudge in NUDGES {
+    for nudge in SEARCH_OFFSETS {
         let scale = met + nudge * end;
-        let pairs = query.discrete_at_most(&at(scale), MOST_FOUND)?;
+        let pairs = query.discrete_at_most(&at(scale), MAX_PAIRS)?;
         if !pairs.is_empty() {
-            return Ok(Some(First { scale, pairs: pairs[..pairs.len().min(MOST_LISTED)].to_vec() }));
+            return Ok(Some(FirstCollision {
+                scale,
+                pairs: pairs[..pairs.len().min(MAX_LISTED_PAIRS)].to_vec(),
+            }));
         }
     }
-    Ok(Some(First { scale: met, pairs: meeting }))
+    Ok(Some(FirstCollision { scale: met, pairs: meeting }))
 }
 
-/// Where the vertex that moves fastest has moved by half the box's diagonal.
+/// Returns the scale at which the fastest vertex has moved by half the diagonal of the AABB.
 fn end(model: &ReducedModel, direction: &[f64]) -> f64 {
     let rest = model.mesh().rest_positions();
     let Some(first) = rest.first() else { return f64::INFINITY };
@@ -126,9 +131,10 @@ mod tests {
 
     use super::*;
 
-    /// What is answered of two triangles that move away from each other, so that all of their way is searched, where
-    /// after so many looks its time is over, or nobody wants it; and how many looks there were.
-    fn parted(over: u32, unwanted: u32) -> (Result<DirectionAnswer, ViewError>, u32) {
+    /// Returns the answer for two triangles that move away from each other, so that the search covers the whole range,
+    /// and the number of checks for cancellation. After `over` checks the time limit is reached; after `unwanted`
+    /// checks the client has left.
+    fn separating(over: u32, unwanted: u32) -> (Result<DirectionAnswer, ViewError>, u32) {
         let below = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let positions = [below, below.map(|p| p + DVec3::new(0.1, 0.1, 0.01))].concat();
         let modes = Modes::from_matrix(6, 2, |row, k| match (row % 3, row >= 9, k) {
@@ -139,30 +145,30 @@ mod tests {
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-        let looks = AtomicU32::new(0);
-        let is_over = || looks.load(Ordering::Relaxed) > over;
-        let is_wanted = || looks.fetch_add(1, Ordering::Relaxed) < unwanted;
-        let patience = Patience { all: &(), is_over: &is_over, is_wanted: &is_wanted };
-        let query = Query::new(&model, &certificates).unwrap().cancelled_by(&patience);
+        let checks = AtomicU32::new(0);
+        let is_over = || checks.load(Ordering::Relaxed) > over;
+        let is_wanted = || checks.fetch_add(1, Ordering::Relaxed) < unwanted;
+        let cancellation = Cancellation { server: &(), is_over: &is_over, is_wanted: &is_wanted };
+        let query = Query::new(&model, &certificates).unwrap().cancelled_by(&cancellation);
         let request = DirectionRequest { direction: vec![1.0, 1.0] };
-        let answer = along(query, &model, &certificates, &request, &patience);
-        (answer, looks.into_inner())
+        let answer = along(query, &model, &certificates, &request, &cancellation);
+        (answer, checks.into_inner())
     }
 
     #[test]
-    fn a_search_ends_in_time_with_what_it_found() {
-        let (whole, looks) = parted(u32::MAX, u32::MAX);
+    fn a_search_ends_at_its_time_limit_with_its_result() {
+        let (whole, checks) = separating(u32::MAX, u32::MAX);
         let whole = whole.unwrap();
         assert!(whole.complete && whole.first.is_none() && whole.searched > whole.certified, "{whole:?}");
-        // Certificates have been looked at by then, and not yet all pieces of the way.
-        let late = looks - 4;
-        let part = parted(late, u32::MAX).0.unwrap();
+        // The safe scale is known by then, but not all segments are searched.
+        let late = checks - 4;
+        let part = separating(late, u32::MAX).0.unwrap();
         assert!(!part.complete && part.first.is_none() && part.certified == whole.certified, "{part:?}");
         assert!(part.certified < part.searched && part.searched < whole.searched, "{part:?}");
-        assert!(parted(0, u32::MAX).0.unwrap_err().to_string().contains("within 10 s"));
-        for looks in [0, late] {
-            let error = parted(u32::MAX, looks).0.unwrap_err().to_string();
-            assert!(error.contains("another question"), "{error}");
+        assert!(separating(0, u32::MAX).0.unwrap_err().to_string().contains("within 10 s"));
+        for checks in [0, late] {
+            let error = separating(u32::MAX, checks).0.unwrap_err().to_string();
+            assert!(error.contains("a newer search"), "{error}");
         }
     }
 }

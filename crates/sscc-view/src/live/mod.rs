@@ -1,10 +1,10 @@
 //! Answers to the requests of a live page, by queries of the core.
 
 mod animation;
+mod cancellation;
 mod check;
 mod collision;
 mod nodes;
-mod patience;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use sscc::{Certificates, Method, Progress, Query, ReducedModel};
 
 use crate::{Arrays, Scene, ViewError};
+use cancellation::{Cancellation, MAX_SECONDS};
 use nodes::ORDER;
-use patience::{LONGEST, Patience};
 
 pub use animation::AnimationRequest;
 pub use check::{CheckAnswer, CheckRequest};
@@ -39,7 +39,7 @@ pub struct Live<'a> {
 /// Queries for requests that may take seconds.
 struct Long<'a> {
     certified: Query<'a>,
-    /// Made at the first request.
+    /// Created by the first request.
     traditional: Option<Query<'a>>,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Live<'a> {
     /// # Errors
     /// If q is not a configuration of the model.
     pub fn check(&self, request: &CheckRequest) -> Result<CheckAnswer, ViewError> {
-        check::check(&mut locked(&self.checks), self.certificates, request)
+        check::check(&mut lock(&self.checks), self.certificates, request)
     }
 
     /// Returns the time and the number of pairs of the same query by the traditional method.
@@ -98,7 +98,7 @@ impl<'a> Live<'a> {
     /// # Errors
     /// The errors of [`Live::check`].
     pub fn traditional(&self, At { q }: &At) -> Result<TraditionalAnswer, ViewError> {
-        let mut long = locked(&self.long);
+        let mut long = lock(&self.long);
         let query = match &mut long.traditional {
             Some(query) => query,
             none => none.insert(
@@ -107,7 +107,7 @@ impl<'a> Live<'a> {
             ),
         };
         let (count, microseconds) =
-            check::timed(|| query.discrete_at_most(q, check::MOST_FOUND).map(<[_]>::len));
+            check::timed(|| query.discrete_at_most(q, check::MAX_PAIRS).map(<[_]>::len));
         Ok(TraditionalAnswer { microseconds, count: count? })
     }
 
@@ -123,13 +123,13 @@ impl<'a> Live<'a> {
         is_gone: &(dyn Fn() -> bool + Sync),
     ) -> Result<DirectionAnswer, ViewError> {
         let number = self.latest.fetch_add(1, Ordering::Relaxed) + 1;
-        let long = locked(&self.long);
+        let long = lock(&self.long);
         let is_wanted = || self.latest.load(Ordering::Relaxed) == number && !is_gone();
-        let end = Instant::now() + Duration::from_secs(LONGEST);
-        let patience =
-            Patience { all: self.progress, is_over: &|| Instant::now() >= end, is_wanted: &is_wanted };
-        let query = long.certified.clone().cancelled_by(&patience);
-        collision::along(query, self.model, self.certificates, request, &patience)
+        let end = Instant::now() + Duration::from_secs(MAX_SECONDS);
+        let cancellation =
+            Cancellation { server: self.progress, is_over: &|| Instant::now() >= end, is_wanted: &is_wanted };
+        let query = long.certified.clone().cancelled_by(&cancellation);
+        collision::along(query, self.model, self.certificates, request, &cancellation)
     }
 
     /// Returns the hierarchy.
@@ -151,13 +151,13 @@ impl<'a> Live<'a> {
     /// If there are too many frames, times do not ascend, or a q has not one finite number for each mode.
     pub fn animation(&self, request: &AnimationRequest) -> Result<Vec<u8>, ViewError> {
         // One at a time, since each may need hundreds of megabytes.
-        let _turn = locked(&self.long);
+        let _turn = lock(&self.long);
         let name = self.scene.models.first().map_or("model", |model| model.name());
         animation::glb(name, self.model, request)
     }
 }
 
 /// Locks a mutex, also after a panic of another thread: queries hold only scratch, which each query initialises.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -12,7 +12,7 @@ pub const ORDER: &str = "order";
 /// The hierarchy, with one entry for each node in every list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodesAnswer {
-    /// -1 for the root.
+    /// The parent of each node; -1 for the root.
     parent: Vec<i64>,
     level: Vec<usize>,
     radius: Vec<f64>,
@@ -45,6 +45,7 @@ pub struct BoxesAnswer {
     boxes: Vec<[f64; 6]>,
 }
 
+/// Returns the hierarchy.
 pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
     let hierarchy = certificates.hierarchy();
     let nodes = hierarchy.nodes();
@@ -75,7 +76,7 @@ pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
         } else {
             opened.push(n);
             let node = &nodes[n as usize];
-            waiting.extend(node.children().filter(|_| !node.is_bucket()));
+            waiting.extend(node.children().filter(|_| !node.fits_in_bucket()));
         }
     }
     opened.sort_unstable();
@@ -83,6 +84,7 @@ pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
     Frontier { opened, culled }
 }
 
+/// Returns the AABBs of one level at q.
 pub(super) fn boxes(
     model: &ReducedModel,
     certificates: &Certificates,
@@ -90,8 +92,9 @@ pub(super) fn boxes(
 ) -> Result<BoxesAnswer, ViewError> {
     let hierarchy = certificates.hierarchy();
     let levels = hierarchy.levels();
-    let missing =
-        || ViewError::Request(format!("there is no level {level}: the hierarchy has {}", levels.len()));
+    let missing = || {
+        ViewError::Request(format!("there is no level {level}: the hierarchy has {} levels", levels.len()))
+    };
     let nodes = &hierarchy.nodes()[levels.get(*level).ok_or_else(missing)?.clone()];
     let (positions, faces) = (model.positions(q)?, model.mesh().faces());
     let of = |node| {

@@ -1,23 +1,23 @@
-//! From where the shape is seen.
+//! The camera of a picture: an orthographic view from one direction.
 
 use glam::DVec3;
 
-/// The longer side of a view in pixels, and the shorter one at least.
-const LONGEST: f64 = 400.0;
-const SHORTEST: f64 = 160.0;
+/// The longer side of a view, and the smallest shorter side (pixels).
+const MAX_SIDE: f64 = 400.0;
+const MIN_SIDE: f64 = 160.0;
 
-/// Empty space around the shape in pixels.
+/// Empty space around the shape (pixels).
 const MARGIN: f64 = 18.0;
 
-/// Towards the viewer: from the front (z), the right (x) and above (y).
-const TOWARDS: DVec3 = DVec3::new(0.5, 0.35, 1.0);
+/// The direction towards the viewer: in front (z), to the right (x) and above (y).
+const VIEW_DIRECTION: DVec3 = DVec3::new(0.5, 0.35, 1.0);
 
-/// A view without perspective. On the screen x goes right and y down; z comes towards the viewer.
+/// An orthographic view. In the picture x points right, y down and z towards the viewer.
 pub struct Camera {
     right: DVec3,
     up: DVec3,
     towards: DVec3,
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture.
     center: DVec3,
     /// Pixels for a unit of length.
     scale: f64,
@@ -25,9 +25,9 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Sees all these points.
+    /// Returns a camera that sees all points.
     pub fn around(points: impl Iterator<Item = DVec3>) -> Self {
-        let towards = TOWARDS.normalize();
+        let towards = VIEW_DIRECTION.normalize();
         let right = DVec3::Y.cross(towards).normalize();
         let up = towards.cross(right);
         let seen = points.map(|p| DVec3::new(p.dot(right), p.dot(up), p.dot(towards)));
@@ -35,20 +35,20 @@ impl Camera {
         let (lower, upper) = seen.fold(empty, |(lower, upper), p| (lower.min(p), upper.max(p)));
         let middle = (lower + upper) / 2.0;
         let extent = (upper - lower).truncate();
-        // A point has no extent, and is seen all the same.
+        // A single point has no extent; any scale shows it.
         let longest = extent.max_element().max(f64::MIN_POSITIVE.sqrt());
-        let scale = (LONGEST - 2.0 * MARGIN) / longest;
-        let side = |x: f64| (x * scale + 2.0 * MARGIN).clamp(SHORTEST, LONGEST).round() as usize;
+        let scale = (MAX_SIDE - 2.0 * MARGIN) / longest;
+        let side = |x: f64| (x * scale + 2.0 * MARGIN).clamp(MIN_SIDE, MAX_SIDE).round() as usize;
         let center = right * middle.x + up * middle.y + towards * middle.z;
         Self { right, up, towards, center, scale, size: [side(extent.x), side(extent.y)] }
     }
 
-    /// Width and height of a view in pixels.
+    /// Width and height of a view (pixels).
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// A point in a view whose pixels are divided into so many along each side.
+    /// Returns the position of a point in a view with `samples` samples along each side of a pixel.
     pub fn project(&self, point: DVec3, samples: usize) -> DVec3 {
         let p = point - self.center;
         let turned = DVec3::new(p.dot(self.right), -p.dot(self.up), p.dot(self.towards)) * self.scale;
@@ -56,7 +56,7 @@ impl Camera {
         (turned + DVec3::new(width, height, 0.0)) * samples as f64
     }
 
-    /// A direction, with y up and z towards the viewer.
+    /// Returns a direction in coordinates of the view, with y up and z towards the viewer.
     pub fn turn(&self, direction: DVec3) -> DVec3 {
         DVec3::new(direction.dot(self.right), direction.dot(self.up), direction.dot(self.towards))
     }
@@ -74,7 +74,7 @@ mod tests {
         for points in [&points[..], &points[..1], &[]] {
             let camera = Camera::around(points.iter().copied());
             let [width, height] = camera.size().map(|n| n as f64);
-            assert!(width.max(height) <= LONGEST && width.min(height) >= SHORTEST, "{width} x {height}");
+            assert!(width.max(height) <= MAX_SIDE && width.min(height) >= MIN_SIDE, "{width} x {height}");
             for p in points.iter().map(|p| camera.project(*p, 2)) {
                 assert!(p.x >= 2.0 * MARGIN - 2.0 && p.x <= 2.0 * (width - MARGIN) + 2.0, "{p}");
                 assert!(p.y >= 2.0 * MARGIN - 2.0 && p.y <= 2.0 * (height - MARGIN) + 2.0, "{p}");

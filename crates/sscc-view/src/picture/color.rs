@@ -1,23 +1,23 @@
-//! Light and colours.
+//! Colours, and the light on surfaces.
 
 use glam::{DVec3, Vec3};
 
-/// Behind everything (sRGB).
+/// The background (sRGB).
 pub const BACKGROUND: [u8; 3] = [246, 246, 244];
 
-/// What does not move, and what moves farthest (sRGB).
-const STILL: [u8; 3] = [176, 186, 198];
-const MOVED: [u8; 3] = [216, 130, 72];
+/// Colours of vertices with the smallest and the largest displacement (sRGB).
+const STILL_COLOR: [u8; 3] = [176, 186, 198];
+const MOVED_COLOR: [u8; 3] = [216, 130, 72];
 
-/// From the left, above, and in front of the surface.
-const KEY: DVec3 = DVec3::new(-0.45, 0.65, 0.75);
+/// The direction of the main light: from the left, above and in front of the surface.
+const KEY_LIGHT: DVec3 = DVec3::new(-0.45, 0.65, 0.75);
 
-/// A colour in units of light, in which means are taken.
+/// A colour in linear units of light.
 #[derive(Clone, Copy)]
 pub struct Linear(Vec3);
 
 impl Linear {
-    /// Of sRGB bytes.
+    /// Converts from sRGB bytes.
     pub fn of(bytes: [u8; 3]) -> Self {
         let decode = |x: u8| {
             let x = f64::from(x) / 255.0;
@@ -26,7 +26,7 @@ impl Linear {
         Self(Vec3::from_array(bytes.map(decode)))
     }
 
-    /// As sRGB bytes.
+    /// Converts to sRGB bytes.
     pub fn to_bytes(self) -> [u8; 3] {
         self.0.to_array().map(|x| {
             let x = f64::from(x.clamp(0.0, 1.0));
@@ -36,7 +36,7 @@ impl Linear {
     }
 }
 
-/// The colours of a surface, from still to moved farthest.
+/// The colours of a surface, from the smallest to the largest displacement.
 #[derive(Clone, Copy)]
 pub struct Palette {
     still: Linear,
@@ -44,14 +44,15 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// The palette of all pictures.
+    /// Returns the palette of all pictures.
     pub fn new() -> Self {
-        Self { still: Linear::of(STILL), moved: Linear::of(MOVED) }
+        Self { still: Linear::of(STILL_COLOR), moved: Linear::of(MOVED_COLOR) }
     }
 
-    /// The colour of a surface with a normal (y up, z towards the viewer) that has moved by a share of the farthest.
+    /// Returns the colour of a surface with a normal (y up, z towards the viewer); `moved` is its displacement as a
+    /// share of the largest.
     pub fn lit(&self, normal: DVec3, moved: f64) -> Linear {
-        let key = normal.dot(KEY.normalize()).max(0.0);
+        let key = normal.dot(KEY_LIGHT.normalize()).max(0.0);
         let sky = 0.5 + 0.5 * normal.y;
         let edge = 1.0 - normal.z.max(0.0);
         let rim = edge * edge * edge;
@@ -61,7 +62,7 @@ impl Palette {
     }
 }
 
-/// The mean of some colours.
+/// Returns the mean of colours.
 pub fn mean(colors: impl Iterator<Item = Linear>) -> Linear {
     let (sum, count) = colors.fold((Vec3::ZERO, 0.0), |(sum, count), color| (sum + color.0, count + 1.0));
     Linear(sum / count)
@@ -72,8 +73,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_survive() {
-        for bytes in [BACKGROUND, STILL, MOVED, [0, 1, 255]] {
+    fn bytes_round_trip() {
+        for bytes in [BACKGROUND, STILL_COLOR, MOVED_COLOR, [0, 1, 255]] {
             assert_eq!(Linear::of(bytes).to_bytes(), bytes);
         }
     }

@@ -1,8 +1,8 @@
-//! The pixels of a picture, and its file.
+//! An image, and its PNG file.
 
 use super::color::BACKGROUND;
 
-/// RGB, eight bits each, row by row from above.
+/// An RGB image with eight bits per channel, row by row from the top.
 pub struct Image {
     width: usize,
     height: usize,
@@ -10,12 +10,12 @@ pub struct Image {
 }
 
 impl Image {
-    /// The background alone.
+    /// Returns an image of the background.
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, height, bytes: BACKGROUND.repeat(width * height) }
     }
 
-    /// Copies rows of pixels to a place, given by its upper left corner.
+    /// Copies rows of pixels into the image; `left` and `top` are the upper left corner.
     pub fn put(&mut self, left: usize, top: usize, width: usize, pixels: &[u8]) {
         for (row, from) in pixels.chunks_exact(3 * width).enumerate() {
             let at = 3 * ((top + row) * self.width + left);
@@ -23,7 +23,7 @@ impl Image {
         }
     }
 
-    /// The bytes of a PNG file.
+    /// Returns the bytes of a PNG file.
     pub fn encode(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);

@@ -1,5 +1,5 @@
-//! A picture of what is certified: the shape at the centre, and as far along single modes as the root's certificate
-//! reaches (figures 4, 11 and 14 of the paper).
+//! A picture of certified deformations: the shape at the centre, and along single modes at the root's radius (paper,
+//! Figures 4, 11 and 14).
 
 mod camera;
 mod color;
@@ -15,29 +15,29 @@ use camera::Camera;
 use image::Image;
 use panel::{Panel, normals};
 
-/// Modes that are drawn.
-const MODES: usize = 4;
+/// Largest number of modes in the picture.
+const MAX_MODES: usize = 4;
 
 /// A picture of certified deformations.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// The bytes of its PNG file.
     pub png: Vec<u8>,
-    /// Why it shows the shape at the centre alone, where it does.
+    /// The reason why the picture shows only the shape at the centre; `None` if it shows modes.
     pub note: Option<String>,
 }
 
 impl Picture {
-    /// Draws the shape at the centre (left), and at `|z|` equal to the root's radius along the first modes: one column for
-    /// each, with `+` above `-`. All views have the same direction and scale; the colour tells how far a vertex is from
-    /// where it is at the centre. Where the radius is 0 or infinite, the shape at the centre is the only one.
+    /// Draws the shape at the centre (left), and at `|z|` equal to the root's radius along the first modes: one column
+    /// for each, with `+` above `-`. All views have the same direction and scale. The colour shows the displacement
+    /// from the shape at the centre. If the radius is 0 or infinite, the picture shows only that shape.
     ///
     /// # Errors
-    /// When the certificates are of another model, or the picture is too large for a file.
+    /// If the certificates belong to another model, or the picture cannot be encoded.
     pub fn draw(model: &ReducedModel, certificates: &Certificates) -> Result<Self, ViewError> {
         certificates.check_model(model)?;
         let root = certificates.root_radius();
-        let modes = if root > 0.0 && root.is_finite() { MODES.min(model.rank()) } else { 0 };
+        let modes = if root > 0.0 && root.is_finite() { MAX_MODES.min(model.rank()) } else { 0 };
         let note = (modes == 0).then(|| {
             let value = if root > 0.0 { "unlimited" } else { "0" };
             format!("the root radius is {value}: the picture shows the shape at the centre alone")
@@ -50,7 +50,7 @@ impl Picture {
             let q: Vec<f64> = certificates.center().iter().zip(offset).map(|(c, x)| c + x).collect();
             Ok(model.positions(&q)?)
         };
-        // Row by row: the upper one, then the lower one.
+        // The upper row, then the lower row.
         let deformed: Vec<Vec<DVec3>> = [root, -root]
             .into_iter()
             .flat_map(|z| (0..modes).map(move |k| along(k, z)))

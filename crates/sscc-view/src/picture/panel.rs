@@ -1,4 +1,4 @@
-//! One view of one shape.
+//! One view of one shape, as pixels.
 
 use glam::DVec3;
 
@@ -9,32 +9,32 @@ use super::raster::Raster;
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 3;
 
-/// The cosine of an angle between two triangles beyond which an edge is seen, and not smoothed away (60 degrees).
-const CREASE: f64 = 0.5;
+/// Normals of two triangles are averaged if the cosine of their angle is larger (angles below 60 degrees).
+const MIN_COSINE: f64 = 0.5;
 
-/// Triangles around a vertex over which normals are smoothed, at most: the hub of a fan may have any number.
-const AROUND: usize = 32;
+/// Largest number of faces of a vertex whose normals are averaged: a vertex may have any number of faces.
+const MAX_FACES: usize = 32;
 
-/// A shape with what colours it.
+/// A shape, with its normals and displacements.
 pub struct Panel<'a> {
     pub faces: &'a [[u32; 3]],
     pub positions: &'a [DVec3],
-    /// Of the corners of each face: see [`normals`].
+    /// Normals of the corners of each face: see [`normals`].
     pub normals: &'a [[DVec3; 3]],
-    /// How far each vertex has moved, from 0 to 1.
+    /// The displacement of each vertex, from 0 to 1.
     pub amounts: &'a [f64],
 }
 
 impl Panel<'_> {
-    /// The pixels, RGB, row by row.
+    /// Returns the pixels (RGB), row by row.
     pub fn draw(&self, camera: &Camera) -> Vec<u8> {
         let mut raster = Raster::new(camera.size().map(|n| n * SAMPLES), Linear::of(BACKGROUND));
         let palette = Palette::new();
         let seen: Vec<DVec3> = self.positions.iter().map(|p| camera.project(*p, SAMPLES)).collect();
         for (face, normals) in self.faces.iter().zip(self.normals) {
             let corners = face.map(|v| v as usize);
-            // Either side looks the same. Which one is seen, the triangle decides and not its smoothed normals, which
-            // turn away too early along outlines.
+            // Both sides look the same. The triangle decides which side is visible: along outlines averaged normals
+            // point away too early.
             let flat = normal(corners.map(|v| self.positions[v]));
             let side = if camera.turn(flat).z < 0.0 { -1.0 } else { 1.0 };
             let [na, nb, nc] = normals.map(|n| camera.turn(n).normalize_or_zero() * side);
@@ -47,19 +47,19 @@ impl Panel<'_> {
     }
 }
 
-/// Normals of the corners of all faces: the mean of the faces around a vertex, by area, of those that are turned like
-/// the corner's own. Not of unit length.
+/// Returns the normals of the corners of all faces, not of unit length. The normal of a corner is the mean, weighted by
+/// area, of the faces of its vertex whose normals are similar to that of its own face.
 pub fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[DVec3; 3]> {
     let flat: Vec<DVec3> = faces.iter().map(|face| normal(face.map(|v| positions[v as usize]))).collect();
     let units: Vec<DVec3> = flat.iter().map(|normal| normal.normalize_or_zero()).collect();
     let mut around = vec![Vec::new(); positions.len()];
     for (i, v) in faces.iter().enumerate().flat_map(|(i, face)| face.map(|v| (i, v as usize))) {
-        if around[v].len() < AROUND {
+        if around[v].len() < MAX_FACES {
             around[v].push(i);
         }
     }
     let smooth = |own: usize, v: u32| {
-        let alike = around[v as usize].iter().filter(|i| units[**i].dot(units[own]) > CREASE);
+        let alike = around[v as usize].iter().filter(|i| units[**i].dot(units[own]) > MIN_COSINE);
         alike.fold(DVec3::ZERO, |sum, i| sum + flat[*i])
     };
     let with_own = |own: usize, v: u32| match smooth(own, v) {
@@ -69,7 +69,7 @@ pub fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[DVec3; 3]> {
     faces.iter().enumerate().map(|(own, face)| face.map(|v| with_own(own, v))).collect()
 }
 
-/// Of the triangle's plane, twice its area long.
+/// Returns the normal of a triangle; its length is twice the area.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_bent_is_smooth_and_what_is_folded_is_not() {
+    fn bent_surfaces_are_smooth_and_folds_are_not() {
         let bent = |height: f64| {
             let positions = [DVec3::ZERO, DVec3::Y, DVec3::NEG_X, DVec3::new(1.0, 0.0, height)];
             normals(&[[0, 1, 2], [0, 3, 1]], &positions)
@@ -90,7 +90,7 @@ mod tests {
         assert!(left == [DVec3::Z; 3] && right == [DVec3::new(-5.0, 0.0, 1.0); 3]);
         // The hub of a fan, and triangles without an area.
         let faces = vec![[0, 1, 2]; 1000];
-        assert_eq!(normals(&faces, &[DVec3::ZERO, DVec3::X, DVec3::Y])[999][0], DVec3::Z * AROUND as f64);
+        assert_eq!(normals(&faces, &[DVec3::ZERO, DVec3::X, DVec3::Y])[999][0], DVec3::Z * MAX_FACES as f64);
         assert_eq!(normals(&faces, &[DVec3::ZERO; 3])[0], [DVec3::ZERO; 3]);
     }
 }

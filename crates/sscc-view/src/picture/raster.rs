@@ -1,31 +1,31 @@
-//! Triangles to pixels, the nearest in front.
+//! Rasterization of triangles with a depth buffer.
 
 use glam::DVec3;
 
-/// Pixels with what is nearest in each: how near it is, and its colour.
+/// The depth and the colour of the nearest surface in each pixel.
 pub struct Raster<T> {
     width: usize,
     pixels: Vec<(f64, T)>,
 }
 
 impl<T: Copy> Raster<T> {
-    /// Of one colour.
+    /// Returns a raster of one colour.
     pub fn new([width, height]: [usize; 2], background: T) -> Self {
         Self { width, pixels: vec![(f64::NEG_INFINITY, background); width * height] }
     }
 
-    /// Fills the pixels whose centres are in a triangle (x right, y down, z towards the viewer), where nothing is
-    /// nearer. `color` is given the weights of the corners.
+    /// Fills the pixels with a centre in the triangle (x right, y down, z towards the viewer), unless a nearer surface
+    /// covers them. `color` receives the weights of the corners.
     pub fn fill(&mut self, [a, b, c]: [DVec3; 3], color: impl Fn([f64; 3]) -> T) {
         let height = self.pixels.len() / self.width;
-        // Of points beyond the picture, `as` takes the nearest pixel; of NaN, the first one.
+        // `as` converts coordinates beyond the picture to the nearest pixel, and NaN to the first.
         let [lower, upper] = [a.min(b).min(c).floor(), a.max(b).max(c).ceil()];
         let columns = lower.x as usize..(upper.x as usize).min(self.width);
         let rows = lower.y as usize..(upper.y as usize).min(height);
         let cross = |u: DVec3, v: DVec3| u.x * v.y - u.y * v.x;
         let area = cross(b - a, c - a);
         if area == 0.0 {
-            return; // seen from the side
+            return; // parallel to the view
         }
         for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
             let p = DVec3::new(x as f64 + 0.5, y as f64 + 0.5, 0.0);
@@ -40,7 +40,7 @@ impl<T: Copy> Raster<T> {
         }
     }
 
-    /// The colours of square blocks of so many pixels along each side, row by row.
+    /// Returns the colours of square blocks with `side` pixels along each side, row by row.
     pub fn blocks(&self, side: usize) -> impl Iterator<Item = impl Iterator<Item = T>> {
         let rows = self.pixels.len() / self.width / side;
         let corners = (0..rows).flat_map(move |y| (0..self.width / side).map(move |x| (y * side, x * side)));
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_is_seen_whatever_comes_first() {
+    fn the_nearest_triangle_wins_in_any_order() {
         for order in [[1.0, 2.0], [2.0, 1.0]] {
             let mut raster = Raster::new([4, 2], 0.0);
             for z in order {
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_are_those_of_corners() {
+    fn weights_are_barycentric() {
         let mut raster = Raster::new([4, 4], [0.0; 3]);
         raster.fill(triangle(0.0), |weights| weights);
         let colors: Vec<[f64; 3]> = raster.blocks(1).flatten().collect();
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_the_picture_does_no_harm() {
+    fn triangles_outside_the_picture_are_clipped() {
         let mut raster = Raster::new([3, 3], 0);
         for far in [1e300, -1e300, f64::INFINITY, f64::NAN] {
             raster.fill([DVec3::new(far, 0.0, 0.0), DVec3::new(0.0, far, 0.0), DVec3::ZERO], |_| 1);

@@ -6,7 +6,7 @@ use super::request::Head;
 use crate::ViewError;
 
 /// Bytes of randomness in a token.
-const TOKEN: usize = 32;
+const TOKEN_BYTES: usize = 32;
 
 /// The token and the host names of the page.
 pub(super) struct Access {
@@ -25,8 +25,8 @@ pub(super) enum Refusal {
 impl Refusal {
     pub(super) fn message(self) -> &'static str {
         match self {
-            Self::Host => "this page is at 127.0.0.1 alone",
-            Self::Origin => "only the page itself may ask",
+            Self::Host => "the page is served only at 127.0.0.1",
+            Self::Origin => "only the page itself may send requests",
             Self::Token => "the token is missing or wrong: open the address that sscc printed",
         }
     }
@@ -34,7 +34,7 @@ impl Refusal {
 
 impl Access {
     pub(super) fn new(port: u16) -> Result<Self, ViewError> {
-        let mut bytes = [0; TOKEN];
+        let mut bytes = [0; TOKEN_BYTES];
         getrandom::fill(&mut bytes).map_err(ViewError::Random)?;
         let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
         let names = ["127.0.0.1", "localhost"];
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_answered() {
+    fn requests_need_the_host_the_origin_and_the_token() {
         let access = Access::new(8000).unwrap();
         let good = || Head {
             host: Some("127.0.0.1:8000".into()),

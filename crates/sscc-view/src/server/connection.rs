@@ -6,102 +6,102 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::access::Access;
-use super::deadline::Timed;
+use super::deadline::DeadlineStream;
 use super::request::{BadHead, Buffer, Head};
 use super::response::Response;
-use super::routes::Site;
+use super::routes::Content;
 
-/// A connection may be quiet so long between requests.
-const QUIET: Duration = Duration::from_secs(60);
+/// Longest pause between requests.
+const IDLE_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A whole head may take so long to come: the first from the beginning of the connection, others from their first byte.
-/// Who does not know the token has so long to take the answer, too.
-const HEAD: Duration = Duration::from_secs(5);
+/// Longest time to receive a head: the first from the start of the connection, others from their first byte. A client
+/// without the token has the same time to receive the answer.
+const HEAD_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The body.
-const BODY: Duration = Duration::from_secs(20);
+/// Longest time to receive a body.
+const BODY_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// The answer may take so long to be taken.
-const ANSWER: Duration = Duration::from_secs(60);
+/// Longest time to send an answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// What is still on its way after a refusal is let in, and forgotten, so long: hanging up at once could take the answer
-/// away from those who are still sending.
-const FAREWELL: Duration = Duration::from_secs(2);
+/// After a refusal the server reads and drops input for this time: closing at once could discard the answer of a client
+/// that is still sending.
+const DRAIN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Answers all requests of a connection.
-pub(super) fn talk(
+pub(super) fn serve(
     stream: TcpStream,
     access: &Access,
-    site: &Site<'_, '_>,
+    content: &Content<'_, '_>,
     is_stopped: &(dyn Fn() -> bool + Sync),
 ) -> io::Result<()> {
     stream.set_nodelay(true)?;
-    let within = |time| Timed::new(&stream, time, is_stopped);
+    let within = |time| DeadlineStream::new(&stream, time, is_stopped);
     let mut buffer = Buffer::default();
     for number in 0.. {
         if number > 0 && buffer.is_empty() {
-            buffer.read(&mut within(QUIET))?;
+            buffer.read(&mut within(IDLE_TIMEOUT))?;
         }
         let (mut close, mut is_known) = (true, false);
-        let response = match buffer.head(&mut within(HEAD)) {
+        let response = match buffer.head(&mut within(HEAD_TIMEOUT)) {
             Ok(head) => {
                 // A connection stays open only for a client with the token. Other clients could otherwise take all
                 // connections.
                 is_known = access.is_known(&head);
-                let refusal = refusal(&head, access, site);
+                let refusal = refusal(&head, access, content);
                 close = head.close || !is_known || refusal.is_some() && head.length > 0;
                 match refusal {
                     Some(refusal) => refusal,
                     None => {
-                        let body = buffer.body(head.length, &mut within(BODY))?;
+                        let body = buffer.body(head.length, &mut within(BODY_TIMEOUT))?;
                         let presence = Presence::of(&stream)?;
-                        site.answer(&head, &body, &|| presence.is_gone())
+                        content.answer(&head, &body, &|| presence.is_gone())
                     }
                 }
             }
             Err(BadHead::Refused(status, message)) => Response::error(status, message),
-            Err(BadHead::Nothing(error)) => return Err(error),
+            Err(BadHead::Missing(error)) => return Err(error),
         };
-        response.write(&mut within(if is_known { ANSWER } else { HEAD }), close)?;
+        response.write(&mut within(if is_known { ANSWER_TIMEOUT } else { HEAD_TIMEOUT }), close)?;
         if close {
             stream.shutdown(Shutdown::Write)?;
-            let mut rest = within(FAREWELL);
-            let mut forgotten = [0; 1 << 16];
-            while rest.read(&mut forgotten)? > 0 {}
+            let mut rest = within(DRAIN_TIMEOUT);
+            let mut dropped = [0; 1 << 16];
+            while rest.read(&mut dropped)? > 0 {}
             return Ok(());
         }
     }
     Ok(())
 }
 
-/// Whether the other side still waits for its answer; looked at now and then while the answer is worked on.
+/// Checks periodically, during the computation of an answer, whether the client still waits for it.
 struct Presence<'a> {
     stream: &'a TcpStream,
-    /// None once the other side has left.
-    next_look: Mutex<Option<Instant>>,
+    /// The time of the next check; `None` after the client has left.
+    next_check: Mutex<Option<Instant>>,
 }
 
 impl<'a> Presence<'a> {
-    /// Between two looks.
-    const PAUSE: Duration = Duration::from_millis(50);
+    /// Interval between two checks.
+    const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 
     fn of(stream: &'a TcpStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
-        Ok(Self { stream, next_look: Mutex::new(Some(Instant::now())) })
+        Ok(Self { stream, next_check: Mutex::new(Some(Instant::now())) })
     }
 
     /// Whether the client has left. A client that closes one direction counts as gone, since browsers close both.
     fn is_gone(&self) -> bool {
-        let mut next_look = self.next_look.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut next_check = self.next_check.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
-        if next_look.is_some_and(|next| next <= now) {
+        if next_check.is_some_and(|next| next <= now) {
             let has_left = match self.stream.peek(&mut [0]) {
                 Ok(bytes) => bytes == 0,
                 Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
             };
-            *next_look = (!has_left).then_some(now + Self::PAUSE);
+            *next_check = (!has_left).then_some(now + Self::CHECK_INTERVAL);
         }
-        next_look.is_none()
+        next_check.is_none()
     }
 }
 
@@ -112,11 +112,11 @@ impl Drop for Presence<'_> {
 }
 
 /// The response to a request that is refused before its body is read; `None` if it is accepted.
-fn refusal(head: &Head, access: &Access, site: &Site<'_, '_>) -> Option<Response<'static>> {
-    if let Err(refusal) = access.check(head, site.is_open(&head.path)) {
+fn refusal(head: &Head, access: &Access, content: &Content<'_, '_>) -> Option<Response<'static>> {
+    if let Err(refusal) = access.check(head, content.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
     }
-    site.check(head).err().map(|(status, message)| Response::error(status, message))
+    content.check(head).err().map(|(status, message)| Response::error(status, message))
 }
 
 #[cfg(test)]
@@ -128,20 +128,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_leaves_is_missed() {
+    fn a_client_that_leaves_is_noticed() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let mut there = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         let (here, _) = listener.accept().unwrap();
         let presence = Presence::of(&here).unwrap();
-        let looks = |times: usize| {
+        let gone_within = |times: usize| {
             (0..times).any(|_| {
-                thread::sleep(Presence::PAUSE);
+                thread::sleep(Presence::CHECK_INTERVAL);
                 presence.is_gone()
             })
         };
-        assert!(!looks(3));
+        assert!(!gone_within(3));
         there.write_all(b"the next request").unwrap();
-        assert!(!looks(3));
+        assert!(!gone_within(3));
         drop(presence);
         let mut read = [0; 16];
         // The stream blocks again, and the bytes that `peek` saw are still there.
@@ -150,10 +150,10 @@ mod tests {
         let presence = Presence::of(&here).unwrap();
         drop(there);
         assert!((0..1200).any(|_| {
-            thread::sleep(Presence::PAUSE);
+            thread::sleep(Presence::CHECK_INTERVAL);
             presence.is_gone()
         }));
-        // And stays away, between two looks as well.
+        // The result stays the same, also between two checks.
         assert!(presence.is_gone());
     }
 }

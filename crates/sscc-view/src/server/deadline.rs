@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 const SLICE: Duration = Duration::from_millis(100);
 
 /// A connection with one deadline for all reads and writes together, however slow the client is.
-pub(super) struct Timed<'a> {
+pub(super) struct DeadlineStream<'a> {
     stream: &'a TcpStream,
     end: Instant,
     is_stopped: &'a (dyn Fn() -> bool + Sync),
 }
 
-impl<'a> Timed<'a> {
+impl<'a> DeadlineStream<'a> {
     pub(super) fn new(
         stream: &'a TcpStream,
         time: Duration,
@@ -53,14 +53,14 @@ impl<'a> Timed<'a> {
     }
 }
 
-impl Read for Timed<'_> {
+impl Read for DeadlineStream<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let mut stream = self.stream;
         self.until_done(|slice| self.stream.set_read_timeout(Some(slice)), || stream.read(into))
     }
 }
 
-impl Write for Timed<'_> {
+impl Write for DeadlineStream<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut stream = self.stream;
         self.until_done(|slice| self.stream.set_write_timeout(Some(slice)), || stream.write(bytes))
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn little_by_little_is_no_way_beyond_the_end() {
+    fn slow_clients_cannot_extend_the_deadline() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let mut there = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         let (here, _) = listener.accept().unwrap();
@@ -91,7 +91,7 @@ mod tests {
                 }
             });
             let (time, begin) = (Duration::from_millis(300), Instant::now());
-            let mut timed = Timed::new(&here, time, &|| false);
+            let mut timed = DeadlineStream::new(&here, time, &|| false);
             let error = timed.read_to_end(&mut Vec::new()).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::TimedOut);
             assert!(begin.elapsed() >= time);

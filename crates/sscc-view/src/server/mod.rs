@@ -4,8 +4,7 @@
 //! the token of the address, a `Host` of this machine (against DNS rebinding) and, if an `Origin` is present, the
 //! page's own. Limits apply to heads, bodies, times and the number of connections.
 //!
-//! The server uses only the parser `httparse`. tiny_http 0.12 has no limits on time or connections; hyper has them, but
-//! adds an asynchronous runtime.
+//! The server uses only the parser `httparse` (`docs/notes/2026-11-22-page-server.md`).
 
 mod access;
 mod connection;
@@ -22,13 +21,13 @@ use std::time::Duration;
 
 use crate::{Live, ViewError};
 use access::Access;
-use routes::Site;
+use routes::Content;
 
-/// A browser opens six; nobody needs more than a few.
-const MOST_CONNECTIONS: usize = 64;
+/// Largest number of simultaneous connections; a browser opens six.
+const MAX_CONNECTIONS: usize = 64;
 
 /// Interval between two checks of `is_stopped`.
-const PAUSE: Duration = Duration::from_millis(50);
+const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 
 /// One of the simultaneous connections. Its drop frees the slot, also after a panic.
 struct Slot<'a>(&'a AtomicUsize);
@@ -38,7 +37,7 @@ impl<'a> Slot<'a> {
     fn take(taken: &'a AtomicUsize) -> Option<Self> {
         let before = taken.fetch_add(1, Ordering::Relaxed);
         let slot = Self(taken);
-        (before < MOST_CONNECTIONS).then_some(slot)
+        (before < MAX_CONNECTIONS).then_some(slot)
     }
 }
 
@@ -76,7 +75,7 @@ impl Server {
     /// # Errors
     /// If the operating system refuses a thread.
     pub fn serve(&self, live: &Live<'_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
-        self.run(&Site::Live(live), is_stopped)
+        self.run(&Content::Live(live), is_stopped)
     }
 
     /// Serves a report until `is_stopped` returns true.
@@ -84,16 +83,16 @@ impl Server {
     /// # Errors
     /// The errors of [`Server::serve`].
     pub fn serve_report(&self, html: &str, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
-        self.run(&Site::Report(html), is_stopped)
+        self.run(&Content::Report(html), is_stopped)
     }
 
-    fn run(&self, site: &Site<'_, '_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+    fn run(&self, content: &Content<'_, '_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         let connections = AtomicUsize::new(0);
         let (connections, access) = (&connections, &self.access);
         thread::scope(|scope| {
             thread::Builder::new().spawn_scoped(scope, || {
                 while !is_stopped() {
-                    thread::sleep(PAUSE);
+                    thread::sleep(CHECK_INTERVAL);
                 }
                 // This connection ends the blocking `accept` in the loop below.
                 let here = SocketAddr::from((Ipv4Addr::LOCALHOST, self.port));
@@ -102,17 +101,17 @@ impl Server {
             while !is_stopped() {
                 let Ok((stream, _)) = self.listener.accept() else {
                     // Too many open files, or a client that has already left.
-                    thread::sleep(PAUSE);
+                    thread::sleep(CHECK_INTERVAL);
                     continue;
                 };
                 let Some(slot) = Slot::take(connections) else { continue };
-                let talk = move || {
+                let serve = move || {
                     let _slot = slot;
-                    // Who hangs up has left; there is nobody to tell.
-                    let _ = connection::talk(stream, access, site, is_stopped);
+                    // An error means that the client has left.
+                    let _ = connection::serve(stream, access, content, is_stopped);
                 };
-                // Without a thread, the slot is free again and the connection closed.
-                let _ = thread::Builder::new().spawn_scoped(scope, talk);
+                // If there is no thread, this frees the slot and closes the connection.
+                let _ = thread::Builder::new().spawn_scoped(scope, serve);
             }
             Ok(())
         })
@@ -124,17 +123,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slots_come_back_even_from_a_panic() {
+    fn slots_are_freed_also_after_a_panic() {
         let taken = AtomicUsize::new(0);
-        let all: Vec<_> = (0..MOST_CONNECTIONS).map(|_| Slot::take(&taken).unwrap()).collect();
+        let all: Vec<_> = (0..MAX_CONNECTIONS).map(|_| Slot::take(&taken).unwrap()).collect();
         assert!(Slot::take(&taken).is_none());
         drop(all);
         let ended = thread::scope(|scope| {
-            let talk = || {
+            let serve = || {
                 let _slot = Slot::take(&taken);
                 panic!("on purpose");
             };
-            scope.spawn(talk).join()
+            scope.spawn(serve).join()
         });
         assert!(ended.is_err());
         assert_eq!(taken.into_inner(), 0);

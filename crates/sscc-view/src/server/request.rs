@@ -2,14 +2,14 @@
 
 use std::io::{self, ErrorKind, Read};
 
-/// Bytes of a head at the most.
-const MOST_HEAD: usize = 16 << 10;
+/// Largest size of a head (bytes).
+const MAX_HEAD_BYTES: usize = 16 << 10;
 
-/// Its lines at the most.
-const MOST_HEADERS: usize = 64;
+/// Largest number of headers.
+const MAX_HEADERS: usize = 64;
 
-/// Bytes read at once.
-const CHUNK: usize = 16 << 10;
+/// Largest number of bytes of one read.
+const CHUNK_BYTES: usize = 16 << 10;
 
 /// The request line and the headers of a request.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -37,9 +37,9 @@ impl Head {
 /// The reason for a missing head.
 #[derive(Debug)]
 pub(super) enum BadHead {
-    /// Nothing: the other side has left, or waits too long.
-    Nothing(io::Error),
-    /// A status, and what is wrong.
+    /// The client has left, or the head took too long.
+    Missing(io::Error),
+    /// A status, and a message of one line.
     Refused(u16, &'static str),
 }
 
@@ -57,7 +57,7 @@ impl Buffer {
 
     /// Reads once. The end of the stream is an error.
     pub(super) fn read(&mut self, from: &mut impl Read) -> io::Result<()> {
-        let mut chunk = [0; CHUNK];
+        let mut chunk = [0; CHUNK_BYTES];
         match from.read(&mut chunk)? {
             0 => Err(ErrorKind::UnexpectedEof.into()),
             n => {
@@ -74,10 +74,10 @@ impl Buffer {
                 self.bytes.drain(..used);
                 return Ok(head);
             }
-            if self.bytes.len() >= MOST_HEAD {
-                return Err(BadHead::Refused(431, "the head of the request is too long"));
+            if self.bytes.len() >= MAX_HEAD_BYTES {
+                return Err(BadHead::Refused(431, "the head of the request is larger than 16 KiB"));
             }
-            self.read(from).map_err(BadHead::Nothing)?;
+            self.read(from).map_err(BadHead::Missing)?;
         }
     }
 
@@ -93,15 +93,15 @@ impl Buffer {
 
 /// Returns a head and its size; `None` if the head is incomplete.
 fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
-    let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
+    let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
     let used = match request.parse(bytes) {
         Ok(httparse::Status::Complete(used)) => used,
         Ok(httparse::Status::Partial) => return Ok(None),
         Err(httparse::Error::TooManyHeaders) => {
-            return Err(BadHead::Refused(431, "the head of the request has too many lines"));
+            return Err(BadHead::Refused(431, "the request has more than 64 headers"));
         }
-        Err(_) => return Err(BadHead::Refused(400, "this is no request")),
+        Err(_) => return Err(BadHead::Refused(400, "this is not an HTTP/1.1 request")),
     };
     let (path, query) =
         request.path.unwrap_or_default().split_once('?').unwrap_or((request.path.unwrap_or_default(), ""));
@@ -118,14 +118,14 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
         // A repeated header is ambiguous: client and server could use different ones.
         let once = |place: &mut Option<String>| match place.replace(value()) {
             None => Ok(()),
-            Some(_) => Err(BadHead::Refused(400, "a line of the head is there twice")),
+            Some(_) => Err(BadHead::Refused(400, "a header occurs twice")),
         };
         match header.name.to_ascii_lowercase().as_str() {
             "host" => once(&mut head.host)?,
             "origin" => once(&mut head.origin)?,
             "x-sscc-token" => once(&mut head.token)?,
             "content-length" => once(&mut length)?,
-            "transfer-encoding" => return Err(BadHead::Refused(411, "the length of the body must be told")),
+            "transfer-encoding" => return Err(BadHead::Refused(411, "the request needs a Content-Length")),
             "connection" => head.close |= value().to_ascii_lowercase().contains("close"),
             _ => {}
         }
@@ -136,7 +136,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, BadHead> {
         head.length = if is_number {
             length.parse().unwrap_or(usize::MAX)
         } else {
-            return Err(BadHead::Refused(400, "the length of the body is no number"));
+            return Err(BadHead::Refused(400, "Content-Length is not a number"));
         };
     }
     Ok(Some((head, used)))
@@ -180,11 +180,11 @@ mod tests {
         assert_eq!(buffer.body(3, &mut from).unwrap(), b"abc");
         let second = buffer.head(&mut from).unwrap();
         assert!(second.close && second.path == "/" && second.length == 0);
-        assert!(matches!(buffer.head(&mut from), Err(BadHead::Nothing(_))));
+        assert!(matches!(buffer.head(&mut from), Err(BadHead::Missing(_))));
     }
 
     #[test]
-    fn what_is_no_request_is_refused() {
+    fn invalid_requests_are_refused() {
         assert_eq!(status(b"\x16\x03\x01\x02\0\x01\0\x01\xfc\x03\x03"), 400);
         assert_eq!(status(b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"), 400);
         assert_eq!(status(b"GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n"), 400);
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bytes_make_it_panic() {
+    fn random_bytes_cause_no_panic() {
         let good = b"POST /api/check?token=x HTTP/1.1\r\nHost: localhost:1\r\nContent-Length: 3\r\n\r\nabc";
         let mut state = 1_u64;
         for round in 0..20_000 {

@@ -10,17 +10,17 @@ use sscc_sim::{FinishedRun, History, SoundTrack};
 use super::plots::costs;
 use crate::{Arrays, Body, Colliding, Playback};
 
-/// Bytes of all frames at most; longer motions have fewer frames in a second.
-const MOST_MOTION: usize = 24 << 20;
+/// Largest size of all frames (bytes). Longer motions have fewer frames per second.
+const MAX_MOTION_BYTES: usize = 24 << 20;
 
-/// Bytes of sound at most: five minutes at 44,100 samples in a second.
-const MOST_SOUND: usize = 28 << 20;
+/// Largest size of the sound (bytes): five minutes at 44,100 samples per second.
+const MAX_SOUND_BYTES: usize = 28 << 20;
 
-/// Frames of bodies in which colliding triangles are computed at most.
-const MOST_ASKED: usize = 4000;
+/// Largest number of frames with self-collisions, over all bodies, for which colliding triangles are computed.
+const MAX_COLLIDING_FRAMES: usize = 4000;
 
-/// Colliding triangles of all frames at most.
-const MOST_TRIANGLES: usize = 2 << 20;
+/// Largest number of colliding triangles in all frames.
+const MAX_TRIANGLES: usize = 2 << 20;
 
 /// Returns the motion, unless no frame is in the range of the page, and notes on omitted data.
 pub fn playback(
@@ -32,11 +32,14 @@ pub fn playback(
     let mut notes = Vec::new();
     let bodies = scene.bodies.len();
     let width: usize = (0..bodies).map(|body| 4 * (history.layout().rank(body) + 7)).sum();
-    let most = (MOST_MOTION / width).max(2) as f64;
+    let max_frames = (MAX_MOTION_BYTES / width).max(2) as f64;
     let duration = run.time(history.len());
-    let rate = scene.frames_per_second.min(most / duration);
+    let rate = scene.frames_per_second.min(max_frames / duration);
     if rate < scene.frames_per_second {
-        notes.push(format!("{rate:.1} frames in a second instead of {}", scene.frames_per_second));
+        notes.push(format!(
+            "the report has {rate:.1} frames per second instead of {}",
+            scene.frames_per_second
+        ));
     }
     let mut frames = key_frames(history.len(), scene.step, rate);
     // A motion that diverges ends at the last frame in the range of the page.
@@ -88,8 +91,9 @@ pub fn playback(
 /// For each frame the number of self-colliding pairs of all bodies, as the maximum over the states strictly between the
 /// previous frame and this one. The frames themselves miss contacts shorter than a frame.
 fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
-    let most = |states: Range<usize>| states.map(|state| history.self_pairs(state) as u64).max().unwrap_or(0);
-    let between = frames.windows(2).map(|pair| most(pair[0] + 1..pair[1]));
+    let largest =
+        |states: Range<usize>| states.map(|state| history.self_pairs(state) as u64).max().unwrap_or(0);
+    let between = frames.windows(2).map(|pair| largest(pair[0] + 1..pair[1]));
     [0].into_iter().chain(between).take(frames.len()).collect()
 }
 
@@ -102,10 +106,10 @@ fn colliding(
 ) -> Result<(Option<Colliding>, Option<String>), Error> {
     let FinishedRun { scene, prepared, history, .. } = run;
     let facts = || frames.iter().flat_map(|state| history.bodies(*state));
-    let asked = facts().filter(|body| body.pairs > 0).count();
-    let left_out = |why: String| Ok((None, Some(format!("colliding triangles are left out: {why}"))));
-    if asked > MOST_ASKED {
-        return left_out(format!("bodies collide with themselves in {asked} frames"));
+    let count = facts().filter(|body| body.pairs > 0).count();
+    let omitted = |why: String| Ok((None, Some(format!("the report omits colliding triangles: {why}"))));
+    if count > MAX_COLLIDING_FRAMES {
+        return omitted(format!("bodies collide with themselves in {count} frames"));
     }
     let mut queries = Vec::new();
     for model in &prepared.models {
@@ -116,7 +120,7 @@ fn colliding(
     for (facts, spec) in facts().zip(specs) {
         if facts.pairs > 0 {
             if progress.is_cancelled() {
-                return left_out("it was interrupted".into());
+                return omitted("the computation was interrupted".into());
             }
             let start = triangles.len();
             let pairs = queries[spec.model].discrete(facts.q)?;
@@ -124,8 +128,8 @@ fn colliding(
             own.sort_unstable();
             own.dedup();
             triangles.extend(own);
-            if triangles.len() > MOST_TRIANGLES {
-                return left_out(format!("more than {start} of them"));
+            if triangles.len() > MAX_TRIANGLES {
+                return omitted(format!("there are more than {start}"));
             }
         }
         offsets.push(triangles.len() as u32);
@@ -140,12 +144,12 @@ fn colliding(
 /// The sound as a WAV file in an array, as loud as `sound.wav`; `None` and a note if it is too long.
 fn sound(run: &FinishedRun, arrays: &mut Arrays) -> (Option<String>, Option<String>) {
     let Some(sound) = SoundTrack::of(run) else { return (None, None) };
-    if 2 * sound.samples.len() > MOST_SOUND {
-        return (None, Some("the sound is too long for a report: see sound.wav".into()));
+    if 2 * sound.samples.len() > MAX_SOUND_BYTES {
+        return (None, Some("the report omits the sound because it is too long: see sound.wav".into()));
     }
     match wav_to_bytes(sound.rate, &sound.normalized(), WavFormat::Pcm16) {
         Ok(bytes) => (Some(arrays.add_bytes("sound", bytes)), None),
-        Err(why) => (None, Some(format!("the sound is left out: {why}"))),
+        Err(why) => (None, Some(format!("the report omits the sound: {why}"))),
     }
 }
 
@@ -158,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_between_frames_are_told_apart_from_frames() {
+    fn pairs_since_a_frame_exclude_both_frames() {
         let pairs = [[0, 0], [7, 0], [3, 5], [0, 0], [4, 0], [0, 2], [0, 0], [0, 9]];
         let (layout, mut numbers) = (StateLayout::new([0, 0]), Vec::new());
         for state in pairs {

@@ -4,8 +4,8 @@ use sscc_sim::FinishedRun;
 
 use crate::{Axis, Plot, Series};
 
-/// Points of a line at most.
-const POINTS: usize = 700;
+/// Largest number of points of a line.
+const MAX_POINTS: usize = 700;
 
 /// The cost of self-collision detection in each step, as in the paper's Figure 12. The simulation's own method shows
 /// the maximum of each run of consecutive steps, the traditional method single states.
@@ -15,10 +15,10 @@ pub fn costs(run: &FinishedRun) -> Plot {
     Plot {
         title: "Cost over time".into(),
         x: time(),
-        y: Axis::logarithmic("self-collisions, ms in a step"),
+        y: Axis::logarithmic("self-collisions, ms per step"),
         series: vec![
             Series::new("traditional", run.traditional.iter().map(of)),
-            Series::new("certified", thinned(&own, POINTS, f64::max)),
+            Series::new("certified", thin(&own, MAX_POINTS, f64::max)),
         ],
     }
 }
@@ -31,19 +31,19 @@ pub fn energy(run: &FinishedRun) -> Plot {
         title: "Energy".into(),
         x: time(),
         y: Axis::linear("kinetic, elastic and potential (J)"),
-        series: vec![Series::new("all bodies", thinned(&points, POINTS, f64::max))],
+        series: vec![Series::new("all bodies", thin(&points, MAX_POINTS, f64::max))],
     }
 }
 
 /// The sound as the largest and the smallest sample of each run of consecutive steps.
 pub fn sound(run: &FinishedRun) -> Plot {
     let points = line(run, |state| run.history.step(state).sound);
-    let series = |name, pick| Series::new(name, thinned(&points, POINTS, pick));
+    let series = |name, pick| Series::new(name, thin(&points, MAX_POINTS, pick));
     Plot {
         title: "Sound".into(),
         x: time(),
         y: Axis::linear("sample"),
-        series: vec![series("largest", f64::max as fn(f64, f64) -> f64), series("least", f64::min)],
+        series: vec![series("largest", f64::max as fn(f64, f64) -> f64), series("smallest", f64::min)],
     }
 }
 
@@ -56,14 +56,14 @@ fn time() -> Axis {
     Axis::linear("time (s)")
 }
 
-/// At most `most` points: of each stretch of a line the mean x, and the largest y or the smallest one by `pick`.
-fn thinned(points: &[[f64; 2]], most: usize, pick: fn(f64, f64) -> f64) -> Vec<[f64; 2]> {
-    let stretch = points.len().div_ceil(most.max(1)).max(1);
+/// Returns at most `max` points: for each run of consecutive points the mean x and the largest or smallest y (`pick`).
+fn thin(points: &[[f64; 2]], max: usize, pick: fn(f64, f64) -> f64) -> Vec<[f64; 2]> {
+    let run = points.len().div_ceil(max.max(1)).max(1);
     let one = |part: &[[f64; 2]]| {
         let x = part.iter().map(|p| p[0]).sum::<f64>() / part.len() as f64;
         [x, part.iter().map(|p| p[1]).fold(f64::NAN, pick)]
     };
-    points.chunks(stretch).map(one).collect()
+    points.chunks(run).map(one).collect()
 }
 
 #[cfg(test)]
@@ -71,12 +71,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thin_lines_keep_their_peaks() {
+    fn thinned_lines_keep_their_peaks() {
         let points: Vec<[f64; 2]> = (0..1000).map(|i| [f64::from(i), f64::from(i % 100)]).collect();
-        let thin = thinned(&points, 10, f64::max);
-        assert_eq!(thin.len(), 10);
-        assert!(thin.iter().all(|p| p[1] == 99.0));
-        assert_eq!(thinned(&points[..3], 10, f64::max), points[..3]);
-        assert!(thinned(&[], 10, f64::max).is_empty());
+        let peaks = thin(&points, 10, f64::max);
+        assert_eq!(peaks.len(), 10);
+        assert!(peaks.iter().all(|p| p[1] == 99.0));
+        assert_eq!(thin(&points[..3], 10, f64::max), points[..3]);
+        assert!(thin(&[], 10, f64::max).is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! What a live page is told is what the core says.
+//! Answers of a live page equal those of the core.
 
 use serde_json::{Value, json};
 use sscc::{Method, Query};
@@ -53,7 +53,7 @@ fn answers_are_those_of_the_query() {
 }
 
 #[test]
-fn the_first_collision_is_found() {
+fn a_search_finds_the_first_collision() {
     let (model, certificates) = strips();
     let mut query = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     with_server(|client| {
@@ -64,7 +64,7 @@ fn the_first_collision_is_found() {
             let at = |scale: f64| direction.map(|d| d * scale);
             assert!(certified <= scale && certified > 0.5 * scale, "{answer}");
             assert_eq!((&answer["searched"], &answer["complete"]), (&json!(scale), &json!(true)));
-            // Flat strips pass each other without ever colliding at a number.
+            // Flat strips pass each other without a collision at any float.
             let colliding = query.discrete(&at(scale)).unwrap();
             assert_eq!(colliding.is_empty(), direction[2] == 0.0);
             assert!(!answer["first"]["pairs"].as_array().unwrap().is_empty());
@@ -75,7 +75,7 @@ fn the_first_collision_is_found() {
                 assert!(query.discrete(&at(scale * (1.0 - 1e-6) * f64::from(i) / 99.0)).unwrap().is_empty());
             }
         }
-        // Away from each other, too far to the side, and no motion at all.
+        // Away from each other, too far to the side, and no motion.
         for direction in [[-1.0, 0.0, 0.0], [0.3, 5.0, 0.1], [0.0, 0.0, 0.0]] {
             let answer = client.post("/api/safe_scale", &json!({"direction": direction}).to_string()).json();
             assert_eq!((&answer["first"], &answer["complete"]), (&Value::Null, &json!(true)));
@@ -84,7 +84,7 @@ fn the_first_collision_is_found() {
 }
 
 #[test]
-fn the_hierarchy_and_its_boxes() {
+fn the_hierarchy_and_its_aabbs_are_those_of_the_core() {
     let (model, certificates) = strips();
     with_server(|client| {
         let nodes = client.get("/api/nodes").json();
@@ -114,7 +114,7 @@ fn the_hierarchy_and_its_boxes() {
 }
 
 #[test]
-fn the_scene_and_its_arrays() {
+fn the_scene_and_its_arrays_describe_the_model() {
     let (model, certificates) = strips();
     with_server(|client| {
         let found = client.get("/api/scene").json();
@@ -135,7 +135,7 @@ fn the_scene_and_its_arrays() {
                 assert!((shown - x[axis]).abs() < 1e-5);
             }
         }
-        // As far along one mode as the root's certificate reaches, and no farther.
+        // Along each mode, just inside the root's radius.
         let extremal = shape["extremal"].as_array().unwrap();
         assert_eq!(extremal.len(), 6);
         for extremal in extremal {
@@ -143,14 +143,14 @@ fn the_scene_and_its_arrays() {
             assert_eq!(answer["root_certified"], json!(true));
             assert!(answer["root_share"].as_f64().unwrap() > 1.0 - 1e-6);
         }
-        // Half the diagonal.
+        // The limit is half the diagonal.
         let diagonal = (19.0_f64 * 19.0 + 1.0 + 1.0).sqrt();
         assert!((shape["limits"][0].as_f64().unwrap() - 0.5 * diagonal).abs() < 1e-12);
     });
 }
 
 #[test]
-fn a_q_that_is_none_is_refused() {
+fn invalid_requests_are_refused() {
     with_server(|client| {
         for (path, body) in [
             ("/api/check", r#"{"q":[0,0]}"#),
@@ -177,7 +177,7 @@ fn a_q_that_is_none_is_refused() {
             assert_eq!(reply.status, 400, "{path} {body}");
             reply.error();
         }
-        // More frames than a motion may have, told before they are all there.
+        // The server refuses a motion at the first frame beyond the limit.
         let frames =
             |count: usize, frame: &str| format!("[{}{frame}]", format!("{frame},").repeat(count - 1));
         for body in [
@@ -197,16 +197,16 @@ fn a_q_that_is_none_is_refused() {
 fn the_animation_is_the_reduced_motion() {
     let (model, _) = strips();
     with_server(|client| {
-        // Mode 1 rests.
+        // Mode 1 does not move.
         let mut q = [[0.0, 2.0, 0.0], [0.5, 2.0, -0.25], [-100.0, 2.0, 30.0]];
         for _ in 0..q.len() {
             let reply = client.post("/api/glb", &json!({"q": q, "times": [0.0, 0.5, 1.0]}).to_string());
             assert_eq!(reply.status, 200);
             let read = sscc_io::gltf::parse(&reply.body, None).unwrap();
             assert_eq!(read.mesh.faces(), model.mesh().faces());
-            // What moves, and where it begins.
+            // Two modes that move, and the start of the motion.
             assert_eq!(read.modes.rank(), 3);
-            // Beside the animation stand the weights of its first frame.
+            // The node has the weights of the first frame.
             let length = u32::from_le_bytes(*reply.body[12..].first_chunk().unwrap()) as usize;
             let root: Value = serde_json::from_slice(&reply.body[20..20 + length]).unwrap();
             let weights: Vec<f64> = serde_json::from_value(root["nodes"][1]["weights"].clone()).unwrap();
@@ -217,7 +217,7 @@ fn the_animation_is_the_reduced_motion() {
             assert!(farthest < 1e-5 * 19.0, "{farthest}");
             q.rotate_left(1);
         }
-        // A shape that rests.
+        // A shape at rest.
         let reply = client.post("/api/glb", r#"{"q":[[0,0,0]],"times":[0]}"#);
         assert_eq!(sscc_io::gltf::parse(&reply.body, None).unwrap().modes.rank(), 1);
     });

@@ -1,4 +1,5 @@
-//! The page's data, its report and its server, through the public interface. One program of tests: linking is dear.
+//! The page's data, its reports and its server, through the public interface. All tests are one program, since linking
+//! takes long.
 #![allow(clippy::unwrap_used)]
 
 mod answers;

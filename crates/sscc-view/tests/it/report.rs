@@ -1,4 +1,4 @@
-//! Reports: one file with all in it.
+//! Reports: one file with all its data.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -8,7 +8,7 @@ use sscc_view::Report;
 use crate::common::{scene, strips};
 
 #[test]
-fn a_report_has_all_its_data_in_it() {
+fn a_report_contains_all_its_data() {
     let (model, certificates) = strips();
     let (mut scene, arrays) = scene(&model, &certificates);
     scene.title = "</script><img src=x onerror=alert(1)>".into();
@@ -17,7 +17,7 @@ fn a_report_has_all_its_data_in_it() {
 
     let start = "<script type=\"application/json\" id=\"sscc-report\">";
     let [before, rest] = html.split(start).collect::<Vec<_>>()[..] else {
-        panic!("not exactly one place for data")
+        panic!("not exactly one element for data")
     };
     let (data, _) = rest.split_once("</script>").unwrap();
     let data: Value = serde_json::from_str(data).unwrap();
@@ -26,7 +26,7 @@ fn a_report_has_all_its_data_in_it() {
         let bytes = STANDARD.decode(data["arrays"][name].as_str().unwrap()).unwrap();
         assert_eq!(Some(&bytes[..]), arrays.get(name));
     }
-    // Nothing is loaded from anywhere: browsers are told before the first script.
+    // The content security policy comes before the first script and forbids all requests.
     let policy = "<head><meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ";
     assert!(before.find(policy).unwrap() < before.find("<script").unwrap_or(before.len()));
     assert!(!html.contains("<img src=x"));
@@ -37,23 +37,23 @@ fn a_report_has_all_its_data_in_it() {
 }
 
 #[test]
-fn a_report_is_shown_without_what_stands_beside_it() {
+fn a_report_is_rebuilt_from_its_data_alone() {
     let (model, certificates) = strips();
     let (mut scene, arrays) = scene(&model, &certificates);
     scene.title = "</script><img src=x onerror=alert(1)>".into();
     let html = Report { scene, arrays }.html().unwrap();
     let hostile = html.replacen("<head>", "<head><script>steal()</script>", 1) + "<script>steal()</script>";
-    assert_eq!(Report::shown_anew(&hostile).unwrap(), html);
-    // Another program's page: none of it but the data.
+    assert_eq!(Report::rebuild(&hostile).unwrap(), html);
+    // Only the data of another program's page are used.
     let start = "<script type=\"application/json\" id=\"sscc-report\">";
     let foreign = format!("<script>steal()</script>{start}{{\"scene\":\"<b>\",\"arrays\":{{}}}}</script>");
-    let shown = Report::shown_anew(&foreign).unwrap();
+    let shown = Report::rebuild(&foreign).unwrap();
     assert!(!shown.contains("steal") && shown.contains(r#"{"scene":"\u003cb>","arrays":{}}"#));
     for data in ["", "null", "{}", "{\"scene\":{}}", "alert(1)", "{\"scene\":{},\"arrays\":{}};alert(1)"] {
-        let error = Report::shown_anew(&format!("{start}{data}</script>")).unwrap_err().to_string();
-        assert!(error.starts_with("it is no report of sscc: ") && !error.contains('\n'), "{data}: {error}");
+        let error = Report::rebuild(&format!("{start}{data}</script>")).unwrap_err().to_string();
+        assert!(error.starts_with("not a report of sscc: ") && !error.contains('\n'), "{data}: {error}");
     }
     for html in [String::new(), "<script>steal()</script>".into(), format!("{start}{{}}")] {
-        assert!(Report::shown_anew(&html).is_err(), "{html}");
+        assert!(Report::rebuild(&html).is_err(), "{html}");
     }
 }

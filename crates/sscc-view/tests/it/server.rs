@@ -1,4 +1,4 @@
-//! The server: who is answered, and what no bytes can do to it.
+//! The server: access control, limits, and robustness against any bytes.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
@@ -9,14 +9,14 @@ use crate::common::{Client, next_reply, read_reply, with_server};
 
 const CHECK: &str = r#"{"q":[0,0,0],"serial":7}"#;
 
-/// That it still answers.
-fn is_well(client: &Client) {
+/// Checks that the server still answers.
+fn check_alive(client: &Client) {
     let reply = client.post("/api/check", CHECK);
     assert_eq!((reply.status, &reply.json()["serial"]), (200, &7.into()));
 }
 
 #[test]
-fn the_page_comes_with_what_protects_it() {
+fn the_page_has_protective_headers() {
     with_server(|client| {
         let Client { port, token } = client;
         let page = client.send(
@@ -38,7 +38,7 @@ fn the_page_comes_with_what_protects_it() {
         ] {
             assert!(page.head.contains(line), "{line}: {}", page.head);
         }
-        // The page alone holds no data: it may be loaded again without the token that it has hidden.
+        // The page contains no data, so it can be reloaded without the token.
         let again =
             client.send(format!("GET / HTTP/1.1\r\nHost: localhost:{port}\r\n\r\n").as_bytes()).unwrap();
         assert_eq!((again.status, again.body), (200, page.body));
@@ -46,7 +46,7 @@ fn the_page_comes_with_what_protects_it() {
 }
 
 #[test]
-fn strangers_are_refused() {
+fn requests_without_access_are_refused() {
     with_server(|client| {
         let Client { port, token } = client;
         let here = format!("Host: 127.0.0.1:{port}\r\n");
@@ -79,12 +79,12 @@ fn strangers_are_refused() {
             let reply = client.send(format!("GET {path} HTTP/1.1\r\n{here}\r\n").as_bytes()).unwrap();
             assert_eq!(reply.status, 403, "{path}");
         }
-        is_well(client);
+        check_alive(client);
     });
 }
 
 #[test]
-fn what_does_not_exist_is_said() {
+fn unknown_paths_and_methods_are_refused() {
     with_server(|client| {
         for (method, path, status) in [
             ("GET", "/nowhere", 404),
@@ -104,23 +104,23 @@ fn what_does_not_exist_is_said() {
 }
 
 #[test]
-fn bodies_are_bounded() {
+fn the_size_of_bodies_is_limited() {
     with_server(|client| {
         let Client { port, token } = client;
         let lines = format!("Host: 127.0.0.1:{port}\r\nX-Sscc-Token: {token}\r\n");
-        // Refused by what is announced, before any of it comes.
+        // The announced length is refused before the body arrives.
         for length in ["1048577", "67108865", "99999999999999999999999999"] {
             let head = format!("POST /api/check HTTP/1.1\r\n{lines}Content-Length: {length}\r\n\r\n");
             let reply = client.send(head.as_bytes()).unwrap();
             assert_eq!(reply.status, 413, "{length}");
             assert!(reply.head.contains("Connection: close"));
         }
-        // A motion may be longer, within bounds of its own.
+        // The limit of a motion is larger.
         let head = format!("POST /api/glb HTTP/1.1\r\n{lines}Content-Length: 67108865\r\n\r\n");
         assert_eq!(client.send(head.as_bytes()).unwrap().status, 413);
         let motion = format!(r#"{{"q":[[0,0,0]],"times":[0]{}}}"#, " ".repeat(2 << 20));
         assert_eq!(client.post("/api/glb", &motion).status, 200);
-        // And who sends it all nevertheless gets to read the answer.
+        // A client that sends the whole body still receives the answer.
         let body = format!("{{\"q\":[{}0]}}", "0,".repeat(1 << 20));
         let reply = client.post("/api/check", &body);
         assert_eq!(reply.status, 413);
@@ -129,12 +129,12 @@ fn bodies_are_bounded() {
         assert_eq!(scene.status, 413);
         let chunked = client.request("POST", "/api/check", "Transfer-Encoding: chunked\r\n", "");
         assert_eq!(client.send(&chunked).unwrap().status, 411);
-        is_well(client);
+        check_alive(client);
     });
 }
 
 #[test]
-fn no_bytes_end_it() {
+fn random_bytes_do_not_stop_the_server() {
     with_server(|client| {
         let good = client.request("POST", "/api/check", "", CHECK);
         let mut state = 1_u64;
@@ -167,7 +167,7 @@ fn no_bytes_end_it() {
         }
         let long = [b"GET /".to_vec(), vec![b'x'; 1 << 17]].concat();
         assert_eq!(client.send(&long).unwrap().status, 431);
-        is_well(client);
+        check_alive(client);
     });
 }
 
@@ -176,13 +176,13 @@ fn requests_follow_each_other_on_one_connection() {
     with_server(|client| {
         let mut stream = client.connect();
         let one = client.request("POST", "/api/check", "", CHECK);
-        // All at once; the replies come in order.
+        // All requests at once; the replies arrive in order.
         stream.write_all(&one.repeat(5)).unwrap();
         let mut bytes = Vec::new();
         for _ in 0..5 {
             assert_eq!(next_reply(&mut stream, &mut bytes).unwrap().json()["serial"], 7);
         }
-        // A refusal without a body does not end it.
+        // A refusal of a request without a body keeps the connection open.
         stream.write_all(&client.request("GET", "/nowhere", "", "")).unwrap();
         assert_eq!(read_reply(&mut stream).unwrap().status, 404);
         stream.write_all(&client.request("GET", "/api/nodes", "Connection: close\r\n", "")).unwrap();
@@ -193,7 +193,7 @@ fn requests_follow_each_other_on_one_connection() {
 }
 
 #[test]
-fn connections_are_kept_only_for_those_who_know_the_token() {
+fn connections_stay_open_only_with_the_token() {
     with_server(|client| {
         let here = format!("Host: 127.0.0.1:{}\r\n", client.port);
         let wrong = format!("{here}X-Sscc-Token: {}\r\n", "0".repeat(64));
@@ -213,10 +213,10 @@ fn connections_are_kept_only_for_those_who_know_the_token() {
 }
 
 #[test]
-fn slow_clients_are_hung_up_on_and_hold_up_nobody() {
+fn slow_clients_are_disconnected_and_delay_no_other_client() {
     with_server(|client| {
         thread::scope(|scope| {
-            // One byte now and then, for ever: no head ends that way, neither the first nor one that follows.
+            // One byte at intervals, without end: neither a first nor a later head is ever complete.
             let later = client.request("POST", "/api/check", "", CHECK);
             let starts = [Vec::new(), b"GET / HTTP/1.1\r\nX: ".to_vec(), [&later[..], b"GET /"].concat()];
             for (start, answers) in starts.into_iter().zip([0, 0, 1]) {
@@ -231,20 +231,20 @@ fn slow_clients_are_hung_up_on_and_hold_up_nobody() {
                         match stream.read(&mut [0; 64]) {
                             Ok(0) => break,
                             Err(error) if error.kind() == ErrorKind::ConnectionReset => break,
-                            Ok(_) => panic!("an answer to no request"),
+                            Ok(_) => panic!("an answer without a request"),
                             Err(_) => {}
                         }
                         if !start.is_empty() && stream.write_all(b"x").is_err() {
                             break;
                         }
                     }
-                    assert!(begin.elapsed() >= Duration::from_secs(5), "hung up on too soon");
+                    assert!(begin.elapsed() >= Duration::from_secs(5), "disconnected too early");
                 });
             }
-            // Meanwhile others are answered, ...
-            (0..10).for_each(|_| is_well(client));
+            // Meanwhile other clients receive answers.
+            (0..10).for_each(|_| check_alive(client));
         });
-        // ... and when there are too many connections, at first those of the others have to end.
+        // With too many connections, a new client is answered after some of them have ended.
         let many: Vec<_> = (0..80).map(|_| client.connect()).collect();
         drop(many);
         let answered = (0..200).any(|_| {

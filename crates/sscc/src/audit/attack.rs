@@ -1,9 +1,10 @@
-//! Attacks on single radii: at no configuration just inside the radius of a set of pairs may one of them collide.
+//! Attacks single radii: tests configurations inside the radius of a node or a node pair. A collision there of one of
+//! its triangle pairs refutes the radius.
 
 use rayon::prelude::*;
 
 use super::claims::{Claim, Claims};
-use super::minimum::{Collision, MinimumSearch};
+use super::minimum_search::{Collision, MinimumSearch};
 use super::options::AuditOptions;
 use super::random::Random;
 use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};
@@ -86,7 +87,7 @@ impl Attack<'_> {
         Ok(total)
     }
 
-    /// One attack: none where the claim drawn cannot be attacked (a q out of range), else its violation if any.
+    /// Makes one attack. None if no configuration can be drawn or tested, else the violation found, if any.
     fn attack(&self, sample: usize, queries: &mut Queries<'_>) -> Option<Option<String>> {
         let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
         let claim = self.draw_claim(sample, &mut random);

@@ -1,17 +1,18 @@
-//! The claims of certificates: each radius of a node or a node pair says that none of its triangle pairs collides below
-//! it.
+//! The claims of certificates. A claim names a node or a node pair and its radius: none of its triangle pairs collides
+//! below it.
 
 use std::fmt;
 
 use super::random::Random;
 use crate::certificates::{StoredPair, sibling_pairs};
+use crate::hierarchy::NodePair;
 use crate::{CertificateParts, Pair};
 
 /// The claim that no pair of triangles between two nodes, or within one where both are the same, collides below the
 /// radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Claim {
-    pub(super) nodes: Pair,
+    pub(super) nodes: NodePair,
     pub(super) radius: f64,
 }
 
@@ -29,20 +30,20 @@ impl fmt::Display for Claim {
 pub(super) struct Claims<'a> {
     parts: &'a CertificateParts,
     /// For each triangle its index in the hierarchy's order.
-    places: Vec<u32>,
+    index_in_order: Vec<u32>,
     /// The node pair of each entry of the pair tree.
-    entries: Vec<Pair>,
+    entries: Vec<NodePair>,
 }
 
 impl<'a> Claims<'a> {
     pub(super) fn new(parts: &'a CertificateParts) -> Self {
-        let mut places = vec![0; parts.hierarchy.order().len()];
-        for (place, a) in parts.hierarchy.order().iter().enumerate() {
-            places[*a as usize] = place as u32;
+        let mut index_in_order = vec![0; parts.hierarchy.order().len()];
+        for (index, a) in parts.hierarchy.order().iter().enumerate() {
+            index_in_order[*a as usize] = index as u32;
         }
         // Certificates have checked that the pair tree is one over their hierarchy.
         let entries = parts.pair_tree.pairs(&parts.hierarchy).unwrap_or_default();
-        Self { parts, places, entries }
+        Self { parts, index_in_order, entries }
     }
 
     /// The claim of the pairs within a node.
@@ -65,8 +66,8 @@ impl<'a> Claims<'a> {
     }
 
     /// The claim of an entry of the pair tree.
-    pub(super) fn stored(&self, place: usize) -> Claim {
-        Claim { nodes: self.entries[place], radius: f64::from(self.parts.pair_tree.entry(place).radius) }
+    pub(super) fn stored(&self, index: usize) -> Claim {
+        Claim { nodes: self.entries[index], radius: f64::from(self.parts.pair_tree.entry(index).radius) }
     }
 
     /// The number of nodes and node pairs below which pairs may be absent from the pair tree.
@@ -82,7 +83,7 @@ impl<'a> Claims<'a> {
     pub(super) fn absent(&self, parent: usize) -> Vec<Claim> {
         let (tree, hierarchy) = (&self.parts.pair_tree, &self.parts.hierarchy);
         let nodes = self.parts.hierarchy.nodes().len();
-        let (all, stored): (Vec<Pair>, Vec<u32>) = if parent < nodes {
+        let (all, stored): (Vec<NodePair>, Vec<u32>) = if parent < nodes {
             let stored = tree.of_node(parent as u32).map(|stored| stored.entry.which()).collect();
             (sibling_pairs(hierarchy, parent as u32).collect(), stored)
         } else {
@@ -109,14 +110,14 @@ impl<'a> Claims<'a> {
         Some(self.stored(random.below(self.entries.len())))
     }
 
-    /// The claim that two triangles refute that count and collide at a q of that norm, if any.
+    /// The claim that this triangle pair refutes, if any. The pair counts and collides at a q of this norm.
     fn refuted_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
         let (hierarchy, tree) = (&self.parts.hierarchy, &self.parts.pair_tree);
         let nodes = hierarchy.nodes();
-        let [place_a, place_b] = [faces.0, faces.1].map(|a| self.places[a as usize]);
-        let has = |n: u32, place: u32| {
+        let [index_a, index_b] = [faces.0, faces.1].map(|a| self.index_in_order[a as usize]);
+        let has = |n: u32, index: u32| {
             let node = &nodes[n as usize];
-            (node.first_triangle..node.first_triangle + node.triangle_count).contains(&place)
+            (node.first_triangle..node.first_triangle + node.triangle_count).contains(&index)
         };
         let is_refuted = |claim: &Claim| norm < claim.radius;
         // Down to the smallest node that contains both.
@@ -125,8 +126,8 @@ impl<'a> Claims<'a> {
             if let Some(claim) = Some(self.node(n)).filter(is_refuted) {
                 return Some(claim);
             }
-            let child = |place| nodes[n as usize].children().find(|child| has(*child, place));
-            match (child(place_a), child(place_b)) {
+            let child = |index| nodes[n as usize].children().find(|child| has(*child, index));
+            match (child(index_a), child(index_b)) {
                 (Some(a), Some(b)) if a == b => n = a,
                 (Some(a), Some(b)) => break (a.min(b), a.max(b)),
                 _ => return None,
@@ -142,22 +143,22 @@ impl<'a> Claims<'a> {
         // From there down the node pairs that contain one triangle each.
         let mut pair = (child_a, child_b);
         let mut siblings: Vec<_> = {
-            let all: Vec<Pair> = nodes[n as usize].child_pairs().collect();
-            tree.of_node(n).map(|StoredPair { place, entry }| (place, all[entry.which() as usize])).collect()
+            let all: Vec<NodePair> = nodes[n as usize].child_pairs().collect();
+            tree.of_node(n).map(|StoredPair { index, entry }| (index, all[entry.which() as usize])).collect()
         };
         loop {
-            let Some(&(place, _)) = siblings.iter().find(|(_, nodes)| *nodes == pair) else {
+            let Some(&(index, _)) = siblings.iter().find(|(_, nodes)| *nodes == pair) else {
                 return Some(Claim { nodes: pair, radius: tree.limit() }).filter(is_refuted);
             };
-            if let Some(claim) = Some(self.stored(place as usize)).filter(is_refuted) {
+            if let Some(claim) = Some(self.stored(index as usize)).filter(is_refuted) {
                 return Some(claim);
             }
             let split = hierarchy.split_above_buckets(pair.0, pair.1)?;
             let contains_both =
-                |&(n, m): &Pair| has(n, place_a) && has(m, place_b) || has(n, place_b) && has(m, place_a);
+                |&(n, m): &NodePair| has(n, index_a) && has(m, index_b) || has(n, index_b) && has(m, index_a);
             pair = split.pairs().find(contains_both)?;
-            let pair_of = |StoredPair { place, entry }| (place, split.pair(entry.which()));
-            siblings = tree.below(place).map(pair_of).collect();
+            let pair_of = |StoredPair { index, entry }| (index, split.pair(entry.which()));
+            siblings = tree.below(index).map(pair_of).collect();
         }
     }
 

@@ -1,8 +1,8 @@
-//! Comparison of answers: certified queries, with the pair tree and without, against the traditional method, and that
-//! against brute force; discrete queries at single q, and continuous ones between two.
+//! Compares the answers of certified queries (discrete ones with and without the pair tree), the traditional method and
+//! brute force, for discrete and continuous queries.
 
 use super::claims::Claims;
-use super::minimum::MinimumSearch;
+use super::minimum_search::MinimumSearch;
 use super::options::AuditOptions;
 use super::random::Random;
 use crate::{Certificates, Error, Impact, Method, Pair, PairTree, Progress, Query, ReducedModel};
@@ -97,8 +97,9 @@ impl Comparison<'_> {
         Ok(violations)
     }
 
-    /// A pair that only one answer lists and that collides at an end of the motion. Methods may differ in pairs that only
-    /// come close; between the ends rounding moves a shape off the straight line, so exact tests there would prove nothing.
+    /// A pair that only one answer lists although it collides at the start or the end of the motion. Methods may differ
+    /// in pairs that only come close; in between, rounding moves the computed shape off the straight line, so an exact
+    /// test proves nothing.
     fn missed(&self, a: &[Impact], b: &[Impact], motion: &Motion) -> Option<Pair> {
         let lacks = |all: &[Impact], impact: &Impact| {
             all.binary_search_by_key(&impact.pair, |other| other.pair).is_err()

@@ -1,9 +1,9 @@
 //! Audits of certificates: attempts to refute every claim they make.
 //!
-//! None of the attacks uses the bounds that made a claim to decide whether it is refuted; exact collision tests do.
+//! Exact collision tests alone decide whether a claim is refuted, never the bounds that made it. The tests:
 //! - Configurations q just inside radii, in random directions and in those of known collisions ([`attack`]).
-//! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum`]), which also measures how tight radii
-//!   are ([`tightness`]).
+//! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum_search`]), which also measures
+//!   how tight radii are ([`tightness`]).
 //! - Answers of certified queries, continuous ones too, compared with the traditional method, itself compared with brute
 //!   force ([`compare`]).
 //!
@@ -13,7 +13,7 @@
 mod attack;
 mod claims;
 mod compare;
-mod minimum;
+mod minimum_search;
 mod options;
 mod point_pairs;
 mod random;
@@ -21,7 +21,7 @@ mod tightness;
 
 use crate::filter::PairFilter;
 use crate::model::ScaledModel;
-use crate::threads::on_threads;
+use crate::thread_pool::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
 pub use options::AuditOptions;
@@ -59,7 +59,7 @@ pub fn audit(
         let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
         let filter = PairFilter::new(model, &parts.scope.filter).excluding(&parts.scope.exceptions);
         let minimum =
-            &minimum::MinimumSearch { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
+            &minimum_search::MinimumSearch { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
         let claims = &claims::Claims::new(parts);
         let tightness = tightness::measure(certificates, claims, minimum, options.seed, progress);
         let collisions = &tightness.collisions;

@@ -52,15 +52,15 @@ impl Weights {
 impl PointPairs<'_> {
     /// The difference d and the relative modes B of two points.
     pub(super) fn relative(&self, weights: Weights) -> Relative {
-        let row = self.scaled.row;
+        let row_len = self.scaled.row_len;
         let mut difference = DVec3::ZERO;
-        let mut relative = vec![DVec3::ZERO; row];
+        let mut relative = vec![DVec3::ZERO; row_len];
         for (corners, weights, sign) in [(self.hulls.a, weights.a, -1.0), (self.hulls.b, weights.b, 1.0)] {
             for (&i, w) in corners.iter().zip(weights.to_array()) {
                 let modes = self.scaled.modes(i);
                 difference += self.scaled.positions[i as usize] * (w * sign);
                 for (k, b) in relative.iter_mut().enumerate() {
-                    *b += DVec3::new(modes[k], modes[row + k], modes[2 * row + k]) * (w * sign);
+                    *b += DVec3::new(modes[k], modes[row_len + k], modes[2 * row_len + k]) * (w * sign);
                 }
             }
         }

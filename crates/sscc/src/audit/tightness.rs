@@ -1,12 +1,15 @@
-//! How tight radii are: the quotient of each radius and the norm of the closest collision found.
+//! Measures tightness: radii divided by the norm of the closest collision found. A confirmed collision below a radius
+//! is a violation; all collisions are directions for `attack`.
 
 use rayon::prelude::*;
 
 use super::claims::{Claim, Claims};
-use super::minimum::{Collision, Confirmed, MinimumSearch};
+use super::minimum_search::{Collision, Confirmed, MinimumSearch};
 use super::random::Random;
 use crate::bounds::NodePairBounds;
-use crate::certificates::{KnownPair, Precision, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
+use crate::certificates::{
+    BoundedNodePair, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
+};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -45,7 +48,7 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let bounds = NodePairBounds::new(minimum.scaled, &parts.hierarchy);
-    let context = SearchContext {
+    let context = RadiusSearchContext {
         model: minimum.scaled,
         filter: minimum.filter,
         hierarchy: &parts.hierarchy,
@@ -67,7 +70,7 @@ pub(super) fn measure(
     let with_own_radius: Vec<u32> =
         (1..nodes.len() as u32).filter(|n| !within_buckets[*n as usize]).collect();
     measured.extend(spread(with_own_radius.len(), NODES).map(|at| claims.node(with_own_radius[at])));
-    measured.extend(spread(claims.stored_len(), STORED).map(|place| claims.stored(place)));
+    measured.extend(spread(claims.stored_len(), STORED).map(|index| claims.stored(index)));
     let absent: Vec<Claim> =
         spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
     let mut bounded: Vec<(f64, Claim)> = absent
@@ -84,14 +87,14 @@ pub(super) fn measure(
             let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
             let (n, m) = claim.nodes;
             if n != m {
-                search.between(vec![KnownPair::unbounded((n, m))], goal);
+                search.between(vec![BoundedNodePair::unbounded((n, m))], goal);
             } else {
                 let n = find_responsible_node(certificates, n);
                 let node = &nodes[n as usize];
                 if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
                     search.within(n, goal);
                 } else {
-                    search.between(node.child_pairs().map(KnownPair::unbounded).collect(), goal);
+                    search.between(node.child_pairs().map(BoundedNodePair::unbounded).collect(), goal);
                 }
             }
             search.closest()
@@ -126,7 +129,7 @@ pub(super) fn measure(
     result
 }
 
-/// The node at or below n from whose own pairs the radius of n comes.
+/// Follows the radius of n down to the node whose own pairs determine it; ends at a bucket.
 fn find_responsible_node(certificates: &Certificates, mut n: u32) -> u32 {
     let parts = certificates.parts();
     loop {

@@ -1,14 +1,14 @@
-//! An affine map fitted to the modes of a few points, and the residuals of the fit.
+//! Fits an affine map to the modes of some points and bounds the residuals.
 
 use glam::{DMat3, DVec3};
 
 use crate::model::RoundingBound;
+use crate::model::mode_rows::{dot, padded_rank, squared_distance};
 use crate::model::rounding::norm_up;
-use crate::model::rows::{dot, padded_rank, squared_distance};
 
 /// An affine map of the modes of some points, `A_i = A_0 + G (p_i - p_0) + E_i`, with residuals E. Owns its memory.
 pub(super) struct AffineFit {
-    row: usize,
+    row_len: usize,
     /// Nine rows: `G_cj` at `3 c + j`.
     gradient: Vec<f64>,
     /// For each point three rows.
@@ -21,11 +21,11 @@ pub(super) struct AffineFit {
 }
 
 impl AffineFit {
-    pub(super) fn new(row: usize) -> Self {
-        debug_assert_eq!(row, padded_rank(row));
+    pub(super) fn new(row_len: usize) -> Self {
+        debug_assert_eq!(row_len, padded_rank(row_len));
         Self {
-            row,
-            gradient: vec![0.0; 9 * row],
+            row_len,
+            gradient: vec![0.0; 9 * row_len],
             residuals: Vec::new(),
             weights: Vec::new(),
             frobenius: 0.0,
@@ -35,7 +35,7 @@ impl AffineFit {
 
     /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
     pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
-        let row = self.row;
+        let row_len = self.row_len;
         let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
         // Gradient: G[c][j] = sum_i weight_i[j] (A_i - A_0)[c], a row over the modes for each of 3 x 3 entries.
         let first = modes(0);
@@ -43,12 +43,12 @@ impl AffineFit {
         for (i, weight) in self.weights.iter().enumerate().skip(1) {
             let modes = modes(i);
             for c in 0..3 {
-                let a = &modes[c * row..][..row];
-                let a0 = &first[c * row..][..row];
-                let rows = &mut self.gradient[3 * c * row..][..3 * row];
-                let (g0, rest) = rows.split_at_mut(row);
-                let (g1, g2) = rest.split_at_mut(row);
-                for k in 0..row {
+                let a = &modes[c * row_len..][..row_len];
+                let a0 = &first[c * row_len..][..row_len];
+                let rows = &mut self.gradient[3 * c * row_len..][..3 * row_len];
+                let (g0, rest) = rows.split_at_mut(row_len);
+                let (g1, g2) = rest.split_at_mut(row_len);
+                for k in 0..row_len {
                     let difference = a[k] - a0[k];
                     g0[k] += weight.x * difference;
                     g1[k] += weight.y * difference;
@@ -56,24 +56,24 @@ impl AffineFit {
                 }
             }
         }
-        complete_as_rotation(&mut self.gradient, row, plane);
+        complete_as_rotation(&mut self.gradient, row_len, plane);
         // Residuals: E_i = (A_i - A_0) - G (p_i - p_0); that of the first is 0.
         self.residuals.clear();
-        self.residuals.resize(3 * row * offsets.len(), 0.0);
+        self.residuals.resize(3 * row_len * offsets.len(), 0.0);
         for (i, offset) in offsets.iter().enumerate().skip(1) {
             let modes = modes(i);
             for c in 0..3 {
-                let a = &modes[c * row..][..row];
-                let a0 = &first[c * row..][..row];
-                let g = &self.gradient[3 * c * row..][..3 * row];
-                let e = &mut self.residuals[(3 * i + c) * row..][..row];
-                for k in 0..row {
-                    let affine = offset.x * g[k] + offset.y * g[row + k] + offset.z * g[2 * row + k];
+                let a = &modes[c * row_len..][..row_len];
+                let a0 = &first[c * row_len..][..row_len];
+                let g = &self.gradient[3 * c * row_len..][..3 * row_len];
+                let e = &mut self.residuals[(3 * i + c) * row_len..][..row_len];
+                for k in 0..row_len {
+                    let affine = offset.x * g[k] + offset.y * g[row_len + k] + offset.z * g[2 * row_len + k];
                     e[k] = (a[k] - a0[k]) - affine;
                 }
             }
         }
-        self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row);
+        self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row_len);
         self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
         true
     }
@@ -90,19 +90,20 @@ impl AffineFit {
 
     /// `|E_j - E_i|^2`, rounded to nearest.
     pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
-        let width = 3 * self.row;
+        let width = 3 * self.row_len;
         squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
     }
 
-    /// An upper bound of `|E_j - E_i|` from a [`Self::squared_residual`], up to the rounding bound of one of the two points
-    /// (the affine bound adds that of both).
+    /// An upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
+    /// is not included; the affine bound adds that of both.
     ///
     /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to
     /// `|G| |p_i - p_0|`; and corners of sub-triangles are themselves rounded, which moves both the offsets here and the
     /// directions in the bound.
     pub(super) fn residual_up(&self, squared_residual: f64, rounding: &RoundingBound) -> f64 {
         let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
-        norm_up(squared_residual, 3 * self.row) + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
+        norm_up(squared_residual, 3 * self.row_len)
+            + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
     }
 }
 
@@ -147,15 +148,15 @@ fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
 /// Sets the undetermined part of the gradient, across the plane of the points, so that the whole is as close to a
 /// rotation as possible: `t' G n = -n' G t` for all t in the plane. If it were zero, every rotation of the plane
 /// would look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
-fn complete_as_rotation(gradient: &mut [f64], row: usize, Plane { normal: n, undetermined }: Plane) {
-    for k in 0..row {
-        let entry = |c: usize, j: usize| gradient[(3 * c + j) * row + k];
+fn complete_as_rotation(gradient: &mut [f64], row_len: usize, Plane { normal: n, undetermined }: Plane) {
+    for k in 0..row_len {
+        let entry = |c: usize, j: usize| gradient[(3 * c + j) * row_len + k];
         // G' n, without its part along n.
         let turned = DVec3::from_array(std::array::from_fn(|j| (0..3).map(|c| n[c] * entry(c, j)).sum()));
         let tilt = (turned - n * turned.dot(n)) * -undetermined;
         for c in 0..3 {
             for j in 0..3 {
-                gradient[(3 * c + j) * row + k] += tilt[c] * n[j];
+                gradient[(3 * c + j) * row_len + k] += tilt[c] * n[j];
             }
         }
     }

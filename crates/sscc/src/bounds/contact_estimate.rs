@@ -1,5 +1,5 @@
-//! An estimate of the first contact of two triangles whose corners move linearly, in plain floating point: for upper
-//! bounds, which steer the search and never enter a radius.
+//! Estimates the first contact of two triangles whose corners move linearly, in plain floating point. Only upper bounds
+//! use it.
 
 use glam::DVec3;
 

@@ -1,14 +1,12 @@
-//! Bounds of all triangle pairs between two leaves at once, by one direction or one affine map for all their vertices.
-//!
-//! Sums over the modes are computed once for each pair of vertices, not for each of the triangle pairs that they are
-//! corners of.
+//! Bounds all triangle pairs of two leaves at once, along one direction or with one affine map of all their vertices.
+//! Sums over the modes are computed once for each vertex pair.
 
 use glam::DVec3;
 
-use super::affine::{AffineBound, AffinePair, is_near};
+use super::affine_bound::{AffineBound, AffinePair, is_near};
 use super::separating_direction::{bound_points_along, bound_rest_distance};
 use crate::geometry::nearest_to_origin;
-use crate::model::rows::project;
+use crate::model::mode_rows::project;
 use crate::model::{ScaledModel, scale_direction};
 
 /// The vertices of two leaves a and b (or of one, twice) and the bounds of their pairs. Owns its memory.
@@ -34,7 +32,7 @@ impl<'m> LeafPair<'m> {
             vertices_b: Vec::new(),
             projections: Vec::new(),
             direction_bounds: Vec::new(),
-            affine: AffineBound::new(model.row),
+            affine: AffineBound::new(model.row_len),
             squared_residuals: Vec::new(),
         }
     }
@@ -52,17 +50,17 @@ impl<'m> LeafPair<'m> {
 
     /// Bounds every pair of vertices along a direction (from [`scale_direction`]).
     pub(crate) fn set_direction(&mut self, dir: DVec3) {
-        let (model, row) = (self.model, self.model.row);
+        let (model, row_len) = (self.model, self.model.row_len);
         let vertices = self.vertices_a.iter().chain(&self.vertices_b);
-        self.projections.resize((self.vertices_a.len() + self.vertices_b.len()) * row, 0.0);
-        for (&i, out) in vertices.zip(self.projections.chunks_exact_mut(row)) {
+        self.projections.resize((self.vertices_a.len() + self.vertices_b.len()) * row_len, 0.0);
+        for (&i, out) in vertices.zip(self.projections.chunks_exact_mut(row_len)) {
             project(model.modes(i), dir, out);
         }
-        let (of_a, of_b) = self.projections.split_at(self.vertices_a.len() * row);
+        let (of_a, of_b) = self.projections.split_at(self.vertices_a.len() * row_len);
         self.direction_bounds.clear();
         let rounding = model.rounding.along(dir);
-        for (i, projected_i) in self.vertices_a.iter().zip(of_a.chunks_exact(row)) {
-            for (j, projected_j) in self.vertices_b.iter().zip(of_b.chunks_exact(row)) {
+        for (i, projected_i) in self.vertices_a.iter().zip(of_a.chunks_exact(row_len)) {
+            for (j, projected_j) in self.vertices_b.iter().zip(of_b.chunks_exact(row_len)) {
                 let gap = dir.dot(model.positions[*j as usize] - model.positions[*i as usize]);
                 self.direction_bounds.push(bound_points_along(gap, projected_i, projected_j, rounding));
             }

@@ -1,33 +1,35 @@
 //! Lower bounds of `|z|`, the distance in q-space from the centre, at which two parts of a model can first meet (paper,
 //! section 5).
 //!
-//! Each file is named by what it bounds, or by what it bounds with. Every lower bound is certified: it is at most the
-//! exact minimum of `|z|` over all z at which the **computed** f64 positions of the two parts meet. Directions, affine
-//! maps and mean modes are candidates: any heuristic in any precision may choose them, because only the final evaluation
-//! needs rounding bounds.
+//! Files that bound: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
+//! `node_pair`, `configuration_line`, `upper_bound`. The other files are their parts.
 //!
-//! `sufficient` is always a lower bound from which on the caller needs no larger one: computations end there.
+//! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
+//! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any
+//! precision may choose them, because only the final evaluation needs rounding bounds.
+//!
+//! `sufficient` is the lower bound at which the caller stops refining.
 
-mod affine;
+mod affine_bound;
 mod affine_fit;
-mod cone;
+mod cone_rate;
+mod configuration_line;
 mod contact_estimate;
 mod leaf_pair;
-mod line;
 mod node_modes;
 mod node_pair;
 mod pair_corners;
+mod pair_refiner;
 mod separating_direction;
 mod strain;
 mod sub_triangle;
 #[cfg(test)]
 mod tests;
-mod triangle_pair;
 mod upper_bound;
 
+pub(crate) use configuration_line::{ConfigurationLine, MovingAabb};
 pub(crate) use leaf_pair::LeafPair;
-pub(crate) use line::{Line, MovingAabb};
 pub(crate) use node_pair::{NodePairBounds, NodePairScratch};
 pub(crate) use pair_corners::PairCorners;
+pub(crate) use pair_refiner::{PairRefiner, RefinementTarget};
 pub(crate) use separating_direction::bound_along;
-pub(crate) use triangle_pair::{PairRefiner, RefinementTarget};

@@ -1,13 +1,13 @@
-//! The bound of two nodes of the hierarchy (replaces the single-mode estimate of the paper's section 5.2, which
-//! is not conservative: modes combine).
+//! The lower bound of a node pair. It replaces the estimate of the paper's section 5.2, which takes each mode alone and
+//! is not conservative: modes combine.
 //!
 //! Every node has an AABB at rest with centre c and half extents h, and an affine map of its modes,
-//! `A_i = A_c + G (p_i - c) + E_i`, with `|E_i' n| <= rho(n)` ([`NodeModes`]). A node therefore lies in the hull of eight
-//! box corners with affine modes, up to the residual, and the separating-direction bound applies to corners as it does to
-//! the corners of triangles:
+//! `A_i = A_c + G (p_i - c) + E_i`, with `|E_i' dir| <= rho(dir)` ([`NodeModes`]). A node therefore lies in the hull of
+//! eight box corners with affine modes, up to the residual, and the separating-direction bound applies to corners as it
+//! does to the corners of triangles:
 //!
 //! ```text
-//! R_nm >= min over corners (i, j) of  (n.d_ij - e0) / (|B_ij' n| + rho_n(n) + rho_m(n) + e1)
+//! R_nm >= min over corners (i, j) of  (dir.d_ij - e0) / (|B_ij' dir| + rho_n(dir) + rho_m(dir) + e1)
 //! ```
 //!
 //! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/2026-11-23-bounds.md.
@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use super::node_modes::NodeModes;
 use crate::hierarchy::Hierarchy;
+use crate::model::mode_rows::{dot, gram, project};
 use crate::model::rounding::{ROUND_UP, quotient_down};
-use crate::model::rows::{dot, gram, project};
 use crate::model::{ScaledModel, scale_direction};
 
 /// The affine modes of every node, from which pairs of nodes are bounded.
@@ -30,7 +30,7 @@ pub(crate) struct NodePairBounds {
 pub(crate) struct NodePairScratch {
     /// The relative modes at the centres: three rows.
     difference: Vec<f64>,
-    /// `B_0' n` at the centres, then its change along the three axes of each box: seven rows.
+    /// `B_0' dir` at the centres, then its change along the three axes of each box: seven rows.
     projections: Vec<f64>,
 }
 
@@ -66,8 +66,8 @@ const SIDES: [[f64; CORNERS]; 3] = {
 };
 
 impl NodePairScratch {
-    pub(crate) fn new(row: usize) -> Self {
-        Self { difference: vec![0.0; 3 * row], projections: vec![0.0; 7 * row] }
+    pub(crate) fn new(row_len: usize) -> Self {
+        Self { difference: vec![0.0; 3 * row_len], projections: vec![0.0; 7 * row_len] }
     }
 }
 
@@ -82,8 +82,8 @@ impl NodePairBounds {
         self.nodes[n as usize].half.length_squared()
     }
 
-    /// A separating direction of two nodes, the best one for points whose difference is that between their AABBs; none
-    /// where these touch.
+    /// The best direction to separate two points whose difference is the gap vector of the AABBs; none if the AABBs
+    /// touch.
     pub(crate) fn direction(&self, n: u32, m: u32, scratch: &mut NodePairScratch) -> Option<DVec3> {
         let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
         let gap = n.gap(m);
@@ -101,7 +101,7 @@ impl NodePairBounds {
         scratch: &mut NodePairScratch,
     ) -> f64 {
         let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
-        let between = m.centre - n.centre;
+        let between = m.center - n.center;
         let half = n.half + m.half;
         let gap = n.gap(m);
         if gap == DVec3::ZERO {
@@ -147,19 +147,19 @@ fn bound_corners_along(
     model: &ScaledModel,
     scratch: &mut NodePairScratch,
 ) -> f64 {
-    let row = model.row;
-    let (centre, axes) = scratch.projections.split_at_mut(row);
-    project(&scratch.difference, dir, centre);
-    // Steps of the gap and of B'n from the centres to a corner, one for each axis of each box.
+    let row_len = model.row_len;
+    let (center, axes) = scratch.projections.split_at_mut(row_len);
+    project(&scratch.difference, dir, center);
+    // Steps of the gap and of B'dir from the centres to a corner, one for each axis of each box.
     let mut steps = [0.0; 6];
-    for (i, out) in axes.chunks_exact_mut(row).enumerate() {
+    for (i, out) in axes.chunks_exact_mut(row_len).enumerate() {
         let (node, axis, sign) = if i < 3 { (m, i, 1.0) } else { (n, i - 3, -1.0) };
         steps[i] = sign * dir[axis] * node.half[axis];
-        project(&node.gradient[3 * axis * row..][..3 * row], dir * (sign * node.half[axis]), out);
+        project(&node.gradient[3 * axis * row_len..][..3 * row_len], dir * (sign * node.half[axis]), out);
     }
     // Norms at the corners come from the Gram matrix of these seven rows. Where they cancel, its error is
     // relative to the rows, not to the result: the term `lost` covers it.
-    let rows = |i: usize| &scratch.projections[i * row..][..row];
+    let rows = |i: usize| &scratch.projections[i * row_len..][..row_len];
     let mut products = [[0.0; 7]; 7];
     for i in 0..7 {
         for j in i..7 {
@@ -170,11 +170,11 @@ fn bound_corners_along(
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
     // The terms of a square add up to at most (the sum of all |row|)^2; the products err by row eps of that, and
     // at most 16 sums follow one another: 2,000 leaves room.
-    let lost = right_or!((row as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
+    let lost = right_or!((row_len as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
     let per_norm = right_or!(2.0 * model.rounding.per_norm(dir), NodePairWithoutRateError, 0.0);
     let slack = dir.abs().dot(n.residual + m.residual) + per_norm;
     let at_rest = right_or!(2.0 * model.rounding.at_rest(dir), NodePairWithoutRestError, 0.0);
-    let gap = dir.dot(m.centre - n.centre);
+    let gap = dir.dot(m.center - n.center);
     // For corners M of m and N of n, `|c + M + N|^2 = |c|^2 + (|c + M|^2 - |c|^2) + (|c + N|^2 - |c|^2) + 2 M.N`.
     let [(steps_m, squares_m), (steps_n, squares_n)] = [0, 3].map(|first| {
         let (mut sums, mut squares) = ([0.0; CORNERS], [0.0; CORNERS]);

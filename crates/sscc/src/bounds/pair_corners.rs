@@ -1,4 +1,4 @@
-//! The corners of two triangles with their scaled modes: what all bounds of a triangle pair are computed from.
+//! The corners of a triangle pair and their scaled modes: the input of all its bounds.
 
 use glam::DVec3;
 

@@ -1,20 +1,20 @@
 //! The separating-direction bound of a triangle pair (replaces the constant-mode bound of the paper's section 5.1).
 //!
-//! For a fixed direction n with `n.d_ij > 0` for all nine pairs of corners (i of triangle a, j of triangle b):
+//! For a fixed direction dir with `dir.d_ij > 0` for all nine pairs of corners (i of triangle a, j of triangle b):
 //!
 //! ```text
-//! R_ab >= min over (i, j) of  n.d_ij / |B_ij' n|,    d_ij = p_j - p_i,  B_ij = A_j - A_i
+//! R_ab >= min over (i, j) of  dir.d_ij / |B_ij' dir|,    d_ij = p_j - p_i,  B_ij = A_j - A_i
 //! ```
 //!
-//! Let t be the right side. For `|z| < t` each computed corner of b lies beyond each computed corner of a along n, so n
-//! separates the two triangles. The bound holds for any n, any rank and any modes. Rounding is covered by
-//! `(n.d_ij - e0) / (|B_ij' n| + e1)` with the two parts of the [`RoundingBound`].
+//! Let t be the right-hand side. For `|z| < t` each computed corner of b lies beyond each computed corner of a along
+//! dir, so dir separates the two triangles. The bound holds for any dir, any rank and any modes. Rounding is covered by
+//! `(dir.d_ij - e0) / (|B_ij' dir| + e1)` with the two parts of the [`RoundingBound`].
 
 use glam::DVec3;
 
 use super::pair_corners::PairCorners;
+use crate::model::mode_rows::{project, squared_distance};
 use crate::model::rounding::{ROUND_UP, norm_up, radius_down};
-use crate::model::rows::{project, squared_distance};
 use crate::model::{RoundingAlong, RoundingBound};
 
 /// The bound along a direction (from [`scale_direction`](crate::model::scale_direction)). `projections` is scratch of six
@@ -31,14 +31,15 @@ pub(crate) fn bound_along(
     if smallest.is_nan() || smallest <= at_rest {
         return 0.0;
     }
-    let row = projections.len() / 6;
+    let row_len = projections.len() / 6;
     for (i, modes) in pair.modes_a.iter().chain(&pair.modes_b).enumerate() {
-        project(modes, dir, &mut projections[i * row..][..row]);
+        project(modes, dir, &mut projections[i * row_len..][..row_len]);
     }
     let rounding = RoundingAlong { at_rest, per_norm: rounding.per_norm(dir) };
     let mut bound = f64::INFINITY;
     for (ij, d) in differences.iter().enumerate() {
-        let [modes_i, modes_j] = [ij / 3, 3 + ij % 3].map(|corner| &projections[corner * row..][..row]);
+        let [modes_i, modes_j] =
+            [ij / 3, 3 + ij % 3].map(|corner| &projections[corner * row_len..][..row_len]);
         bound = bound.min(bound_points_along(dir.dot(*d), modes_i, modes_j, rounding));
     }
     bound

@@ -1,19 +1,19 @@
-//! The strains of an affine map of the modes, and an upper bound of the rate at which they move points apart.
+//! The strains of an affine map of the modes, and an upper bound of the rate at which the map changes distances.
 
-use crate::model::rows::LANES;
+use crate::model::mode_rows::LANES;
 
 /// Gram matrix of the 6 x r matrix whose column k holds the Mandel components of the symmetric part of mode
 /// k's gradient (scaled so that `|u u'|` has norm 1 for a unit vector u).
 pub(super) type StrainGram = [[f64; 6]; 6];
 
 /// The Gram matrix of a gradient of nine rows: `G_cj` at `3 c + j`.
-pub(super) fn strain_gram(gradient: &[f64], row: usize) -> StrainGram {
-    let g = |c: usize, j: usize| &gradient[(3 * c + j) * row..][..row];
+pub(super) fn strain_gram(gradient: &[f64], row_len: usize) -> StrainGram {
+    let g = |c: usize, j: usize| &gradient[(3 * c + j) * row_len..][..row_len];
     let half_root = std::f64::consts::FRAC_1_SQRT_2;
     let mut gram = [[0.0; 6]; 6];
     let (xx, yy, zz) = (g(0, 0), g(1, 1), g(2, 2));
     let shears = [(g(1, 2), g(2, 1)), (g(0, 2), g(2, 0)), (g(0, 1), g(1, 0))];
-    for start in (0..row).step_by(LANES) {
+    for start in (0..row_len).step_by(LANES) {
         let mut m = [[0.0; LANES]; 6];
         for lane in 0..LANES {
             let k = start + lane;
@@ -38,7 +38,7 @@ pub(super) fn strain_gram(gradient: &[f64], row: usize) -> StrainGram {
 
 /// An upper bound of `max over unit u of |G(u)'u|`: the root of the largest eigenvalue, bounded from above by
 /// `(sum of eigenvalues^8)^(1/8)` through two squarings; power iteration would approach from below.
-pub(super) fn bound_rate(gram: &StrainGram, row: usize) -> f64 {
+pub(super) fn bound_rate(gram: &StrainGram, row_len: usize) -> f64 {
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if trace == 0.0 {
         return UNDERFLOW; // infinite and NaN traces continue: the bound that uses them becomes 0
@@ -54,7 +54,7 @@ pub(super) fn bound_rate(gram: &StrainGram, row: usize) -> f64 {
     // eigenvalue of at least 1/6 of the trace, its fourth power at least 6^-4, this adds up to less than
     // (row + 64) 512 eps of the result.
     let largest = eighth.sqrt().sqrt().sqrt() * trace;
-    largest.sqrt() * (1.0 + (row as f64 + 64.0) * 512.0 * f64::EPSILON) + UNDERFLOW
+    largest.sqrt() * (1.0 + (row_len as f64 + 64.0) * 512.0 * f64::EPSILON) + UNDERFLOW
 }
 
 /// Covers gradient entries whose squares underflow.

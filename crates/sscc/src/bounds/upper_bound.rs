@@ -1,12 +1,13 @@
-//! Upper bounds of the radius of a triangle pair: the norm of a z that brings two of its points together. They decide when
-//! refinement ends, and never enter a radius.
+//! Upper bounds of the radius of a triangle pair: the norm of a z at which two of its points meet. They end refinement
+//! and are never part of a certified radius. [`RelativeModes`] also gives the Gram matrix by which lower bounds choose
+//! directions.
 
 use glam::{DMat3, DVec3};
 
 use super::contact_estimate::estimate_first_contact;
 use super::pair_corners::PairCorners;
 use crate::geometry::{TwoTriangles, nearest_to_origin};
-use crate::model::rows::{add_scaled, dot, gram, project};
+use crate::model::mode_rows::{add_scaled, dot, gram, project};
 
 /// The relative modes of two points, one of each triangle. Owns its memory.
 pub(super) struct RelativeModes {
@@ -15,8 +16,8 @@ pub(super) struct RelativeModes {
 }
 
 impl RelativeModes {
-    pub(super) fn new(row: usize) -> Self {
-        Self { rows: vec![0.0; 3 * row] }
+    pub(super) fn new(row_len: usize) -> Self {
+        Self { rows: vec![0.0; 3 * row_len] }
     }
 
     /// The Gram matrix of the relative modes of two points, which weights of the nine differences of corners define.

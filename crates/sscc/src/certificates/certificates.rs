@@ -1,7 +1,7 @@
 //! The certificates of a model: their contents, and the type whose contents are known to fit together.
 //!
-//! What makes them is in `build/` and `remote/`; what refuses parts that do not fit, in `validation.rs`; what refuses
-//! other models, in `coverage.rs`.
+//! `build/` and `remote/` compute them. `validation.rs` checks that parts fit together. `compatibility.rs` checks that
+//! they belong to a model.
 
 use super::{Digest, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
@@ -10,9 +10,8 @@ use crate::{ContactFilter, Metric, Pair};
 /// The proof of which parts of a model are free of collisions near the centre: a hierarchy with a radius for each node
 /// and for pairs of nodes.
 ///
-/// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A radius R of a set of triangle pairs
-/// promises: at any q with `|z| < R`, no pair of the set that counts under the contact filter has a point in common, except for
-/// the exceptions.
+/// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A set of triangle pairs with radius
+/// R is certified: at any q with `|z| < R` no pair that counts has a point in common, except for the exceptions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificates {
     parts: CertificateParts,
@@ -32,7 +31,7 @@ pub struct CertificateParts {
     /// `R_global`: radii are capped here (paper, section 5.2); infinite if no mode moves anything.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
-    /// bucket ([`Node::is_bucket`](crate::hierarchy::Node::is_bucket)) has the bucket's radius.
+    /// bucket ([`Node::fits_in_bucket`](crate::hierarchy::Node::fits_in_bucket)) has the bucket's radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,

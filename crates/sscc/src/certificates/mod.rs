@@ -6,7 +6,7 @@
 mod build;
 mod certificates;
 mod clamp;
-mod coverage;
+mod compatibility;
 mod digest;
 mod options;
 mod pair_tree;
@@ -19,7 +19,9 @@ mod test_models;
 mod tests;
 mod validation;
 
-pub(crate) use build::{KnownPair, Precision, RadiusSearch, SearchContext, SearchGoal, coarse_cap};
+pub(crate) use build::{
+    BoundedNodePair, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
+};
 pub use certificates::{CertificateParts, Certificates};
 pub use digest::Digest;
 pub use options::CertifyOptions;

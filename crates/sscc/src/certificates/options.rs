@@ -5,11 +5,10 @@ use crate::{ContactFilter, Metric};
 /// How certificates are computed.
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
-    /// Relative error allowed, in (0, 1): the root's radius is at least `1 - epsilon` times the exact one, and so is each
-    /// other node's radius that may be as small. Larger radii are coarse: those that the pair tree's construction has
-    /// bounded have an error of at least 0.25, more where only subdivision would make it smaller; the others an error of
-    /// at least 0.4, because queries that far out open many nodes anyway. A radius that is capped, or whose search
-    /// reached a limit (subdivisions, candidates in the queue), may be smaller still. Paper, section 5.1: 0.1.
+    /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
+    /// other radius that may be as small. Larger radii are coarse: their tolerance is max(epsilon, 0.25) if the pair
+    /// tree has bounded them, larger where only subdivision would help, else max(epsilon, 0.4). A capped radius, or one
+    /// whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,

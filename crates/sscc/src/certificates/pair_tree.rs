@@ -1,14 +1,12 @@
 //! The pair tree: certified radii of node pairs, stored along the BVTT.
 //!
-//! With radii of nodes alone a query opens node pairs along every common border of siblings that are not certified
-//! together: their boxes always overlap. The tree stores the radius of every node pair below a limit, so a query ends
-//! at a pair whose radius it has not reached. Node pairs follow from the splitting rule alone
-//! ([`Hierarchy::split_above_buckets`]), never from boxes: boxes that are apart at rest may meet later. So below the limit a pair
-//! that is missing is certified; at the limit and beyond, absence means nothing. The tree says nothing of the pairs
-//! within a bucket.
+//! With radii of nodes alone, a query opens every two neighbouring siblings that are not certified together, because
+//! their AABBs always overlap. The pair tree stores the radius of every node pair below a limit, so a query ends at a
+//! pair whose radius it has not reached. The splitting rule ([`Hierarchy::split_above_buckets`]) alone decides which
+//! pairs there are, never AABBs: AABBs that are disjoint at rest may overlap later. Below the limit a pair that is not
+//! stored is certified. At the limit and beyond, nothing follows. The tree has no pairs within buckets.
 
-use crate::Pair;
-use crate::hierarchy::{Hierarchy, Node};
+use crate::hierarchy::{Hierarchy, Node, NodePair};
 
 /// A link's flag: no sibling follows.
 const LAST: u32 = 1 << 31;
@@ -20,13 +18,13 @@ const START: u32 = (1 << WHICH) - 1;
 /// The start of the children of a node without stored pairs.
 pub(crate) const NO_PAIRS: u32 = u32::MAX;
 
-/// Most entries: links cannot address more.
+/// The maximum number of entries: links cannot address more.
 pub(crate) const MAX_ENTRIES: usize = START as usize;
 
 /// A node pair that may collide below the limit, in 8 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairEntry {
-    /// The radius, rounded down ([`round_down`]).
+    /// The radius, rounded down ([`to_f32_down`](crate::model::rounding::to_f32_down)).
     pub(crate) radius: f32,
     /// Where its children start, its index among its siblings, and whether it is the last of them.
     link: u32,
@@ -38,7 +36,7 @@ impl PairEntry {
         Self { radius, link }
     }
 
-    /// Where its children start; 0: it has none, both nodes are small.
+    /// Where its children start; 0: it has none, both nodes are buckets.
     pub(crate) fn start(self) -> u32 {
         self.link & START
     }
@@ -54,23 +52,15 @@ impl PairEntry {
     }
 }
 
-/// An entry and its place in the tree.
+/// An entry and its index in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoredPair {
-    pub(crate) place: u32,
+    pub(crate) index: u32,
     pub(crate) entry: PairEntry,
 }
 
-/// A radius in single precision, rounded down.
-pub(crate) fn round_down(radius: f64) -> f32 {
-    let rounded = radius as f32;
-    let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
-    let rounded = if is_above { rounded.next_down() } else { rounded };
-    rounded.clamp(0.0, f32::MAX)
-}
-
 /// The pairs of a node's children with which the tree begins: none within a bucket, where traversals end.
-pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = Pair> {
+pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = NodePair> {
     let node = (!hierarchy.is_bucket_below_root(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(Node::child_pairs)
 }
@@ -85,7 +75,7 @@ pub struct PairTree {
 }
 
 impl PairTree {
-    /// Below this norm a node pair that is not stored is certified, except within buckets. 0: no pairs are stored.
+    /// The limit. Below it, a node pair that is not stored is certified, except within buckets. 0: the tree is empty.
     pub fn limit(&self) -> f64 {
         self.limit
     }
@@ -112,14 +102,14 @@ impl PairTree {
     }
 
     /// For each node pair its radius, rounded down, and its link: bits 0 to 27 say where its children start (0: none,
-    /// both nodes are small), bits 28 to 30 which child of its parent it is, bit 31 that no sibling follows.
+    /// both nodes are buckets), bits 28 to 30 which child of its parent it is, bit 31 that no sibling follows.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = (f32, u32)> {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
 
-    /// The entry at a place.
-    pub(crate) fn entry(&self, place: usize) -> PairEntry {
-        self.entries[place]
+    /// The entry of an index.
+    pub(crate) fn entry(&self, index: usize) -> PairEntry {
+        self.entries[index]
     }
 
     pub(crate) fn new(limit: f64, starts: Vec<u32>, entries: Vec<PairEntry>) -> Self {
@@ -138,10 +128,10 @@ impl PairTree {
     fn siblings(&self, start: u32) -> impl Iterator<Item = StoredPair> {
         let mut next = if start == NO_PAIRS { None } else { Some(start) };
         std::iter::from_fn(move || {
-            let place = next?;
-            let entry = self.entries[place as usize];
-            next = if entry.is_last() { None } else { Some(place + 1) };
-            Some(StoredPair { place, entry })
+            let index = next?;
+            let entry = self.entries[index as usize];
+            next = if entry.is_last() { None } else { Some(index + 1) };
+            Some(StoredPair { index, entry })
         })
     }
 
@@ -153,7 +143,7 @@ impl PairTree {
 
     /// The stored children of a pair that has some.
     #[inline]
-    pub(crate) fn below(&self, place: u32) -> impl Iterator<Item = StoredPair> {
-        self.siblings(self.entries[place as usize].start())
+    pub(crate) fn below(&self, index: u32) -> impl Iterator<Item = StoredPair> {
+        self.siblings(self.entries[index as usize].start())
     }
 }

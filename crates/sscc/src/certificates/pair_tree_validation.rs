@@ -4,8 +4,7 @@
 //! the check loop, or take more than linear time.
 
 use super::pair_tree::{MAX_ENTRIES, NO_PAIRS, PairTree, sibling_pairs};
-use crate::Pair;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 
 /// All siblings that a list may name, and the radius of their parent.
 struct Siblings<F> {
@@ -19,7 +18,7 @@ impl PairTree {
     ///
     /// # Errors
     /// When the tree is not one over this hierarchy.
-    pub(crate) fn pairs(&self, hierarchy: &Hierarchy) -> Result<Vec<Pair>, &'static str> {
+    pub(crate) fn pairs(&self, hierarchy: &Hierarchy) -> Result<Vec<NodePair>, &'static str> {
         let limit = self.limit();
         if limit.is_nan() || limit < 0.0 || limit.is_infinite() {
             return Err("its limit is negative or not finite");
@@ -34,20 +33,20 @@ impl PairTree {
         if self.len() > MAX_ENTRIES {
             return Err("it has more pairs than links can name");
         }
-        let mut pairs: Vec<Pair> = Vec::new();
+        let mut pairs: Vec<NodePair> = Vec::new();
         for (n, start) in self.starts().iter().enumerate() {
             if *start == NO_PAIRS {
                 continue;
             }
-            let all: Vec<Pair> = sibling_pairs(hierarchy, n as u32).collect();
+            let all: Vec<NodePair> = sibling_pairs(hierarchy, n as u32).collect();
             let siblings = Siblings { count: all.len(), pair: |which| all[which], parent_radius: 0.0 };
             self.append(*start, &siblings, &mut pairs)?;
         }
-        let mut place = 0;
-        while let Some(&(n, m)) = pairs.get(place) {
-            let entry = self.entry(place);
+        let mut index = 0;
+        while let Some(&(n, m)) = pairs.get(index) {
+            let entry = self.entry(index);
             match hierarchy.split_above_buckets(n, m) {
-                None if entry.start() != 0 => return Err("a pair of small nodes has children"),
+                None if entry.start() != 0 => return Err("a pair of buckets has children"),
                 None => {}
                 Some(split) => {
                     let pair = |which| split.pair(which as u32);
@@ -56,23 +55,23 @@ impl PairTree {
                     self.append(entry.start(), &siblings, &mut pairs)?;
                 }
             }
-            place += 1;
+            index += 1;
         }
-        if place == self.len() { Ok(pairs) } else { Err("some pairs have no parent") }
+        if index == self.len() { Ok(pairs) } else { Err("some pairs have no parent") }
     }
 
     /// Appends the nodes of the list of siblings at `start`.
     fn append(
         &self,
         start: u32,
-        siblings: &Siblings<impl Fn(usize) -> Pair>,
-        pairs: &mut Vec<Pair>,
+        siblings: &Siblings<impl Fn(usize) -> NodePair>,
+        pairs: &mut Vec<NodePair>,
     ) -> Result<(), &'static str> {
         if start as usize != pairs.len() {
             return Err("lists of siblings are out of order");
         }
         let mut next = 0;
-        for entry in (start as usize..self.len()).map(|place| self.entry(place)) {
+        for entry in (start as usize..self.len()).map(|index| self.entry(index)) {
             if entry.radius.is_nan() || entry.radius < 0.0 {
                 return Err("a radius is negative or not a number");
             }

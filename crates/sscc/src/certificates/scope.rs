@@ -1,9 +1,9 @@
-//! The scope of certificates: metric, centre and contact filter, for which alone they prove anything.
+//! The scope of certificates: the metric, centre, contact filter and exceptions for which they hold.
 
 use crate::{ContactFilter, Metric, Pair, ReducedModel};
 
-/// What certificates depend on beside faces, positions and modes: how `|z|` is measured, and which pairs of triangles
-/// count.
+/// The data beside faces, positions and modes for which certificates hold: it defines `|z|`, and which pairs of
+/// triangles count.
 ///
 /// For another scope the same radii would be a wrong proof. So the scope is hashed into the
 /// [`Digest`](crate::Digest), stored with the certificates, and queries take it from them.

@@ -1,12 +1,12 @@
-//! Certificates against brute force: whatever collides below a limit must be open there.
+//! Tests certificates against brute force: no triangle pair that collides below a limit is certified there.
 
 use glam::DVec3;
 use sscc_testing::{cases, threshold};
 
 use super::StoredPair;
-use super::pair_tree::round_down;
 use super::test_models::ring;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
+use crate::model::rounding::to_f32_down;
 use crate::{
     Certificates, CertifyOptions, Method, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
 };
@@ -28,8 +28,8 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
             add(n as u32, n as u32);
             continue;
         }
-        let pairs: Vec<Pair> = node.child_pairs().collect();
-        let mut stack: Vec<(StoredPair, Pair)> =
+        let pairs: Vec<NodePair> = node.child_pairs().collect();
+        let mut stack: Vec<(StoredPair, NodePair)> =
             tree.of_node(n as u32).map(|stored| (stored, pairs[stored.entry.which() as usize])).collect();
         while let Some((stored, (n, m))) = stack.pop() {
             if f64::from(stored.entry.radius) > norm {
@@ -38,7 +38,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
             match hierarchy.split_above_buckets(n, m) {
                 None => add(n, m),
                 Some(split) => stack
-                    .extend(tree.below(stored.place).map(|below| (below, split.pair(below.entry.which())))),
+                    .extend(tree.below(stored.index).map(|below| (below, split.pair(below.entry.which())))),
             }
         }
     }
@@ -150,14 +150,14 @@ fn radii_never_fall_towards_the_leaves() {
         let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
         assert!(tree.len() * 8 <= budget * 480);
         for n in 0..hierarchy.nodes().len() as u32 {
-            let of_node = f64::from(round_down(certificates.node_radius(n)));
+            let of_node = f64::from(to_f32_down(certificates.node_radius(n)));
             let mut stack: Vec<_> = tree.of_node(n).map(|stored| (stored, of_node)).collect();
-            while let Some((StoredPair { place, entry }, of_parent)) = stack.pop() {
+            while let Some((StoredPair { index, entry }, of_parent)) = stack.pop() {
                 let radius = f64::from(entry.radius);
                 assert!(of_parent <= radius && radius < tree.limit());
                 checked += 1;
                 if entry.start() != 0 {
-                    stack.extend(tree.below(place).map(|stored| (stored, radius)));
+                    stack.extend(tree.below(index).map(|stored| (stored, radius)));
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Validation of certificates that were read from a file: whether their parts fit together.
 //!
-//! The file's hash proves that no byte was changed, not that the bytes are certificates. Whether they are those of a
-//! given model is checked in `coverage.rs`.
+//! The file's hash proves that no byte was changed, not that the bytes are certificates. `compatibility.rs` checks that
+//! they belong to a model.
 
 use super::{CertificateParts, Certificates};
 use crate::Error;

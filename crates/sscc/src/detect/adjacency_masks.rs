@@ -1,15 +1,14 @@
-//! Bit masks of the triangle pairs of two packets that never count, because the triangles are adjacent.
+//! Bit masks of the adjacent triangle pairs of two packets. These pairs never count.
 
-use super::packet::LANES;
+use super::aabb8::LANES;
 use crate::filter::{PairFilter, Relation};
 
-/// Vertices with more triangles than this get no masks, since pairs grow with the square of the number of triangles. The
-/// narrow phase asks the [`PairFilter`] about theirs.
+/// Vertices with more triangles get no masks, since the number of pairs grows with the square. For these pairs the
+/// narrow phase uses [`PairFilter`].
 const MAX_VERTEX_TRIANGLES: usize = 24;
 
-/// For each two packets with adjacent triangles, a mask of the pairs that never count. Of the triangles whose boxes
-/// overlap, nearly all share a vertex (at rest, at least 19 of 20 on spring, bunny and dragon), so that masks spare most
-/// calls of the narrow phase.
+/// For each two packets with adjacent triangles, a mask of the pairs that never count. Nearly all triangles whose AABBs
+/// overlap share a vertex, so masks avoid most calls of the narrow phase (docs/notes/2026-11-21-packets.md).
 #[derive(Default)]
 pub(crate) struct AdjacencyMasks {
     /// For each packet the start of its masks, and the end of all.

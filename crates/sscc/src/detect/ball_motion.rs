@@ -1,4 +1,4 @@
-//! All positions that vertices can have while z stays in a ball: the vertex motion of kinetic searches.
+//! The vertex motion of kinetic searches: an AABB of each vertex for all z in a ball.
 
 use glam::DVec3;
 
@@ -20,12 +20,14 @@ pub(crate) struct BallRates {
 
 impl BallRates {
     pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy, layout: &Layout) -> Self {
-        let row = model.row;
+        let row_len = model.row_len;
         let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.rounding.per_norm(axis)));
         let mut vertices = vec![DVec3::ZERO; layout.vertices.count()];
         for v in model.faces.as_flattened() {
             let modes = model.modes(*v);
-            let norm = |axis: usize| norm_up(modes[axis * row..][..row].iter().map(|a| a * a).sum(), row);
+            let norm = |axis: usize| {
+                norm_up(modes[axis * row_len..][..row_len].iter().map(|a| a * a).sum(), row_len)
+            };
             vertices[layout.vertices.index_of(*v) as usize] = DVec3::new(norm(0), norm(1), norm(2)) + rounded;
         }
         let mut nodes = vec![DVec3::ZERO; hierarchy.nodes().len()];
@@ -84,7 +86,7 @@ impl VertexMotion<2> for BallMotion<'_> {
         self.rounding
     }
 
-    fn whole(&self, layout: &Layout) -> Aabb {
+    fn overall_aabb(&self, layout: &Layout) -> Aabb {
         layout.bd_tree.root([self.q, self.q], DVec3::splat(self.rounding))
     }
 
@@ -106,7 +108,7 @@ impl VertexMotion<2> for BallMotion<'_> {
     }
 
     #[inline]
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
         layout.bd_tree.at(node, [self.q, self.q], self.node_change(node) + self.rounding)
     }
 }

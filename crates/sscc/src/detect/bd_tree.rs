@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
-use super::packet::AabbF32;
+use super::aabb8::AabbF32;
 use super::quantization::{CoarseMotion, Quantization};
 use crate::ReducedModel;
 use crate::geometry::Aabb;
@@ -41,8 +41,8 @@ impl BdTree {
             let vertices = hierarchy.vertices(node, mesh.faces());
             let Aabb { lower, upper } =
                 Aabb::of_points(vertices.iter().map(|&v| mesh.rest_positions()[v as usize]));
-            let centre = lower * 0.5 + upper * 0.5;
-            let rest = (centre, (upper - centre).max(centre - lower));
+            let center = lower * 0.5 + upper * 0.5;
+            let rest = (center, (upper - center).max(center - lower));
             let mut rates = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); rank];
             for &v in &vertices {
                 for ((least, greatest), u) in rates.iter_mut().zip(modes.of_vertex(v)) {
@@ -63,8 +63,8 @@ impl BdTree {
         let index = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let indices = (0..hierarchy.nodes().len()).map(index).collect();
         let mut quantized: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * COMPONENTS + 1);
-        for ((centre, half), rates) in &all {
-            let means = quantization.quantize(*centre, rates.iter().map(|rate| rate.0));
+        for ((center, half), rates) in &all {
+            let means = quantization.quantize(*center, rates.iter().map(|rate| rate.0));
             let growths = quantization.quantize_extents(*half, rates.iter().map(|rate| rate.1));
             means.zip(growths).for_each(|(m, g)| quantized.extend([m, g].as_flattened()));
         }
@@ -88,7 +88,7 @@ impl BdTree {
         if index >= self.rest.len() {
             return None;
         }
-        let (mut centre, mut half) = (motion.shift, Vec4::ZERO);
+        let (mut center, mut half) = (motion.shift, Vec4::ZERO);
         let start = index * (self.rank + 1) * COMPONENTS;
         let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + 1];
         for (k, (factors, largest)) in motion.factors.iter().zip(&motion.largest).enumerate() {
@@ -98,15 +98,15 @@ impl BdTree {
                 |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
             let (mean, growth) = (vector(0), vector(3));
             for end in 0..E {
-                centre[end] += mean * factors[end];
+                center[end] += mean * factors[end];
             }
             // No less than at either end, since rounding is monotone; where a step is short, hardly more.
             half += growth * *largest;
         }
         // The error of the centre, and that of the half.
         let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
-        let ends = centre.map(|centre| AabbF32 { lower: centre - half, upper: centre + half });
-        ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtOneEnd, a))
+        let ends = center.map(|center| AabbF32 { lower: center - half, upper: center + half });
+        ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtStart, a))
     }
 
     /// The same for the whole shape.
@@ -119,14 +119,14 @@ impl BdTree {
         let rates = &self.rates[index * self.rank..][..self.rank];
         let q = q.map(|q| &q[..rates.len()]);
         for (k, (mean, growth)) in rates.iter().enumerate() {
-            for ((centre, half), q) in boxes.iter_mut().zip(q) {
-                *centre += *mean * q[k];
+            for ((center, half), q) in boxes.iter_mut().zip(q) {
+                *center += *mean * q[k];
                 *half += *growth * q[k].abs();
             }
         }
         let ends = boxes
-            .map(|(centre, half)| Aabb { lower: centre - (half + margin), upper: centre + (half + margin) });
-        let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtOneEnd, a);
+            .map(|(center, half)| Aabb { lower: center - (half + margin), upper: center + (half + margin) });
+        let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtStart, a);
         ends.into_iter().reduce(join).unwrap_or_default()
     }
 }
@@ -134,7 +134,7 @@ impl BdTree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::detect::frame::Frame;
+    use crate::detect::f32_frame::F32Frame;
     use crate::detect::vertex_motion::rounding_bound;
     use crate::detect::vertex_store::VertexStore;
     use crate::{Modes, TriMesh};
@@ -176,7 +176,7 @@ mod tests {
             let ends = [&ends[0][..], &ends[1][..]];
             let reach = ends.iter().map(|q| model.check_coordinates(q).unwrap()).fold(0.0, f64::max);
             let rounding = rounding_bound(reach, rank);
-            let frame = Frame::around(tree.root(ends, DVec3::splat(rounding)));
+            let frame = F32Frame::around(tree.root(ends, DVec3::splat(rounding)));
             let mut motion = CoarseMotion::default();
             if !quantization.begin(&mut motion, ends, &frame, rounding) {
                 continue;
@@ -215,7 +215,7 @@ mod tests {
                 let q: Vec<f64> = (0..rank).map(|_| random(&mut state) * size).collect();
                 let reach = model.check_coordinates(&q).unwrap();
                 let rounding = rounding_bound(reach, rank);
-                let frame = Frame::around(tree.root([&q], DVec3::splat(rounding)));
+                let frame = F32Frame::around(tree.root([&q], DVec3::splat(rounding)));
                 let mut motion = CoarseMotion::default();
                 let is_coarse = quantization.begin(&mut motion, [&q], &frame, rounding);
                 coarse += usize::from(is_coarse);

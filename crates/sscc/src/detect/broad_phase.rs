@@ -1,8 +1,7 @@
-//! One search after the other: the broad phase with its volumes, its stack and its counters.
+//! The state of a search: AABBs, traversal stack, counters, cancellation. It hands triangle pairs with overlapping
+//! AABBs to the [`NarrowPhase`], and tests the exceptions.
 //!
-//! A search begins, visits nodes and node pairs ([`traversal`](super::traversal), or a traversal of a higher layer by the
-//! same tests), tests buckets ([`bucket_pair`](super::bucket_pair)) and hands triangle pairs whose boxes overlap to its
-//! [`NarrowPhase`].
+//! The tests of nodes are in [`traversal`](super::traversal), those of buckets in [`bucket_pair`](super::bucket_pair).
 
 use std::sync::Arc;
 
@@ -12,9 +11,10 @@ use super::narrow_phase::NarrowPhase;
 use super::node_volumes::NodeVolumes;
 use super::normal_cones::NormalCones;
 use super::vertex_motion::VertexMotion;
+use crate::Error;
 use crate::filter::Relation;
 use crate::geometry::Aabb;
-use crate::{Error, Pair};
+use crate::hierarchy::NodePair;
 
 /// Triangle tests between two checks whether the search was cancelled: one test may take a millisecond.
 const TESTS_PER_CHECK: u64 = 64;
@@ -40,10 +40,10 @@ pub(crate) struct Counters {
 #[derive(Clone)]
 pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) volumes: NodeVolumes<E>,
-    /// Of methods that use them, at one configuration.
-    pub(super) cones: Option<NormalCones>,
+    /// The normal cones of methods that use them; only in discrete searches.
+    pub(crate) cones: Option<NormalCones>,
     /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
-    pub(super) stack: Vec<Pair>,
+    pub(super) stack: Vec<NodePair>,
     visits: u32,
     is_cancelled: bool,
     pub(crate) counters: Counters,
@@ -93,7 +93,7 @@ impl<const E: usize> BroadPhase<E> {
         if self.visits.is_multiple_of(VISITS_PER_CHECK) {
             self.check_cancelled(context, narrow);
         }
-        !narrow.hits().is_full()
+        !narrow.hits().note_if_full()
     }
 
     /// Counts a test of two triangles, and checks now and then.
@@ -113,7 +113,7 @@ impl<const E: usize> BroadPhase<E> {
         if !self.is_cancelled {
             return Ok(());
         }
-        narrow.hits().found.clear();
+        narrow.hits().hits.clear();
         Err(Error::Cancelled)
     }
 
@@ -122,8 +122,8 @@ impl<const E: usize> BroadPhase<E> {
     pub(crate) fn test_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
-        a: TriangleCorners,
-        b: TriangleCorners,
+        a: TriangleVertices,
+        b: TriangleVertices,
         motion: &M,
         narrow: &mut N,
     ) {
@@ -142,9 +142,9 @@ impl<const E: usize> BroadPhase<E> {
         if let Some(hit) = N::test(&context.filter, relation, pair, &a, &b)
             && !context.filter.is_excluded(pair.0, pair.1)
             && !context.is_exception(pair)
-            && !narrow.hits().is_full()
+            && !narrow.hits().note_if_full()
         {
-            narrow.hits().found.push(hit);
+            narrow.hits().hits.push(hit);
         }
     }
 
@@ -156,7 +156,7 @@ impl<const E: usize> BroadPhase<E> {
         narrow: &mut N,
     ) {
         for &pair in right_or!(context.exceptions, ExceptionsForgotten, &[]) {
-            if narrow.hits().is_full() {
+            if narrow.hits().note_if_full() {
                 return;
             }
             let [a, b] = [pair.0, pair.1].map(|t| {
@@ -174,20 +174,20 @@ impl<const E: usize> BroadPhase<E> {
             self.count_triangle_test(context, narrow);
             let relation = context.filter.relation(pair.0, pair.1);
             let hit = N::test(&context.filter, relation, pair, &a, &b);
-            narrow.hits().found.extend(hit);
+            narrow.hits().hits.extend(hit);
         }
     }
 
     /// A triangle of the mesh with the indices of its vertices in the layout.
-    pub(crate) fn triangle(&self, context: &Context<'_>, triangle: u32) -> TriangleCorners {
+    pub(crate) fn triangle(&self, context: &Context<'_>, triangle: u32) -> TriangleVertices {
         let face = context.filter.faces()[triangle as usize];
-        TriangleCorners { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }
+        TriangleVertices { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }
     }
 }
 
 /// A triangle and its vertices, by their indices in the layout.
 #[derive(Clone, Copy)]
-pub(crate) struct TriangleCorners {
+pub(crate) struct TriangleVertices {
     pub(crate) triangle: u32,
     pub(crate) vertices: [u32; 3],
 }

@@ -29,7 +29,7 @@ impl<const E: usize> BroadPhase<E> {
         for a in 0..corners.len() {
             self.check_cancelled(context, narrow);
             for b in a + 1..corners.len() {
-                if narrow.hits().is_full() {
+                if narrow.hits().note_if_full() {
                     return;
                 }
                 self.counters.box_tests += 1;
@@ -40,7 +40,7 @@ impl<const E: usize> BroadPhase<E> {
                 self.counters.triangle_tests += 1;
                 let relation = context.filter.relation(pair.0, pair.1);
                 let hit = N::test(&context.filter, relation, pair, &corners[a], &corners[b]);
-                narrow.hits().found.extend(hit);
+                narrow.hits().hits.extend(hit);
             }
         }
     }

@@ -1,12 +1,11 @@
 //! Tests of a bucket against itself and of two buckets: packets of boxes against packets, down to triangle pairs.
 
-use super::broad_phase::{BroadPhase, TriangleCorners};
+use super::aabb8::{LANES, Lanes};
+use super::broad_phase::{BroadPhase, TriangleVertices};
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::BucketSlot;
-use super::packet::{LANES, Lanes};
 use super::vertex_motion::VertexMotion;
-use crate::Pair;
 
 /// A packet: its bucket and its lane there.
 #[derive(Clone, Copy)]
@@ -40,7 +39,7 @@ impl<const E: usize> BroadPhase<E> {
     pub(crate) fn test_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
-        (n, m): Pair,
+        (n, m): (u32, u32),
         motion: &M,
         narrow: &mut N,
     ) {
@@ -99,7 +98,7 @@ impl<const E: usize> BroadPhase<E> {
                     continue;
                 }
                 let buckets = &self.volumes.layout.buckets;
-                let [a, b] = slots.map(|slot| TriangleCorners {
+                let [a, b] = slots.map(|slot| TriangleVertices {
                     triangle: buckets.triangle(slot),
                     vertices: buckets.corners()[slot],
                 });

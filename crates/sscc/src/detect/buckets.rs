@@ -1,25 +1,22 @@
-//! Buckets: the nodes of at most 64 triangles in which traversals end, each cut into up to eight packets of up to eight
-//! triangles.
+//! Buckets: the largest nodes of at most 64 triangles, at which traversals end, each cut into up to eight packets of up
+//! to eight triangles.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
+use super::aabb8::LANES;
 use super::adjacency_masks::AdjacencyMasks;
-use super::packet::LANES;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
-
-/// Nodes of at most this many triangles that are in no other such node are buckets.
-pub(crate) const BUCKET: usize = BUCKET_TRIANGLES;
 
 const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
 
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///
-/// A bucket is cut into full packets, not into the leaves of the hierarchy: these hold 4 triangles on average, half of
-/// what one comparison takes. On the spring at rest 5,516 node pairs are opened instead of 37,695.
+/// A bucket is cut into full packets, not into the leaves of the hierarchy, which fill only half of a packet
+/// (docs/notes/2026-11-21-packets.md, docs/notes/2026-11-23-packets-of-buckets.md).
 #[derive(Default)]
 pub(crate) struct Buckets {
     /// For each node the bucket that it is, or lies in.
@@ -53,7 +50,7 @@ impl Buckets {
         let (mut nodes, mut packets, mut slots, mut triangles) = (vec![], vec![0], vec![0], vec![]);
         let (mut vertex_starts, mut vertices) = (vec![0], vec![]);
         for (n, node) in hierarchy.nodes().iter().enumerate() {
-            if of_node[n].is_none() && node.triangle_count as usize <= BUCKET {
+            if of_node[n].is_none() && node.triangle_count as usize <= BUCKET_TRIANGLES {
                 of_node[n] = Some(nodes.len() as u32);
                 nodes.push(n as u32);
                 let mut own = hierarchy.triangles(node).to_vec();

@@ -9,8 +9,8 @@ use super::buckets::Buckets;
 use super::quantization::{CoarseMotion, Quantization};
 use super::vertex_store::VertexStore;
 
-/// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of them
-/// (on average 1.7 times on the dragon), so that a bucket is read from contiguous memory.
+/// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of
+/// them, so that a bucket is read from contiguous memory (docs/notes/2026-11-23-packets-of-buckets.md).
 #[derive(Default)]
 pub(crate) struct CoarseVertices {
     /// For each bucket its first group of four vertices, and the end.
@@ -112,7 +112,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::detect::frame::Frame;
+    use crate::detect::f32_frame::F32Frame;
     use crate::detect::layout::{Layout, Needs};
     use crate::detect::vertex_motion::rounding_bound;
     use crate::filter::PairFilter;
@@ -157,7 +157,7 @@ mod tests {
             let later: Vec<f64> = q.iter().map(|q| q * 1.5).collect();
             let ends = [&q[..], &later[..]];
             let rounding = rounding_bound(model.check_coordinates(&later).unwrap(), rank);
-            let frame = Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
+            let frame = F32Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
             let (mut motion, mut positions) = (CoarseMotion::default(), layout.coarse.new_positions());
             if !layout.quantization.begin(&mut motion, ends, &frame, rounding) {
                 unused += 1;

@@ -1,4 +1,5 @@
-//! The colliding pairs at one configuration by the traditional method: for exceptions and ignored pairs.
+//! All colliding pairs at one configuration, by the traditional method: to find exceptions, and for
+//! [`ContactFilter::ignoring_rest`].
 
 use std::borrow::Cow;
 
@@ -6,7 +7,7 @@ use super::broad_phase::BroadPhase;
 use super::context::Context;
 use super::layout::Needs;
 use super::narrow_phase::DiscreteHits;
-use super::vertex_motion::Deformed;
+use super::vertex_motion::DeformedMotion;
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
@@ -29,7 +30,7 @@ pub(crate) fn colliding_pairs(
     let context = Context { progress, ..context };
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
     let mut narrow = DiscreteHits::default();
-    let motion = Deformed::new([q], reach);
+    let motion = DeformedMotion::new([q], reach);
     narrow.0.begin(MAX_PAIRS);
     broad.begin_volumes(&context, &motion);
     broad.traverse(&context, (0, 0), &motion, &mut narrow);
@@ -37,7 +38,7 @@ pub(crate) fn colliding_pairs(
     if !narrow.0.is_complete() {
         return Err(Error::TooManyCollisions { most: MAX_PAIRS });
     }
-    let mut pairs = narrow.0.found;
+    let mut pairs = narrow.0.hits;
     pairs.sort_unstable();
     Ok(pairs)
 }

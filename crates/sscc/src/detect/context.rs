@@ -1,4 +1,4 @@
-//! The context of a detector: state shared by all searches on one mesh.
+//! State shared by all searches of the detector on one mesh.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Pair, Progress, ReducedModel};
 
-/// The hierarchy and layout of a mesh, the pairs that count, and who may cancel.
+/// The hierarchy and layout of a mesh, the contact filter, the exceptions, and the progress that may cancel a search.
 #[derive(Clone)]
 pub(crate) struct Context<'a> {
     pub(crate) hierarchy: Cow<'a, Hierarchy>,

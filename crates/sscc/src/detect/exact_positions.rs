@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec4};
 
-use super::frame::Frame;
+use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
@@ -11,7 +11,7 @@ use crate::geometry::Aabb;
 #[derive(Clone)]
 pub(crate) struct ExactPositions<const E: usize> {
     search: u32,
-    frame: Frame,
+    frame: F32Frame,
     exact: Vec<[DVec3; E]>,
     mapped: Vec<[Vec4; E]>,
     searches: Vec<u32>,
@@ -21,21 +21,21 @@ impl<const E: usize> ExactPositions<E> {
     pub(crate) fn new(count: usize) -> Self {
         Self {
             search: 0,
-            frame: Frame::default(),
+            frame: F32Frame::default(),
             exact: vec![[DVec3::ZERO; E]; count],
             mapped: vec![[Vec4::ZERO; E]; count],
             searches: vec![0; count],
         }
     }
 
-    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `whole` chooses the
-    /// frame.
-    pub(crate) fn begin(&mut self, search: u32, whole: Aabb) {
+    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `overall_aabb`
+    /// chooses the frame.
+    pub(crate) fn begin(&mut self, search: u32, overall_aabb: Aabb) {
         if search == 1 {
             self.searches.fill(0);
         }
         self.search = search;
-        self.frame = Frame::around(whole);
+        self.frame = F32Frame::around(overall_aabb);
     }
 
     /// Moves all vertices.
@@ -74,7 +74,7 @@ impl<const E: usize> ExactPositions<E> {
 
     /// The frame of this search.
     #[inline]
-    pub(crate) fn frame(&self) -> &Frame {
+    pub(crate) fn frame(&self) -> &F32Frame {
         &self.frame
     }
 }

@@ -1,11 +1,12 @@
-//! The model as the detector reads it: everything that does not depend on q, shared by all searches and their clones.
+//! All data of the detector that does not depend on q, in the order in which searches read it. Searches and their
+//! clones share it.
 
 use glam::DVec3;
 
 use super::bd_tree::BdTree;
-use super::boundary::NodeBoundaries;
 use super::buckets::Buckets;
 use super::coarse_vertices::CoarseVertices;
+use super::node_boundaries::NodeBoundaries;
 use super::quantization::Quantization;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;

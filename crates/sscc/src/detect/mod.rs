@@ -1,17 +1,17 @@
-//! The detector: which triangles of a deforming mesh collide, found without certificates.
+//! Collision detection without certificates: finds the colliding triangles of a deforming mesh.
 //!
-//! The broad phase ([`broad_phase`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed where
-//! it looks (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64 triangles
-//! ([`buckets`]), whose boxes are compared eight at a time ([`packet`]). The narrow phase ([`narrow_phase`]) is exact. Where
-//! vertices come from is a static parameter ([`vertex_motion`]).
+//! The broad phase ([`broad_phase`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed
+//! where it looks (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64 triangles
+//! ([`buckets`]), whose boxes are compared eight at a time ([`aabb8`]). The narrow phase ([`narrow_phase`]) is exact.
+//! Where vertices come from is a static parameter ([`vertex_motion`]).
 //!
 //! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here. The traversals that use
 //! certificates are in `query/`, by the same tests of nodes and buckets.
 
+pub(crate) mod aabb8;
 mod adjacency_masks;
 pub(crate) mod ball_motion;
 mod bd_tree;
-mod boundary;
 pub(crate) mod broad_phase;
 mod brute_force;
 pub(crate) mod bucket_pair;
@@ -19,14 +19,15 @@ pub(crate) mod buckets;
 mod coarse_vertices;
 mod colliding_pairs;
 pub(crate) mod context;
+mod contour_test;
 mod detector;
 mod exact_positions;
-mod frame;
+mod f32_frame;
 pub(crate) mod layout;
 pub(crate) mod narrow_phase;
+mod node_boundaries;
 pub(crate) mod node_volumes;
 pub(crate) mod normal_cones;
-pub(crate) mod packet;
 mod quantization;
 mod traversal;
 pub(crate) mod two_meshes;

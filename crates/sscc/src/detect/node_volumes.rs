@@ -1,25 +1,25 @@
 //! Bounding volumes of nodes, buckets, packets and triangles in one search, each computed at most once.
 //!
-//! All are AABBs in the single precision of a [`Frame`](super::frame::Frame). Where a search has two ends, a box contains
-//! both, hence the straight lines between them. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
-//! 2004), computed where the traversal visits them. A bucket gets tight boxes, from its vertices, when it is opened: BD-tree AABBs
-//! of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel or not. The
-//! traditional method refits everything first.
+//! All are AABBs in the single precision of an [`F32Frame`](super::f32_frame::F32Frame). In a search between two
+//! configurations each AABB is a swept AABB. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
+//! 2004), computed where the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
+//! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel
+//! or not. The traditional method refits everything first.
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 
+use super::aabb8::{Aabb8, AabbF32};
 use super::exact_positions::ExactPositions;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
-use super::packet::{Aabb8, AabbF32};
 use super::quantization::CoarseMotion;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 
-/// The boxes of one search and the positions from which they are computed. Each entry has the number of the search for
+/// The AABBs of one search and the positions from which they are computed. Each entry has the number of the search for
 /// which it is current.
 #[derive(Clone)]
 pub(crate) struct NodeVolumes<const E: usize> {
@@ -27,22 +27,22 @@ pub(crate) struct NodeVolumes<const E: usize> {
     is_lazy: bool,
     search: u32,
     positions: ExactPositions<E>,
-    /// Whether boxes of triangles are computed from coarse positions.
+    /// Whether AABBs of triangles are computed from coarse positions.
     is_coarse: bool,
     motion: CoarseMotion<E>,
     coarse: Vec<[Vec4; E]>,
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
     corner_error: f32,
-    /// The box of each node that is a bucket or larger.
+    /// The AABB of each node that is a bucket or larger.
     nodes: Vec<AabbF32>,
     node_searches: Vec<u32>,
-    /// The boxes of the children of each node larger than a bucket.
+    /// The AABBs of the children of each node larger than a bucket.
     children: Vec<Aabb8>,
     children_searches: Vec<u32>,
-    /// The boxes of the packets of each bucket.
+    /// The AABBs of the packets of each bucket.
     packets: Vec<Aabb8>,
     packets_searches: Vec<u32>,
-    /// The boxes of the triangles of each packet.
+    /// The AABBs of the triangles of each packet.
     triangles: Vec<Aabb8>,
 }
 
@@ -69,7 +69,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Starts a new search: forgets all boxes, or, where they are not lazy, refits all of them.
+    /// Starts a new search: forgets all AABBs, or, where they are not lazy, refits all of them.
     pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
         self.search = self.search.wrapping_add(1);
@@ -79,7 +79,7 @@ impl<const E: usize> NodeVolumes<E> {
                 .for_each(|searches| searches.fill(0));
             self.search = 1;
         }
-        self.positions.begin(self.search, motion.whole(&layout));
+        self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
         let coarse_motion = &mut self.motion;
         self.is_coarse = !layout.coarse.is_empty()
@@ -98,7 +98,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Computes all boxes from all vertices, bottom-up.
+    /// Computes all AABBs from all vertices, bottom-up.
     fn refit<M: VertexMotion<E>>(&mut self, layout: &Layout, hierarchy: &Hierarchy, motion: &M) {
         if !self.is_coarse {
             self.positions.move_all(layout, motion);
@@ -130,41 +130,41 @@ impl<const E: usize> NodeVolumes<E> {
         if root > 0.0 { (0..hierarchy.nodes().len()).map(cost).sum::<f64>() / root } else { 0.0 }
     }
 
-    /// The box of a node that has been enclosed, or whose parent or bucket has been opened.
+    /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
     #[inline]
     pub(crate) fn node(&self, n: u32) -> &AabbF32 {
         &self.nodes[n as usize]
     }
 
-    /// The boxes of the children of an open node.
+    /// The AABBs of the children of an open node.
     #[inline]
     pub(crate) fn children(&self, n: u32) -> &Aabb8 {
         &self.children[n as usize]
     }
 
-    /// The boxes of the packets of an open bucket.
+    /// The AABBs of the packets of an open bucket.
     #[inline]
     pub(crate) fn packets(&self, bucket: u32) -> &Aabb8 {
         &self.packets[bucket as usize]
     }
 
-    /// The boxes of the triangles of a packet of an open bucket.
+    /// The AABBs of the triangles of a packet of an open bucket.
     #[inline]
     pub(crate) fn triangles(&self, packet: usize) -> &Aabb8 {
         &self.triangles[packet]
     }
 
-    /// Makes the boxes of the children of a node larger than a bucket current.
+    /// Makes the AABBs of the children of a node larger than a bucket current.
     #[inline]
     pub(crate) fn open_node<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, n: u32, motion: &M) {
         if self.children_searches[n as usize] != self.search {
             let children = hierarchy.nodes()[n as usize].children();
-            children.for_each(|child| self.enclose(child, motion));
+            children.for_each(|child| self.update_node(child, motion));
             self.gather_children(hierarchy, n);
         }
     }
 
-    /// Makes all boxes within a bucket current.
+    /// Makes all AABBs within a bucket current.
     #[inline]
     pub(crate) fn open_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         if self.packets_searches[bucket as usize] != self.search {
@@ -177,9 +177,9 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Makes the box of a node current that is a bucket or larger.
+    /// Computes the AABB of a node that is a bucket or larger, unless it is current.
     #[inline]
-    pub(crate) fn enclose<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
+    pub(crate) fn update_node<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
         if self.node_searches[n as usize] != self.search {
             if self.is_coarse
                 && let Some(aabb) = self.layout.bd_tree.coarse(n, &self.motion)
@@ -188,15 +188,15 @@ impl<const E: usize> NodeVolumes<E> {
                 return;
             }
             let frame = self.positions.frame();
-            // A node without a box of its own overlaps everything.
-            let aabb = motion.node_box(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
+            // A node without an AABB of its own overlaps everything.
+            let aabb = motion.node_aabb(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
                 AabbF32 { lower: frame.map(lower), upper: frame.map(upper) }
             });
             self.set_node(n, aabb);
         }
     }
 
-    /// Computes all boxes of a bucket; where exact positions are needed, its vertices have been moved.
+    /// Computes all AABBs of a bucket; where exact positions are needed, its vertices have been moved.
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         let Layout { buckets, coarse, .. } = &*self.layout;
         let n = buckets.node(bucket);
@@ -225,7 +225,7 @@ impl<const E: usize> NodeVolumes<E> {
     fn slack<M: VertexMotion<E>>(&self, n: u32, motion: &M) -> Vec4 {
         motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
             let slack = slack * (self.positions.frame().scale() * (1.0 + 1e-5));
-            // Finite, as all corners of boxes are that contain something.
+            // Finite, as all corners of AABBs are that contain something.
             slack.as_vec3().extend(0.0).min(Vec4::MAX)
         })
     }
@@ -236,7 +236,7 @@ impl<const E: usize> NodeVolumes<E> {
         self.node_searches[n as usize] = self.search;
     }
 
-    /// Gathers the current boxes of a node's children in its packet, and returns their union.
+    /// Gathers the current AABBs of a node's children in its packet, and returns their union.
     fn gather_children(&mut self, hierarchy: &Hierarchy, n: u32) -> AabbF32 {
         let mut union = AabbF32::EMPTY;
         for (lane, child) in hierarchy.nodes()[n as usize].children().enumerate() {

@@ -2,16 +2,17 @@
 //! surface does not collide with itself.
 //!
 //! A patch of the surface is not tested against itself when all of its normals are on the positive side of one of 14
-//! directions: the corners and the face centres of a cube. That alone is no proof. It is a proof with the *contour
-//! test*: the patch is one oriented manifold with a single boundary, and the boundary, projected along the direction,
-//! does not intersect itself. Then the projection is one to one: a point off all projected edges is covered as often as the
-//! boundary winds around it, which for a simple curve is once or never. Two points of the patch on the same spot would
-//! be both on the boundary, where it would intersect itself, or one of them would be an inner point: around it the patch
-//! covers all, and near the other one some of that a second time.
+//! directions: the corners and the face centres of a cube. A cone is represented by one bit for each of these
+//! directions. That alone is no proof. It is a proof with the *contour test*: the patch is one oriented manifold with a
+//! single boundary, and the boundary, projected along the direction, does not intersect itself. Then the projection is
+//! one to one: a point off all projected edges is covered as often as the boundary winds around it, which for a simple
+//! curve is once or never. Suppose two points of the patch had the same projection. If both were on the boundary, it
+//! would intersect itself. Otherwise one is an inner point, so the patch covers a whole neighbourhood there; near the
+//! other point it covers part of that a second time.
 
 use glam::DVec3;
 
-use super::boundary::{ROUNDING, is_simple};
+use super::contour_test::{ROUNDING, is_simple};
 use super::node_volumes::NodeVolumes;
 use crate::hierarchy::Hierarchy;
 
@@ -50,6 +51,8 @@ const DIRECTIONS: [Direction; 14] = [
 /// The normals of all nodes down to buckets at the current q.
 #[derive(Clone)]
 pub(crate) struct NormalCones {
+    /// Without it, cones cull a node by its normals alone, which may miss collisions.
+    has_contour_test: bool,
     /// For each node the directions on whose positive side all of its normals are, one bit each.
     positive: Vec<u16>,
     /// Scratch: a projected boundary, and an order of its edges.
@@ -60,7 +63,12 @@ pub(crate) struct NormalCones {
 impl NormalCones {
     /// Cones of so many nodes.
     pub(crate) fn new(nodes: usize) -> Self {
-        Self { positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
+        Self { has_contour_test: true, positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
+    }
+
+    /// The same cones without the contour test: the approximate ones of the paper's section 7.
+    pub(crate) fn without_contour_test(self) -> Self {
+        Self { has_contour_test: false, ..self }
     }
 
     /// Makes normals current; all exact positions are.
@@ -81,11 +89,11 @@ impl NormalCones {
         }
     }
 
-    /// Whether the normals prove that a node does not collide with itself.
-    pub(super) fn proves_free<const E: usize>(&mut self, n: u32, volumes: &NodeVolumes<E>) -> bool {
+    /// Whether the cones cull a node: with the contour test a proof that it does not collide with itself.
+    pub(super) fn cull<const E: usize>(&mut self, n: u32, volumes: &NodeVolumes<E>) -> bool {
         let positive = self.positive[n as usize];
-        if positive == 0 {
-            return false;
+        if positive == 0 || !self.has_contour_test {
+            return positive != 0;
         }
         let boundary = volumes.layout.boundaries.of_node(n);
         DIRECTIONS.iter().enumerate().filter(|(k, _)| positive >> k & 1 != 0).any(|(_, direction)| {

@@ -1,10 +1,10 @@
-//! Coarse motion: displacements quantized to 16 bits, moved in single precision, with a bound of the error.
+//! Displacements quantized to 16 bits: a quarter of the bytes of double precision.
 //!
-//! That takes a quarter of the bytes of double precision, and moves four vertices side by side.
+//! They are moved in single precision, four vertices side by side, with a bound of the error.
 
 use glam::{DVec3, Vec4};
 
-use super::frame::Frame;
+use super::f32_frame::F32Frame;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
@@ -84,16 +84,21 @@ impl Quantization {
     /// Sets the factors of a query in a frame whose box contains all positions; `rounding` bounds the error of exact
     /// positions. False if the error bound would exceed [`MAX_ERROR`]: then the query must use exact positions.
     ///
-    /// With u = 2^-24 and d the sum of all factors, none of the r + 1 rounded sums is beyond 1 + 2 d: the middle of the
-    /// rest pose is within 1 + d of that of the frame, because each vertex is within 1 of the latter. Each sum adds
-    /// u of that; factors and products add 2 u d, the shift, the mapped position and the box's widening u (3 + d).
-    /// Quantization is off by half a unit, for all modes together by d / (2 WHOLE). A sum of the larger magnitudes of two ends is at most
-    /// 2 d, and none of its terms is less than at either end.
+    /// Error bound. Let u = 2^-24 and d the sum of all factors.
+    /// - Partial sums are at most 1 + 2 d: the centre of the rest pose is within 1 + d of that of the frame, because
+    ///   each vertex is within 1 of the latter.
+    /// - Each of the r + 1 sums adds u (1 + 2 d).
+    /// - Factors and products add 2 u d.
+    /// - Shift, mapped position and widening add u (3 + d).
+    /// - Quantization adds d / (2 WHOLE): half a unit of each mode.
+    ///
+    /// A sum of the larger magnitudes at the start and the end of a motion is at most 2 d, and none of its terms is
+    /// less than at either.
     pub(crate) fn begin<const E: usize>(
         &self,
         motion: &mut CoarseMotion<E>,
         q: [&[f64]; E],
-        frame: &Frame,
+        frame: &F32Frame,
         rounding: f64,
     ) -> bool {
         let unit = f64::from(f32::EPSILON) / 2.0;
@@ -116,7 +121,7 @@ impl Quantization {
         } else {
             f64::INFINITY
         };
-        let quantized = right_or!(most / (2.0 * WHOLE), CoarseSharesExact, 0.0);
+        let quantized = right_or!(most / (2.0 * WHOLE), QuantizationExact, 0.0);
         let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + quantized;
         let error = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];

@@ -1,22 +1,23 @@
 //! The traversal of the bounding volume test tree (BVTT): which nodes and node pairs are opened. This one uses no
-//! certificates, but normal cones where the method has them; higher layers traverse by the same tests.
+//! certificates, but normal cones where the method has them. `query/` has the traversals with certificates; they use
+//! the same tests.
 //!
 //! One box is always compared with up to eight. The stack holds nodes `(n, n)`, and pairs `(n, m)` of nodes without
 //! common triangles whose boxes overlap.
 
+use super::aabb8::LANES;
 use super::broad_phase::BroadPhase;
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
-use super::packet::LANES;
 use super::vertex_motion::VertexMotion;
-use crate::Pair;
+use crate::hierarchy::NodePair;
 
 impl<const E: usize> BroadPhase<E> {
     /// Finds all hits between two nodes, or within one, but exceptions; for nodes within a bucket, those of the bucket.
     pub(crate) fn traverse<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
-        start: Pair,
+        start: NodePair,
         motion: &M,
         narrow: &mut N,
     ) {
@@ -32,10 +33,10 @@ impl<const E: usize> BroadPhase<E> {
     }
 
     /// Puts a node `(n, n)` or a node pair on the empty stack.
-    pub(crate) fn begin_traversal<M: VertexMotion<E>>(&mut self, (n, m): Pair, motion: &M) {
+    pub(crate) fn begin_traversal<M: VertexMotion<E>>(&mut self, (n, m): NodePair, motion: &M) {
         let buckets = &self.volumes.layout.buckets;
         let start = [n, m].map(|n| buckets.of_node(n).map_or(n, |bucket| buckets.node(bucket)));
-        start.iter().for_each(|n| self.volumes.enclose(*n, motion));
+        start.iter().for_each(|n| self.volumes.update_node(*n, motion));
         self.stack.clear();
         self.stack.push(start.into());
     }
@@ -46,14 +47,14 @@ impl<const E: usize> BroadPhase<E> {
         &mut self,
         context: &Context<'_>,
         narrow: &mut N,
-    ) -> Option<Pair> {
+    ) -> Option<NodePair> {
         let next = self.stack.pop()?;
         self.continues(context, narrow).then_some(next)
     }
 
     /// Whether the normals of a node prove that it is free, if the method uses them.
     fn is_free_by_normals(&mut self, n: u32) -> bool {
-        self.cones.as_mut().is_some_and(|cones| cones.proves_free(n, &self.volumes))
+        self.cones.as_mut().is_some_and(|cones| cones.cull(n, &self.volumes))
     }
 
     /// Opens a node (Algorithm 1, lines 1 to 14): tests a bucket, puts the children of a larger node on the stack. True if
@@ -79,7 +80,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// Puts a pair of children of the open node n on the stack if their boxes overlap.
     #[inline]
-    pub(crate) fn push_overlapping(&mut self, n: u32, first_child: u32, (a, b): Pair) {
+    pub(crate) fn push_overlapping(&mut self, n: u32, first_child: u32, (a, b): NodePair) {
         self.counters.box_tests += 1;
         let lanes = self.volumes.children(n).overlapping(self.volumes.node(a));
         if lanes.0 >> (b - first_child) & 1 != 0 {
@@ -92,7 +93,7 @@ impl<const E: usize> BroadPhase<E> {
     pub(crate) fn visit_node_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
-        (n, m): Pair,
+        (n, m): NodePair,
         motion: &M,
         narrow: &mut N,
     ) {

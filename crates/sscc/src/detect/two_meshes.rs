@@ -4,10 +4,11 @@ use super::broad_phase::Counters;
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::{BucketSlot, NodeVolumes, are_slots_separated};
-use super::packet::LANES;
+use super::aabb8::LANES;
 use super::vertex_motion::VertexMotion;
 use crate::filter::Relation;
-use crate::{Error, Pair};
+use crate::Error;
+use crate::hierarchy::NodePair;
 
 /// Visits between two checks whether the search was cancelled.
 const VISITS_PER_CHECK: u64 = 256;
@@ -46,13 +47,13 @@ pub(crate) fn traverse_two_meshes<
 >(
     x: &mut Side<'_, '_, E, X>,
     y: &mut Side<'_, '_, E, Y>,
-    stack: &mut Vec<Pair>,
+    stack: &mut Vec<NodePair>,
     counters: &mut Counters,
     narrow: &mut N,
 ) -> Result<(), Error> {
     stack.clear();
-    x.volumes.enclose(0, x.motion);
-    y.volumes.enclose(0, y.motion);
+    x.volumes.update_node(0, x.motion);
+    y.volumes.update_node(0, y.motion);
     counters.box_tests += 1;
     if x.volumes.node(0).overlaps(y.volumes.node(0)) {
         stack.push((0, 0));
@@ -64,7 +65,7 @@ pub(crate) fn traverse_two_meshes<
         }
         match [x.bucket(n), y.bucket(m)] {
             [Some(a), Some(b)] => {
-                if narrow.hits().is_full() {
+                if narrow.hits().note_if_full() {
                     break;
                 }
                 test_buckets(x, a, y, b, counters, narrow);
@@ -136,7 +137,7 @@ fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: Narro
                     if are_slots_separated((x.volumes, slots[0]), (y.volumes, slots[1])) {
                         continue;
                     }
-                    if narrow.hits().is_full() {
+                    if narrow.hits().note_if_full() {
                         return;
                     }
                     counters.triangle_tests += 1;
@@ -147,7 +148,7 @@ fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: Narro
                     let pair = (x_buckets.triangle(slots[0].slot), y_buckets.triangle(slots[1].slot));
                     let hit =
                         N::test(&x.context.filter, Relation::NonAdjacent, pair, &corners[0], &corners[1]);
-                    narrow.hits().found.extend(hit);
+                    narrow.hits().hits.extend(hit);
                 }
             }
         }

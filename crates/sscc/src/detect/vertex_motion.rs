@@ -1,7 +1,7 @@
-//! Where vertices come from in one search: the sources of positions and boxes that the detector is generic over.
+//! The motion of vertices in one search: the source of positions and AABBs, over which the detector is generic.
 //!
-//! A search has `E` ends: one configuration (1), or the start and the end of a motion (2). Sources are dispatched
-//! statically: positions deformed by modes ([`Deformed`]), all positions in a ball of configurations
+//! A search has `E` configurations: one, or the start and the end of a motion. Sources are dispatched statically:
+//! positions deformed by modes ([`DeformedMotion`]), all positions in a ball of configurations
 //! ([`BallMotion`](super::ball_motion::BallMotion)), and deformed positions in the world
 //! ([`PosedMotion`](crate::posed)).
 
@@ -10,46 +10,48 @@ use glam::DVec3;
 use super::layout::Layout;
 use crate::geometry::Aabb;
 
-/// Positions and boxes at the `E` ends of a search.
+/// Positions and AABBs at the `E` configurations of a search.
 pub(crate) trait VertexMotion<const E: usize> {
     /// Whether mapped positions are within a known bound of the exact ones, so that triangles can be separated in single
     /// precision.
     const HAS_ERROR_BOUND: bool;
 
-    /// An upper bound, along each axis, of the rounding error of positions and of boxes in double precision.
+    /// An upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
     fn rounding(&self) -> f64;
 
-    /// A box around about all positions, which chooses the [`Frame`](super::frame::Frame). Any box is right.
-    fn whole(&self, layout: &Layout) -> Aabb;
+    /// An AABB of approximately all positions. It chooses the [`F32Frame`](super::f32_frame::F32Frame); answers do not
+    /// depend on it.
+    fn overall_aabb(&self, layout: &Layout) -> Aabb;
 
     /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
 
-    /// How much farther than coarse positions at these coordinates the vertices of a node may be, along each axis.
+    /// How far, along each axis, the vertices of a node may be from their positions at these coordinates; none: not at
+    /// all.
     fn coarse_slack(&self, node: u32) -> Option<DVec3>;
 
     /// The exact positions of a vertex, by its index in the layout.
     fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E];
 
-    /// A box around all positions of a node's vertices, computed without them; none for a node that has no such box.
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb>;
+    /// An AABB of all positions of a node's vertices, computed without them; none for a node that has no such AABB.
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb>;
 }
 
 /// Positions deformed by the modes: at q, or on straight lines from one q to another.
 #[derive(Clone, Copy)]
-pub(crate) struct Deformed<'q, const E: usize> {
+pub(crate) struct DeformedMotion<'q, const E: usize> {
     q: [&'q [f64]; E],
     rounding: f64,
 }
 
-impl<'q, const E: usize> Deformed<'q, E> {
+impl<'q, const E: usize> DeformedMotion<'q, E> {
     /// `reach`: an upper bound of the magnitude of every term of every position, at each end.
     pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
         Self { q, rounding: rounding_bound(reach, q[0].len()) }
     }
 }
 
-impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
+impl<const E: usize> VertexMotion<E> for DeformedMotion<'_, E> {
     const HAS_ERROR_BOUND: bool = true;
 
     #[inline]
@@ -58,7 +60,7 @@ impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
     }
 
     #[inline]
-    fn whole(&self, layout: &Layout) -> Aabb {
+    fn overall_aabb(&self, layout: &Layout) -> Aabb {
         layout.bd_tree.root(self.q, DVec3::splat(self.rounding))
     }
 
@@ -78,12 +80,12 @@ impl<const E: usize> VertexMotion<E> for Deformed<'_, E> {
     }
 
     #[inline]
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
         layout.bd_tree.at(node, self.q, DVec3::splat(self.rounding))
     }
 }
 
-/// An upper bound of the rounding error of BD-tree boxes and positions: well above the 2 (r + 1) roundings of each.
+/// An upper bound of the rounding error of BD-tree AABBs and positions: well above the 2 (r + 1) roundings of each.
 pub(crate) fn rounding_bound(reach: f64, rank: usize) -> f64 {
     right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
 }

@@ -1,10 +1,10 @@
-//! The contact filter: what decides which pairs of triangles count as collisions, for any mesh.
+//! The contact filter: decides which triangle pairs of any mesh count as collisions.
 
 /// Two triangles, the lower number first.
 pub type Pair = (u32, u32);
 
-/// Whether triangles that share a vertex count. Those that share two or three vertices never count: they always touch
-/// along an edge.
+/// Whether triangles that share a vertex count. Triangles that share two or three vertices never count, because they
+/// always touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Neighbours {
     /// They do not count (paper, section 3).

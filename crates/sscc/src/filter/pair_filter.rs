@@ -148,9 +148,10 @@ impl PairFilter {
         }
     }
 
-    /// The pairs of hulls, by their vertices, at least one of which meets wherever the pair counts as a collision. Two
-    /// triangles of a shared-vertex pair that meet elsewhere do so on the edge opposite to the vertex of one of them:
-    /// follow the ray from the vertex through a common point until it leaves the first of the two.
+    /// The hull pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
+    /// hull pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
+    /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
+    /// two.
     pub(crate) fn hulls(&self, a: u32, b: u32) -> impl Iterator<Item = Hulls<u32>> {
         let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
         self.hulls_of_corners(a, b)

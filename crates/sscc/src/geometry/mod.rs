@@ -6,12 +6,13 @@
 //! [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal number.
 //!
 //! All tests are Boolean formulas over comparisons of coordinates and signs of determinants ([`orientation`]). A
-//! floating-point filter with a proven error bound decides most signs, exact arithmetic ([`exact`]) the others.
+//! floating-point filter with a proven error bound decides most signs, exact arithmetic ([`exact_orientation`]) the
+//! others.
 
 mod aabb;
 mod binary64;
 pub(crate) mod ccd;
-mod exact;
+mod exact_orientation;
 mod nearest_point;
 mod orientation;
 mod planar;

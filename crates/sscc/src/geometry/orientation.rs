@@ -1,8 +1,8 @@
 //! Exact signs of orientation determinants: on which side of a plane or a line a point lies.
 //!
 //! A filter in the sense of Shewchuk (1997): it evaluates a determinant in f64 and takes its sign only where the
-//! magnitude exceeds an error bound; otherwise [`exact`] decides. The error bounds, with `u = 2^-53`, follow from three
-//! facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
+//! magnitude exceeds an error bound; otherwise [`exact_orientation`] decides. The error bounds, with `u = 2^-53`,
+//! follow from three facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
 //! - `fl(x + y) = (x + y)(1 + d)` with `|d| <= u`; a sum that underflows is exact;
 //! - `fl(x y) = x y (1 + d) + h` with `|d| <= u`, and `h` is 0 unless the product underflows; `|h| <= 2^-1075`;
 //! - nothing overflows: coordinates are at most 2^200, so differences are at most 2^201 and no
@@ -26,7 +26,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::exact;
+use super::exact_orientation;
 
 /// Relative error of a determinant in space: `9 u`.
 const RELATIVE_3D: f64 = 9.0 / (1_u64 << 53) as f64;
@@ -129,7 +129,7 @@ impl<'a> Plane<'a> {
     #[inline(never)]
     fn exact_side(&self, point: &DVec3) -> i8 {
         let [a, b, c] = *self.corners;
-        exact::orient3d(a, b, c, *point)
+        exact_orientation::orient3d(a, b, c, *point)
     }
 }
 
@@ -151,7 +151,7 @@ pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     } else if det < -error {
         -1
     } else {
-        exact::orient2d(a, b, c)
+        exact_orientation::orient2d(a, b, c)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The construction of the hierarchy, top down by k-means (paper, section 3).
 
-use super::features::features;
+use super::cluster_features::cluster_features;
 use super::hierarchy::Hierarchy;
 use super::k_means::cluster;
 use super::node::Node;
@@ -13,7 +13,7 @@ impl Hierarchy {
     /// Clusters the triangles of a model, modes scaled by `metric`. The same input gives the same tree on
     /// every machine.
     pub fn build(model: &ReducedModel, metric: &Metric) -> Self {
-        let features = features(model, metric);
+        let features = cluster_features(model, metric);
         let mut order: Vec<u32> = (0..features.len() as u32).collect();
         let mut nodes = vec![Node::leaf(0, order.len() as u32)];
         let mut next = 0;

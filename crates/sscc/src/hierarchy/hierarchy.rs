@@ -1,4 +1,4 @@
-//! The tree: nodes level by level, their triangles, and how node pairs are split.
+//! The BVH: nodes level by level, their triangles, and how node pairs are split.
 
 use std::ops::Range;
 
@@ -49,10 +49,10 @@ impl Hierarchy {
         levels
     }
 
-    /// Whether a node is a bucket and not the root. Nothing is known of pairs within such a node; of the root's children
-    /// there are radii in any case.
+    /// Whether a node other than the root is a bucket or lies within one. Pairs within it have no certificates; pairs
+    /// of the root's children always do.
     pub(crate) fn is_bucket_below_root(&self, n: u32) -> bool {
-        n != 0 && self.nodes[n as usize].is_bucket()
+        n != 0 && self.nodes[n as usize].fits_in_bucket()
     }
 
     /// For each node whether it lies below a bucket that is not the root.
@@ -65,8 +65,8 @@ impl Hierarchy {
         within
     }
 
-    /// The split of a node pair: of the node with more triangles, of the first where both have as many; none where both are
-    /// leaves.
+    /// Splits a node pair: the node with more triangles (the first if equal) is replaced by its children, or the other
+    /// one if that is a leaf. None if both are leaves.
     #[inline]
     pub(crate) fn split(&self, n: u32, m: u32) -> Option<Split> {
         let (node_n, node_m) = (self.nodes[n as usize], self.nodes[m as usize]);

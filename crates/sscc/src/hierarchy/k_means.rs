@@ -1,6 +1,6 @@
 //! 4-means clustering of a node's triangles (paper, section 3).
 
-use super::features::{FEATURES, Feature};
+use super::cluster_features::{ClusterFeature, FEATURES};
 use super::node::BRANCHING;
 
 /// Iterations of k-means (docs/notes/2026-11-23-hierarchy.md).
@@ -12,15 +12,15 @@ const MAX_CHILD_NUMERATOR: usize = 7;
 const MAX_CHILD_DENOMINATOR: usize = 8;
 
 /// Reorders `triangles` into 2 to 4 clusters and returns their sizes, each positive.
-pub(super) fn cluster(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
-    let mut centres = find_starting_centres(features, triangles);
+pub(super) fn cluster(features: &[ClusterFeature], triangles: &mut [u32]) -> Vec<u32> {
+    let mut centers = find_starting_centers(features, triangles);
     let mut labels = vec![0_u8; triangles.len()];
     for iteration in 0..ITERATIONS {
         for (label, &a) in labels.iter_mut().zip(triangles.iter()) {
-            *label = find_nearest(&centres, &features[a as usize]);
+            *label = find_nearest(&centers, &features[a as usize]);
         }
         if iteration + 1 < ITERATIONS {
-            move_centres(&mut centres, features, triangles, &labels);
+            move_centers(&mut centers, features, triangles, &labels);
         }
     }
     let mut sizes = [0_u32; BRANCHING];
@@ -36,7 +36,7 @@ pub(super) fn cluster(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
 }
 
 /// Cuts into four equal parts along the widest feature: for clusters that k-means splits too unevenly.
-fn cut_evenly(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
+fn cut_evenly(features: &[ClusterFeature], triangles: &mut [u32]) -> Vec<u32> {
     let width = |i: usize| {
         let values = triangles.iter().map(|&a| features[a as usize][i]);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
@@ -53,13 +53,13 @@ fn cut_evenly(features: &[Feature], triangles: &mut [u32]) -> Vec<u32> {
 }
 
 /// Starting centres: the triangle farthest from the mean, then always the one farthest from those chosen.
-fn find_starting_centres(features: &[Feature], triangles: &[u32]) -> [Feature; BRANCHING] {
+fn find_starting_centers(features: &[ClusterFeature], triangles: &[u32]) -> [ClusterFeature; BRANCHING] {
     let mut mean = [0.0; FEATURES];
     for &a in triangles {
         mean.iter_mut().zip(&features[a as usize]).for_each(|(m, f)| *m += f);
     }
     mean.iter_mut().for_each(|m| *m /= triangles.len() as f64);
-    let farthest = |distances: &mut [f64], from: &Feature| {
+    let farthest = |distances: &mut [f64], from: &ClusterFeature| {
         let mut best = 0;
         for (i, &a) in triangles.iter().enumerate() {
             distances[i] = distances[i].min(squared_distance(from, &features[a as usize]));
@@ -69,19 +69,19 @@ fn find_starting_centres(features: &[Feature], triangles: &[u32]) -> [Feature; B
         }
         features[triangles[best] as usize]
     };
-    let mut centres = [farthest(&mut vec![f64::INFINITY; triangles.len()], &mean); BRANCHING];
+    let mut centers = [farthest(&mut vec![f64::INFINITY; triangles.len()], &mean); BRANCHING];
     let mut distances = vec![f64::INFINITY; triangles.len()];
     for i in 1..BRANCHING {
-        centres[i] = farthest(&mut distances, &centres[i - 1]);
+        centers[i] = farthest(&mut distances, &centers[i - 1]);
     }
-    centres
+    centers
 }
 
 /// The index of the nearest centre, the first of equals.
-fn find_nearest(centres: &[Feature; BRANCHING], feature: &Feature) -> u8 {
+fn find_nearest(centers: &[ClusterFeature; BRANCHING], feature: &ClusterFeature) -> u8 {
     let mut best = (f64::INFINITY, 0);
-    for (i, centre) in centres.iter().enumerate() {
-        let d = squared_distance(centre, feature);
+    for (i, center) in centers.iter().enumerate() {
+        let d = squared_distance(center, feature);
         if d < best.0 {
             best = (d, i as u8);
         }
@@ -90,20 +90,25 @@ fn find_nearest(centres: &[Feature; BRANCHING], feature: &Feature) -> u8 {
 }
 
 /// Moves each centre to the mean of its cluster; centres of empty clusters stay.
-fn move_centres(centres: &mut [Feature; BRANCHING], features: &[Feature], triangles: &[u32], labels: &[u8]) {
+fn move_centers(
+    centers: &mut [ClusterFeature; BRANCHING],
+    features: &[ClusterFeature],
+    triangles: &[u32],
+    labels: &[u8],
+) {
     let mut sums = [[0.0; FEATURES]; BRANCHING];
     let mut counts = [0.0; BRANCHING];
     for (&label, &a) in labels.iter().zip(triangles) {
         counts[label as usize] += 1.0;
         sums[label as usize].iter_mut().zip(&features[a as usize]).for_each(|(s, f)| *s += f);
     }
-    for ((centre, sum), count) in centres.iter_mut().zip(sums).zip(counts) {
+    for ((center, sum), count) in centers.iter_mut().zip(sums).zip(counts) {
         if count > 0.0 {
-            *centre = sum.map(|s| s / count);
+            *center = sum.map(|s| s / count);
         }
     }
 }
 
-fn squared_distance(a: &Feature, b: &Feature) -> f64 {
+fn squared_distance(a: &ClusterFeature, b: &ClusterFeature) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }

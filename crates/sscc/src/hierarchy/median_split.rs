@@ -99,7 +99,7 @@ mod tests {
             let parts = (hierarchy.nodes().to_vec(), hierarchy.order().to_vec());
             assert_eq!(Hierarchy::from_parts(parts.0, parts.1, count as usize).unwrap(), hierarchy);
             let leaves = hierarchy.nodes().iter().filter(|node| node.is_leaf());
-            assert!(leaves.clone().all(|leaf| leaf.is_bucket()));
+            assert!(leaves.clone().all(|leaf| leaf.fits_in_bucket()));
             assert_eq!(leaves.count(), (count as usize).div_ceil(BUCKET_TRIANGLES), "{count}");
             let again = Hierarchy::build_by_median(mesh.faces(), mesh.rest_positions());
             assert_eq!(hierarchy, again);

@@ -2,15 +2,17 @@
 //! (paper, section 3), for detectors by median splits.
 
 mod build;
-mod features;
+mod cluster_features;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod hierarchy;
 mod k_means;
 mod median_split;
 mod node;
+mod node_pair;
 mod split;
-mod validate;
+mod validation;
 
 pub use hierarchy::Hierarchy;
 pub(crate) use node::BUCKET_TRIANGLES;
 pub use node::Node;
+pub(crate) use node_pair::NodePair;

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use super::node_pair::NodePair;
+
 /// Children of an inner node: between 2 and this many.
 pub(super) const BRANCHING: usize = 4;
 
-/// A bucket is a node of at most this many triangles. Traversals end at buckets.
+/// A bucket is a node of at most this many triangles that lies within no other such node. Traversals end at buckets.
 pub(crate) const BUCKET_TRIANGLES: usize = 64;
 
 /// A node of the [`Hierarchy`](super::Hierarchy).
@@ -38,13 +40,13 @@ impl Node {
     }
 
     /// All pairs of its children, in the order (0, 1), (0, 2), ..., (2, 3).
-    pub(crate) fn child_pairs(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+    pub(crate) fn child_pairs(&self) -> impl Iterator<Item = NodePair> + use<> {
         let children = self.children();
         children.clone().flat_map(move |n| (n + 1..children.end).map(move |m| (n, m)))
     }
 
-    /// Whether the node is a bucket: a node of at most 64 triangles, at which traversals end.
-    pub fn is_bucket(&self) -> bool {
+    /// Whether the node has at most 64 triangles: it is a bucket or lies within one.
+    pub fn fits_in_bucket(&self) -> bool {
         self.triangle_count as usize <= BUCKET_TRIANGLES
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::node::Node;
+use super::node_pair::NodePair;
 
 /// A node pair (n, m) of which one node is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +35,7 @@ impl Split {
 
     /// The node pair with the child of that number (0 to 3).
     #[inline]
-    pub(crate) fn pair(&self, child: u32) -> (u32, u32) {
+    pub(crate) fn pair(&self, child: u32) -> NodePair {
         match self {
             Self::First { node, m } => (node.first_child + child, *m),
             Self::Second { n, node } => (*n, node.first_child + child),
@@ -43,7 +44,7 @@ impl Split {
 
     /// All node pairs, child by child.
     #[inline]
-    pub(crate) fn pairs(self) -> impl Iterator<Item = (u32, u32)> {
+    pub(crate) fn pairs(self) -> impl Iterator<Item = NodePair> {
         (0..self.children().len() as u32).map(move |child| self.pair(child))
     }
 }

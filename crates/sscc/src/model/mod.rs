@@ -3,11 +3,11 @@
 
 mod mesh;
 mod metric;
+pub(crate) mod mode_rows;
 mod modes;
 mod reduced_model;
 pub(crate) mod rounding;
 mod rounding_bound;
-pub(crate) mod rows;
 mod scaled_model;
 
 pub use mesh::TriMesh;

@@ -28,3 +28,11 @@ pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
 pub(crate) fn radius_down(gap: f64, rate: f64) -> f64 {
     if gap > 0.0 && rate >= 0.0 { quotient_down(gap, rate) } else { 0.0 }
 }
+
+/// A radius in single precision, rounded down.
+pub(crate) fn to_f32_down(radius: f64) -> f32 {
+    let rounded = radius as f32;
+    let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
+    let rounded = if is_above { rounded.next_down() } else { rounded };
+    rounded.clamp(0.0, f32::MAX)
+}

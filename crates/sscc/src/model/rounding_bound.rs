@@ -1,14 +1,15 @@
 //! The rounding bound of a gap: by how much the computed gap of two points of the shape along a direction may be smaller
 //! than the gap in exact arithmetic.
 //!
-//! For a direction n and the exact gap `n.(d + B z)` the bound is `at_rest(n) + per_norm(n) |z|`. It covers two errors:
+//! For a direction dir and the exact gap `dir.(d + B z)` the bound is `at_rest(dir) + per_norm(dir) |z|`. It covers two
+//! errors:
 //!
 //! - Positions are computed with r products and r sums, each rounded once. Their error is at most
-//!   `gamma_(r+1) sum_c |n_c| ((|p_a| + |p_b|)_c + sum_k (|A_a| + |A_b|)_ck |z_k|)`, plus underflow. About a centre c, p is
-//!   `|p| + |U||c|`, and the positions there are rounded once more in the same way. In a dense metric A is
+//!   `gamma_(r+1) sum_c |dir_c| ((|p_a| + |p_b|)_c + sum_k (|A_a| + |A_b|)_ck |z_k|)`, plus underflow. About a centre
+//!   c, p is `|p| + |U||c|`, and the positions there are rounded once more in the same way. In a dense metric A is
 //!   `|A||S||S^-1|`, which also covers the rounding of A itself.
-//! - The bounds of section 5 evaluate `n.d`, `B'n`, scaled modes, midpoints and box corners with a few more roundings of
-//!   the same magnitudes.
+//! - The bounds of section 5 evaluate `dir.d`, `B'dir`, scaled modes, midpoints and box corners with a few more
+//!   roundings of the same magnitudes.
 //!
 //! One gamma large enough for both serves all points of the model; Cauchy-Schwarz over k turns the sum over modes into
 //! `|z|` times the 2-norm of a row of A.
@@ -49,10 +50,10 @@ impl RoundingBound {
         }
     }
 
-    /// The rounding bound for gaps measured from one z instead of from rest, where both z have at most the given norm: the
-    /// gap is rounded at both. Twice that again covers the evaluation of bounds about z.
+    /// The rounding bound of gaps measured at one z and used at another, both of at most this norm. The gap is rounded
+    /// at both; another factor of two covers the evaluation.
     pub(crate) fn between_configurations(&self, norm: f64) -> Self {
-        let moved = right_or!(self.per_norm * norm, MarginErrorAtRest, DVec3::ZERO);
+        let moved = right_or!(self.per_norm * norm, SafeDistanceErrorAtRest, DVec3::ZERO);
         Self { at_rest: (self.at_rest + moved) * (4.0 * ROUND_UP), per_norm: self.per_norm }
     }
 

@@ -4,17 +4,17 @@
 use glam::DVec3;
 
 use super::metric::Metric;
+use super::mode_rows::padded_rank;
 use super::reduced_model::ReducedModel;
 use super::rounding::norm_up;
 use super::rounding_bound::RoundingBound;
-use super::rows::padded_rank;
 
 /// Positions at the centre (called rest in the bounds) and scaled modes of a model, laid out for the bounds.
 pub(crate) struct ScaledModel {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) faces: Vec<[u32; 3]>,
     /// The length of a row of modes: the rank, padded to whole lanes.
-    pub(crate) row: usize,
+    pub(crate) row_len: usize,
     /// For each vertex three rows (x, y, z).
     modes: Vec<f64>,
     pub(crate) rounding: RoundingBound,
@@ -27,38 +27,38 @@ impl ScaledModel {
         let rank = model.rank();
         let positions: Vec<DVec3> =
             (0..mesh.rest_positions().len() as u32).map(|i| model.position(i, center)).collect();
-        let row = padded_rank(rank);
-        let mut modes = vec![0.0; positions.len() * 3 * row];
+        let row_len = padded_rank(rank);
+        let mut modes = vec![0.0; positions.len() * 3 * row_len];
         let mut rest_reach = DVec3::ZERO;
         let mut mode_reach = DVec3::ZERO;
         let (mut scaled, mut magnitudes) = (vec![DVec3::ZERO; rank], vec![DVec3::ZERO; rank]);
         for i in mesh.used_vertices() {
-            let rows = &mut modes[i as usize * 3 * row..][..3 * row];
+            let rows = &mut modes[i as usize * 3 * row_len..][..3 * row_len];
             let of_vertex = model.modes().of_vertex(i);
             metric.scaled_modes(of_vertex, &mut scaled);
             for (k, a) in scaled.iter().enumerate() {
-                [rows[k], rows[row + k], rows[2 * row + k]] = a.to_array();
+                [rows[k], rows[row_len + k], rows[2 * row_len + k]] = a.to_array();
             }
             // The sums that lead to the positions at the centre are rounded, too.
             let moved: DVec3 = of_vertex.iter().zip(center).map(|(u, q)| (*u * *q).abs()).sum();
             let at_rest = mesh.rest_positions()[i as usize].abs();
-            rest_reach = rest_reach.max(at_rest + right_or!(moved, RestErrorWithoutCentre, DVec3::ZERO));
+            rest_reach = rest_reach.max(at_rest + right_or!(moved, RestErrorWithoutCenter, DVec3::ZERO));
             metric.magnitudes(&scaled, &mut magnitudes);
-            let norm = |axis: usize| norm_up(magnitudes.iter().map(|m| m[axis] * m[axis]).sum(), row);
+            let norm = |axis: usize| norm_up(magnitudes.iter().map(|m| m[axis] * m[axis]).sum(), row_len);
             mode_reach = mode_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
-        // A component that never moves beside others that do still needs a rounding bound above what squares
-        // lose to underflow (checked modes are largest above 2^-200, squares vanish below 2^-537).
+        // A component in which nothing moves still needs a positive rounding bound if others move: squares of numbers
+        // below 2^-537 underflow, and the largest mode is above 2^-200.
         let floor = mode_reach.max_element() * f64::EPSILON;
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());
-        Self { positions, faces: mesh.faces().to_vec(), row, modes, rounding }
+        Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding }
     }
 
     /// The modes of a vertex: three rows.
     #[inline]
     pub(crate) fn modes(&self, vertex: u32) -> &[f64] {
-        let width = 3 * self.row;
+        let width = 3 * self.row_len;
         &self.modes[vertex as usize * width..][..width]
     }
 }

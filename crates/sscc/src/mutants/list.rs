@@ -1,5 +1,5 @@
-// The list of mutations: what is wrong with each, and the test that catches it. Included by this crate, which contains
-// the wrong code, and by `cargo xtask mutants`, which runs the tests.
+// The list of mutations: the error of each, and the test that catches it. Included by this crate, which contains the
+// wrong code, and by `cargo xtask mutants`, which runs the tests.
 //
 // `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for tests within
 // the crate, `it` for those in `tests/it/`.
@@ -7,11 +7,11 @@
 
 mutants! {
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
-    KineticBallAtCentre: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
+    KineticBallAtCenter: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
     /// The rounding bound of positions about a centre omits the displacement of the centre.
-    RestErrorWithoutCentre: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
-    /// Kinetic margins grant the rounding at rest alone, not that at z.
-    MarginErrorAtRest: CaughtBy("it rounding::kinetic_margins_know_that_positions_far_from_rest_are_rounded");
+    RestErrorWithoutCenter: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
+    /// Safe distances include the rounding error at rest, but not that at z.
+    SafeDistanceErrorAtRest: CaughtBy("it rounding::kinetic_margins_know_that_positions_far_from_rest_are_rounded");
     /// Radii of the pair tree are rounded to the nearest single-precision number.
     RadiusToNearest: CaughtBy("it rounding::radii_in_single_precision_are_no_larger");
     /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
@@ -43,7 +43,7 @@ mutants! {
     /// The affine residual of two triangles omits its rounding error.
     AffineResidualExact: CaughtBy("lib bounds::affine_fit::tests::residuals_hold_what_rounding_moves_corners_by");
     /// Closing rates on a cone of directions omit the rounding error of their Gram matrix.
-    ConeExact: CaughtBy("lib bounds::cone::tests::rates_that_cancel_are_not_too_small");
+    ConeExact: CaughtBy("lib bounds::cone_rate::tests::rates_that_cancel_are_not_too_small");
     /// Safe scales omit the rounding error of positions along the line.
     LineExact: CaughtBy("it rounding::safe_scales_end_before_rounding_closes_a_gap");
     /// A |z| that equals the root's radius is certified.
@@ -52,56 +52,56 @@ mutants! {
     NodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of two children of the root is certified.
     RootPairRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
-    /// A |z| that equals a node's radius is certified in a walk of the pair tree.
+    /// A |z| that equals a node's radius is certified in a traversal of the pair tree.
     TreeNodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of a stored pair is certified.
-    TreeRadiusReached: CaughtBy("it pair_walk::what_equals_a_radius_is_not_certified");
+    TreeRadiusReached: CaughtBy("it pair_tree_traversal::what_equals_a_radius_is_not_certified");
     /// At a |z| that equals the limit of the pair tree, what is not stored is certified.
     TreeLimitReached: CaughtBy("it pair_tree::absence_means_nothing_at_the_limit");
     /// Pairs that collide at the centre are not tested.
-    ExceptionsForgotten: CaughtBy("it pair_walk::walks_find_what_brute_force_finds");
+    ExceptionsForgotten: CaughtBy("it pair_tree_traversal::traversal_finds_what_brute_force_finds");
     /// Of two triangles with a common vertex only one of the edges opposite to it is bounded.
     OneHullOfTwo: CaughtBy("it neighbours::one_vertex_neighbours_are_found_when_asked_for");
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
-    /// Triangles are told apart in single precision with half of the slack.
-    ApartSlackHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
+    /// The separating-axis test uses half of its error bound.
+    SeparatingAxisErrorHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
     /// The contour test omits its rounding bound.
-    ContourExact: CaughtBy("lib detect::boundary::tests::rounding_separates_nothing_that_touches");
+    ContourExact: CaughtBy("lib detect::contour_test::tests::rounding_separates_nothing_that_touches");
     /// The contour test omits the rounding error of coordinates.
-    ContourCoordinatesExact: CaughtBy("lib detect::boundary::tests::rounding_separates_nothing_that_touches");
+    ContourCoordinatesExact: CaughtBy("lib detect::contour_test::tests::rounding_separates_nothing_that_touches");
     /// The contour test omits the rounding error of products.
     ContourProductsExact: Covered("the second term of the error is large enough for products, too");
     /// Boxes omit the rounding error of positions.
     BoxesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// The error bound of positions in single precision omits quantization.
-    CoarseSharesExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
+    QuantizationExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
     CoarseTrianglesNotWidened: CaughtBy("it rounding::what_touches_exactly_is_met_in_single_precision");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
-    /// The boxes of triangles on the way from one q to another are those at its start.
-    SweptTrianglesAtOneEnd: CaughtBy("it pair_walk::walks_find_what_brute_force_finds");
-    /// The boxes of nodes on the way from one q to another are those at its start.
-    SweptNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
-    /// The boxes in single precision of nodes on the way from one q to another are those at its start.
-    SweptCoarseNodesAtOneEnd: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
-    /// The norm of the way from one q to another is that of its end.
-    SweptNormAtOneEnd: CaughtBy("it continuous::times_of_simple_motions");
+    /// Swept AABBs of triangles contain the start only.
+    SweptTrianglesAtStart: CaughtBy("it pair_tree_traversal::traversal_finds_what_brute_force_finds");
+    /// Swept AABBs of nodes contain the start only.
+    SweptNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
+    /// Swept AABBs of nodes in single precision contain the start only.
+    SweptCoarseNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
+    /// The norm of a continuous query is that of its end.
+    SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
     /// Vertices go half as far in a kinetic ball.
     BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// Nodes go half as far in a kinetic ball.
     BallNodesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// A kinetic ball omits the rounding error of positions.
     BallExact: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
-    /// The path length of z is not rounded up.
-    WayToNearest: CaughtBy("lib query::kinetic::active_pairs::tests::the_travelled_distance_is_never_short");
-    /// A margin that is used up exactly still holds.
-    MarginReached: Covered("the end of a margin has been rounded down");
+    /// The travelled distance of z is not rounded up.
+    TravelledToNearest: CaughtBy("lib query::kinetic::ball_pairs::tests::the_travelled_distance_is_never_short");
+    /// A safe distance that is exactly used up still holds.
+    SafeDistanceReached: Covered("the end of a safe distance has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("it impact_tolerance::what_touches_at_the_end_is_listed");
     /// The error bound of a rounded number omits its own rounding.
-    BoundedExact: CaughtBy("lib geometry::ccd::tests::both_kinds_agree_with_rational_arithmetic");
+    BoundedExact: CaughtBy("lib geometry::ccd::number_tests::both_kinds_agree_with_rational_arithmetic");
     /// Pairs that rounded directions do not settle are listed at the time reached.
     FeaturesNotFollowed: CaughtBy("it impact_tolerance::thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.

@@ -4,7 +4,7 @@
 //! the wrong one:
 //!
 //! ```text
-//! let norm = right_or!(up(ends.norm + radius), KineticBallAtCentre, ends.norm);
+//! let norm = right_or!(up(ends.norm + radius), KineticBallAtCenter, ends.norm);
 //! ```
 //!
 //! Without the feature `mutants`, and in every build without debug assertions, the macro expands to its first argument

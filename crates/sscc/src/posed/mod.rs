@@ -1,5 +1,6 @@
 //! Shapes in the world, one against another (paper, section 7: collisions between objects).
 
+mod half_space;
 mod pose;
 mod posed_motion;
 mod posed_shape;

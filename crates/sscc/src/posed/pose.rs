@@ -26,9 +26,9 @@ impl Pose {
         self.rotation * x + self.translation
     }
 
-    /// A box around the world positions of all points of a box; `rounding` bounds the rounding error.
+    /// An AABB of the world positions of all points of an AABB; `rounding` bounds the rounding error.
     #[inline]
-    pub(super) fn enclose(&self, Aabb { lower, upper }: Aabb, rounding: f64) -> Aabb {
+    pub(super) fn apply_to_aabb(&self, Aabb { lower, upper }: Aabb, rounding: f64) -> Aabb {
         let [x, y, z] = [self.rotation.x_axis, self.rotation.y_axis, self.rotation.z_axis].map(DVec3::abs);
         let half = (upper - lower) * 0.5;
         let half = x * half.x + y * half.y + z * half.z + DVec3::splat(rounding);

@@ -1,4 +1,4 @@
-//! Deformed positions in the world: the vertex motion of posed shapes.
+//! DeformedMotion positions in the world: the vertex motion of posed shapes.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use crate::geometry::Aabb;
 pub(super) struct PosedMotion {
     pub(super) q: Vec<f64>,
     pub(super) pose: Pose,
-    /// A box around about all shapes that are compared.
+    /// An AABB of approximately all shapes compared.
     pub(super) around: Aabb,
     /// An upper bound of the magnitude of every term of every position in the world.
     pub(super) reach: f64,
@@ -26,7 +26,7 @@ impl VertexMotion<1> for PosedMotion {
         rounding_bound(self.reach, self.q.len())
     }
 
-    fn whole(&self, _: &Layout) -> Aabb {
+    fn overall_aabb(&self, _: &Layout) -> Aabb {
         self.around
     }
 
@@ -47,9 +47,9 @@ impl VertexMotion<1> for PosedMotion {
     }
 
     #[inline]
-    fn node_box(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
         let rounding = self.rounding();
         let own = layout.bd_tree.at(node, [&self.q], DVec3::splat(rounding));
-        own.map(|aabb| self.pose.enclose(aabb, rounding))
+        own.map(|aabb| self.pose.apply_to_aabb(aabb, rounding))
     }
 }

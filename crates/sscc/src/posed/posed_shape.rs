@@ -8,12 +8,13 @@ use super::pose::Pose;
 use super::posed_motion::PosedMotion;
 use crate::detect::broad_phase::Counters;
 use crate::detect::context::Context;
-use crate::detect::layout::{Layout, Needs};
+use crate::detect::layout::Needs;
 use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::two_meshes::{Side, traverse_two_meshes};
 use crate::detect::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
+use crate::hierarchy::NodePair;
 use crate::{Certificates, Error, Pair, ReducedModel, limits};
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
@@ -22,12 +23,12 @@ use crate::{Certificates, Error, Pair, ReducedModel, limits};
 #[derive(Clone)]
 pub struct PosedShape<'a> {
     model: &'a ReducedModel,
-    context: Context<'a>,
-    volumes: NodeVolumes<1>,
-    motion: PosedMotion,
+    pub(super) context: Context<'a>,
+    pub(super) volumes: NodeVolumes<1>,
+    pub(super) motion: PosedMotion,
     /// Whether the volumes are those of this motion.
     is_current: bool,
-    stack: Vec<Pair>,
+    pub(super) stack: Vec<NodePair>,
     hits: DiscreteHits,
 }
 
@@ -47,7 +48,7 @@ impl<'a> PosedShape<'a> {
         Ok(Self { model, context, volumes, motion, is_current: false, stack: Vec::new(), hits: DiscreteHits::default() })
     }
 
-    /// Deforms and moves the shape, and returns a box around it in the world, at a cost of O(r).
+    /// Deforms and moves the shape, and returns an AABB of it in the world, at a cost of O(r).
     ///
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
@@ -64,12 +65,12 @@ impl<'a> PosedShape<'a> {
         self.is_current = false;
         let rounding = self.motion.rounding();
         let whole = self.volumes.layout.bd_tree.root([q], DVec3::splat(rounding));
-        Ok(pose.enclose(whole, rounding))
+        Ok(pose.apply_to_aabb(whole, rounding))
     }
 
-    /// Adds all pairs (triangle of this shape, triangle of the other one) that have a point in common, sorted;
-    /// touching counts. `around`: a box around about all shapes that are compared. Any box is right; volumes are computed
-    /// once after each [`PosedShape::place`] while it stays the same.
+    /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
+    /// Touching counts. `around` is an AABB of approximately all shapes compared. It affects speed only; while it stays
+    /// the same, AABBs are computed once after each [`PosedShape::place`].
     pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
         let first = found.len();
         self.enter(around);
@@ -79,45 +80,8 @@ impl<'a> PosedShape<'a> {
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
         // Nobody cancels: the contexts have no progress.
         let _ = traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
-        found.extend_from_slice(&self.hits.0.found);
+        found.extend_from_slice(&self.hits.0.hits);
         found[first..].sort_unstable();
-    }
-
-    /// Adds the used vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
-    pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
-        let first = found.len();
-        let Layout { vertices, buckets, bd_tree, .. } = &*self.volumes.layout;
-        let PosedMotion { q, pose, .. } = &self.motion;
-        let local = pose.rotation.transpose() * normal;
-        let height = height - normal.dot(pose.translation);
-        let rounding = DVec3::splat(self.motion.rounding());
-        self.stack.clear();
-        self.stack.push((0, 0));
-        while let Some((n, _)) = self.stack.pop() {
-            let is_above = bd_tree.at(n, [q], rounding).is_some_and(|Aabb { lower, upper }| {
-                let half = (upper - lower) * 0.5;
-                local.dot((upper + lower) * 0.5) - local.abs().dot(half) > height
-            });
-            if is_above {
-                continue;
-            }
-            if let Some(bucket) = buckets.of_node(n) {
-                let below = |v: &&u32| local.dot(vertices.position(**v, [q])[0]) < height;
-                found.extend(buckets.vertices(bucket).iter().filter(below).map(|v| vertices.mesh_vertex(*v)));
-            } else {
-                self.stack.extend(self.context.hierarchy.nodes()[n as usize].children().map(|n| (n, 0)));
-            }
-        }
-        // Buckets have vertices in common.
-        found[first..].sort_unstable();
-        let mut kept = first;
-        for i in first..found.len() {
-            if kept == first || found[kept - 1] != found[i] {
-                found[kept] = found[i];
-                kept += 1;
-            }
-        }
-        found.truncate(kept);
     }
 
     /// The corners of a triangle in the world, bit for bit those of all answers.
@@ -132,7 +96,7 @@ impl<'a> PosedShape<'a> {
             self.motion.around = around;
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);
-            self.volumes.enclose(0, &self.motion);
+            self.volumes.update_node(0, &self.motion);
         }
     }
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::query::Query;
 use super::statistics::Statistics;
-use crate::threads::on_threads;
+use crate::thread_pool::on_threads;
 use crate::{Error, Pair, Progress};
 
 /// The answer for one q of a batch.

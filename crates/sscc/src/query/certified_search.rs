@@ -1,5 +1,5 @@
-//! Which traversal a search makes at a norm: of the pair tree where that is complete, else by Algorithm 1 with the
-//! certificates of nodes, else without certificates.
+//! Chooses the traversal at a norm: of the pair tree if it is complete there, else Algorithm 1 with the certificates of
+//! nodes, else without certificates.
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;

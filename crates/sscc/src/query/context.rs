@@ -1,4 +1,5 @@
-//! State shared by all queries on one model: what the detector needs, the certificates, and their scope.
+//! State shared by all queries on one model: detector context, certificates, scope. It decides which certificates hold
+//! at a norm.
 
 use std::borrow::Cow;
 
@@ -61,9 +62,8 @@ impl<'a> QueryContext<'a> {
         self.is_root_certified(norm) && self.detect.exceptions.is_empty()
     }
 
-    /// Whether the root's certificate alone proves the shape free at this norm, exceptions apart. Like any radius, the
-    /// root's proves nothing at a norm that equals it: where it is 0, the shape may collide at the centre. (Other norms are
-    /// rounded up strictly, so equality would do no harm.)
+    /// Whether the root's certificate holds at this norm (exceptions are not covered). A norm equal to the radius
+    /// proves nothing: at radius 0 the shape may collide at the centre.
     #[inline]
     pub(super) fn is_root_certified(&self, norm: f64) -> bool {
         let parts = self.used_certificates();

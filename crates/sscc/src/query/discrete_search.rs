@@ -1,12 +1,13 @@
 //! The discrete search: colliding pairs at one configuration.
 
 use super::certified_search::CertifiedSearch;
+use super::configuration::Configuration;
 use super::context::QueryContext;
 use super::method::Method;
 use super::statistics::Statistics;
 use crate::Error;
 use crate::detect::narrow_phase::DiscreteHits;
-use crate::detect::vertex_motion::Deformed;
+use crate::detect::vertex_motion::DeformedMotion;
 
 /// Finds the pairs that collide at q, and owns the memory for it.
 #[derive(Clone)]
@@ -57,7 +58,7 @@ impl DiscreteSearch {
         if context.method == Method::BruteForce {
             certified.broad.brute_force(&context.detect, |v| [context.model.position(v, q)], narrow);
         } else {
-            let motion = Deformed::new([q], reach);
+            let motion = DeformedMotion::new([q], reach);
             certified.broad.begin_volumes(&context.detect, &motion);
             certified.broad.test_exceptions(&context.detect, &motion, narrow);
             if !is_root_certified {
@@ -65,17 +66,7 @@ impl DiscreteSearch {
             }
         }
         certified.broad.end(narrow)?;
-        narrow.0.found.sort_unstable();
+        narrow.0.hits.sort_unstable();
         Ok(())
     }
-}
-
-/// A q that is a configuration of the model.
-#[derive(Clone, Copy)]
-pub(super) struct Configuration<'q> {
-    pub(super) q: &'q [f64],
-    /// `|z|` in the metric and about the centre of the scope, rounded up.
-    pub(super) norm: f64,
-    /// An upper bound of the magnitude of every term of every position.
-    pub(super) reach: f64,
 }

@@ -1,21 +1,23 @@
 //! Queries: which pairs of triangles collide at q, or between two q, with traversals that certificates cull (paper,
 //! Algorithm 1 and section 7).
 
+mod approximate_cones;
 mod batch;
 mod certified_search;
 mod certified_traversal;
+mod configuration;
 mod context;
+mod continuous;
+mod discrete_between;
 mod discrete_search;
 mod kinetic;
 mod method;
-mod node_pair;
 mod pair_tree_traversal;
 mod query;
-mod root_ball;
 mod safe_scale;
 mod statistics;
-mod swept;
 mod swept_search;
+mod valid_ball;
 
 pub use batch::Answer;
 pub use kinetic::KineticQuery;

@@ -1,14 +1,15 @@
 //! The traversal of the certified pair tree: only node pairs whose radius is reached are opened.
 //!
-//! Every path down the tree comes through one pair of buckets, or one bucket, because the larger node is split first.
-//! There the traversal ends (docs/notes/2026-11-23-pair-tree-traversal.md).
+//! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
+//! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
+use crate::PairTree;
 use crate::certificates::StoredPair;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::VertexMotion;
-use crate::{Pair, PairTree};
+use crate::hierarchy::NodePair;
 
 /// Nodes and node pairs still to be visited.
 #[derive(Clone, Default)]
@@ -17,7 +18,7 @@ pub(super) struct PairTreeStack(Vec<Visit>);
 /// A node `(n, n)` or a node pair `(n, m)` whose radius is reached.
 #[derive(Clone, Copy)]
 struct Visit {
-    nodes: Pair,
+    nodes: NodePair,
     /// The entry of a node pair in the tree; [`NODE`] for a node.
     entry: u32,
 }
@@ -66,17 +67,17 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             let children = node.children().filter(is_reached);
             stack.extend(children.map(|child| Visit { nodes: (child, child), entry: NODE }));
             let mut pairs = node.child_pairs().enumerate();
-            for StoredPair { place, entry: stored } in tree.of_node(n) {
+            for StoredPair { index, entry: stored } in tree.of_node(n) {
                 if let Some((_, nodes)) = pairs.find(|(which, _)| *which == stored.which() as usize)
                     && is_entry_reached!(stored, norm)
                 {
-                    stack.push(Visit { nodes, entry: place });
+                    stack.push(Visit { nodes, entry: index });
                 }
             }
             continue;
         }
         broad.counters.box_tests += 1;
-        [n, m].iter().for_each(|n| broad.volumes.enclose(*n, motion));
+        [n, m].iter().for_each(|n| broad.volumes.update_node(*n, motion));
         if !broad.volumes.node(n).overlaps(broad.volumes.node(m)) {
             continue;
         }
@@ -87,9 +88,9 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         }
         broad.counters.opened += 1;
         if let Some(split) = context.hierarchy.split_above_buckets(n, m) {
-            for StoredPair { place, entry: stored } in tree.below(entry) {
+            for StoredPair { index, entry: stored } in tree.below(entry) {
                 if is_entry_reached!(stored, norm) {
-                    stack.push(Visit { nodes: split.pair(stored.which()), entry: place });
+                    stack.push(Visit { nodes: split.pair(stored.which()), entry: index });
                 }
             }
         }

@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
+use super::configuration::Configuration;
 use super::context::QueryContext;
-use super::discrete_search::{Configuration, DiscreteSearch};
+use super::discrete_search::DiscreteSearch;
 use super::method::Method;
-use super::root_ball::RootBall;
 use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
+use super::valid_ball::ValidBall;
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
 use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
@@ -28,7 +29,7 @@ pub struct Query<'a> {
     pub(super) swept: Option<Box<SweptSearch>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
-    pub(super) root_ball: RootBall,
+    pub(super) valid_ball: ValidBall,
     /// Scratch for `q - center`; empty where the centre is 0.
     offset: Vec<f64>,
 }
@@ -85,9 +86,9 @@ impl<'a> Query<'a> {
         let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
         let context = QueryContext::new(model, certificates, scope, hierarchy, method);
         let discrete = DiscreteSearch::new(&context);
-        let root_ball = RootBall::new(&context);
+        let valid_ball = ValidBall::new(&context);
         let statistics = Statistics::default();
-        Self { context, discrete, swept: None, norm: 0.0, statistics, root_ball, offset }
+        Self { context, discrete, swept: None, norm: 0.0, statistics, valid_ball, offset }
     }
 
     /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
@@ -113,7 +114,7 @@ impl<'a> Query<'a> {
     /// As [`Query::discrete`].
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
         self.statistics = Statistics::default();
-        self.discrete.narrow.0.found.clear();
+        self.discrete.narrow.0.hits.clear();
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
         // Most queries of a simulation end here, so nothing but the answer is reset before.
@@ -123,7 +124,7 @@ impl<'a> Query<'a> {
             self.discrete.begin(limit);
             self.discrete.find(&self.context, configuration, &mut self.statistics)?;
         }
-        Ok(&self.discrete.narrow.0.found)
+        Ok(&self.discrete.narrow.0.hits)
     }
 
     /// One colliding pair at q, if there is any; which one is not fixed.
@@ -160,15 +161,15 @@ impl<'a> Query<'a> {
         } else {
             scope.metric.norm_from(q, &scope.center, &mut self.offset)
         };
-        let is_within = norm < self.root_ball.radius;
+        let is_within = norm < self.valid_ball.radius;
         let reach =
-            if is_within { self.root_ball.reach } else { self.context.model.check_coordinates(q)? };
+            if is_within { self.valid_ball.reach } else { self.context.model.check_coordinates(q)? };
         Ok(Configuration { q, norm, reach })
     }
 
     /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.
     pub fn pairs(&self) -> &[Pair] {
-        &self.discrete.narrow.0.found
+        &self.discrete.narrow.0.hits
     }
 
     /// The cost of the last query.

@@ -1,16 +1,16 @@
-//! The safe scale: how far along the line from the centre to q the shape is proven free. Conservative advancement, best-first
-//! over the hierarchy.
+//! The safe scale: how far along the line from the centre to q the shape is proven free. Best-first search over the
+//! hierarchy; triangle pairs by conservative advancement.
 
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
 use super::query::Query;
-use crate::bounds::{Line, MovingAabb};
+use crate::bounds::{ConfigurationLine, MovingAabb};
 use crate::certificates::StoredPair;
 use crate::geometry::Aabb;
-use crate::heap::MinFirst;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
+use crate::min_heap::MinHeapEntry;
 use crate::{Certificates, Error, Pair, PairTree};
 
 impl Query<'_> {
@@ -28,25 +28,25 @@ impl Query<'_> {
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
         self.begin(usize::MAX);
         self.norm = self.measure(q)?.norm;
-        let path = Line::new(self.context.model, &self.context.scope.center, q);
+        let line = ConfigurationLine::new(self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
-        let mut best = (global / self.norm).min(path.farthest) * DOWN;
+        let mut best = (global / self.norm).min(line.farthest) * DOWN;
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
-        let boxes =
-            PathBoxes::new(&path, &self.context.detect.hierarchy, self.context.model.mesh().faces());
+        let aabbs =
+            LineAabbs::new(&line, &self.context.detect.hierarchy, self.context.model.mesh().faces());
         for &(x, y) in self.context.certificates.map_or(&[][..], Certificates::exceptions) {
             if self.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            best = best.min(self.follow(&path, (x, y), 0.0, best));
+            best = best.min(self.advance(&line, (x, y), 0.0, best));
         }
         let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
         let mut waiting = BinaryHeap::new();
-        waiting.push(MinFirst { key: self.certified_scale(0), tie: (0, 0), item: NONE });
+        waiting.push(MinHeapEntry { key: self.certified_scale(0), order: (0, 0), item: NONE });
         // Best first: a pair is advanced only a little farther than the scale up to which all others are free.
-        while let Some(MinFirst { key: lower, tie: (n, m), item: place }) = waiting.pop() {
+        while let Some(MinHeapEntry { key: lower, order: (n, m), item: index }) = waiting.pop() {
             if lower >= best {
                 break;
             }
@@ -54,45 +54,45 @@ impl Query<'_> {
                 return Err(Error::Cancelled);
             }
             self.statistics.opened += 1;
-            let mut consider = |(n, m): Pair, place: u32, bound: f64, best: f64| {
+            let mut consider = |(n, m): NodePair, index: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
                 if lower < best {
-                    waiting.push(MinFirst { key: lower, tie: (n, m), item: place });
+                    waiting.push(MinHeapEntry { key: lower, order: (n, m), item: index });
                 }
             };
             let [node_n, node_m] = [n, m].map(|n| self.context.detect.hierarchy.nodes()[n as usize]);
             let hierarchy = &self.context.detect.hierarchy;
             if let Some(split) = hierarchy.split(n, m).filter(|_| n != m) {
                 let ends =
-                    place == UNKNOWN || (place != NONE && hierarchy.split_above_buckets(n, m).is_none());
+                    index == UNKNOWN || (index != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
                     [(UNKNOWN, 0.0); MAX_SIBLINGS]
                 } else {
-                    let stored = tree.filter(|_| place != NONE).map(|tree| tree.below(place));
+                    let stored = tree.filter(|_| index != NONE).map(|tree| tree.below(index));
                     self.certified_pairs(tree, stored.into_iter().flatten())
                 };
-                for (pair, (place, bound)) in split.pairs().zip(certified) {
-                    consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
+                for (pair, (index, bound)) in split.pairs().zip(certified) {
+                    consider(pair, index, bound.max(aabbs.separated_until(&line, pair)), best);
                 }
             } else if node_n.is_leaf() {
                 let goal = (lower * LOOK_AHEAD).max(best * MIN_GOAL).min(best);
                 let triangles = |node| self.context.detect.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
                     // Most triangles of a leaf stay clear of the whole other leaf.
-                    let box_x = &boxes.triangles[x as usize];
-                    if n != m && path.aabbs_separated_until(box_x, &boxes.nodes[m as usize]) >= goal {
+                    let aabb_x = &aabbs.triangles[x as usize];
+                    if n != m && line.aabbs_separated_until(aabb_x, &aabbs.nodes[m as usize]) >= goal {
                         continue;
                     }
                     let first = if n == m { i + 1 } else { 0 };
                     for &y in &triangles(&node_m)[first..] {
                         self.statistics.box_tests += 1;
-                        if path.aabbs_separated_until(box_x, &boxes.triangles[y as usize]) < goal {
+                        if line.aabbs_separated_until(aabb_x, &aabbs.triangles[y as usize]) < goal {
                             self.statistics.triangle_tests += 1;
-                            best = best.min(self.follow(&path, (x, y), lower, goal.min(best)));
+                            best = best.min(self.advance(&line, (x, y), lower, goal.min(best)));
                         }
                     }
                 }
-                consider((n, m), place, goal, best);
+                consider((n, m), index, goal, best);
             } else {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);
@@ -103,11 +103,11 @@ impl Query<'_> {
                     let stored = tree.map(|tree| tree.of_node(n));
                     self.certified_pairs(tree, stored.into_iter().flatten())
                 };
-                for (which, (pair, (place, bound))) in node_n.child_pairs().zip(certified).enumerate() {
+                for (which, (pair, (index, bound))) in node_n.child_pairs().zip(certified).enumerate() {
                     let radii =
                         self.context.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
                     let bound = radii.map_or(bound, |radii| bound.max(self.scale(radii[which])));
-                    consider(pair, place, bound.max(boxes.apart(&path, pair)), best);
+                    consider(pair, index, bound.max(aabbs.separated_until(&line, pair)), best);
                 }
             }
         }
@@ -128,8 +128,8 @@ impl Query<'_> {
         stored: impl Iterator<Item = StoredPair>,
     ) -> [(u32, f64); MAX_SIBLINGS] {
         let mut all = [(NONE, self.scale(tree.map_or(0.0, PairTree::limit))); MAX_SIBLINGS];
-        for StoredPair { place, entry } in stored {
-            all[entry.which() as usize] = (place, self.scale(f64::from(entry.radius)));
+        for StoredPair { index, entry } in stored {
+            all[entry.which() as usize] = (index, self.scale(f64::from(entry.radius)));
         }
         all
     }
@@ -140,14 +140,14 @@ impl Query<'_> {
         if radius > 0.0 && scale >= f64::MIN_POSITIVE { scale * DOWN } else { 0.0 }
     }
 
-    /// Advances two triangles that do not collide before `t`: infinite if they do not before `goal` either, or do not
-    /// count; else a scale below which they do not, close to where they collide.
-    fn follow(&self, path: &Line, (x, y): Pair, t: f64, goal: f64) -> f64 {
+    /// Advances two triangles that do not collide before `t`. Infinite if they do not collide before `goal` or do not
+    /// count; else a scale below which they do not collide, close to the contact.
+    fn advance(&self, line: &ConfigurationLine, (x, y): Pair, t: f64, goal: f64) -> f64 {
         if self.context.detect.filter.is_excluded(x, y) {
             return f64::INFINITY;
         }
         let hulls = self.context.detect.filter.hulls(x, y);
-        hulls.map(|hulls| path.advance(hulls.a, hulls.b, t, goal)).fold(f64::INFINITY, f64::min)
+        hulls.map(|hulls| line.advance(hulls.a, hulls.b, t, goal)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -160,26 +160,26 @@ const LOOK_AHEAD: f64 = 1.5;
 /// ... but at least up to this share of the best known scale.
 const MIN_GOAL: f64 = 1.0 / 64.0;
 
-/// The entry of a node, and of a node pair that is certified up to the limit of the pair tree.
+/// No entry: a node, or a node pair that is certified up to the limit of the pair tree.
 const NONE: u32 = u32::MAX;
 
-/// The entry of a node pair that the pair tree does not cover: within a bucket, and below its leaves.
+/// Outside the pair tree: a node pair within a bucket, or below a pair of buckets.
 const UNKNOWN: u32 = u32::MAX - 1;
 
 /// A node has at most four children, hence six pairs of them.
 const MAX_SIBLINGS: usize = 6;
 
-/// For each node and each triangle the box of its vertices at the centre and that of their velocities.
-struct PathBoxes {
+/// For each node and each triangle the AABBs of its vertices at the centre and of their velocities.
+struct LineAabbs {
     nodes: Vec<MovingAabb>,
     triangles: Vec<MovingAabb>,
 }
 
-impl PathBoxes {
-    fn new(path: &Line, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
+impl LineAabbs {
+    fn new(line: &ConfigurationLine, hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Self {
         let of_face = |face: &[u32; 3]| {
             let of = |all: &[DVec3]| Aabb::of_triangle(face.map(|v| all[v as usize]));
-            MovingAabb { positions: of(&path.positions), velocities: of(&path.velocities) }
+            MovingAabb { positions: of(&line.positions), velocities: of(&line.velocities) }
         };
         let triangles: Vec<MovingAabb> = faces.iter().map(of_face).collect();
         let mut nodes = vec![MovingAabb::EMPTY; hierarchy.nodes().len()];
@@ -197,8 +197,8 @@ impl PathBoxes {
         Self { nodes, triangles }
     }
 
-    /// A scale below which some axis separates the two nodes all the way.
-    fn apart(&self, path: &Line, (n, m): Pair) -> f64 {
-        path.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
+    /// A scale below which one axis separates the two nodes.
+    fn separated_until(&self, line: &ConfigurationLine, (n, m): NodePair) -> f64 {
+        line.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }
 }

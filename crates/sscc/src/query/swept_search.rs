@@ -1,13 +1,13 @@
 //! The swept search: triangles that have a point in common on the straight lines between two configurations.
 
 use super::certified_search::CertifiedSearch;
+use super::configuration::Configuration;
 use super::context::QueryContext;
-use super::discrete_search::Configuration;
 use super::method::Method;
 use super::statistics::Statistics;
 use crate::Error;
 use crate::detect::narrow_phase::SweptHits;
-use crate::detect::vertex_motion::Deformed;
+use crate::detect::vertex_motion::DeformedMotion;
 
 /// Finds the impacts between two configurations, and owns the memory for it.
 #[derive(Clone)]
@@ -41,7 +41,7 @@ impl SweptSearch {
                 let positions = |v| [t0.q, t1.q].map(|q| context.model.position(v, q));
                 certified.broad.brute_force(&context.detect, positions, narrow);
             } else {
-                let motion = Deformed::new([t0.q, t1.q], t0.reach.max(t1.reach));
+                let motion = DeformedMotion::new([t0.q, t1.q], t0.reach.max(t1.reach));
                 certified.broad.begin_volumes(&context.detect, &motion);
                 certified.broad.test_exceptions(&context.detect, &motion, narrow);
                 if !statistics.root_certified {
@@ -50,7 +50,7 @@ impl SweptSearch {
             }
             statistics.set_counters(&certified.broad.counters);
             certified.broad.end(narrow)?;
-            narrow.0.found.sort_unstable_by_key(|impact| impact.pair);
+            narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
         }
         statistics.complete = narrow.0.is_complete();
         Ok(())

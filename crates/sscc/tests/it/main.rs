@@ -17,6 +17,6 @@ mod kinetic;
 mod neighbours;
 mod normal_cones;
 mod pair_tree;
-mod pair_walk;
+mod pair_tree_traversal;
 mod rounding;
 mod safe_scale;

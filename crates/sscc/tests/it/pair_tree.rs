@@ -183,7 +183,7 @@ fn damaged_trees_are_refused() {
     }
     assert!(entries[child].0 > 0.0);
     assert_eq!(with(&|e| e[child].0 = 0.0), "pair tree: a pair's radius exceeds that of a child");
-    assert_eq!(with(&|e| e[leaves].1 |= 1), "pair tree: a pair of small nodes has children");
+    assert_eq!(with(&|e| e[leaves].1 |= 1), "pair tree: a pair of buckets has children");
     assert_eq!(with(&|e| e[inner].1 += 1), "pair tree: lists of siblings are out of order");
     assert_eq!(with(&|e| e[inner].1 &= !START), "pair tree: lists of siblings are out of order");
     assert_eq!(with(&|e| e[child].1 |= 7 << 28), "pair tree: a child is listed twice or does not exist");

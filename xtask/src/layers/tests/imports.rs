@@ -1,8 +1,8 @@
-//! What is an import, and of which file.
+//! Tests which paths are imports, and of which file.
 
 use super::tree::Tree;
 
-/// What is wrong with `low`, which must not import `high`; `high.rs` defines `f`, `T` and `m!`.
+/// Returns the violations of `low`, which must not import `high`; `high.rs` defines `f`, `T` and `m!`.
 fn low(text: &str) -> Vec<String> {
     let high = "pub fn f() {}\npub struct T;\n#[macro_export]\nmacro_rules! m { () => {}; }\n";
     let files = [("lib.rs", "pub mod high;\npub mod low;\n"), ("high.rs", high), ("low.rs", text)];
@@ -44,7 +44,7 @@ fn every_way_to_name_an_item_is_an_import() {
 }
 
 #[test]
-fn what_is_for_tests_or_names_nothing_of_the_crate_is_no_import() {
+fn items_for_tests_and_foreign_names_are_not_imports() {
     let legal = [
         "#[cfg(test)]\nuse crate::high::f;",
         "#[cfg(test)]\nmod tests { use crate::high::*; }",
@@ -73,7 +73,7 @@ fn re_exports_are_followed_to_the_file_that_defines_the_item() {
     let tree = Tree::new(r#"a = ["low", "high"]"#, &files);
     let line = "a/src/low.rs:3: imports crate::Shown (a/src/high/part.rs): low is below high in layers.toml";
     assert_eq!(tree.violations(), [line]);
-    // Down the order the same is fine: lib.rs, which imports both, is not in between.
+    // The same import is legal down the order: lib.rs, which imports both files, is not involved.
     tree.write("layers.toml", "crates = [\"a\"]\n[modules]\na = [\"high\", \"low\"]\n");
     assert_eq!(tree.violations(), [""; 0]);
 }
@@ -97,7 +97,7 @@ fn functions_of_a_type_are_in_the_file_of_their_impl_block() {
         a/src/high.rs:1: imports crate::low::Made (a/src/low.rs)\n    \
         a/src/low.rs:4: imports Self::f (a/src/high.rs)";
     assert_eq!(tree.violations(), [line, circle]);
-    // A type that a macro makes has no line of its own; its module's file stands for it.
+    // A type that a macro makes is an item of the module's file.
     tree.write("a/src/low.rs", "pub struct T;\nmake!(Made);\n");
     assert_eq!(tree.violations(), [""; 0]);
     tree.write("a/src/low.rs", "pub struct T;\nmake!(Made);\n\nfn m() { super::low::Made::g() }\n");

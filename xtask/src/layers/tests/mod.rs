@@ -1,4 +1,4 @@
-//! The tool on small workspaces, each in a folder of its own, and on this one.
+//! Tests of the tool on small workspaces in temporary folders, and on this one.
 
 mod imports;
 mod rules;

@@ -1,4 +1,4 @@
-//! Each rule, broken and kept.
+//! Tests of each rule, with and without a violation.
 
 use super::super::order::Order;
 use super::super::rules::check;
@@ -11,7 +11,7 @@ fn legal_code_passes() {
         ("lib.rs", "#[macro_use]\nmod base;\nmod middle;\nmod top;\npub use top::{Top, run};\n"),
         ("main.rs", "fn main() { a::run() }\n"),
         ("base.rs", "pub struct Base;\npub fn base() {}\nmacro_rules! or { ($x:expr) => { $x }; }\n"),
-        // A folder whose own file uses its children; they use each other through it, by its re-exports.
+        // The file of a folder imports its children, and these import each other by its re-exports.
         (
             "middle/mod.rs",
             "mod left;\nmod right;\npub use left::left;\nuse right::right;\npub fn middle() { right() }\n",

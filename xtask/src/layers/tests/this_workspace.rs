@@ -1,4 +1,4 @@
-//! Whether this workspace keeps its layers.
+//! Tests that this workspace has no violation.
 
 use std::path::Path;
 

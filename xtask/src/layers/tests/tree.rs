@@ -1,4 +1,4 @@
-//! A small workspace to try rules on.
+//! A small workspace on which the tests try the rules.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::super::rules::check;
 pub struct Tree(TempDir);
 
 impl Tree {
-    /// With these files and this order of modules.
+    /// Creates a workspace with this order of modules and these files.
     pub fn new(order: &str, files: &[(&str, &str)]) -> Self {
         let tree = Self(tempfile::tempdir().unwrap());
         tree.write("Cargo.toml", "[workspace]\nmembers = [\"a\"]\n");
@@ -37,7 +37,7 @@ impl Tree {
         (Workspace::read(self.0.path()).unwrap(), Order::read(self.0.path()).unwrap())
     }
 
-    /// All messages.
+    /// Returns the messages of all violations.
     pub fn violations(&self) -> Vec<String> {
         let (workspace, order) = self.read();
         check(&workspace, &order).into_iter().map(|violation| violation.message).collect()

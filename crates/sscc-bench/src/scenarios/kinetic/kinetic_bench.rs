@@ -1,4 +1,4 @@
-//! `kinetic`: the cost of queries that follow a motion in small steps.
+//! Scenario `kinetic`: the cost of queries along a motion in small steps.
 
 use std::iter;
 
@@ -15,18 +15,18 @@ use crate::record::Means;
 use crate::sampling::{Strata, Stratum, weighted_mean};
 use crate::setup::Setup;
 
-/// Steps in a second: each is a sample of sound.
+/// Steps per second; each is a sample of sound.
 const RATE: f64 = 44_100.0;
 
-/// Natural frequencies of the first mode (Hz) beside the spring's own: stiffer materials.
+/// Natural frequencies of the first mode (Hz) of stiffer materials, beside the spring's own.
 const STIFFER: [f64; 3] = [2.0, 20.0, 200.0];
 
-/// Periods of the first mode that the motion lasts; the steps are in blocks spread over it.
+/// Duration of the motion in periods of the first mode, and number of blocks of steps spread over it.
 const PERIODS: f64 = 5.0;
 const BLOCKS: usize = 10;
 
-/// Comparators run on this number of steps, drawn of each stratum.
-const COMPARED: usize = 20;
+/// Number of steps, drawn from all strata, on which comparators run.
+const COMPARED_STEPS: usize = 20;
 
 /// A spring that vibrates.
 pub struct KineticBench<'a> {
@@ -41,19 +41,21 @@ struct Motion {
     states: Vec<Vec<f64>>,
     strata: Vec<Stratum>,
     mismatches: usize,
-    /// Seconds of kinetic queries, of those in steps that collide, and of plain ones.
+    /// Seconds of kinetic queries.
     kinetic: f64,
+    /// Seconds of kinetic queries in steps that collide.
     kinetic_colliding: f64,
+    /// Seconds of certified discrete queries.
     full: f64,
-    /// Length of a step over the length of z, the mean over blocks.
+    /// Length of a step relative to `|z|`, the mean over blocks.
     step: f64,
 }
 
 impl<'a> KineticBench<'a> {
-    /// Steps by default.
+    /// Default number of steps.
     pub const STEPS: usize = 20_000;
 
-    /// Makes the spring, and chooses how far it swings.
+    /// Computes the spring and chooses the amplitude of its vibration.
     ///
     /// # Errors
     /// When the cache cannot be written to, or the work is cancelled.
@@ -63,17 +65,17 @@ impl<'a> KineticBench<'a> {
         Ok(Self { setup, model, vibration })
     }
 
-    /// The spring.
+    /// Returns the spring.
     pub fn model(&self) -> &CertifiedModel {
         &self.model
     }
 
-    /// Frequencies of the first mode (Hz): the spring's own, and those of stiffer ones.
+    /// Returns frequencies of the first mode (Hz): the spring's own, and those of stiffer materials.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> + use<> {
         iter::once(self.vibration.first_frequency()).chain(STIFFER)
     }
 
-    /// Measures some steps of the spring, as if its first mode had a frequency (Hz).
+    /// Measures some steps of the spring with this frequency of its first mode (Hz).
     ///
     /// # Errors
     /// When the work is cancelled.
@@ -103,7 +105,7 @@ impl<'a> KineticBench<'a> {
         })
     }
 
-    /// Runs kinetic and plain queries with certificates on all steps.
+    /// Runs kinetic and certified discrete queries on all steps.
     fn follow(&self, frequency: f64, steps: usize) -> Result<Motion, Error> {
         let (model, certificates) = (&self.model.model, &self.model.full.certificates);
         let mut compared = KineticQuery::new(model, certificates)?;
@@ -117,7 +119,7 @@ impl<'a> KineticBench<'a> {
             let start = PERIODS * block as f64 / blocks as f64;
             let states: Vec<Vec<f64>> =
                 (0..count).map(|i| self.vibration.at(start + i as f64 * frequency / RATE)).collect();
-            // Untimed: what collides, and whether both agree.
+            // Untimed queries find the collisions and compare the answers.
             let mut hits = Vec::with_capacity(count);
             for q in &states {
                 let expected = full.discrete(q)?;
@@ -125,7 +127,7 @@ impl<'a> KineticBench<'a> {
                 hits.push(!expected.is_empty());
                 motion.strata.push(Stratum::of(!self.model.is_root_certified(q), !expected.is_empty()));
             }
-            // Each method by itself, as in a simulation; stretches of steps that all collide or are all free share a
+            // Each method runs alone, as in a simulation. Consecutive steps that all collide or are all free share one
             // reading of the clock.
             let mut at = 0;
             while at < count {
@@ -147,11 +149,11 @@ impl<'a> KineticBench<'a> {
         Ok(motion)
     }
 
-    /// Runs comparators on some of the steps and adds their mean microseconds. Gives the number of these steps.
+    /// Runs comparators on some of the steps and appends their mean microseconds. Returns the number of these steps.
     fn compare(&self, motion: &mut Motion, times: &mut Vec<(&'static str, f64)>) -> Result<usize, Error> {
         let mut full = Query::new(&self.model.model, &self.model.full.certificates)?;
         let strata = Strata::new(motion.strata.clone(), None);
-        let steps = strata.draw(COMPARED);
+        let steps = strata.draw(COMPARED_STEPS);
         let weights = strata.weights(&steps);
         for column in COLUMNS.iter().filter(|column| column.role == Role::Comparator) {
             let mut engine = column.engine(&self.model)?;

@@ -4,17 +4,17 @@ use serde::Serialize;
 
 use crate::record::Means;
 
-/// One line of JSON. Times are means over steps.
+/// Record of one vibration: one line of JSON. Times are means over steps.
 #[derive(Clone, Debug, Serialize)]
 pub struct KineticRecord {
     /// The name of the scenario.
     pub scenario: &'static str,
-    /// Where the mesh is from.
+    /// Origin of the mesh.
     pub source: String,
-    /// A stand-in.
+    /// Note on a replaced model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// Of the first mode, in Hz.
+    /// Frequency of the first mode (Hz).
     pub frequency: f64,
     /// The largest displacement in percent of half the diagonal of the AABB.
     pub share: f64,
@@ -22,7 +22,7 @@ pub struct KineticRecord {
     pub triangles: usize,
     /// Its modes.
     pub rank: usize,
-    /// Length of a step over the length of z, the mean over blocks.
+    /// Length of a step relative to `|z|`, the mean over blocks.
     pub step: f64,
     /// Steps that were measured.
     pub steps: usize,
@@ -32,10 +32,11 @@ pub struct KineticRecord {
     pub compared_steps: usize,
     /// Steps in which two exact methods differ.
     pub mismatches: usize,
-    /// Of kinetic queries, over the steps that collide.
+    /// Mean microseconds of kinetic queries over the steps that collide.
     pub kinetic_us_colliding: Option<f64>,
-    /// Of comparators over `compared_steps`, each of which is weighted by its stratum's share of all steps.
+    /// Mean microseconds by method. Those of comparators are over `compared_steps`, each weighted by its stratum's
+    /// share of all steps.
     pub microseconds: Means,
-    /// The machine.
+    /// Description of the machine.
     pub machine: String,
 }

@@ -1,4 +1,4 @@
-//! The scenario `kinetic`: a spring that vibrates, 44,100 steps in a second.
+//! Scenario `kinetic`: a spring that vibrates, 44,100 steps per second.
 
 mod kinetic_bench;
 mod kinetic_record;

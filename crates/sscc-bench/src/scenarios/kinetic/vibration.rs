@@ -1,4 +1,4 @@
-//! Free vibration: without forces each mode swings with its natural frequency.
+//! Free vibration of a body: each mode oscillates with its natural frequency.
 
 use std::f64::consts::TAU;
 
@@ -9,27 +9,27 @@ use crate::error::Error;
 use crate::random::Random;
 use crate::sampling::{directions, half_diagonal, largest_displacement, scaled};
 
-/// The states by which the amplitude is chosen: periods of the first mode, and states in each.
+/// States for the choice of the amplitude: periods of the first mode, and states in each.
 const PERIODS: usize = 5;
 const STATES_PER_PERIOD: usize = 12;
 const STATES: usize = PERIODS * STATES_PER_PERIOD;
 
-/// How many of them collide.
+/// Number of these states that shall collide.
 const COLLIDING: usize = STATES / 8;
 
 const SEED: u64 = 11;
 
-/// The amplitude is searched between these shares (percent), by this number of bisections of its logarithm.
+/// Range of the amplitude (percent), and number of bisections of its logarithm.
 const SHARES: [f64; 2] = [0.1, 100.0];
 const BISECTIONS: usize = 10;
 
-/// A body that vibrates: `q_k(t) = a_k cos(omega_k t + phase_k)`, the amplitudes in proportion to the first of the random
-/// [`directions`].
+/// A body that vibrates: `q_k(t) = a_k cos(omega_k t + phase_k)`. The amplitudes are proportional to the first of the
+/// random [`directions`].
 pub struct Vibration {
     amplitudes: Vec<f64>,
     oscillators: Oscillators,
-    /// The largest displacement of a vertex in percent of half the diagonal of the AABB, in the states by which the
-    /// amplitude was chosen.
+    /// Largest displacement of a vertex in percent of half the diagonal of the AABB, in the states for the choice of
+    /// the amplitude.
     pub share: f64,
 }
 
@@ -40,7 +40,7 @@ struct Oscillators {
 }
 
 impl Vibration {
-    /// With an amplitude at which one in eight states collides.
+    /// Creates a vibration with an amplitude at which one in eight states collides.
     ///
     /// # Errors
     /// When `progress` cancels.
@@ -63,12 +63,12 @@ impl Vibration {
         Ok(Self { amplitudes: scaled(&dir, upper * per_percent), oscillators, share: upper })
     }
 
-    /// Frequency of the first mode (Hz).
+    /// Returns the frequency of the first mode (Hz).
     pub fn first_frequency(&self) -> f64 {
         self.oscillators.frequencies[0] / TAU
     }
 
-    /// q after a number of periods of the first mode.
+    /// Returns q after a number of periods of the first mode.
     pub fn at(&self, periods: f64) -> Vec<f64> {
         self.oscillators.at(&self.amplitudes, periods)
     }

@@ -1,18 +1,18 @@
-//! The records of `kinetic` as text.
+//! The records of the scenario `kinetic` as text.
 
 use sscc_bench::KineticRecord;
 use sscc_sim::CertifiedModel;
 
 use crate::output::grouped;
 
-/// The model of all records.
+/// Returns the lines about the model, which all records share.
 pub fn head(model: &CertifiedModel) -> Vec<String> {
     let (triangles, rank) = (grouped(model.model.mesh().faces().len() as u64), model.model.rank());
     let head = format!("kinetic: {triangles} triangles, {rank} modes ({})", model.source);
     [head].into_iter().chain(model.note.iter().map(|note| format!("note: {note}"))).collect()
 }
 
-/// One record.
+/// Returns the lines of one record.
 pub fn lines(record: &KineticRecord) -> Vec<String> {
     let per_cent = 100.0 * record.colliding_steps as f64 / record.steps as f64;
     let mut lines = vec![format!(
@@ -26,7 +26,7 @@ pub fn lines(record: &KineticRecord) -> Vec<String> {
         let ratio = if *key == "kinetic" {
             record
                 .kinetic_us_colliding
-                .map_or(String::new(), |time| format!("{time:>12.2} us where it collides"))
+                .map_or(String::new(), |time| format!("{time:>12.2} us in colliding steps"))
         } else {
             format!("{:>11.1} x", time / kinetic)
         };

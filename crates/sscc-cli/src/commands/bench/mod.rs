@@ -1,4 +1,4 @@
-//! `sscc bench`: the cost of queries, by every method and beside parry3d. The crate `sscc-bench` measures.
+//! `sscc bench`: runs the scenarios of `sscc-bench`, and prints their records.
 
 mod growth;
 mod kinetic;
@@ -20,7 +20,7 @@ use printer::Printer;
 
 pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     let (name, scenario) = match &args.scenario {
-        Some(name) if !args.list => (name, Scenario::named(name)?),
+        Some(name) if !args.list => (name, Scenario::from_name(name)?),
         _ => return list(),
     };
     check_options(args, scenario)?;
@@ -40,7 +40,7 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     if let Some(report) = &args.report {
         write_whole(report, page.html(name)?.as_bytes())?;
     }
-    ensure!(mismatches == 0, "exact methods differ in {mismatches} of the steps: this is a defect");
+    ensure!(mismatches == 0, "exact methods differ in {mismatches} steps: this is a defect of sscc");
     Ok(Outcome::Done)
 }
 
@@ -56,17 +56,23 @@ fn list() -> anyhow::Result<Outcome> {
 
 /// Refuses flags that have no meaning for the scenario.
 fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
-    let moves = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);
-    ensure!(moves || args.steps.is_none(), "--steps is for what moves; amplitudes and growth have --samples");
+    let has_steps = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);
     ensure!(
-        !moves || args.samples.is_none(),
-        "--samples is for amplitudes and growth; what moves has --steps"
+        has_steps || args.steps.is_none(),
+        "--steps is for scenes and kinetic; amplitudes and growth have --samples"
     );
-    ensure!(!moves || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
-    let grows = matches!(scenario, Scenario::Growth);
-    ensure!(grows || args.plot.is_none(), "--plot is for growth");
+    ensure!(
+        !has_steps || args.samples.is_none(),
+        "--samples is for amplitudes and growth; scenes and kinetic have --steps"
+    );
+    ensure!(!has_steps || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
+    let is_growth = matches!(scenario, Scenario::Growth);
+    ensure!(is_growth || args.plot.is_none(), "--plot is for growth");
     let has_page = !matches!(scenario, Scenario::Kinetic);
-    ensure!(has_page || args.report.is_none(), "--report is not for kinetic");
-    ensure!(!grows || !args.quick, "--quick: growth needs its sizes; choose one by --only");
+    ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes and growth");
+    ensure!(
+        !is_growth || !args.quick,
+        "--quick is not for growth: leave it out, and choose one size by --only"
+    );
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Prints records as they come: as JSON, or as tables.
+//! Prints records as soon as they are measured, as JSON or as tables.
 
 use anyhow::Result;
 use sscc_bench::{BenchPage, Record};
@@ -7,12 +7,12 @@ use super::table::Table;
 use crate::args::Bench;
 use crate::output::Output;
 
-/// Prints records, and keeps what the report shows.
+/// Prints records, and collects the data of the report.
 pub struct Printer {
     pub out: Output,
     pub is_json: bool,
     has_report: bool,
-    /// For `--report`.
+    /// The page of `--report`.
     pub page: BenchPage,
     /// Steps in which two exact methods differ.
     pub mismatches: usize,
@@ -29,7 +29,7 @@ impl Printer {
         }
     }
 
-    /// Prints records of one model: each as JSON on a line of its own, or a table of all.
+    /// Prints records of one model: as JSON, one a line, or as one table.
     pub fn print(&mut self, records: &[Record]) -> Result<()> {
         self.keep(records);
         if self.is_json {
@@ -37,11 +37,11 @@ impl Printer {
         } else {
             self.lines(Table::of(records).lines())?;
         }
-        // The next model takes long.
+        // Flushed, because the next model may take minutes.
         self.out.flush()
     }
 
-    /// Keeps records without printing them.
+    /// Collects records without printing them.
     pub fn keep(&mut self, records: &[Record]) {
         for record in records {
             self.page.add(record);
@@ -54,7 +54,7 @@ impl Printer {
         lines.into_iter().try_for_each(|line| self.out.line(line))
     }
 
-    /// Whether nobody waits for more: the reader of standard output has left, and no page is to be written.
+    /// Whether further records are useless: standard output is closed, and no report is to be written.
     pub fn is_over(&self) -> bool {
         self.out.is_closed() && !self.has_report
     }

@@ -1,4 +1,4 @@
-//! Each scenario, model by model: measured, then printed.
+//! Measures each scenario model by model, and prints each record.
 
 use anyhow::{Context, Result, ensure};
 use sscc_bench::{
@@ -17,14 +17,14 @@ pub fn run(scenario: Scenario, args: &Bench, setup: &Setup<'_>, printer: &mut Pr
         Scenario::Amplitudes => amplitudes(args, setup, printer),
         Scenario::Growth => growth(args, setup, printer),
         Scenario::Kinetic => kinetic(args, setup, printer),
-        Scenario::Scenes { scenes, table } => scenes_beside(scenes, table, args, setup, printer),
+        Scenario::Scenes { scenes, table } => scenes_with_table(scenes, table, args, setup, printer),
     }
 }
 
 fn amplitudes(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
     let models = amplitudes_models();
     check_only(args, &models.each_ref().map(|model| model.name))?;
-    for model in models.into_iter().filter(|model| is_wanted(args, model.name)) {
+    for model in models.into_iter().filter(|model| is_selected(args, model.name)) {
         printer.print(&model.measure(setup, samples(args, AmplitudesModel::SAMPLES))?)?;
         if printer.is_over() {
             break;
@@ -36,7 +36,7 @@ fn amplitudes(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<
 fn growth(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
     check_only(args, &GROWTH_SIZES.map(|size| size.name))?;
     let mut records = Vec::new();
-    for size in GROWTH_SIZES.iter().filter(|size| is_wanted(args, size.name)) {
+    for size in GROWTH_SIZES.iter().filter(|size| is_selected(args, size.name)) {
         records.push(size.measure(setup, samples(args, GrowthSize::SAMPLES))?);
     }
     let growth = GrowthRecord::new(records);
@@ -73,8 +73,8 @@ fn kinetic(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()>
     Ok(())
 }
 
-/// Scenes, beside a table of the paper.
-fn scenes_beside(
+/// Measures scenes; then prints the rows of the paper's table beside ours.
+fn scenes_with_table(
     scenes: &[(&str, &str)],
     table: Option<PaperTable>,
     args: &Bench,
@@ -98,12 +98,12 @@ fn scenes_beside(
     }
 }
 
-/// Whether a model is to be measured.
-fn is_wanted(args: &Bench, name: &str) -> bool {
+/// Whether `--only` selects this model. Without that flag, all are selected.
+fn is_selected(args: &Bench, name: &str) -> bool {
     args.only.as_deref().is_none_or(|only| only == name)
 }
 
-/// Refuses the name of a model that does not exist.
+/// Refuses an unknown model in `--only`.
 fn check_only(args: &Bench, names: &[&str]) -> Result<()> {
     let Some(only) = args.only.as_deref() else { return Ok(()) };
     ensure!(names.contains(&only), "--only {only}: there is no such model; there are {}", names.join(", "));

@@ -1,19 +1,19 @@
-//! Records of one model as a table.
+//! The records of one model as a table.
 
 use sscc_bench::{Means, Record};
 
 use crate::output::{counted, grouped};
 
-/// What ratios are of: the time of the others over this one's.
-const OURS: &str = "full";
-const OVER: [&str; 2] = ["parry", "traditional"];
+/// Ratios are times of the methods [`COMPARED`] over the time of this one.
+const REFERENCE: &str = "full";
+const COMPARED: [&str; 2] = ["parry", "traditional"];
 
-/// Rows with a time for each column.
+/// A table with a row for each record and a column for each method.
 pub struct Table<'a> {
     records: &'a [Record],
 }
 
-/// A line of the table: what it is, how many of the steps collide or fail at the root, the times.
+/// A row of the table: label, number of steps that collide or fail at the root, mean times.
 struct Row<'a> {
     label: String,
     steps: String,
@@ -21,7 +21,7 @@ struct Row<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Of records of the same model.
+    /// Creates the table of records of one model.
     pub fn of(records: &'a [Record]) -> Self {
         Self { records }
     }
@@ -54,7 +54,7 @@ impl<'a> Table<'a> {
         }
         if let (Some(seconds), Some(share)) = (first.simulation_seconds, first.self_collision_share) {
             lines.push(format!(
-                "simulated in {seconds:.2} s of the processor, {:.1}% of it to find self-collisions; {} as fast as with the traditional method",
+                "simulated in {seconds:.2} s of processor time, {:.1}% of it for self-collisions; {} as fast as with the traditional method",
                 100.0 * share,
                 times(first.simulation_speedup)
             ));
@@ -80,9 +80,9 @@ impl<'a> Table<'a> {
                 steps: format!("{} of {}", record.root_failed_steps, record.steps),
                 means: &record.discrete_ms_root_failed,
             };
-            // Where it fails always, it would be the same line again.
-            let same = record.root_failed_steps == record.steps || record.root_failed_steps == 0;
-            [Some(all), (!same).then_some(failed)].into_iter().flatten()
+            // A second row would repeat the first if the root's certificate always or never fails.
+            let is_same = record.root_failed_steps == record.steps || record.root_failed_steps == 0;
+            [Some(all), (!is_same).then_some(failed)].into_iter().flatten()
         });
         lines.extend(block("discrete, ms", discrete));
         let continuous = self.records.iter().map(|record| Row {
@@ -94,7 +94,7 @@ impl<'a> Table<'a> {
         let mismatches: usize = self.records.iter().map(|record| record.mismatches).sum();
         lines.push(match mismatches {
             0 => "all exact methods list the same pairs".into(),
-            n => format!("DEFECT: exact methods differ in {n} of the steps"),
+            n => format!("DEFECT: exact methods differ in {n} steps"),
         });
         lines.push(String::new());
         lines
@@ -107,19 +107,19 @@ fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
     let keys: Vec<&str> = first.means.0.iter().map(|(key, _)| *key).collect();
     let width = |key: &str| key.len().max(11) + 2;
     let heads: String = keys.iter().map(|key| format!("{key:>0$}", width(key))).collect();
-    let over: String = OVER.iter().map(|key| format!("{:>18}", format!("{key}/{OURS}"))).collect();
+    let over: String = COMPARED.iter().map(|key| format!("{:>18}", format!("{key}/{REFERENCE}"))).collect();
     let mut lines = vec![format!("  {title:<16}{:>12}{heads}{over}", "collide")];
     for row in &rows {
         let cell = |key: &&str| format!("{:>1$}", shown(row.means.get(key)), width(key));
         let cells: String = keys.iter().map(cell).collect();
-        let ratio = |key: &str| Some(row.means.get(key)? / row.means.get(OURS)?);
-        let ratios: String = OVER.iter().map(|key| format!("{:>18}", times(ratio(key)))).collect();
+        let ratio = |key: &str| Some(row.means.get(key)? / row.means.get(REFERENCE)?);
+        let ratios: String = COMPARED.iter().map(|key| format!("{:>18}", times(ratio(key)))).collect();
         lines.push(format!("  {:<16}{:>12}{cells}{ratios}", row.label, row.steps));
     }
     lines
 }
 
-/// Milliseconds, four digits of them.
+/// Formats milliseconds with four digits.
 fn shown(ms: Option<f64>) -> String {
     match ms {
         None => "-".into(),

@@ -1,9 +1,9 @@
-//! The answer of `sscc check` for one q: the keys of its JSON line.
+//! The answer of `sscc check` to one query: the keys of its JSON line.
 
 use serde::Serialize;
 use sscc::Pair;
 
-/// The answer for one q, or for the motion from one q to the next.
+/// The answer to a discrete query at one q, or to a continuous query from one q to the next.
 #[derive(Serialize)]
 pub struct Answer<'a> {
     pub index: usize,
@@ -12,7 +12,7 @@ pub struct Answer<'a> {
     pub count: usize,
     pub complete: bool,
     pub pairs: &'a [Pair],
-    /// Of a motion: the time of impact of each pair.
+    /// The time of impact of each pair, for continuous queries.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times: Option<Vec<f64>>,
     pub microseconds: f64,

@@ -1,4 +1,4 @@
-//! `sscc check`: does the shape collide with itself at q, and where?
+//! `sscc check`: answers a discrete or continuous query for every q.
 
 mod answer;
 mod pose;
@@ -23,7 +23,7 @@ pub fn run(args: &Check) -> Result<Outcome> {
     let rows = coordinates(&args.at, &model)?;
     ensure!(
         !args.continuous || rows.rows > 1,
-        "--continuous: the trajectory has one row; it takes two to move from one to the next"
+        "--continuous: the trajectory has one row; a motion needs at least two"
     );
     if let Some(pose) = &args.pose {
         pose::check(pose, &args.model)?;
@@ -43,18 +43,18 @@ pub fn run(args: &Check) -> Result<Outcome> {
             Query::without_certificates(&model, scope, method)?
         }
     };
-    let checking = Checking {
-        continuous: args.continuous,
+    let checker = Checker {
+        is_continuous: args.continuous,
         limit: args.limit.map_or(if args.first { 1 } else { usize::MAX }, |limit| limit as usize),
         root_radius: certificates.as_ref().map(Certificates::root_radius),
-        json: args.json.json,
+        is_json: args.json.json,
     };
     let mut query = query.cancelled_by(&interrupt::Interrupt);
-    let colliding = checking.answer_all(&mut query, &rows)?;
+    let colliding = checker.answer_all(&mut query, &rows)?;
     if let Some(path) = &args.pose {
         pose::write(path, &model, &rows.data, query.pairs())?;
     }
-    Ok(if colliding { Outcome::Found } else { Outcome::Done })
+    Ok(if colliding { Outcome::Finding } else { Outcome::Done })
 }
 
 fn method(typed: args::Method) -> Method {
@@ -67,7 +67,7 @@ fn method(typed: args::Method) -> Method {
     }
 }
 
-/// Every q that was asked for; all are looked at before the first is answered.
+/// Returns every configuration. All are validated before the first query.
 fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
     match (&at.trajectory, &at.q) {
         (Some(path), _) => {
@@ -86,29 +86,29 @@ fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
     }
 }
 
-/// How to answer.
-struct Checking {
-    /// Whether the questions are about the ways between rows.
-    continuous: bool,
-    /// Pairs for each q at the most.
+/// Answers the queries and prints the answers.
+struct Checker {
+    /// Whether queries are continuous, from each row to the next.
+    is_continuous: bool,
+    /// Maximum number of pairs for each query.
     limit: usize,
     root_radius: Option<f64>,
-    json: bool,
+    is_json: bool,
 }
 
-impl Checking {
-    /// Answers every question; whether anything collides.
+impl Checker {
+    /// Answers every query. Returns whether any of them found a collision.
     fn answer_all(&self, query: &mut Query<'_>, rows: &Rows) -> Result<bool> {
         let mut out = Output::new();
-        // On a terminal the lines themselves show the progress.
-        let bar = Bar::new("checking").only_if(!out.is_watched());
-        let mut summary = Summary::new(if self.continuous { "step" } else { "configuration" });
+        // On a terminal the printed lines show the progress.
+        let bar = Bar::new("checking").only_if(!out.is_terminal());
+        let mut summary = Summary::new(if self.is_continuous { "step" } else { "configuration" });
         let rows: Vec<&[f64]> = rows.iter().collect();
-        let questions = if self.continuous { rows.len() - 1 } else { rows.len() };
-        for index in 0..questions {
+        let queries = if self.is_continuous { rows.len() - 1 } else { rows.len() };
+        for index in 0..queries {
             interrupt::check()?;
             let start = Instant::now();
-            let found = if self.continuous {
+            let found = if self.is_continuous {
                 query.continuous(rows[index], rows[index + 1]).map(<[Impact]>::to_vec)
             } else {
                 query.discrete_at_most(rows[index], self.limit).map(|_| Vec::new())
@@ -118,7 +118,7 @@ impl Checking {
             let all = found?;
             let first = earliest(&all, self.limit);
             let of_first: Vec<Pair> = first.iter().map(|impact| impact.pair).collect();
-            let pairs = if self.continuous { &of_first[..] } else { query.pairs() };
+            let pairs = if self.is_continuous { &of_first[..] } else { query.pairs() };
             let statistics = query.statistics();
             let answer = Answer {
                 index,
@@ -127,7 +127,7 @@ impl Checking {
                 count: pairs.len(),
                 complete: statistics.complete && first.len() == all.len(),
                 pairs,
-                times: self.continuous.then(|| first.iter().map(|impact| impact.time).collect()),
+                times: self.is_continuous.then(|| first.iter().map(|impact| impact.time).collect()),
                 microseconds,
                 root_certified: statistics.root_certified,
                 opened: statistics.opened,
@@ -135,21 +135,21 @@ impl Checking {
                 triangle_tests: statistics.triangle_tests,
             };
             summary.add(&answer);
-            if self.json {
+            if self.is_json {
                 out.json(&answer)?;
-            } else if questions == 1 {
+            } else if queries == 1 {
                 text::single(&answer, self.root_radius).into_iter().try_for_each(|line| out.line(line))?;
             } else {
                 out.line(answer.line())?;
             }
-            sscc::Progress::report(&bar, index + 1, questions);
-            // Nobody reads the other answers: the exit code is that of those so far.
+            sscc::Progress::report(&bar, index + 1, queries);
+            // Further answers have no reader. The exit code is that of the answers so far.
             if out.is_closed() {
                 break;
             }
         }
         drop(bar);
-        if !self.json && questions > 1 {
+        if !self.is_json && queries > 1 {
             out.line(summary.line())?;
         }
         out.finish()?;
@@ -157,7 +157,7 @@ impl Checking {
     }
 }
 
-/// The first so many to meet, sorted by pair.
+/// Returns the `limit` earliest impacts, sorted by pair.
 fn earliest(impacts: &[Impact], limit: usize) -> Vec<Impact> {
     let mut kept = impacts.to_vec();
     kept.sort_by(|a, b| a.time.total_cmp(&b.time));

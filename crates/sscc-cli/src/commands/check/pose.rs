@@ -1,4 +1,4 @@
-//! The shape at q as a mesh file.
+//! Writes the shape at q as a mesh file (`--pose`).
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -9,7 +9,7 @@ use sscc_io::{write_obj_pose, write_ply_pose};
 
 use crate::{args, load};
 
-/// Refuses a file that cannot be written, before the work.
+/// Refuses a file that cannot be written, before the query.
 pub fn check(path: &Path, model: &args::Model) -> Result<()> {
     let ending = match ending(path) {
         Some("ply") => ".ply",

@@ -1,26 +1,26 @@
-//! Answers for people.
+//! The answers of `sscc check` as text.
 
 use super::answer::Answer;
 use crate::output::{counted, duration, grouped, length};
 
-/// Pairs listed in text; `--json` lists all.
-const LISTED: usize = 10;
+/// Maximum number of pairs in the text; `--json` lists all.
+const MAX_LISTED: usize = 10;
 
 impl Answer<'_> {
-    /// The number of pairs, which is a lower bound where a limit stopped the query.
+    /// Returns the number of pairs, marked as a lower bound if a limit stopped the query.
     fn counted(&self) -> String {
         let pairs = counted(self.count as u64, "pair");
         if self.complete { pairs } else { format!("at least {pairs}") }
     }
 
-    /// The pair listed first, or the one to meet first, and when.
+    /// Returns the first pair: the earliest one with its time, or the first of the list.
     fn first(&self) -> Option<String> {
         let Some(times) = &self.times else { return self.pairs.first().map(|(i, j)| format!("{i} {j}")) };
         let first = times.iter().zip(self.pairs).min_by(|a, b| a.0.total_cmp(b.0));
         first.map(|(time, (i, j))| format!("{i} {j} at t = {time:.4}"))
     }
 
-    /// One line of a trajectory.
+    /// Returns the line of one query of a trajectory.
     pub fn line(&self) -> String {
         let result = match self.first() {
             Some(first) => format!("COLLIDING  {}, first {first}", self.counted()),
@@ -36,12 +36,12 @@ impl Answer<'_> {
     }
 }
 
-/// The answer to a question alone.
+/// Returns the lines of the only query of a run.
 pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     let norm = length(answer.norm);
     let root = root_radius.map(|r| format!(", root radius {}", length(r))).unwrap_or_default();
     let cost = format!(
-        "{}: {} boxes compared, {} tested exactly",
+        "{}: {} AABB tests, {} tested exactly",
         duration(answer.microseconds),
         grouped(answer.box_tests),
         counted(answer.triangle_tests, "triangle pair")
@@ -62,20 +62,22 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
         answer
             .pairs
             .iter()
-            .take(LISTED)
+            .take(MAX_LISTED)
             .enumerate()
             .map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", time(at).unwrap_or_default())),
     );
-    if answer.count > LISTED {
-        lines
-            .push(format!("     ... and {} more; --json lists all", grouped((answer.count - LISTED) as u64)));
+    if answer.count > MAX_LISTED {
+        lines.push(format!(
+            "     ... and {} more; --json lists all",
+            grouped((answer.count - MAX_LISTED) as u64)
+        ));
     }
     lines
 }
 
-/// What a whole trajectory comes to.
+/// Counts and times of all queries of a trajectory.
 pub struct Summary {
-    /// What was asked about.
+    /// The noun for a query: `step` or `configuration`.
     noun: &'static str,
     root_certified: usize,
     pub colliding: usize,

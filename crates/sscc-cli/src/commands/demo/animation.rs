@@ -1,4 +1,4 @@
-//! A spring that is shaken ever harder.
+//! The motion of the demo: a spring shaken with growing amplitude.
 
 use sscc::ReducedModel;
 use sscc_io::Rows;
@@ -7,10 +7,10 @@ use sscc_io::Rows;
 const FRAMES: usize = 90;
 
 /// `|z|` of the last frame, as a multiple of the root radius.
-const LARGEST: f64 = 4.0;
+const MAX_NORM: f64 = 4.0;
 
-/// One q for each frame: every mode swings with a frequency of its own, the amplitude grows from 0. The same on
-/// every machine.
+/// Returns one q for each frame. Every mode swings with its own frequency, and the amplitude grows from 0. The numbers
+/// are the same on every machine.
 pub fn animate(model: &ReducedModel, root_radius: f64) -> Rows {
     let rank = model.rank();
     let mut data = Vec::with_capacity(FRAMES * rank);
@@ -18,13 +18,13 @@ pub fn animate(model: &ReducedModel, root_radius: f64) -> Rows {
         let time = frame as f64 / (FRAMES - 1) as f64;
         let z: Vec<f64> = (0..rank).map(|k| swing(k, time)).collect();
         let norm = z.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let goal = LARGEST * root_radius * time;
+        let goal = MAX_NORM * root_radius * time;
         data.extend(z.iter().zip(model.metric().scales()).map(|(x, scale)| x * goal / (norm * scale)));
     }
     Rows { rows: FRAMES, columns: rank, data }
 }
 
-/// Where mode k swings at a time from 0 to 1: high modes have less energy.
+/// Returns the displacement of mode k at a time from 0 to 1. Higher modes have smaller amplitudes.
 fn swing(k: usize, time: f64) -> f64 {
     let (k, turn) = (k as f64, std::f64::consts::TAU);
     libm::sin(turn * ((3.0 + 0.37 * k) * time + 0.17 * k)) / (1.0 + 0.25 * k)

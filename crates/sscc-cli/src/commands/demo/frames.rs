@@ -1,4 +1,4 @@
-//! Every frame by every method, and whether they agree.
+//! Checks every frame by three methods, and compares their answers.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,17 +8,17 @@ use sscc_io::Rows;
 
 use crate::progress::Bar;
 
-/// Root-certified queries are too short for one look at the clock.
-const REPEATS: u32 = 1000;
+/// Repetitions of a root-certified query, which is shorter than a reading of the clock.
+const REPETITIONS: u32 = 1000;
 
-/// What one method said.
+/// The answers of one method, frame by frame.
 pub struct Answers {
     pub pairs: Vec<Vec<(u32, u32)>>,
     pub root_certified: Vec<bool>,
     pub microseconds: Vec<f64>,
 }
 
-/// What all methods said, frame by frame.
+/// The answers of all methods.
 pub struct Frames {
     pub certified: Answers,
     pub bd_tree: Answers,
@@ -26,7 +26,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Checks every frame by each method in turn, on one thread.
+    /// Checks every frame by each method, one method after the other, on one thread.
     pub fn check(model: &ReducedModel, certificates: &Certificates, frames: &Rows) -> Result<Self, Error> {
         let bar = Bar::new("checking");
         let answers = |method| {
@@ -40,7 +40,7 @@ impl Frames {
         })
     }
 
-    /// Frames for which two methods differ.
+    /// Returns the number of frames for which two methods differ.
     pub fn mismatches(&self) -> usize {
         let (a, b, c) = (&self.certified.pairs, &self.bd_tree.pairs, &self.traditional.pairs);
         (0..a.len()).filter(|&i| a[i] != c[i] || b[i] != c[i]).count()
@@ -60,10 +60,10 @@ impl Answers {
             let root_certified = query.statistics().root_certified;
             if root_certified {
                 let start = Instant::now();
-                for _ in 0..REPEATS {
+                for _ in 0..REPETITIONS {
                     black_box(query.discrete(black_box(q))?);
                 }
-                seconds = start.elapsed().as_secs_f64() / f64::from(REPEATS);
+                seconds = start.elapsed().as_secs_f64() / f64::from(REPETITIONS);
             }
             answers.pairs.push(pairs);
             answers.root_certified.push(root_certified);

@@ -1,4 +1,4 @@
-//! `sscc demo`: the main job on the embedded spring, in a few seconds and without any file.
+//! `sscc demo`: certifies and checks the embedded spring, in a few seconds and without input files.
 
 mod animation;
 mod frames;
@@ -23,7 +23,7 @@ use crate::progress::Bar;
 use frames::Frames;
 use report::Report;
 
-/// Frames in a second.
+/// Frames per second.
 const RATE: f64 = 30.0;
 
 pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
@@ -52,7 +52,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     }
     if let Some(folder) = &args.out {
         let page = Animation {
-            title: "A double-helix spring, shaken ever harder",
+            title: "A double-helix spring, shaken with growing amplitude",
             name: "spring",
             model,
             certificates: &certificates,
@@ -70,13 +70,17 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         let page = page.report()?;
         save::save(folder, spring, &certificates, &animation, &page)?;
         if !args.json.json {
-            save::what_next(folder).into_iter().try_for_each(|line| out.line(line))?;
+            save::next_commands(folder).into_iter().try_for_each(|line| out.line(line))?;
         }
     } else if !args.json.json {
         out.line("")?;
-        out.line("Next: the same with --out DIR writes these files, to try the other commands on.")?;
+        out.line("Next: sscc demo --out DIR also writes these files, as input for the other commands.")?;
     }
     out.finish()?;
-    ensure!(report.mismatches == 0, "the methods differ in {} frames: this is a defect", report.mismatches);
+    ensure!(
+        report.mismatches == 0,
+        "the methods differ in {} frames: this is a defect of sscc",
+        report.mismatches
+    );
     Ok(Outcome::Done)
 }

@@ -59,10 +59,11 @@ impl Report {
         }
     }
 
+    /// The report as text.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![
             format!(
-                "A double-helix spring: {} triangles; its {} lowest vibrations, found in {:.2} s.",
+                "A double-helix spring: {} triangles; its {} lowest vibration modes, computed in {:.2} s.",
                 grouped(self.triangles as u64),
                 self.rank,
                 self.modes_seconds
@@ -75,7 +76,7 @@ impl Report {
             ),
             String::new(),
             format!(
-                "Shaken ever harder; mean time of one query on one thread, {} frames:",
+                "Shaken with growing amplitude, {} frames; mean time of one query on one thread:",
                 self.all().frames
             ),
             String::new(),
@@ -87,24 +88,26 @@ impl Report {
         lines.extend(self.frames.iter().map(Group::line));
         lines.push(String::new());
         lines.push(match self.mismatches {
-            0 => format!(
-                "All methods list the same {} colliding pairs of triangles. \"Free\" is proven, never guessed.",
-                grouped(self.pairs as u64)
-            ),
+            0 => {
+                format!("All methods list the same {} colliding triangle pairs.", grouped(self.pairs as u64))
+            }
             n => format!("DEFECT: the methods differ in {n} frames."),
         });
         lines.push(
-            "Traditional: all boxes refitted for every q. BD-tree: boxes updated where they are looked at."
+            "Traditional: refits all AABBs for every q. BD-tree: updates only the AABBs that a traversal visits."
                 .into(),
         );
         lines
     }
 
-    /// The main lines as rows of a table.
+    /// The rows of the table on the page: labels and values.
     pub fn table(&self) -> Vec<(String, String)> {
         let row = |label: &str, value: String| (label.to_owned(), value);
         let mut rows = vec![
-            row("modes", format!("{} lowest vibrations, found in {:.2} s", self.rank, self.modes_seconds)),
+            row(
+                "modes",
+                format!("{} lowest vibration modes, computed in {:.2} s", self.rank, self.modes_seconds),
+            ),
             row(
                 "certificates",
                 format!(

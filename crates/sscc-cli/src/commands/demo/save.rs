@@ -1,4 +1,4 @@
-//! The demo's files, and what to try on them.
+//! Writes the demo's files, and lists commands to try on them.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -32,11 +32,11 @@ pub fn save(
     Ok(())
 }
 
-/// Commands that work on the files as they are.
-pub fn what_next(folder: &Path) -> Vec<String> {
+/// Returns lines with the folder's files and commands that read them.
+pub fn next_commands(folder: &Path) -> Vec<String> {
     let file = |name: &str| folder.join(name).display().to_string();
     let (model, certificates) = (file(MODEL), file(CERTIFICATES));
-    // As it was called this time: not everyone has it on the path.
+    // The name by which the user called the program, since it need not be on the path.
     let sscc = std::env::args().next().unwrap_or_else(|| "sscc".into());
     vec![
         String::new(),
@@ -56,7 +56,7 @@ pub fn what_next(folder: &Path) -> Vec<String> {
     ]
 }
 
-/// Numbers are written so that reading them gives the same bits.
+/// Returns the mesh as OBJ. Reading the numbers gives the same bits.
 fn to_obj(mesh: &TriMesh) -> String {
     let mut text = String::new();
     for p in mesh.rest_positions() {

@@ -1,4 +1,4 @@
-//! What is known of the meshes of a glTF file.
+//! The meshes of a glTF file and their morph targets.
 
 use std::path::Path;
 
@@ -8,8 +8,8 @@ use sscc_io::gltf::{MeshInfo, list_meshes, read};
 
 use crate::output::{counted, one_line};
 
-/// Meshes that are read out; of others only the name is told.
-const MOST: usize = 20;
+/// Maximum number of meshes that are read. The others are listed by name.
+const MAX_READ: usize = 20;
 
 #[derive(Serialize)]
 pub struct Meshes {
@@ -20,7 +20,7 @@ pub struct Meshes {
 struct Mesh {
     name: String,
     primitives: usize,
-    /// Names of its morph targets, the modes of the model; none for a mesh without.
+    /// Names of the morph targets, which are the modes of the model; empty for a mesh without targets.
     targets: Vec<String>,
     triangles: Option<usize>,
     vertices: Option<usize>,
@@ -29,7 +29,7 @@ struct Mesh {
 
 impl Meshes {
     pub fn of(path: &Path) -> Result<Self, IoError> {
-        let mut read_so_far = 0;
+        let mut read_count = 0;
         let mesh = |(index, info): (usize, MeshInfo)| -> Result<Mesh, IoError> {
             let mut mesh = Mesh {
                 name: info.name,
@@ -39,9 +39,9 @@ impl Meshes {
                 vertices: None,
                 default_q: Vec::new(),
             };
-            if info.targets > 0 && read_so_far < MOST {
-                read_so_far += 1;
-                // By number: names may occur twice.
+            if info.targets > 0 && read_count < MAX_READ {
+                read_count += 1;
+                // By number, since two meshes may have the same name.
                 let model = read(path, Some(&format!("#{index}")))?;
                 mesh.triangles = Some(model.mesh.faces().len());
                 mesh.vertices = Some(model.mesh.rest_positions().len());
@@ -74,7 +74,7 @@ impl Meshes {
         }
         let names: Vec<&str> = others.iter().map(|mesh| mesh.name.as_str()).collect();
         if !names.is_empty() {
-            lines.push(format!("without        {}", one_line(&names.join(", "))));
+            lines.push(format!("no targets     {}", one_line(&names.join(", "))));
         }
         lines
     }

@@ -1,6 +1,6 @@
-//! `sscc info`: the contents of a file.
+//! `sscc info`: shows the contents of a file.
 
-mod certified;
+mod certificates;
 mod meshes;
 mod model;
 mod solid;
@@ -17,20 +17,20 @@ use sscc_sim::is_solid;
 use crate::args::Info;
 use crate::outcome::Outcome;
 use crate::output::Output;
-use certified::Certified;
+use certificates::CertificatesInfo;
 use meshes::Meshes;
 use model::Model;
 use solid::Solid;
 use surface::Surface;
 
-/// What was found.
+/// The contents of a file, by kind.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Report {
     Mesh(Surface),
     Solid(Solid),
     Model(Model),
-    Certificates(Certified),
+    Certificates(CertificatesInfo),
     Gltf(Meshes),
 }
 
@@ -58,14 +58,14 @@ impl Report {
             _ if is_solid(path) => return Ok(Self::Solid(Solid::of(path)?)),
             _ => return Ok(Self::Mesh(Surface::of(&read_mesh(path)?))),
         }
-        // Content decides; the name only says which error is told when it is neither.
+        // The content decides. The name only selects the error for a file that is neither.
         let by_name = path.file_name().is_some_and(|n| n.to_string_lossy().ends_with(".sscc.safetensors"));
         Self::read(path, by_name).or_else(|error| Self::read(path, !by_name).or(Err(error)))
     }
 
     fn read(path: &Path, as_certificates: bool) -> Result<Self, IoError> {
         if as_certificates {
-            return Ok(Self::Certificates(Certified::of(&read_certificates(path)?)));
+            return Ok(Self::Certificates(CertificatesInfo::of(&read_certificates(path)?)));
         }
         let (model, info) = read_model(path)?;
         Ok(Self::Model(Model::of(&model, info)))
@@ -76,7 +76,7 @@ impl Report {
             Self::Mesh(surface) => surface.lines(),
             Self::Solid(solid) => solid.lines(),
             Self::Model(model) => model.lines(),
-            Self::Certificates(certified) => certified.lines(),
+            Self::Certificates(certificates) => certificates.lines(),
             Self::Gltf(meshes) => meshes.lines(),
         }
     }

@@ -1,4 +1,4 @@
-//! What is known of a model.
+//! The contents of a model file.
 
 use serde::Serialize;
 use sscc::{Digest, ReducedModel, Scope};
@@ -10,8 +10,8 @@ use super::surface::Surface;
 use super::text::{form, hexadecimal, range};
 use crate::output::length;
 
-/// Frequencies that are told to people; the JSON has all.
-const SHOWN: usize = 8;
+/// Maximum number of frequencies in the text; the JSON has all.
+const MAX_SHOWN: usize = 8;
 
 #[derive(Serialize)]
 pub struct Model {
@@ -21,31 +21,35 @@ pub struct Model {
     metric: &'static str,
     metric_form: &'static str,
     metric_scales: Vec<f64>,
-    /// Whether forces of large deformations are known: absent where no stiffness is.
+    /// Whether the file has forces for large deformations; absent without a stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     nonlinear: Option<bool>,
-    /// Natural frequencies, of a file with a stiffness that has some.
+    /// Natural frequencies; absent without a stiffness, or if it has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
-    /// Why a model with a stiffness has none.
+    /// The reason why a model with a stiffness has no frequencies.
     #[serde(skip)]
     no_frequencies: String,
     units: String,
     provenance: String,
-    /// The digest that certificates by the defaults would have.
+    /// The digest of certificates with default options.
     digest: String,
 }
 
 impl Model {
     pub fn of(model: &ReducedModel, info: ModelInfo) -> Self {
-        let frequencies = info.elasticity.as_ref().map(|known| natural_frequencies(known.stiffness()));
+        let frequencies =
+            info.elasticity.as_ref().map(|elasticity| natural_frequencies(elasticity.stiffness()));
         Self {
             surface: Surface::of(model.mesh()),
             rank: model.rank(),
             metric: model.metric().kind().name(),
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
-            nonlinear: info.elasticity.as_ref().map(|known| matches!(known, Elasticity::Nonlinear(_))),
+            nonlinear: info
+                .elasticity
+                .as_ref()
+                .map(|elasticity| matches!(elasticity, Elasticity::Nonlinear(_))),
             no_frequencies: match &frequencies {
                 Some(Err(error)) => error.to_string(),
                 _ => String::new(),
@@ -58,7 +62,7 @@ impl Model {
     }
 
     pub fn lines(&self) -> Vec<String> {
-        let known = |text: &str| {
+        let stated = |text: &str| {
             if text.is_empty() { "not stated".to_owned() } else { crate::output::one_line(text) }
         };
         let mut lines = self.surface.lines();
@@ -68,20 +72,20 @@ impl Model {
         ]);
         lines.extend(self.elasticity());
         lines.extend([
-            format!("units          {}", known(&self.units)),
-            format!("provenance     {}", known(&self.provenance)),
+            format!("units          {}", stated(&self.units)),
+            format!("provenance     {}", stated(&self.provenance)),
             format!("digest         {}", self.digest),
         ]);
         lines
     }
 
-    /// What is known of the elastic forces.
+    /// The line about stiffness and forces; none without a stiffness.
     fn elasticity(&self) -> Option<String> {
         let forces = if self.nonlinear? { "nonlinear" } else { "linear" };
         Some(match &self.frequencies_hz {
             Some(all) => {
-                let shown: Vec<String> = all.iter().take(SHOWN).map(|hz| length(*hz)).collect();
-                let more = if all.len() > SHOWN { ", ..." } else { "" };
+                let shown: Vec<String> = all.iter().take(MAX_SHOWN).map(|hz| length(*hz)).collect();
+                let more = if all.len() > MAX_SHOWN { ", ..." } else { "" };
                 format!("frequencies    {}{more} Hz ({forces} forces)", shown.join(", "))
             }
             None => format!("frequencies    none: {} ({forces} forces)", self.no_frequencies),

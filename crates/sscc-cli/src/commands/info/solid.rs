@@ -1,4 +1,4 @@
-//! What is known of a solid.
+//! The contents of a solid file.
 
 use std::path::Path;
 
@@ -13,8 +13,8 @@ use super::surface::{Surface, size};
 use crate::output::{counted, grouped, note, one_line};
 use crate::progress::Bar;
 
-/// Materials that are told to people; the JSON has all.
-const SHOWN: usize = 8;
+/// Maximum number of materials in the text; the JSON has all.
+const MAX_SHOWN: usize = 8;
 
 #[derive(Serialize)]
 pub struct Solid {
@@ -26,14 +26,14 @@ pub struct Solid {
     listed_triangles: usize,
     lower: [f64; 3],
     upper: [f64; 3],
-    /// The surface of the elements, which `sscc modes` gives modes to; none where it would refuse them.
+    /// The boundary surface of the elements; none if `sscc modes` refuses the solid.
     boundary: Option<Surface>,
-    /// Why it would.
+    /// The reason of the refusal.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
 }
 
-/// A material, and its share of the elements. Numbers that the file does not state are null.
+/// A material, and the number of its elements. Numbers that the file does not state are null.
 #[derive(Serialize)]
 struct Material {
     name: String,
@@ -82,11 +82,11 @@ impl Solid {
             [self.tetrahedra, self.cubes, self.vertices, self.listed_triangles].map(|n| grouped(n as u64));
         let mut lines =
             vec![format!("solid          {tetrahedra} tetrahedra, {cubes} cubes, {vertices} vertices")];
-        lines.extend(self.materials.iter().take(SHOWN).map(Material::line));
-        if self.materials.len() > SHOWN {
+        lines.extend(self.materials.iter().take(MAX_SHOWN).map(Material::line));
+        if self.materials.len() > MAX_SHOWN {
             lines.push(format!(
                 "               ... and {} more; --json lists all",
-                self.materials.len() - SHOWN
+                self.materials.len() - MAX_SHOWN
             ));
         }
         lines.push(format!("box            {}", size(&self.lower, &self.upper)));

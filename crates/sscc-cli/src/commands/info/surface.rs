@@ -1,4 +1,4 @@
-//! What is known of a mesh.
+//! Counts, topology and size of a triangle mesh.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -42,7 +42,7 @@ impl Surface {
         }
     }
 
-    /// Its triangles and vertices in words, and how they hang together.
+    /// The counts of triangles and vertices, and the topology, as text.
     pub fn form(&self) -> String {
         let [triangles, vertices, used] =
             [self.triangles, self.vertices, self.used_vertices].map(|n| grouped(n as u64));
@@ -63,7 +63,7 @@ impl Surface {
     }
 }
 
-/// The sides of a box for people.
+/// The side lengths of an AABB as text.
 pub fn size(lower: &[f64; 3], upper: &[f64; 3]) -> String {
     let sides: Vec<String> = lower.iter().zip(upper).map(|(l, u)| length(u - l)).collect();
     sides.join(" x ")

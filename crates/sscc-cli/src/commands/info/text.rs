@@ -1,4 +1,4 @@
-//! Texts that several kinds of files share.
+//! Text that several kinds of files share.
 
 use sscc::{Digest, Metric};
 
@@ -12,9 +12,9 @@ pub fn form(metric: &Metric) -> &'static str {
     if metric.dense_factor().is_some() { "dense" } else { "diagonal" }
 }
 
-/// The least and the largest of a metric's scales, for people.
+/// The smallest and the largest of a metric's scales, as text.
 pub fn range(scales: &[f64]) -> String {
-    let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = scales.iter().copied().fold(0.0, f64::max);
-    format!("scales from {} to {}", crate::output::length(least), crate::output::length(largest))
+    let min = scales.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = scales.iter().copied().fold(0.0, f64::max);
+    format!("scales from {} to {}", crate::output::length(min), crate::output::length(max))
 }

@@ -1,9 +1,9 @@
-//! The model that `sscc modes` was asked for, by its kind.
+//! Makes the model of `sscc modes` by the kind of its modes.
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::{read_frames, read_mesh};
 use sscc_sim::{
-    ModesKind, NewModel, POLYNOMIALS_ARE_FREE, SolidSource, elastic_model, is_solid, pca_model,
+    ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
     polynomial_model,
 };
 
@@ -14,12 +14,12 @@ use crate::load::in_file;
 use crate::output::{file_name, note};
 use crate::progress::Bar;
 
-/// Makes the model; errors name the source.
+/// Makes the model. Errors name the source.
 pub fn make(args: &args::Modes) -> Result<NewModel> {
     let kind = match args.kind {
         args::ModesKind::Linear => ModesKind::Linear,
         args::ModesKind::Nonlinear => ModesKind::Nonlinear,
-        args::ModesKind::Polynomial if !asks_for_solid(args) => return surface_polynomials(args),
+        args::ModesKind::Polynomial if !needs_solid(args) => return surface_polynomials(args),
         args::ModesKind::Polynomial => ModesKind::Polynomial,
         args::ModesKind::Pca => return principal_components(args),
     };
@@ -37,15 +37,15 @@ fn elastic(args: &args::Modes, kind: ModesKind) -> Result<NewModel> {
         SolidSource::read(&args.source, args.resolution.map(|cells| cells as usize), &material, &bar)?;
     source.note().into_iter().for_each(note);
     if let Some(replaced) = &source.material().replaced {
-        note(format_args!("--material overrides what the file states: {replaced}"));
+        note(format_args!("--material overrides the file's materials: {replaced}"));
     }
     let fixed = fix.map_or_else(|| Ok(Vec::new()), |fix| fix.vertices(&source))?;
     let rank = args.rank.map(|rank| rank as usize);
     Ok(elastic_model(kind, rank, source, &fixed, &file_name(&args.source), &bar)?)
 }
 
-/// Whether polynomial modes shall know the stiffness of a solid.
-fn asks_for_solid(args: &args::Modes) -> bool {
+/// Whether polynomial modes need a solid, for its stiffness.
+fn needs_solid(args: &args::Modes) -> bool {
     args.resolution.is_some() || args.material.is_some() || is_solid(&args.source)
 }
 
@@ -58,7 +58,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
 
 fn refuse_rank_and_fix(args: &args::Modes) -> Result<()> {
     if args.rank.is_some() || args.fix.is_some() {
-        bail!("--rank and --fix: {POLYNOMIALS_ARE_FREE}");
+        bail!("--rank and --fix: {POLYNOMIAL_MODES_ERROR}");
     }
     Ok(())
 }
@@ -67,12 +67,9 @@ fn principal_components(args: &args::Modes) -> Result<NewModel> {
     let shown = args.source.display();
     ensure!(
         args.fix.is_none() && args.material.is_none() && args.resolution.is_none(),
-        "--fix, --material and --resolution: principal components know no solid; leave them out"
+        "--fix, --material and --resolution: principal components need no solid; leave these flags out"
     );
-    ensure!(
-        !args.source.is_file(),
-        "{shown}: is a file; principal components are those of a folder of meshes, the frames"
-    );
+    ensure!(!args.source.is_file(), "{shown}: is a file; --kind pca needs a folder of meshes (the frames)");
     let frames = read_frames(&args.source)?;
     let rank = args.rank.map(|rank| rank as usize);
     let name = format!("meshes in {}", file_name(&args.source));

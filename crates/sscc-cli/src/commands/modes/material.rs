@@ -1,10 +1,10 @@
-//! `--material`: a name, or numbers.
+//! Parses `--material`: a name, or numbers.
 
 use anyhow::{Result, bail};
 use sscc_dynamics::MATERIALS;
 use sscc_solid::PartialMaterial;
 
-/// The name of a material, or `youngs=1e6,poisson=0.4,density=1000`, any of them.
+/// Parses the name of a material, or some of `youngs=1e6,poisson=0.4,density=1000`.
 pub fn parse(typed: &str) -> Result<PartialMaterial> {
     if let Some(known) = MATERIALS.iter().find(|material| material.name == typed.trim()) {
         return Ok(known.elastic.into());

@@ -1,4 +1,4 @@
-//! `sscc modes`: a mesh, a solid or the frames of an animation become a model.
+//! `sscc modes`: makes a model from a surface, a solid or the frames of an animation.
 
 mod fix;
 mod make;
@@ -20,7 +20,7 @@ struct Report {
     triangles: usize,
     vertices: usize,
     rank: usize,
-    /// Tetrahedra and cubes of the solid, its degrees of freedom; none without a solid.
+    /// Tetrahedra and cubes of the solid; none without a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     elements: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -77,7 +77,7 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
     }
     out.finish()?;
     if has_equal_vertices(model) {
-        note("some vertices have equal positions and modes, as along seams: certify it with --weld");
+        note("some vertices have equal positions and modes, as along seams: certify the model with --weld");
     }
     Ok(Outcome::Done)
 }

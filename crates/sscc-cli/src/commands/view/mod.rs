@@ -1,4 +1,4 @@
-//! `sscc view`: the page, live.
+//! `sscc view`: serves the page of a model, or the report in a folder.
 
 use std::fs;
 use std::path::Path;
@@ -16,11 +16,11 @@ use crate::outcome::Outcome;
 use crate::output::{Output, file_name, note};
 use crate::progress::Bar;
 
-/// The report in a folder of `simulate` or `demo`.
+/// The file name of the report that `simulate` and `demo` write.
 const REPORT: &str = "report.html";
 
-/// Bytes of a report at the most; those of `simulate` hold far less.
-const MOST_REPORT: u64 = 256 << 20;
+/// Maximum size of a report in bytes; those of `simulate` are far smaller.
+const MAX_REPORT_BYTES: u64 = 256 << 20;
 
 pub fn run(args: &View) -> Result<Outcome> {
     let path = &args.model.path;
@@ -50,11 +50,11 @@ pub fn run(args: &View) -> Result<Outcome> {
     scene.plots.extend(comparison);
     let live = Live::new(model, &certificates, scene, arrays, &Interrupt).with_context(in_model)?;
     announce(args, &server)?;
-    server.serve(&live, &interrupt::happened)?;
+    server.serve(&live, &interrupt::is_interrupted)?;
     Ok(Outcome::Done)
 }
 
-/// The plot of `--compare-metrics`.
+/// Computes the plot of `--compare-metrics`.
 fn compare_metrics(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
     let metric = loaded.model.metric();
     let form = if metric.dense_factor().is_some() { "dense" } else { "diagonal" };
@@ -70,29 +70,29 @@ fn compare_metrics(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
     plot.with_context(|| path.display().to_string())
 }
 
-/// A report through the same door: its data, in the page of this program.
+/// Serves the report of a folder: its data, in the page of this program.
 fn show_report(args: &View, report: &Path) -> Result<Outcome> {
-    if let Some(option) = of_models(args) {
+    if let Some(option) = first_model_option(args) {
         bail!("{option} is for models, and {} is a folder: leave it out", args.model.path.display());
     }
     ensure!(
-        fs::metadata(report).map_or(0, |file| file.len()) <= MOST_REPORT,
-        "{}: larger than a report may be ({} MiB)",
+        fs::metadata(report).map_or(0, |file| file.len()) <= MAX_REPORT_BYTES,
+        "{}: file is larger than {} MiB, the maximum for a report",
         report.display(),
-        MOST_REPORT >> 20
+        MAX_REPORT_BYTES >> 20
     );
     let bytes = sscc_io::read_whole(report)
-        .context("a folder is shown by the report in it, as sscc simulate writes it")?;
-    let html = Report::shown_anew(&String::from_utf8_lossy(&bytes));
+        .context("sscc view shows the report in a folder, as written by sscc simulate or sscc demo --out")?;
+    let html = Report::rebuild(&String::from_utf8_lossy(&bytes));
     let html = html.with_context(|| report.display().to_string())?;
     let server = bind(args)?;
     announce(args, &server)?;
-    server.serve_report(&html, &interrupt::happened)?;
+    server.serve_report(&html, &interrupt::is_interrupted)?;
     Ok(Outcome::Done)
 }
 
-/// The first option typed that says nothing about a folder.
-fn of_models(args: &View) -> Option<&'static str> {
+/// Returns the first typed option that applies to models only.
+fn first_model_option(args: &View) -> Option<&'static str> {
     let View { model, certificates, port: _, no_open: _, compare_metrics, options } = args;
     let Model { path: _, modes, mesh_name } = model;
     let Options {
@@ -126,7 +126,7 @@ fn of_models(args: &View) -> Option<&'static str> {
     typed.into_iter().find_map(|(is_typed, option)| is_typed.then_some(option))
 }
 
-/// Listens at the port that is wanted.
+/// Listens on the port of `--port`, else on a free one.
 fn bind(args: &View) -> Result<Server> {
     Ok(match args.port {
         Some(port) => Server::bind(port).with_context(|| format!("--port {port}"))?,
@@ -134,7 +134,7 @@ fn bind(args: &View) -> Result<Server> {
     })
 }
 
-/// Tells where the page is, and opens it.
+/// Prints the address of the page, and opens it in the browser.
 fn announce(args: &View, server: &Server) -> Result<()> {
     let address = server.address();
     let mut out = Output::new();
@@ -144,7 +144,7 @@ fn announce(args: &View, server: &Server) -> Result<()> {
         return Ok(());
     }
     if let Err(error) = open::that_detached(&address) {
-        note(format_args!("no browser was opened: {error}; open the address above in one"));
+        note(format_args!("the browser could not be opened: {error}; open the address above in a browser"));
     }
     Ok(())
 }

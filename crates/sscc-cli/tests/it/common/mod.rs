@@ -1,4 +1,4 @@
-//! The command as a child process, and small files to run it on.
+//! Runs the command as a child process, on small files.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug)]
 pub struct Run {
     pub args: Vec<String>,
@@ -17,7 +17,7 @@ pub struct Run {
     pub stderr: String,
 }
 
-/// The command, not yet started.
+/// Returns the command, not yet started.
 pub fn command(folder: &Path, args: &[impl AsRef<OsStr>]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sscc"));
     command.args(args).current_dir(folder).stdin(Stdio::null());
@@ -41,18 +41,18 @@ impl Run {
         }
     }
 
-    /// The JSON objects on standard output, one on each line.
+    /// Returns the JSON objects on standard output, one a line.
     pub fn json(&self) -> Vec<Value> {
         self.stdout.lines().map(|line| serde_json::from_str(line).expect(line)).collect()
     }
 
-    /// Asserts exit code 2, nothing on standard output, one line on standard error that names each file once at the
-    /// most; gives that line.
+    /// Asserts exit code 2, an empty standard output, and one line on standard error that names each file at most once.
+    /// Returns that line.
     pub fn refusal(&self) -> &str {
         assert_eq!((self.code, self.stdout.as_str()), (Some(2), ""), "{self:?}");
         let message = self.stderr.strip_suffix('\n').unwrap();
         assert!(message.starts_with("error: ") && !message.contains(['\n', '\r']), "{message}");
-        // What has an ending is a file; a name that is nothing but an ending is also part of other words.
+        // An argument with an extension is a file. A name that is only an extension is also part of other words.
         let is_file = |value: &&str| Path::new(value).extension().is_some() && !value.starts_with('.');
         let values = self.args.iter().map(|arg| arg.split_once('=').map_or(arg.as_str(), |(_, value)| value));
         for file in values.filter(is_file) {
@@ -62,21 +62,21 @@ impl Run {
     }
 }
 
-/// The keys of an object, sorted.
+/// Returns the keys of an object, sorted.
 pub fn keys(object: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = object.as_object().unwrap().keys().map(String::as_str).collect();
     keys.sort_unstable();
     keys
 }
 
-/// Words, sorted.
+/// Returns the words of a text, sorted.
 pub fn sorted(words: &str) -> Vec<&str> {
     let mut words: Vec<&str> = words.split([',', ' ']).filter(|w| !w.is_empty()).collect();
     words.sort_unstable();
     words
 }
 
-/// A folder with a small model: two parallel strips of triangles, one above the other.
+/// Creates a folder with a small model: two parallel strips of triangles, one above the other.
 ///
 /// `mesh.obj`, `modes.npy` (rank 2: mode 0 lowers the upper strip, mode 1 shifts it along), the two as
 /// `strips.model.safetensors`, and `strips.sscc.safetensors`. They are 1 apart: the shape collides from
@@ -108,7 +108,7 @@ fn obj() -> String {
     vertices.concat() + &faces.concat()
 }
 
-/// The files of a folder, sorted.
+/// Returns the files of a folder, sorted.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     files.sort();

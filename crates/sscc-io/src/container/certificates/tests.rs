@@ -10,7 +10,7 @@ fn model() -> ReducedModel {
     strip(24)
 }
 
-/// The same of any length, folded again and again.
+/// The same strip with any number of vertices, folded repeatedly.
 fn strip(vertices: u32) -> ReducedModel {
     let positions: Vec<DVec3> = (0..vertices)
         .map(|i| {
@@ -28,14 +28,14 @@ fn strip(vertices: u32) -> ReducedModel {
 /// Pairs that collide at rest in the model of [`certificates`].
 const EXCEPTIONS: usize = 0;
 
-/// Something like a cosine: the tests need a fold, not a circle.
+/// Approximates a cosine; the tests only need a fold.
 fn fold(x: f64) -> f64 {
     1.0 - x * x / 2.0 + x.powi(4) / 24.0 - x.powi(6) / 720.0
 }
 
-/// Everything that certificates can speak of, in one file.
+/// All options of a scope, in one file.
 #[test]
-fn every_scope_is_kept() {
+fn every_scope_round_trips() {
     let options = CertifyOptions {
         metric: Some(
             Metric::from_factor(MetricKind::Given, 3, vec![1.0, 0.5, 0.0, 0.0, 2.0, 0.25, 0.0, 0.0, 1.0])
@@ -71,8 +71,8 @@ fn sample() -> Vec<u8> {
     certificates_to_bytes(&certificates()).unwrap()
 }
 
-/// Everything in a file but the things of those names.
-fn copy(file: &Sealed<'_>, writer: &mut SealedWriter, absent: &[&str]) {
+/// Copies all tensors and text entries of a file except those in `absent`.
+fn copy(file: &Container<'_>, writer: &mut ContainerWriter, absent: &[&str]) {
     for key in ["metric", "scheme", "neighbours", "weld"].iter().filter(|key| !absent.contains(*key)) {
         writer.text(key, file.text(key).unwrap());
     }
@@ -93,11 +93,11 @@ fn copy(file: &Sealed<'_>, writer: &mut SealedWriter, absent: &[&str]) {
     }
 }
 
-/// A good file with one thing replaced, under a good seal.
-fn with(name: &str, change: impl Fn(&mut SealedWriter)) -> String {
+/// Reads a valid file with one entry replaced and a valid digest; returns the error message.
+fn with(name: &str, change: impl Fn(&mut ContainerWriter)) -> String {
     let bytes = sample();
-    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
-    let mut writer = SealedWriter::new(CERTIFICATES);
+    let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+    let mut writer = ContainerWriter::new(CERTIFICATES);
     copy(&file, &mut writer, &[name]);
     change(&mut writer);
     certificates_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string()
@@ -112,17 +112,17 @@ fn round_trip_is_exact() {
     assert_eq!(certificates_to_bytes(&read).unwrap(), sample());
 }
 
-/// As an older version wrote the certificates of the model, under the paper's scheme.
+/// Reads certificates of the model as an older version wrote them, with the paper's scheme.
 fn older(
     version: u32,
     absent: &[&str],
-    change: impl Fn(&mut SealedWriter),
+    change: impl Fn(&mut ContainerWriter),
 ) -> Result<Certificates, FormatError> {
     let options = CertifyOptions { max_exceptions: Some(0), budget: 0, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
-    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
-    let mut writer = SealedWriter::new(super::super::Kind { version, ..CERTIFICATES });
+    let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+    let mut writer = ContainerWriter::new(super::super::Kind { version, ..CERTIFICATES });
     let tree = ["pair_limit", "pair_links", "pair_radii", "pair_starts"];
     copy(&file, &mut writer, &[absent, &tree].concat());
     change(&mut writer);
@@ -131,7 +131,7 @@ fn older(
     Ok(read)
 }
 
-/// As they were written before there were rules to choose from.
+/// Version 1 has no contact filter options.
 #[test]
 fn version_1_is_read() {
     let read = older(1, &["ignored"], |w| _ = w.text("pairs", "root-children")).unwrap();
@@ -140,41 +140,41 @@ fn version_1_is_read() {
     assert_eq!(read.parts().digest.short(), "01b8aa45");
 }
 
-/// As they were written before there was a pair tree.
+/// Version 2 has no pair tree.
 #[test]
 fn version_2_is_read() {
     older(2, &[], |w| _ = w.text("pairs", "root-children")).unwrap();
     let message = |changed: Result<_, FormatError>| changed.unwrap_err().to_string();
     assert!(message(older(2, &[], |_| ())).ends_with("missing"));
     assert!(message(older(2, &[], |w| _ = w.text("pairs", "all"))).ends_with("of the format"));
-    // Written by version 2 itself, exceptions and all.
+    // This file was written by version 2 itself.
     let bytes = include_bytes!("version_2.sscc.safetensors");
-    let file = Sealed::parse(bytes, CERTIFICATES).unwrap();
+    let file = Container::parse(bytes, CERTIFICATES).unwrap();
     assert_eq!((file.version(), file.text("pairs").unwrap()), (2, "root-children"));
     let read = certificates_from_bytes(bytes).unwrap();
     read.check_model(&model()).unwrap();
     assert_eq!((read.parts().pair_tree.limit(), read.exceptions().len()), (0.0, EXCEPTIONS));
     let again = certificates_to_bytes(&read).unwrap();
-    assert_eq!(Sealed::parse(&again, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
+    assert_eq!(Container::parse(&again, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
     assert_eq!(certificates_from_bytes(&again).unwrap(), read);
 }
 
-/// Their pair trees said something of pairs within small nodes.
+/// Pair trees of version 3 include pairs within buckets.
 #[test]
 fn version_3_is_read_without_its_pair_tree() {
     let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&strip(900), &options, &()).unwrap();
     assert!(!certificates.parts().pair_tree.is_empty());
     let bytes = certificates_to_bytes(&certificates).unwrap();
-    let mut writer = SealedWriter::new(super::super::Kind { version: 3, ..CERTIFICATES });
-    copy(&Sealed::parse(&bytes, CERTIFICATES).unwrap(), &mut writer, &[]);
+    let mut writer = ContainerWriter::new(super::super::Kind { version: 3, ..CERTIFICATES });
+    copy(&Container::parse(&bytes, CERTIFICATES).unwrap(), &mut writer, &[]);
     let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
     assert_eq!(read.parts().pair_tree, sscc::PairTree::default());
     assert_eq!(read.parts().node_radii, certificates.parts().node_radii);
 }
 
 #[test]
-fn infinite_radii_are_kept() {
+fn infinite_radii_round_trip() {
     let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
     let still = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::ZERO; 3]).unwrap()).unwrap();
     let certificates = Certificates::compute(&still, &CertifyOptions::default(), &()).unwrap();
@@ -184,7 +184,7 @@ fn infinite_radii_are_kept() {
 }
 
 #[test]
-fn every_flipped_byte_and_truncation_is_refused() {
+fn every_flipped_byte_and_truncation_is_rejected() {
     let bytes = sample();
     for at in 0..bytes.len() {
         let mut flipped = bytes.clone();
@@ -196,16 +196,16 @@ fn every_flipped_byte_and_truncation_is_refused() {
 }
 
 #[test]
-fn other_kinds_and_newer_versions_are_refused() {
-    let model_file = SealedWriter::new(MODEL).finish().unwrap();
+fn other_kinds_and_newer_versions_are_rejected() {
+    let model_file = ContainerWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = SealedWriter::new(super::super::Kind { version: 5, ..CERTIFICATES }).finish().unwrap();
+    let newer = ContainerWriter::new(super::super::Kind { version: 5, ..CERTIFICATES }).finish().unwrap();
     assert!(message(&newer).contains("written by a newer sscc (format version 5"));
 }
 
 #[test]
-fn what_this_version_does_not_know_is_refused() {
+fn unknown_values_and_tensors_are_rejected() {
     let unknown = "is not known in this version of the format";
     for key in ["scheme", "neighbours", "weld"] {
         assert!(with(key, |w| _ = w.text(key, "other")).ends_with(unknown), "{key}");
@@ -222,7 +222,7 @@ fn what_this_version_does_not_know_is_refused() {
 }
 
 #[test]
-fn parts_that_do_not_fit_are_refused() {
+fn inconsistent_parts_are_rejected() {
     let nodes = certificates().hierarchy().nodes().len();
     let order = |values: Vec<u32>| with("order", |w| _ = w.u32("order", &[values.len()], &values));
     assert!(order((0..21).collect()).contains("hierarchy: "));
@@ -246,19 +246,19 @@ fn parts_that_do_not_fit_are_refused() {
     assert!(with("model_digest", |w| _ = w.u8("model_digest", &[3], &[0; 3])).contains("[32] was expected"));
 }
 
-/// The scheme is a name for what is there; what is there decides.
+/// The scheme only names the content; the pair tree decides.
 #[test]
 fn the_scheme_agrees_with_the_pair_tree() {
     assert!(with("scheme", |w| _ = w.text("scheme", "paper")).contains("does not agree"));
     let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
     let paper = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
-    assert_eq!(Sealed::parse(&paper, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
-    assert_eq!(Sealed::parse(&sample(), CERTIFICATES).unwrap().text("scheme").unwrap(), "full");
+    assert_eq!(Container::parse(&paper, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
+    assert_eq!(Container::parse(&sample(), CERTIFICATES).unwrap().text("scheme").unwrap(), "full");
 }
 
-/// Every number of the pair tree replaced by others, and every array cut: an error, or a tree that queries can walk.
+/// Replaces numbers of the pair tree and truncates its arrays: reading fails, or queries can traverse the tree.
 #[test]
-fn damaged_pair_trees_are_refused_or_harmless() {
+fn damaged_pair_trees_are_rejected_or_harmless() {
     let model = strip(900);
     let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
     let good = Certificates::compute(&model, &options, &()).unwrap();
@@ -268,10 +268,10 @@ fn damaged_pair_trees_are_refused_or_harmless() {
     let ends = links.iter().filter(|link| **link << 4 == 0).count();
     assert!(ends > 20 && links.len() - ends > 20, "{ends} of {}", links.len());
     let bytes = certificates_to_bytes(&good).unwrap();
-    let file = Sealed::parse(&bytes, CERTIFICATES).unwrap();
-    let mut refused = 0;
+    let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+    let mut rejected = 0;
     let mut read = |limit: f64, starts: &[u32], radii: &[f32], links: &[u32]| {
-        let mut writer = SealedWriter::new(CERTIFICATES);
+        let mut writer = ContainerWriter::new(CERTIFICATES);
         copy(&file, &mut writer, &["pair_limit", "pair_links", "pair_radii", "pair_starts"]);
         writer
             .f64("pair_limit", &[1], &[limit])
@@ -289,7 +289,7 @@ fn damaged_pair_trees_are_refused_or_harmless() {
                 String::new()
             }
             Err(error) => {
-                refused += 1;
+                rejected += 1;
                 error.to_string()
             }
         }
@@ -326,5 +326,5 @@ fn damaged_pair_trees_are_refused_or_harmless() {
     assert!(
         !read(limit, &starts, &[&radii[..], &[0.0]].concat(), &[&links[..], &[1 << 31]].concat()).is_empty()
     );
-    assert!(refused > 20 * 20, "{refused} with {} links", links.len());
+    assert!(rejected > 20 * 20, "{rejected} with {} links", links.len());
 }

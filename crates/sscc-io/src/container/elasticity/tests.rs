@@ -26,8 +26,8 @@ fn write_model(elasticity: Elasticity) -> Result<Vec<u8>, FormatError> {
 }
 
 #[test]
-fn forces_are_kept_to_the_last_bit() {
-    // Symmetric up to rounding only.
+fn forces_round_trip_bit_for_bit() {
+    // The first matrix is symmetric only up to rounding.
     let linear = Elasticity::Linear(stiffness(&[2.0, -0.5, -0.5 + 1e-12, 3.0]));
     for elasticity in [linear, nonlinear()] {
         assert_eq!((elasticity.rank(), elasticity.stiffness().entries()[0]), (2, 2.0));
@@ -35,7 +35,7 @@ fn forces_are_kept_to_the_last_bit() {
         let (model, info) = model_from_bytes(&bytes).unwrap();
         assert_eq!((info.units.as_str(), info.elasticity.as_ref()), ("m", Some(&elasticity)));
         assert_eq!(model_to_bytes(&model, &info).unwrap(), bytes);
-        assert_eq!(Sealed::parse(&bytes, MODEL).unwrap().text("mass").unwrap(), "identity");
+        assert_eq!(Container::parse(&bytes, MODEL).unwrap().text("mass").unwrap(), "identity");
         for at in 0..bytes.len() {
             let mut flipped = bytes.clone();
             flipped[at] ^= 1 << (at % 8);
@@ -46,23 +46,23 @@ fn forces_are_kept_to_the_last_bit() {
 }
 
 #[test]
-fn a_model_without_forces_is_written_as_ever() {
+fn a_model_without_forces_has_no_force_tensors() {
     let bytes = model_to_bytes(&model(), &ModelInfo::new("m", "test")).unwrap();
-    let file = Sealed::parse(&bytes, MODEL).unwrap();
+    let file = Container::parse(&bytes, MODEL).unwrap();
     assert_eq!(file.names(), ["faces", "metric_scales", "modes", "rest_positions"]);
     assert!(file.text("mass").is_err());
     assert_eq!(model_from_bytes(&bytes).unwrap().1.elasticity, None);
 }
 
 #[test]
-fn forces_of_another_rank_are_not_written() {
+fn forces_of_another_rank_are_rejected_by_the_writer() {
     let message = write_model(Elasticity::Linear(stiffness(&[1.0]))).unwrap_err().to_string();
-    assert_eq!(message, "tensor 'stiffness': the stiffness is of 1 modes, the model has 2");
+    assert_eq!(message, "tensor 'stiffness': the stiffness has 1 modes, the model has 2");
 }
 
-/// Reads forces of rank 2 from these tensors, all of ones, under a good seal.
+/// Reads forces of rank 2 from these tensors, with a valid digest; returns the error message or the forces.
 fn message(mass: Option<&str>, tensors: &[(&str, &[usize], &[f64])]) -> String {
-    let mut writer = SealedWriter::new(MODEL);
+    let mut writer = ContainerWriter::new(MODEL);
     if let Some(mass) = mass {
         writer.text("mass", mass);
     }
@@ -70,12 +70,12 @@ fn message(mass: Option<&str>, tensors: &[(&str, &[usize], &[f64])]) -> String {
         writer.f64(name, shape, values);
     });
     let bytes = writer.finish().unwrap();
-    let read = read(&Sealed::parse(&bytes, MODEL).unwrap(), 2);
+    let read = read(&Container::parse(&bytes, MODEL).unwrap(), 2);
     read.map_or_else(|error| error.to_string(), |found| format!("{found:?}"))
 }
 
 #[test]
-fn forces_that_are_none_are_refused() {
+fn invalid_forces_are_rejected() {
     let stiffness = |shape, values| message(Some("identity"), &[("stiffness", shape, values)]);
     let good: (&str, &[usize], &[f64]) = ("stiffness", &[2, 2], &[1.0; 4]);
     assert!(message(Some("identity"), &[good]).starts_with("Some(Linear"));
@@ -101,6 +101,6 @@ fn forces_that_are_none_are_refused() {
 }
 
 #[test]
-fn no_rank_overflows() {
+fn shapes_of_large_ranks_saturate() {
     assert_eq!(shapes(usize::MAX >> 24)[2].1[1], usize::MAX - 1);
 }

@@ -14,9 +14,9 @@ fn sample() -> Vec<u8> {
     model_to_bytes(&model(), &ModelInfo::new("cm", "by hand")).unwrap()
 }
 
-/// A model file with one thing replaced.
+/// Returns a model file with one tensor, the faces or the metric replaced.
 fn with(change: impl Fn(&str) -> Option<(Vec<usize>, Vec<f64>)>, faces: &[u32], metric: &str) -> Vec<u8> {
-    let mut writer = SealedWriter::new(MODEL);
+    let mut writer = ContainerWriter::new(MODEL);
     writer.text("metric", metric).text("units", "").text("provenance", "");
     writer.u32("faces", &[faces.len() / 3, 3], faces);
     for (name, shape) in
@@ -44,14 +44,14 @@ fn round_trip_is_exact() {
 #[test]
 fn modes_are_laid_out_for_numpy() {
     let bytes = sample();
-    let modes = Sealed::parse(&bytes, MODEL).unwrap().f64("modes").unwrap();
+    let modes = Container::parse(&bytes, MODEL).unwrap().f64("modes").unwrap();
     assert_eq!(modes.shape, [5, 3, 3]);
     // U[3 v + c, k] of the 15 x 3 matrix
     assert_eq!(modes.values[(3 * 4 + 1) * 3 + 2], model().modes().of_vertex(4)[2].y);
 }
 
 #[test]
-fn every_flipped_byte_and_truncation_is_refused() {
+fn every_flipped_byte_and_truncation_is_rejected() {
     let bytes = sample();
     for at in 0..bytes.len() {
         let mut flipped = bytes.clone();
@@ -62,7 +62,7 @@ fn every_flipped_byte_and_truncation_is_refused() {
 }
 
 #[test]
-fn content_is_checked_under_any_seal() {
+fn content_with_a_valid_digest_is_checked() {
     let message = |bytes: Vec<u8>| model_from_bytes(&bytes).unwrap_err().to_string();
     let tensor = |name: &'static str, shape: &[usize], values: &[f64]| {
         let (shape, values) = (shape.to_vec(), values.to_vec());
@@ -86,8 +86,8 @@ fn content_is_checked_under_any_seal() {
 }
 
 #[test]
-fn unknown_tensors_are_refused() {
-    let mut writer = SealedWriter::new(MODEL);
+fn unknown_tensors_are_rejected() {
+    let mut writer = ContainerWriter::new(MODEL);
     writer.u8("weld", &[1], &[1]);
     let message = model_from_bytes(&writer.finish().unwrap()).unwrap_err().to_string();
     assert_eq!(message, "tensor 'weld': not known in this version of the format");

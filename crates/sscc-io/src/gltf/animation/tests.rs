@@ -13,13 +13,13 @@ fn model() -> ReducedModel {
 }
 
 fn track(name: &str, shift: f64) -> Track {
-    let turn = |angle: f64| DQuat::from_rotation_z(angle);
+    let rotation = |angle: f64| DQuat::from_rotation_z(angle);
     Track {
         name: name.into(),
         model: 0,
         center: DVec3::new(0.25, 0.1, 0.0),
         positions: [0.0, 0.1, 0.2].map(|x| DVec3::new(x + shift, 2.0, -x)).to_vec(),
-        orientations: vec![turn(0.1), -turn(0.2), turn(0.3)],
+        orientations: vec![rotation(0.1), -rotation(0.2), rotation(0.3)],
         weights: vec![0.1 + shift, 0.0, -0.5, 0.7, 1.0, 2.0],
     }
 }
@@ -27,7 +27,7 @@ fn track(name: &str, shift: f64) -> Track {
 const TIMES: [f64; 3] = [0.0, 0.04, 0.1];
 
 #[test]
-fn our_reader_reads_the_model_back() {
+fn the_model_round_trips() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
     let model = model();
@@ -49,9 +49,9 @@ fn our_reader_reads_the_model_back() {
     }
 }
 
-/// What another reader makes of the file at a key frame, vertex by vertex, is the reduced motion.
+/// The positions that another reader computes at each key frame are those of the reduced motion.
 #[test]
-fn another_reader_plays_the_motion() {
+fn another_reader_reproduces_the_motion() {
     let model = model();
     let tracks = [track("a", 0.0), track("b", 3.0)];
     let bytes =
@@ -61,24 +61,24 @@ fn another_reader_plays_the_motion() {
     let animation = file.animations().next().unwrap();
     assert_eq!((animation.channels().count(), file.meshes().count(), file.nodes().count()), (6, 1, 4));
     for (body, track) in tracks.iter().enumerate() {
-        let mover = file.scenes().next().unwrap().nodes().nth(body).unwrap();
-        let shape = mover.children().next().unwrap();
-        assert_eq!((mover.name(), shape.mesh().unwrap().index()), (Some(track.name.as_str()), 0));
-        let (mut positions, mut turns, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-        let of_body = |node: usize| [mover.index(), shape.index()].contains(&node);
+        let carrier = file.scenes().next().unwrap().nodes().nth(body).unwrap();
+        let shape = carrier.children().next().unwrap();
+        assert_eq!((carrier.name(), shape.mesh().unwrap().index()), (Some(track.name.as_str()), 0));
+        let (mut positions, mut rotations, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+        let of_body = |node: usize| [carrier.index(), shape.index()].contains(&node);
         for channel in animation.channels().filter(|channel| of_body(channel.target().node().index())) {
             assert_eq!(channel.sampler().interpolation(), Interpolation::Linear);
             let reader = channel.reader(|_| Some(&blob));
             assert_eq!(reader.read_inputs().unwrap().collect::<Vec<_>>(), TIMES.map(|t| t as f32));
             match reader.read_outputs().unwrap() {
                 ReadOutputs::Translations(read) => positions = read.collect(),
-                ReadOutputs::Rotations(read) => turns = read.into_f32().collect(),
+                ReadOutputs::Rotations(read) => rotations = read.into_f32().collect(),
                 ReadOutputs::MorphTargetWeights(read) => weights = read.into_f32().collect::<Vec<f32>>(),
                 ReadOutputs::Scales(_) => panic!(),
             }
         }
-        // Each turn on the side of the one before it.
-        for pair in turns.windows(2) {
+        // Each quaternion has the sign nearest to its predecessor.
+        for pair in rotations.windows(2) {
             assert!(pair[0].iter().zip(pair[1]).map(|(a, b)| a * b).sum::<f32>() > 0.0);
         }
         let primitive = shape.mesh().unwrap().primitives().next().unwrap();
@@ -93,12 +93,12 @@ fn another_reader_plays_the_motion() {
         let wide = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
         let inner = wide(shape.transform().decomposed().0);
         for frame in 0..TIMES.len() {
-            let turn = DQuat::from_array(turns[frame].map(f64::from));
+            let rotation = DQuat::from_array(rotations[frame].map(f64::from));
             let q = &track.weights[2 * frame..][..2];
             for v in 0..4 {
                 let moved = (0..2).map(|k| wide(targets[k][v]) * f64::from(weights[2 * frame + k]));
                 let local = wide(rest[v]) + moved.sum::<DVec3>() + inner;
-                let shown = turn * local + wide(positions[frame]);
+                let shown = rotation * local + wide(positions[frame]);
                 let exact = track.orientations[frame] * (model.position(v as u32, q) - track.center)
                     + track.positions[frame];
                 assert!((shown - exact).length() < 1e-6, "{shown} {exact}");
@@ -107,9 +107,9 @@ fn another_reader_plays_the_motion() {
     }
 }
 
-/// One key frame each, so that players that take ranges from first key frames know all weights.
+/// The extremes have one key frame each, for players that derive ranges from first key frames.
 #[test]
-fn the_least_and_the_greatest_weights_are_animations_too() {
+fn extreme_weights_are_animations() {
     let model = model();
     let tracks = [track("a", 0.0), track("b", 3.0)];
     let bytes =
@@ -117,7 +117,7 @@ fn the_least_and_the_greatest_weights_are_animations_too() {
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     assert_eq!(file.animations().count(), 3);
-    for (animation, greatest) in file.animations().skip(1).zip([false, true]) {
+    for (animation, is_maximum) in file.animations().skip(1).zip([false, true]) {
         assert_eq!(animation.channels().count(), tracks.len());
         for (channel, track) in animation.channels().zip(&tracks) {
             let reader = channel.reader(|_| Some(&blob));
@@ -125,7 +125,7 @@ fn the_least_and_the_greatest_weights_are_animations_too() {
             let Some(ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { panic!() };
             let expected = [0, 1].map(|k| {
                 let of_mode = track.weights.chunks(2).map(|q| q[k] as f32);
-                if greatest { of_mode.reduce(f32::max) } else { of_mode.reduce(f32::min) }.unwrap()
+                if is_maximum { of_mode.reduce(f32::max) } else { of_mode.reduce(f32::min) }.unwrap()
             });
             assert_eq!(weights.into_f32().collect::<Vec<_>>(), expected);
         }
@@ -133,17 +133,20 @@ fn the_least_and_the_greatest_weights_are_animations_too() {
 }
 
 #[test]
-fn what_is_no_animation_is_refused() {
+fn invalid_animations_are_rejected() {
     let model = model();
     let models = [NamedModel { name: "t", model: &model }];
     let message = |times: &[f64], track: Track| animation_to_bytes(&models, times, &[track]).unwrap_err();
     let good = || track("a", 0.0);
-    assert_eq!(message(&[0.0, 1.0], good()), "body a has not one entry for each of the 2 key frames");
+    assert_eq!(message(&[0.0, 1.0], good()), "body a needs one entry for each of the 2 key frames");
     assert_eq!(message(&[0.0, 1.0, 1.0 + 1e-12], good()), "key frame 2 is not after the one before it");
-    assert_eq!(message(&TIMES, Track { model: 1, ..good() }), "body a is of model 1, but there are 1");
+    assert_eq!(message(&TIMES, Track { model: 1, ..good() }), "body a refers to model 1, but there are 1");
     let mut wide = good();
     wide.weights[3] = 1e300;
-    assert_eq!(message(&TIMES, wide), "a number of an animation is inf in single precision");
+    assert_eq!(
+        message(&TIMES, wide),
+        "a number of the animation is inf in single precision: scale the model down"
+    );
     assert_eq!(
         animation_to_bytes(&models, &TIMES, &[]).unwrap_err(),
         "an animation needs a key frame and a body"
@@ -152,13 +155,13 @@ fn what_is_no_animation_is_refused() {
 }
 
 #[test]
-fn key_frames_are_at_the_rate() {
+fn key_frames_follow_the_rate() {
     assert_eq!(key_frames(11, 0.01, 50.0), [0, 2, 4, 6, 8, 10]);
     assert_eq!(key_frames(10, 0.01, 30.0), [0, 3, 7, 9]);
     assert_eq!(key_frames(4, 0.1, 60.0), [0, 1, 2, 3]);
     assert_eq!(key_frames(88_200, 1.0 / 44_100.0, 60.0).len(), 121);
     assert_eq!(key_frames(5, 0.01, 0.0), [0, 4]);
-    // Times that single precision cannot tell apart.
+    // Single precision cannot distinguish these times.
     let (steps, step) = (20_000_001, 1.0 / 44_100.0);
     let frames = key_frames(steps, step, 44_100.0);
     assert!(frames.windows(2).all(|w| (w[0] as f64 * step) as f32 != (w[1] as f64 * step) as f32));

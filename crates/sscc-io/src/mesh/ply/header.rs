@@ -55,8 +55,8 @@ pub(super) struct Header {
     pub body: usize,
 }
 
-/// More elements, or properties of one, than any file has. Each is compared with all others.
-const MOST: usize = 256;
+/// Maximum number of elements, and of properties of an element. Each name is compared with all others.
+const MAX_DECLARATIONS: usize = 256;
 
 impl Number {
     fn from_name(name: &str) -> Option<Self> {
@@ -119,8 +119,8 @@ impl Header {
                     if elements.iter().any(|e| e.name == name) {
                         return refused(format!("a second element {}", quoted(name)));
                     }
-                    if elements.len() == MOST {
-                        return refused(format!("more than {MOST} elements"));
+                    if elements.len() == MAX_DECLARATIONS {
+                        return refused(format!("more than {MAX_DECLARATIONS} elements"));
                     }
                     let count = count(rows, line)?;
                     elements.push(Element { name: name.into(), count, properties: Vec::new(), line });
@@ -133,8 +133,8 @@ impl Header {
                     if element.properties.iter().any(|p| p.name == property.name) {
                         return refused(format!("a second property {}", quoted(&property.name)));
                     }
-                    if element.properties.len() == MOST {
-                        return refused(format!("more than {MOST} properties"));
+                    if element.properties.len() == MAX_DECLARATIONS {
+                        return refused(format!("more than {MAX_DECLARATIONS} properties"));
                     }
                     element.properties.push(property);
                 }

@@ -15,14 +15,13 @@ use super::Soup;
 use super::polygons::Polygons;
 use crate::FormatError;
 
-/// Parses a PLY file: `x`, `y`, `z` of the element `vertex` (any numeric type), and the list `vertex_indices`
-/// or `vertex_index` of the element `face` (any integer types). Other elements and properties are
-/// skipped. Numbers have the declared type in text files too, so that a text file and a binary file
-/// with the same declaration give the same mesh.
+/// Parses a PLY file: `x`, `y`, `z` of the element `vertex` (any numeric type), and the list `vertex_indices` or
+/// `vertex_index` of the element `face` (any integer types). Other elements and properties are skipped. Numbers in text
+/// files have their declared type, too, so a text file and a binary file with the same declarations give the same mesh.
 ///
 /// # Errors
-/// When the header is malformed, lacks one of these, or declares more than the file holds; when bytes are
-/// left over; when an index names no vertex, or [`TriMesh::new`] refuses the mesh.
+/// When the header is malformed, lacks one of these, or declares more data than the file has; when bytes follow the last
+/// row; when an index names no vertex, or [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -108,7 +107,7 @@ fn read_faces(
 
 fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), FormatError> {
     if element.properties.is_empty() {
-        return Ok(()); // rows of no bytes: there may be any number of them
+        return Ok(()); // rows without bytes can have any count
     }
     for _ in 0..element.count {
         for property in &element.properties {

@@ -13,7 +13,7 @@ fn text() -> String {
     format!("{}1.5\n2 7 8\n9 0 0 0\n9 1 0 0\n9 1 1.5 0\n9 0 1 -2\n0.5 4 0 1 2 3\n", header("ascii", 4))
 }
 
-/// The same in binary.
+/// The same mesh in binary.
 fn binary(big: bool) -> Vec<u8> {
     let mut bytes = header(if big { "binary_big_endian" } else { "binary_little_endian" }, 4).into_bytes();
     let mut put = |little: &[u8]| {
@@ -68,22 +68,22 @@ fn text_numbers_have_the_declared_type() {
 }
 
 #[test]
-fn every_truncation_and_any_extra_is_refused() {
+fn truncations_and_extra_bytes_are_rejected() {
     for bytes in [binary(false), binary(true)] {
         for len in 0..bytes.len() {
             assert!(parse(&bytes[..len]).is_err(), "{len}");
         }
-        assert!(message(&[&bytes[..], b"\n"].concat()).contains("1 bytes more than the header promises"));
+        assert!(message(&[&bytes[..], b"\n"].concat()).contains("1 bytes more than the header declares"));
     }
     let text = text();
     for len in 0..text.len() - 2 {
         assert!(parse(&text.as_bytes()[..len]).is_err(), "{len}");
     }
-    assert_eq!(message(format!("{text}7").as_bytes()), "line 24: 1 bytes more than the header promises");
+    assert_eq!(message(format!("{text}7").as_bytes()), "line 24: 1 bytes more than the header declares");
 }
 
 #[test]
-fn hostile_counts_are_refused_at_once() {
+fn hostile_counts_are_rejected() {
     for count in ["5", "4294967296", "18446744073709551615", "99999999999999999999999"] {
         for bytes in [text().into_bytes(), binary(false)] {
             let from = b"element vertex 4";
@@ -100,7 +100,7 @@ fn hostile_counts_are_refused_at_once() {
 }
 
 #[test]
-fn bad_headers_are_named() {
+fn errors_in_headers_name_the_line() {
     let with = |from: &str, to: &str| message(text().replace(from, to).as_bytes());
     assert_eq!(with("ply\n", "PLY\n"), "line 1: a PLY file begins with 'ply'");
     assert_eq!(with("ascii 1.0", "ascii 1.1"), "line 2: not a line of a PLY header: 'format ascii 1.1'");
@@ -130,7 +130,7 @@ fn bad_headers_are_named() {
 }
 
 #[test]
-fn bad_rows_are_named() {
+fn errors_in_rows_name_the_place() {
     let with = |from: &str, to: &str| message(text().replace(from, to).as_bytes());
     assert_eq!(with("4 0 1 2 3", "4 0 1 2 4"), "line 23: names vertex 4 (counted from 0), but there are 4");
     assert_eq!(with("4 0 1 2 3", "4 0 1 2 -1"), "line 23: -1 is negative");

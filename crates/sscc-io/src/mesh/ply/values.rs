@@ -41,7 +41,7 @@ impl<'a> Values<'a> {
                 Kind::Number(n) | Kind::List { count: n, .. } => number(n),
             })
             .sum();
-        // The last number of a text may have no space after it.
+        // White space after the last number of a text file is optional.
         let left = self.bytes.len() - self.at + 1;
         if element.count.checked_mul(row).is_some_and(|size| size <= left) {
             return Ok(());
@@ -107,14 +107,14 @@ impl<'a> Values<'a> {
         let place = self.place();
         match self.bytes.len() - self.at {
             0 => Ok(()),
-            left => Err(FormatError::new(place, format!("{left} bytes more than the header promises"))),
+            left => Err(FormatError::new(place, format!("{left} bytes more than the header declares"))),
         }
     }
 
     /// Reads the next N bytes, in little endian order.
     fn take<const N: usize>(&mut self, little: bool) -> Result<[u8; N], FormatError> {
         let Some(bytes) = self.bytes[self.at..].first_chunk::<N>() else {
-            return Err(FormatError::new(Place::Byte(self.at), "the file is cut off here"));
+            return Err(FormatError::new(Place::Byte(self.at), "the file ends here, within a row"));
         };
         self.at += N;
         let mut bytes = *bytes;
@@ -137,7 +137,7 @@ impl<'a> Values<'a> {
         let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         let line = self.line;
         if end == 0 {
-            return Err(FormatError::line(line, "the file is cut off here"));
+            return Err(FormatError::line(line, "the file ends here, within a row"));
         }
         self.at += end;
         let word = decoded(&rest[..end], line)?;

@@ -4,7 +4,7 @@ const TEXT: &str = "solid a name\n facet normal 0 0 nan\n  outer loop\n   vertex
     vertex 0 1.5e0 0\n  endloop\n endfacet\n\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   \
     vertex 0 0 -2\n   vertex 0 1.5 0\n  endloop\n endfacet\nendsolid";
 
-/// The same in binary, with that header and those attribute bytes.
+/// The same mesh in binary, with this header and these attribute bytes.
 fn binary_file(header: &[u8], attribute: [u8; 2]) -> Vec<u8> {
     let mut bytes = header.to_vec();
     bytes.resize(80, b' ');
@@ -28,9 +28,9 @@ fn message(bytes: impl AsRef<[u8]>) -> String {
 fn text_and_binary_give_the_same_mesh() {
     let mesh = parse(TEXT.as_bytes()).unwrap();
     assert_eq!(mesh.faces(), [[0, 1, 2], [3, 4, 5]]);
-    assert_eq!(mesh.rest_positions()[1], mesh.rest_positions()[3], "equal vertices stay apart");
+    assert_eq!(mesh.rest_positions()[1], mesh.rest_positions()[3], "equal vertices are not welded");
     assert_eq!(mesh.rest_positions()[4], DVec3::new(0.0, 0.0, -2.0));
-    // The size decides, whatever the header says.
+    // The size decides, for any text in the header.
     for header in [&b""[..], b"solid", b"solid x\nfacet normal 0 0 0", b"\0\0"] {
         assert_eq!(parse(&binary_file(header, [0, 0])).unwrap(), mesh);
         assert_eq!(parse(&binary_file(header, [255, 1])).unwrap(), mesh);
@@ -44,7 +44,7 @@ fn text_and_binary_give_the_same_mesh() {
 }
 
 #[test]
-fn every_truncation_and_any_extra_is_refused() {
+fn truncations_and_extra_bytes_are_rejected() {
     for header in [&b""[..], b"solid"] {
         let bytes = binary_file(header, [0, 0]);
         for len in 0..bytes.len() {
@@ -60,7 +60,7 @@ fn every_truncation_and_any_extra_is_refused() {
 }
 
 #[test]
-fn bad_files_are_named() {
+fn errors_name_the_place() {
     let with = |from: &str, to: &str| message(TEXT.replacen(from, to, 1));
     assert_eq!(with("vertex 1 0 0", "vertex 1 0"), "line 5: a vertex has 3 coordinates");
     assert_eq!(with("vertex 1 0 0", "vertex 1 0 0 0"), "line 5: a vertex has 3 coordinates");
@@ -72,7 +72,7 @@ fn bad_files_are_named() {
     );
     assert_eq!(with("outer", "inner"), "line 3: 'outer loop' expected, not 'inner'");
     assert_eq!(with("\nendsolid", ""), "the file ends where 'facet' or 'endsolid' was expected");
-    assert!(with("solid a", "sold a").starts_with("byte 80: the header promises "));
+    assert!(with("solid a", "sold a").starts_with("byte 80: the header declares "));
     assert!(message("sol").contains("not an STL file"));
     assert_eq!(message("solid x\nendsolid x\n"), "the mesh has no triangles");
     assert_eq!(message([0; 84]), "the mesh has no triangles");

@@ -7,9 +7,9 @@ use super::version::Version;
 use crate::FormatError;
 use crate::solid::builder::{Builder, repeated};
 
-const WHAT: &str = "the last element";
+const LAST_ELEMENT: &str = "the last element";
 
-/// Use of an element.
+/// Kind of an element.
 #[derive(Clone, Copy)]
 enum Kind {
     Tet,
@@ -74,23 +74,26 @@ struct Reader<'r, 'a> {
 }
 
 impl Reader<'_, '_> {
-    /// Elements of version 2 that share a head, at most `left`. In text, each has its own; returns how many.
+    /// Reads elements of version 2 that share a header, at most `left`; returns their number. In text files each element
+    /// has its own header.
     fn block_2(&mut self, left: u64, groups: &Groups) -> Result<u64, FormatError> {
         if !self.numbers.words.binary {
-            self.numbers.integer(WHAT)?; // the element's own number
+            self.numbers.integer(LAST_ELEMENT)?; // the element's own number
         }
         let kind = self.kind()?;
-        let count = if self.numbers.words.binary { self.numbers.tag(WHAT)? } else { 1 };
-        let tags = self.numbers.tag(WHAT)?;
+        let count = if self.numbers.words.binary { self.numbers.tag(LAST_ELEMENT)? } else { 1 };
+        let tags = self.numbers.tag(LAST_ELEMENT)?;
         if count == 0 || count > left {
-            return self.numbers.refused(format!("a block of {count} elements, but {left} are left"));
+            return self
+                .numbers
+                .refused(format!("a block has {count} elements, but only {left} of the section remain"));
         }
         for _ in 0..count {
             if self.numbers.words.binary {
-                self.numbers.integer(WHAT)?;
+                self.numbers.integer(LAST_ELEMENT)?;
             }
-            let group = if tags > 0 { self.numbers.integer(WHAT)?.unsigned_abs() } else { 0 };
-            self.numbers.skip_integers(tags.saturating_sub(1), WHAT)?;
+            let group = if tags > 0 { self.numbers.integer(LAST_ELEMENT)?.unsigned_abs() } else { 0 };
+            self.numbers.skip_integers(tags.saturating_sub(1), LAST_ELEMENT)?;
             self.element(kind, |builder| groups.material(group, builder))?;
         }
         Ok(count)
@@ -98,34 +101,36 @@ impl Reader<'_, '_> {
 
     fn blocks_4(&mut self, groups: &Groups) -> Result<(), FormatError> {
         let blocks = self.numbers.size("the number of blocks")?;
-        let promised = self.numbers.size("the number of elements")?;
+        let declared = self.numbers.size("the number of elements")?;
         self.numbers.size("the smallest tag")?;
         self.numbers.size("the largest tag")?;
         let mut found = 0_u64;
         for _ in 0..blocks {
-            self.numbers.integer(WHAT)?; // the dimension, which the kind tells too
-            let entity = self.numbers.integer(WHAT)?;
+            self.numbers.integer(LAST_ELEMENT)?; // the dimension, which the kind implies
+            let entity = self.numbers.integer(LAST_ELEMENT)?;
             let kind = self.kind()?;
             let count = self.numbers.size("the number of elements in a block")?;
             for _ in 0..count {
-                self.numbers.size(WHAT)?; // its tag
+                self.numbers.size(LAST_ELEMENT)?; // its tag
                 self.element(kind, |builder| groups.material_of_volume(entity, builder))?;
             }
             found = found.saturating_add(count);
         }
-        if found != promised {
-            return self.numbers.refused(format!("{found} elements, but {promised} were promised"));
+        if found != declared {
+            return self
+                .numbers
+                .refused(format!("the section has {found} elements, but declares {declared}"));
         }
         Ok(())
     }
 
     fn kind(&mut self) -> Result<Kind, FormatError> {
-        let number = self.numbers.integer(WHAT)?;
+        let number = self.numbers.integer(LAST_ELEMENT)?;
         match kind(number) {
             Some(kind) => Ok(kind),
             None => self.numbers.refused(format!(
-                "elements of type {number}: of solid elements, only 4-node tetrahedra (4) and 8-node hexahedra (5) \
-                 are supported"
+                "element type {number} is not supported: solid elements must be 4-node tetrahedra (4) or 8-node \
+                 hexahedra (5)"
             )),
         }
     }
@@ -154,8 +159,8 @@ impl Reader<'_, '_> {
 
     fn node(&mut self) -> Result<u64, FormatError> {
         match self.version {
-            Version::V2 => self.numbers.tag(WHAT),
-            Version::V4 => self.numbers.size(WHAT),
+            Version::V2 => self.numbers.tag(LAST_ELEMENT),
+            Version::V4 => self.numbers.size(LAST_ELEMENT),
         }
     }
 
@@ -171,7 +176,7 @@ impl Reader<'_, '_> {
         for corner in &mut corners {
             *corner = match self.nodes.vertex(*corner) {
                 Some(vertex) => vertex,
-                None => return self.numbers.refused(format!("names node {corner}, which is not there")),
+                None => return self.numbers.refused(format!("names node {corner}, which does not exist")),
             };
         }
         Ok(corners)

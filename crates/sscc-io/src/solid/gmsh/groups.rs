@@ -11,24 +11,24 @@ use crate::text::decoded;
 /// Dimension of volumes.
 const VOLUME: i64 = 3;
 
-const NAME: &str = "the last name";
-const ENTITY: &str = "the last entity";
+const LAST_NAME: &str = "the last name";
+const LAST_ENTITY: &str = "the last entity";
 
 #[derive(Default)]
 pub(super) struct Groups {
     /// Names of the physical groups of volumes.
     names: BTreeMap<u64, String>,
-    /// The first physical group of each volume that has one (version 4).
+    /// First physical group of each volume with groups (version 4).
     of_volume: BTreeMap<i64, u64>,
 }
 
 impl Groups {
-    /// Lines `dimension number "name"`, text in binary files too.
+    /// Reads the lines `dimension number "name"`, which are text in binary files, too.
     pub fn read_names(&mut self, words: &mut Words) -> Result<(), FormatError> {
         let count = words.count("the number of names")?;
         words.rest_of_line();
         for _ in 0..count {
-            let (dimension, number) = (words.integer(NAME)?, words.integer(NAME)?);
+            let (dimension, number) = (words.integer(LAST_NAME)?, words.integer(LAST_NAME)?);
             let place = words.place();
             let name = decoded(words.rest_of_line(), 0)
                 .map_err(|error| FormatError::new(place.clone(), error.cause()))?
@@ -43,8 +43,8 @@ impl Groups {
         Ok(())
     }
 
-    /// Points, curves, surfaces and volumes: tag, box (of a point, its position), physical groups, and except for
-    /// points the tags of what bounds them.
+    /// Reads points, curves, surfaces and volumes: tag, bounding box (of a point: position), physical groups, and the tags
+    /// of bounding entities (not for points).
     pub fn read_entities(&mut self, numbers: &mut Numbers) -> Result<(), FormatError> {
         let mut counts = [0; 4];
         for count in &mut counts {
@@ -59,22 +59,22 @@ impl Groups {
     }
 
     fn entity(&mut self, numbers: &mut Numbers, dimension: i64) -> Result<(), FormatError> {
-        let tag = numbers.integer(ENTITY)?;
+        let tag = numbers.integer(LAST_ENTITY)?;
         for _ in 0..if dimension == 0 { 3 } else { 6 } {
-            numbers.number(ENTITY)?;
+            numbers.number(LAST_ENTITY)?;
         }
-        let groups = numbers.size(ENTITY)?;
+        let groups = numbers.size(LAST_ENTITY)?;
         if groups > 0 {
             // A group number is negative if the entity is reversed.
-            let first = numbers.integer(ENTITY)?.unsigned_abs();
-            numbers.skip_integers(groups - 1, ENTITY)?;
+            let first = numbers.integer(LAST_ENTITY)?.unsigned_abs();
+            numbers.skip_integers(groups - 1, LAST_ENTITY)?;
             if dimension == VOLUME {
                 self.of_volume.insert(tag, first);
             }
         }
         if dimension > 0 {
-            let bounding = numbers.size(ENTITY)?;
-            numbers.skip_integers(bounding, ENTITY)?;
+            let bounding = numbers.size(LAST_ENTITY)?;
+            numbers.skip_integers(bounding, LAST_ENTITY)?;
         }
         Ok(())
     }

@@ -25,15 +25,15 @@ use nodes::Nodes;
 use numbers::Numbers;
 use version::Version;
 
-/// Parses a gmsh file: 4-node tetrahedra, 8-node hexahedra, and as surface 3-node triangles and 4-node
-/// quadrilaterals. Points, lines and other faces are skipped. Vertices are in the file's order, whatever their tags.
+/// Parses a gmsh file: 4-node tetrahedra, 8-node hexahedra, and a surface of 3-node triangles and 4-node quadrilaterals.
+/// Points, lines and other faces are skipped. Vertices keep the file's order, independent of their tags.
 ///
-/// The material of an element is the first physical group of its volume, named by the group's name, else its
-/// number; without a group it is the default.
+/// The material of an element is the first physical group of its volume, with the name of the group, else its number.
+/// Elements without a group have the default material.
 ///
 /// # Errors
-/// When the version is another, numbers of the binary form are of another width, a section is shorter than its
-/// counts or without its end, solid elements are of another kind, tags of nodes occur twice or are unknown, or as
+/// When the version is not supported, binary numbers have another width, a section does not match its counts or has no
+/// end, solid elements have another kind, or tags of nodes are repeated or unknown; else as
 /// [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut words = Words::new(bytes, false)?;
@@ -48,7 +48,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
             return numbers.words.refused(cause);
         };
         let refused = |cause: String| Err(FormatError::new(place, cause));
-        let second = || format!("a second section {}", quoted(section));
+        let second = || format!("the section {} is repeated", quoted(section));
         numbers.words.rest_of_line();
         match (name, &nodes) {
             ("Nodes", Some(_)) => return refused(second()),
@@ -61,7 +61,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
             }
             ("PhysicalNames", _) => groups.read_names(&mut numbers.words)?,
             ("Entities", _) if version == Version::V4 => groups.read_entities(&mut numbers)?,
-            _ if numbers.words.skip_behind_line(&format!("$End{name}")) => continue,
+            _ if numbers.words.skip_past_line(&format!("$End{name}")) => continue,
             _ => {
                 return Err(FormatError::whole(format!(
                     "the file ends before {}",
@@ -77,7 +77,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     builder.finish()
 }
 
-/// `$MeshFormat`: version, whether binary, bytes of a size; then for binary files the integer 1.
+/// Parses `$MeshFormat`: version, whether the file is binary, width of sizes; then for binary files the integer 1.
 fn header<'a>(words: &mut Words<'a>) -> Result<(Version, Numbers<'a>), FormatError> {
     let magic = words.word("the header")?;
     if magic != "$MeshFormat" {
@@ -87,14 +87,17 @@ fn header<'a>(words: &mut Words<'a>) -> Result<(Version, Numbers<'a>), FormatErr
         "2.2" | "2.1" | "2" | "2.0" => Version::V2,
         "4.1" => Version::V4,
         other => {
-            let cause = format!("version {} of the format: only 2.2 and 4.1 are supported", quoted(other));
+            let cause = format!(
+                "version {} of the format is not supported: save the file as 2.2 or 4.1",
+                quoted(other)
+            );
             return words.refused(cause);
         }
     };
     words.binary = words.integer("the type of the file")? != 0;
     let size = words.integer("the size of numbers")?;
     if words.binary && size != 8 {
-        return words.refused(format!("numbers of {size} bytes: only 8 are supported"));
+        return words.refused(format!("numbers of {size} bytes are not supported: only 8 are"));
     }
     words.rest_of_line();
     let mut big_endian = false;
@@ -103,7 +106,7 @@ fn header<'a>(words: &mut Words<'a>) -> Result<(Version, Numbers<'a>), FormatErr
             [1, 0, 0, 0] => false,
             [0, 0, 0, 1] => true,
             other => {
-                return words.refused(format!("the order of bytes is not clear: 1 is stored as {other:?}"));
+                return words.refused(format!("the byte order is not clear: 1 is stored as {other:?}"));
             }
         };
     }

@@ -7,7 +7,7 @@ use super::version::Version;
 use crate::FormatError;
 use crate::solid::builder::Builder;
 
-const WHAT: &str = "the last node";
+const LAST_NODE: &str = "the last node";
 
 /// Tags of nodes: any numbers, in any order.
 pub(super) struct Nodes {
@@ -23,7 +23,7 @@ impl Nodes {
                 let count = numbers.words.count("the number of nodes")?;
                 numbers.words.rest_of_line();
                 for _ in 0..count {
-                    tags.push(numbers.tag(WHAT)?);
+                    tags.push(numbers.tag(LAST_NODE)?);
                     vertex(numbers, builder)?;
                 }
             }
@@ -36,7 +36,8 @@ impl Nodes {
                     block(numbers, &mut tags, builder)?;
                 }
                 if tags.len() as u64 != count {
-                    return numbers.refused(format!("{} nodes, but {count} were promised", tags.len()));
+                    return numbers
+                        .refused(format!("the section has {} nodes, but declares {count}", tags.len()));
                 }
             }
         }
@@ -57,29 +58,31 @@ impl Nodes {
 
 /// Reads all tags of a block, then all positions, each with up to 3 parameters.
 fn block(numbers: &mut Numbers, tags: &mut Vec<u64>, builder: &mut Builder) -> Result<(), FormatError> {
-    let dimension = numbers.integer(WHAT)?;
-    numbers.integer(WHAT)?; // the entity
-    let parameters = match (numbers.integer(WHAT)?, dimension) {
+    let dimension = numbers.integer(LAST_NODE)?;
+    numbers.integer(LAST_NODE)?; // the entity
+    let parameters = match (numbers.integer(LAST_NODE)?, dimension) {
         (0, 0..=3) => 0,
         (1, 0..=3) => dimension,
         (parametric, _) => {
-            return numbers.refused(format!("dimension {dimension}, parametric {parametric}: not known"));
+            return numbers
+                .refused(format!("dimension {dimension} with parametric {parametric} is not supported"));
         }
     };
     let count = numbers.size("the number of nodes in a block")?;
     for _ in 0..count {
-        tags.push(numbers.size(WHAT)?);
+        tags.push(numbers.size(LAST_NODE)?);
     }
     for _ in 0..count {
         vertex(numbers, builder)?;
         for _ in 0..parameters {
-            numbers.number(WHAT)?;
+            numbers.number(LAST_NODE)?;
         }
     }
     Ok(())
 }
 
 fn vertex(numbers: &mut Numbers, builder: &mut Builder) -> Result<(), FormatError> {
-    let position = DVec3::new(numbers.number(WHAT)?, numbers.number(WHAT)?, numbers.number(WHAT)?);
+    let position =
+        DVec3::new(numbers.number(LAST_NODE)?, numbers.number(LAST_NODE)?, numbers.number(LAST_NODE)?);
     builder.vertex(position, numbers.place())
 }

@@ -23,7 +23,7 @@ fn check(mesh: &VolumeMesh) {
     assert_eq!((names, mesh.element_material()), (vec!["soft body", "6"], &[0, 1][..]));
 }
 
-/// The same in binary. Words that are no numbers are lines of text, `i` and so on types of what follows.
+/// Returns the same file in binary. Parts without number words are text; the letters `i`, `s`, `d` are number types.
 fn binary(version: Version, big_endian: bool) -> Vec<u8> {
     let text = match version {
         Version::V2 => {
@@ -66,7 +66,7 @@ fn binary(version: Version, big_endian: bool) -> Vec<u8> {
 }
 
 #[test]
-fn all_dialects_say_the_same() {
+fn all_dialects_give_the_same_mesh() {
     check(&parse(V2.as_bytes()).unwrap());
     check(&parse(V4.as_bytes()).unwrap());
     for version in [Version::V2, Version::V4] {
@@ -90,39 +90,45 @@ fn cubes_and_elements_without_a_group() {
 }
 
 #[test]
-fn bad_files_are_named() {
+fn errors_name_the_line() {
     let v2 = |from, to| message(&V2.replace(from, to));
     let v4 = |from, to| message(&V4.replace(from, to));
     assert_eq!(message("OFF\n"), "line 1: a gmsh file begins with '$MeshFormat', not 'OFF'");
-    assert_eq!(v2("2.2 0", "4.0 0"), "line 2: version '4.0' of the format: only 2.2 and 4.1 are supported");
+    assert_eq!(
+        v2("2.2 0", "4.0 0"),
+        "line 2: version '4.0' of the format is not supported: save the file as 2.2 or 4.1"
+    );
     assert_eq!(v2("$EndMeshFormat", "$End"), "line 3: '$EndMeshFormat' was expected, not '$End'");
     assert_eq!(v2("\"soft body\"", "soft"), "line 7: a name in double quotes was expected");
     assert_eq!(v2("30 0 1 0", "20 0 1 0"), "line 15: two nodes have the tag 20");
     assert_eq!(v2("30 0 1 0", "30 0 1 nan"), "line 13: 'nan' is not a finite number");
     assert_eq!(v2("30 0 1 0", "30 0 1 1e61"), "line 13: a coordinate is larger than 2^200 or not finite");
     assert_eq!(v2("30 0 1 0", "-30 0 1 0"), "line 13: -30 is not a tag");
-    assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: names node 8, which is not there");
+    assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: names node 8, which does not exist");
     assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: names node 20 twice");
     assert!(
-        v2("4 4 2 6", "4 6 2 6").starts_with("line 22: elements of type 6: of solid elements, only 4-node")
+        v2("4 4 2 6", "4 6 2 6")
+            .starts_with("line 22: element type 6 is not supported: solid elements must be 4-node")
     );
-    assert!(v2("4 4 2 6", "4 11 2 6").starts_with("line 22: elements of type 11"));
+    assert!(v2("4 4 2 6", "4 11 2 6").starts_with("line 22: element type 11"));
     assert_eq!(v2("$Elements", "$Other"), "the file ends before '$EndOther'");
-    assert_eq!(v2("$EndElements\n", "$EndElements\n$Nodes\n"), "line 24: a second section '$Nodes'");
+    assert_eq!(v2("$EndElements\n", "$EndElements\n$Nodes\n"), "line 24: the section '$Nodes' is repeated");
     assert_eq!(v2("$Elements\n4", "$Elements\n5"), "line 23: '$EndElements' is not an integer");
-    assert_eq!(v4("2 5 7 40", "2 6 7 40"), "line 28: 5 nodes, but 6 were promised");
-    assert_eq!(v4("4 4 1 4", "4 5 1 4"), "line 39: 4 elements, but 5 were promised");
-    assert_eq!(v4("2 1 1 3", "2 1 2 3"), "line 17: dimension 2, parametric 2: not known");
+    assert_eq!(v4("2 5 7 40", "2 6 7 40"), "line 28: the section has 5 nodes, but declares 6");
+    assert_eq!(v4("4 4 1 4", "4 5 1 4"), "line 39: the section has 4 elements, but declares 5");
+    assert_eq!(v4("2 1 1 3", "2 1 2 3"), "line 17: dimension 2 with parametric 2 is not supported");
     let repeated = v2("4 4 2 6 1 20 30 40 7", "4 4 2 6 1 30 10 20 40");
     assert_eq!(repeated, "tetrahedra 0 and 1 (counted from 0) have the same corners");
-    assert!(message("$MeshFormat\n4.1 1 4\n\u{1}").contains("numbers of 4 bytes: only 8 are supported"));
-    assert!(message("$MeshFormat\n4.1 1 8\nabcd\n").contains("the order of bytes is not clear"));
+    assert!(
+        message("$MeshFormat\n4.1 1 4\n\u{1}").contains("numbers of 4 bytes are not supported: only 8 are")
+    );
+    assert!(message("$MeshFormat\n4.1 1 8\nabcd\n").contains("the byte order is not clear"));
     assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").contains("no section $Elements"));
     assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Elements\n").contains("$Elements before $Nodes"));
 }
 
 #[test]
-fn every_truncation_is_refused() {
+fn every_truncation_is_rejected() {
     let files = [
         V2.as_bytes().to_vec(),
         V4.as_bytes().to_vec(),

@@ -11,33 +11,33 @@ use crate::solid::statements::statements;
 use crate::{FormatError, IoError, Place};
 
 /// Maximum depth of included files.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
-/// Files included in all, at most.
-const MOST: usize = 64;
+/// Maximum number of included files.
+const MAX_FILES: usize = 64;
 
-/// Parses a `.veg` file that includes no other.
+/// Parses a `.veg` file without `*INCLUDE`.
 ///
 /// # Errors
-/// When there is an `*INCLUDE`, a section is unknown, out of place, twice or shorter or longer than it says, numbers
-/// are not consecutive, a material is malformed or unknown, or as [`read_volume_mesh`](crate::read_volume_mesh).
+/// When there is an `*INCLUDE`, a section is unknown, out of place, repeated or does not match its count, numbers are not
+/// consecutive, or a material is malformed or unknown; else as [`read_volume_mesh`](crate::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut parser = Parser::default();
     for statement in statements(bytes)? {
         let (line, text) = statement?;
         if included(text).is_some() {
-            return Err(FormatError::line(line, "*INCLUDE names a file: read this one by its path"));
+            return Err(FormatError::line(line, "*INCLUDE refers to a file: read this file by its path"));
         }
         parser.statement(text, &Place::Line(line))?;
     }
     parser.finish()
 }
 
-/// Reads a `.veg` file with those that it includes.
+/// Reads a `.veg` file and the files that it includes.
 ///
 /// # Errors
-/// As [`parse`]; also when an included file cannot be read, lies elsewhere than in the file's folder or below, is
-/// included twice, or there are too many. What is wrong in it is named with both files.
+/// As [`parse`]; also when an included file cannot be read, is not in the folder of the file or below, is included twice,
+/// or there are too many. Errors in an included file name both files.
 pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let mut reader = Reader { main: path, seen: Vec::new(), parser: Parser::default() };
     reader.feed(&read_whole(path)?, None, 0)?;
@@ -85,8 +85,10 @@ impl Reader<'_> {
         if self.seen.contains(&path) || Some(path.as_os_str()) == self.main.file_name() {
             return Err(format!("{} is included a second time", quoted(file)));
         }
-        if depth == DEEPEST || self.seen.len() == MOST {
-            return Err(format!("too many files within files: at most {DEEPEST} deep and {MOST} in all"));
+        if depth == MAX_DEPTH || self.seen.len() == MAX_FILES {
+            return Err(format!(
+                "too many included files: at most {MAX_FILES} are allowed, at a depth of at most {MAX_DEPTH}"
+            ));
         }
         Ok(path)
     }

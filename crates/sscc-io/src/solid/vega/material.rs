@@ -15,7 +15,7 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
     };
     let density = next("density")?;
     if density <= 0.0 {
-        return Err(format!("a density of {density}: it must be above 0"));
+        return Err(format!("the density is {density}: it must be above 0"));
     }
     let stiffness = match kind {
         "ENU" => Some((next("Young's modulus")?, next("Poisson's ratio")?)),
@@ -23,7 +23,7 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
         _ if kind.starts_with("ORTHOTROPIC") => None,
         _ => {
             let known = "ENU, MOONEYRIVLIN, ORTHOTROPIC";
-            return Err(format!("a material of type {}: only {known} are known", quoted(kind)));
+            return Err(format!("a material of type {} is not supported: only {known} are", quoted(kind)));
         }
     };
     if let Some((e, nu)) = stiffness
@@ -36,7 +36,7 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
     Ok(NamedMaterial { name, stated })
 }
 
-/// Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is `mu01 (I2' - 3) + mu10 (I1' -
+/// Returns Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is `mu01 (I2' - 3) + mu10 (I1' -
 /// 3) + v1 (J - 1)^2` with the invariants I' of a volume-preserving part, so that its shear modulus is
 /// `2 (mu01 + mu10)` and its bulk modulus `2 v1`.
 fn at_rest(mu01: f64, mu10: f64, v1: f64) -> Result<(f64, f64), String> {
@@ -71,10 +71,10 @@ mod tests {
     }
 
     #[test]
-    fn bad_materials_are_named() {
+    fn invalid_materials_are_rejected() {
         assert_eq!(message("ENU, 1000, 1e9"), "the material 'ENU' has no Poisson's ratio");
         assert_eq!(message("ENU"), "the material 'ENU' has no density");
-        assert_eq!(message("ENU, 0, 1, 0"), "a density of 0: it must be above 0");
+        assert_eq!(message("ENU, 0, 1, 0"), "the density is 0: it must be above 0");
         assert_eq!(message("ENU, nan, 1, 0"), "'nan' is not a finite number");
         assert!(message("ENU, 1, 1, 0.5").starts_with("E = 1, nu = 0.5: "));
         assert!(message("ENU, 1, -1, 0.4").starts_with("E = -1, nu = 0.4: "));

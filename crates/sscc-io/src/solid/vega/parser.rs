@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use sscc_solid::{NamedMaterial, VolumeMesh};
 
-use super::count::{Promise, numbered, promise};
+use super::count::{DeclaredCount, declared_count, numbered};
 use super::material::parse_material;
 use super::regions::{Regions, compact};
 use crate::error::quoted;
@@ -14,7 +14,7 @@ use crate::{FormatError, Place};
 
 /// Expected content of the next line.
 #[derive(Default, PartialEq)]
-enum Expected {
+enum ExpectedLine {
     #[default]
     Section,
     VertexCount,
@@ -29,16 +29,16 @@ enum Expected {
 
 /// Content read so far.
 pub(super) struct Parser {
-    expected: Expected,
+    expected: ExpectedLine,
     builder: Builder,
-    vertices: Option<Promise>,
-    elements: Option<Promise>,
+    vertices: Option<DeclaredCount>,
+    elements: Option<DeclaredCount>,
     /// Corners of an element: 4 or 8.
     corners: u64,
     /// Number of the first element.
     first_element: u64,
     materials: Vec<NamedMaterial>,
-    /// Of the materials.
+    /// Names of the materials.
     names: BTreeSet<String>,
     regions: Regions,
 }
@@ -46,7 +46,7 @@ pub(super) struct Parser {
 impl Default for Parser {
     fn default() -> Self {
         Self {
-            expected: Expected::default(),
+            expected: ExpectedLine::default(),
             builder: Builder::new(1),
             vertices: None,
             elements: None,
@@ -72,15 +72,15 @@ impl Parser {
     /// Returns the mesh at the end of the file.
     pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
         self.leave().map_err(FormatError::whole)?;
-        let promises = [
+        let declared_counts = [
             (&self.vertices, self.builder.vertices(), "vertices"),
             (&self.elements, self.builder.elements(), "elements"),
         ];
-        for (promise, found, what) in promises {
-            match promise {
+        for (declared_count, found, what) in declared_counts {
+            match declared_count {
                 None => return Err(FormatError::whole(format!("the file has no section of {what}"))),
-                Some(Promise { count, place }) if found as u64 != *count => {
-                    let cause = format!("the file has {found} of the {count} {what} promised here");
+                Some(DeclaredCount { count, place }) if found as u64 != *count => {
+                    let cause = format!("the file has {found} of the {count} {what} declared here");
                     return Err(FormatError::new(place.clone(), cause));
                 }
                 Some(_) => {}
@@ -88,7 +88,7 @@ impl Parser {
         }
         let mesh = self.builder.finish()?;
         if self.materials.is_empty() {
-            self.regions.materials(0, &[])?; // refuses any
+            self.regions.materials(0, &[])?; // an error if there is a region
             return Ok(mesh);
         }
         let of_element = self.regions.materials(mesh.element_count(), &self.materials)?;
@@ -98,11 +98,11 @@ impl Parser {
     /// Ends the current section.
     fn leave(&mut self) -> Result<(), String> {
         let missing = match std::mem::take(&mut self.expected) {
-            Expected::VertexCount => "the number of vertices is missing in *VERTICES",
-            Expected::Kind => "TET or CUBIC is missing in *ELEMENTS",
-            Expected::ElementCount => "the number of elements is missing in *ELEMENTS",
-            Expected::Material(_) => "the values are missing in *MATERIAL",
-            Expected::Region => "'set, material' is missing in *REGION",
+            ExpectedLine::VertexCount => "the number of vertices is missing in *VERTICES",
+            ExpectedLine::Kind => "TET or CUBIC is missing in *ELEMENTS",
+            ExpectedLine::ElementCount => "the number of elements is missing in *ELEMENTS",
+            ExpectedLine::Material(_) => "the values are missing in *MATERIAL",
+            ExpectedLine::Region => "'set, material' is missing in *REGION",
             _ => return Ok(()),
         };
         Err(missing.into())
@@ -112,23 +112,23 @@ impl Parser {
         let keyword = section.split(|c: char| c == ',' || c.is_ascii_whitespace()).next().unwrap_or_default();
         let name = || compact(&section[keyword.len()..]);
         self.expected = match keyword {
-            "VERTICES" if self.vertices.is_some() => return Err("a second section *VERTICES".into()),
-            "VERTICES" => Expected::VertexCount,
+            "VERTICES" if self.vertices.is_some() => return Err("the section *VERTICES is repeated".into()),
+            "VERTICES" => ExpectedLine::VertexCount,
             "ELEMENTS" if self.elements.is_some() => {
-                return Err("a second section *ELEMENTS: a file has one kind of elements".into());
+                return Err("the section *ELEMENTS is repeated: a file has one kind of elements".into());
             }
             "ELEMENTS" if self.vertices.is_none() => return Err("*ELEMENTS before *VERTICES".into()),
-            "ELEMENTS" => Expected::Kind,
+            "ELEMENTS" => ExpectedLine::Kind,
             "MATERIAL" if !self.names.insert(name()) => {
-                return Err(format!("a second material {}", quoted(&name())));
+                return Err(format!("the material {} is repeated", quoted(&name())));
             }
-            "MATERIAL" => Expected::Material(name()),
+            "MATERIAL" => ExpectedLine::Material(name()),
             "SET" if self.elements.is_none() => return Err("*SET before *ELEMENTS".into()),
             "SET" => {
                 self.regions.begin_set(name())?;
-                Expected::Set
+                ExpectedLine::Set
             }
-            "REGION" => Expected::Region,
+            "REGION" => ExpectedLine::Region,
             _ => return Err(format!("the section {} is not known", quoted(&format!("*{section}")))),
         };
         Ok(())
@@ -136,32 +136,37 @@ impl Parser {
 
     fn line(&mut self, text: &str, place: &Place) -> Result<(), String> {
         match &self.expected {
-            Expected::Section => {
+            ExpectedLine::Section => {
                 return Err(format!("a section (*VERTICES, ...) was expected, not {}", quoted(text)));
             }
-            Expected::VertexCount => {
-                self.vertices = Some(promise(text, 3, "coordinates", place)?);
-                self.expected = Expected::Vertices;
+            ExpectedLine::VertexCount => {
+                self.vertices = Some(declared_count(text, 3, "coordinates", place)?);
+                self.expected = ExpectedLine::Vertices;
             }
-            Expected::Vertices => self.vertex(text, place)?,
-            Expected::Kind => {
+            ExpectedLine::Vertices => self.vertex(text, place)?,
+            ExpectedLine::Kind => {
                 self.corners = match text {
                     "TET" => 4,
                     "CUBIC" => 8,
-                    other => return Err(format!("elements of kind {}: TET or CUBIC", quoted(other))),
+                    other => {
+                        return Err(format!(
+                            "elements of kind {} are not supported: only TET and CUBIC are",
+                            quoted(other)
+                        ));
+                    }
                 };
-                self.expected = Expected::ElementCount;
+                self.expected = ExpectedLine::ElementCount;
             }
-            Expected::ElementCount => {
-                self.elements = Some(promise(text, self.corners, "corners", place)?);
-                self.expected = Expected::Elements;
+            ExpectedLine::ElementCount => {
+                self.elements = Some(declared_count(text, self.corners, "corners", place)?);
+                self.expected = ExpectedLine::Elements;
             }
-            Expected::Elements => self.element(text, place)?,
-            Expected::Material(name) => {
+            ExpectedLine::Elements => self.element(text, place)?,
+            ExpectedLine::Material(name) => {
                 self.materials.push(parse_material(name.clone(), text)?);
-                self.expected = Expected::Section;
+                self.expected = ExpectedLine::Section;
             }
-            Expected::Set => {
+            ExpectedLine::Set => {
                 for field in fields(text) {
                     let number = index(field)?;
                     let element = number.checked_sub(self.first_element);
@@ -171,9 +176,9 @@ impl Parser {
                     }
                 }
             }
-            Expected::Region => {
+            ExpectedLine::Region => {
                 self.regions.push(text, place)?;
-                self.expected = Expected::Section;
+                self.expected = ExpectedLine::Section;
             }
         }
         Ok(())

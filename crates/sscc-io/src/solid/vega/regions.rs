@@ -8,7 +8,7 @@ use crate::error::quoted;
 use crate::{FormatError, Place};
 
 /// Name of the set of all elements. A definition of this set in a file is ignored, as in VegaFEM.
-const ALL: &str = "allElements";
+const ALL_ELEMENTS: &str = "allElements";
 
 /// Placeholder for an undecided material.
 const UNDECIDED: u32 = u32::MAX;
@@ -34,7 +34,7 @@ pub(super) fn compact(name: &str) -> String {
 impl Regions {
     pub fn begin_set(&mut self, name: String) -> Result<(), String> {
         if self.names.contains_key(&name) {
-            return Err(format!("a second set {}", quoted(&name)));
+            return Err(format!("the set {} is repeated", quoted(&name)));
         }
         self.names.insert(name, self.sets.len());
         self.sets.push(Vec::new());
@@ -67,13 +67,13 @@ impl Regions {
         let mut all = false;
         for region in self.regions.iter().rev() {
             let unknown = |what, name| {
-                let cause = format!("the region names the {what} {}, which is not there", quoted(name));
+                let cause = format!("the region names the {what} {}, which does not exist", quoted(name));
                 Err(FormatError::new(region.place.clone(), cause))
             };
             let Some(&material) = by_name.get(region.material.as_str()) else {
                 return unknown("material", &region.material);
             };
-            if region.set == ALL {
+            if region.set == ALL_ELEMENTS {
                 if !std::mem::replace(&mut all, true) {
                     decide(&mut of_element, material);
                 }

@@ -38,64 +38,70 @@ fn sections_are_read() {
 #[test]
 fn the_last_region_decides() {
     let materials = |text: &str| parse(text.as_bytes()).unwrap().element_material().to_vec();
-    // In the other order, all elements overrule the set.
+    // In the other order, the region of all elements overrides the set.
     let swapped = TETS.replace("top, hard\n", "").replace("*REGION\nall", "*REGION\ntop, hard\n*REGION\nall");
     assert_eq!(materials(&swapped.replace("*REGION,\n", "")), [0, 0]);
-    // Elements in no region get the last material.
+    // Elements without a region get the last material.
     assert_eq!(materials(&TETS.replace("*REGION\nallElements, softrubber\n", "")), [1, 1]);
     let without = TETS.split("*REGION").next().unwrap();
     assert_eq!(materials(without), [1, 1]);
     assert_eq!(materials(&TETS.replace("top, hard", "top, softrubber")), [0, 0]);
-    // A set is used once more with another material.
+    // Another region uses the same set with another material.
     let again = format!("{TETS}*SET bottom\n1\n*REGION\nbottom,hard\n*REGION\ntop,softrubber\n");
     assert_eq!(materials(&again), [1, 0]);
 }
 
 #[test]
-fn bad_files_are_named() {
+fn errors_name_the_line() {
     assert_eq!(message("v 0 0 0\n"), "line 1: a section (*VERTICES, ...) was expected, not 'v 0 0 0'");
     assert_eq!(message("*PLANES\n"), "line 1: the section '*PLANES' is not known");
     assert_eq!(message("*VERTICES\n"), "the number of vertices is missing in *VERTICES");
     assert_eq!(message("*ELEMENTS\n"), "line 1: *ELEMENTS before *VERTICES");
     assert_eq!(message("*MATERIAL a\n*SET b\n"), "line 2: the values are missing in *MATERIAL");
-    assert_eq!(with("5 3 0 0", "5 2 0 0"), "line 3: 2 coordinates each: 3 were expected");
-    assert_eq!(with("5 3 0 0", "6 3 0 0"), "line 3: the file has 5 of the 6 vertices promised here");
-    assert_eq!(with("5 3 0 0", "4 3 0 0"), "line 8: more vertices than the 4 that their section promises");
+    assert_eq!(with("5 3 0 0", "5 2 0 0"), "line 3: the section declares 2 coordinates: 3 were expected");
+    assert_eq!(with("5 3 0 0", "6 3 0 0"), "line 3: the file has 5 of the 6 vertices declared here");
+    assert_eq!(with("5 3 0 0", "4 3 0 0"), "line 8: the section has more vertices than the declared 4");
     assert_eq!(with("4 0 0 1", "4 0 0 nan"), "line 7: 'nan' is not a finite number");
     assert_eq!(with("4 0 0 1", "4 0 0 -2e60"), "line 7: a coordinate is larger than 2^200 or not finite");
-    let gaps = "are numbered from 0 or 1 without gaps: not";
-    assert_eq!(with("4 0 0 1", "5 0 0 1"), format!("line 7: vertices {gaps} 5 but 4"));
-    assert_eq!(with("\n1 1 2 3 4", "\n7 1 2 3 4"), format!("line 13: elements {gaps} 7 but 1"));
-    assert_eq!(with("TET\n", "HEX\n"), "line 11: elements of kind 'HEX': TET or CUBIC");
-    assert_eq!(with("2 4 0", "2 10 0"), "line 12: 10 corners each: 4 were expected");
-    assert_eq!(with("2 4 0", "3 4 0"), "line 12: the file has 2 of the 3 elements promised here");
+    let gaps = "are numbered from 0 or 1 without gaps:";
+    assert_eq!(with("4 0 0 1", "5 0 0 1"), format!("line 7: vertices {gaps} 4 was expected, not 5"));
+    assert_eq!(with("\n1 1 2 3 4", "\n7 1 2 3 4"), format!("line 13: elements {gaps} 1 was expected, not 7"));
+    assert_eq!(
+        with("TET\n", "HEX\n"),
+        "line 11: elements of kind 'HEX' are not supported: only TET and CUBIC are"
+    );
+    assert_eq!(with("2 4 0", "2 10 0"), "line 12: the section declares 10 corners: 4 were expected");
+    assert_eq!(with("2 4 0", "3 4 0"), "line 12: the file has 2 of the 3 elements declared here");
     assert_eq!(with("2 2,3,4,5", "2 2 3 4 6"), "line 14: names vertex 6 (counted from 1), but there are 5");
     assert_eq!(with("2 2,3,4,5", "2 2 3 4 0"), "line 14: names vertex 0, but vertices are counted from 1");
     assert_eq!(with("2 2,3,4,5", "2 2 3 4 4"), "line 14: names vertex 4 (counted from 1) twice");
-    assert_eq!(with("2 2,3,4,5", "2 2 3 4"), "line 14: an element has 4 corners, this one 3");
+    assert_eq!(with("2 2,3,4,5", "2 2 3 4"), "line 14: an element has 4 corners, this one has 3");
     assert_eq!(
         with("0.45", "0.5"),
         "line 16: E = 1000000, nu = 0.5: E must be above 0, nu above -1 and below 0.5"
     );
-    assert_eq!(with("L hard", "L soft rubber"), "line 17: a second material 'softrubber'");
+    assert_eq!(with("L hard", "L soft rubber"), "line 17: the material 'softrubber' is repeated");
     assert_eq!(with("\n2,\n", "\n3\n"), "line 20: there is no element 3");
     assert_eq!(with("\n2,\n", "\n0\n"), "line 20: there is no element 0");
     assert_eq!(with("top, hard", "top"), "line 24: 'set, material' was expected, not 'top'");
-    assert_eq!(with("top, hard", "tip, hard"), "line 24: the region names the set 'tip', which is not there");
-    let wood = "line 24: the region names the material 'wood', which is not there";
+    assert_eq!(
+        with("top, hard", "tip, hard"),
+        "line 24: the region names the set 'tip', which does not exist"
+    );
+    let wood = "line 24: the region names the material 'wood', which does not exist";
     assert_eq!(with("top, hard", "top, wood"), wood);
     assert_eq!(
         with("*MATERIAL hard", "*ELEMENTS"),
-        "line 17: a second section *ELEMENTS: a file has one kind of elements"
+        "line 17: the section *ELEMENTS is repeated: a file has one kind of elements"
     );
 }
 
 #[test]
-fn truncations_are_refused_or_shorter_files() {
+fn truncations_are_rejected_or_lack_only_materials() {
     let whole = parse(TETS.as_bytes()).unwrap();
     let elements = TETS.find("4,5\n").unwrap() + 3;
     for len in 0..TETS.len() {
-        // Whole lines may be missing behind the elements; they speak of materials only.
+        // Whole lines after the elements may be missing: they define materials only.
         if let Ok(mesh) = parse(&TETS.as_bytes()[..len]) {
             let is_whole = (mesh.vertices(), mesh.tets()) == (whole.vertices(), whole.tets());
             assert!(len >= elements && is_whole, "{len}");
@@ -126,7 +132,7 @@ fn files_are_included() {
     let files = [("parts/a.node", NODE), ("a.ele", "1 4 0\n1 1 2 3 4\n")];
     let mesh = read_files(main, &files).unwrap();
     assert_eq!((mesh.vertices().len(), mesh.tets()), (4, &[[0, 1, 2, 3]][..]));
-    assert!(parse(main.as_bytes()).unwrap_err().to_string().starts_with("line 2: *INCLUDE names a file"));
+    assert!(parse(main.as_bytes()).unwrap_err().to_string().starts_with("line 2: *INCLUDE refers to a file"));
     let error = |main: &str, others: &[(&str, &str)]| read_files(main, others).unwrap_err();
     assert_eq!(error(main, &files[..1]), "a.ele: not found");
     let bad = [files[0], ("a.ele", "1 4 0\n1 1 2 3 x\n")];
@@ -143,7 +149,7 @@ fn files_are_included() {
 }
 
 #[test]
-fn loops_and_other_folders_are_refused() {
+fn loops_and_other_folders_are_rejected() {
     let error = |main: &str, others: &[(&str, &str)]| read_files(main, others).unwrap_err();
     assert_eq!(error("*INCLUDE main.veg\n", &[]), "main.veg: line 1: 'main.veg' is included a second time");
     let looped = error("*INCLUDE a\n", &[("a", "# a\n*INCLUDE b\n"), ("b", "*INCLUDE ./a\n")]);
@@ -156,10 +162,10 @@ fn loops_and_other_folders_are_refused() {
     }
     let chain: Vec<_> = (0..10).map(|i| (format!("{i}"), format!("*INCLUDE {}\n", i + 1))).collect();
     let chain: Vec<_> = chain.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
-    assert!(error("*INCLUDE 0\n", &chain).starts_with("main.veg: 7: line 1: too many files within files"));
+    assert!(error("*INCLUDE 0\n", &chain).starts_with("main.veg: 7: line 1: too many included files"));
     let many: Vec<_> = (0..65).map(|i| (format!("{i}"), "# nothing\n")).collect();
     let many: Vec<_> = many.iter().map(|(name, text)| (name.as_str(), *text)).collect();
     let main: String = (0..65).map(|i| format!("*INCLUDE {i}\n")).collect();
-    assert!(error(&main, &many).starts_with("main.veg: line 65: too many files within files"));
+    assert!(error(&main, &many).starts_with("main.veg: line 65: too many included files"));
     assert!(read(Path::new("/nowhere/a.veg")).unwrap_err().to_string().ends_with("not found"));
 }

@@ -1,4 +1,4 @@
-//! Closed surfaces.
+//! Closed surfaces for tests.
 
 use glam::DVec3;
 use sscc::TriMesh;
@@ -7,12 +7,12 @@ pub fn mesh(positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> TriMesh {
     TriMesh::new(positions, faces).expect("a test surface is a valid mesh")
 }
 
-/// The same faces with every vertex mapped.
+/// Maps every vertex; faces are unchanged.
 pub fn moved(of: &TriMesh, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     mesh(of.rest_positions().iter().map(|p| map(*p)).collect(), of.faces().to_vec())
 }
 
-/// Several surfaces in one.
+/// Joins several surfaces.
 pub fn joined(parts: &[TriMesh]) -> TriMesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for part in parts {
@@ -23,12 +23,12 @@ pub fn joined(parts: &[TriMesh]) -> TriMesh {
     mesh(positions, faces)
 }
 
-/// The same surface, seen from the other side.
+/// Reverses all faces.
 pub fn inverted(of: &TriMesh) -> TriMesh {
     mesh(of.rest_positions().to_vec(), of.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect())
 }
 
-/// A rod through sections of four corners each, which turn counterclockwise about the way.
+/// Returns a rod through sections of four corners each, counterclockwise about the axis.
 pub fn rod(sections: &[[DVec3; 4]]) -> TriMesh {
     let last = 4 * (sections.len() as u32 - 1);
     let mut faces = vec![[0, 2, 1], [0, 3, 2], [last, last + 1, last + 2], [last, last + 2, last + 3]];
@@ -41,7 +41,7 @@ pub fn rod(sections: &[[DVec3; 4]]) -> TriMesh {
     mesh(sections.concat(), faces)
 }
 
-/// A box between two corners.
+/// Returns the box between two corners.
 pub fn cuboid(low: DVec3, high: DVec3) -> TriMesh {
     let section = |z: f64| {
         let corner = |x: f64, y: f64| DVec3::new(x, y, z);
@@ -50,7 +50,7 @@ pub fn cuboid(low: DVec3, high: DVec3) -> TriMesh {
     rod(&[section(low.z), section(high.z)])
 }
 
-/// A ring about the z axis of radii 0.7 and 1, height 0.3, open by that angle on each side of the x axis.
+/// Returns a ring about the z axis of radii 0.7 and 1 and height 0.3, open by this angle on each side of the x axis.
 pub fn cut_ring(gap: f64) -> TriMesh {
     let count = 200;
     let section = |i: u32| {
@@ -62,27 +62,27 @@ pub fn cut_ring(gap: f64) -> TriMesh {
     rod(&(0..=count).map(section).collect::<Vec<_>>())
 }
 
-/// A plate of width 1 along y, folded: so many layers of length 1 along x, a height apart, 0.4 heights thick.
+/// Returns a folded plate of width 1 along y: layers of length 1 along x, `height` apart, 0.4 heights thick.
 pub fn folded_plate(layers: i32, height: f64) -> TriMesh {
     let ends = |layer: i32| if layer % 2 == 0 { [0.0, 1.0] } else { [1.0, 0.0] };
-    let way: Vec<DVec3> = (0..layers)
+    let path: Vec<DVec3> = (0..layers)
         .flat_map(|layer| ends(layer).map(|x| DVec3::new(x, 0.0, height * f64::from(layer))))
         .collect();
-    // Across each segment of the way.
+    // Half the thickness, across each segment of the path.
     let across: Vec<DVec3> =
-        way.windows(2).map(|of| 0.2 * height * (of[1] - of[0]).normalize().cross(DVec3::Y)).collect();
+        path.windows(2).map(|of| 0.2 * height * (of[1] - of[0]).normalize().cross(DVec3::Y)).collect();
     let section = |i: usize| {
         let mitre = match i {
             0 => across[0],
             i if i == across.len() => across[i - 1],
             i => across[i - 1] + across[i],
         };
-        [way[i] - mitre, way[i] - mitre + DVec3::Y, way[i] + mitre + DVec3::Y, way[i] + mitre]
+        [path[i] - mitre, path[i] - mitre + DVec3::Y, path[i] + mitre + DVec3::Y, path[i] + mitre]
     };
-    rod(&(0..way.len()).map(section).collect::<Vec<_>>())
+    rod(&(0..path.len()).map(section).collect::<Vec<_>>())
 }
 
-/// The unit sphere: an octahedron, split and blown up.
+/// Returns the unit sphere: a subdivided octahedron.
 pub fn sphere(splits: u32) -> TriMesh {
     let mut positions = [DVec3::AXES, DVec3::AXES.map(|p| -p)].concat();
     let mut faces: Vec<[u32; 3]> = Vec::new();

@@ -1,9 +1,9 @@
-//! Lattices of bodies whose volume and topology are known.
+//! Lattices of bodies with known volume and topology.
 
 mod bodies;
-mod gluing;
 mod models;
 mod refusals;
+mod separation;
 mod volumes;
 
 use std::collections::VecDeque;
@@ -20,7 +20,7 @@ fn lattice(mesh: &TriMesh, cells: Option<usize>) -> Lattice {
     lattice
 }
 
-/// What holds for every lattice.
+/// Checks the properties of every lattice.
 fn check(lattice: &Lattice, mesh: &TriMesh) {
     let Lattice { vertices, cubes, fill, spacing, interpolation, .. } = lattice;
     assert_eq!(cubes.len(), fill.len());
@@ -45,7 +45,7 @@ fn check(lattice: &Lattice, mesh: &TriMesh) {
 
     let is_used = mesh.used_vertices();
     let linear = |p: DVec3| DVec3::new(p.y - 0.5 * p.z, 2.0 * p.x + p.y, p.x + 3.0 * p.z);
-    let there = interpolation.apply(vertices);
+    let mapped = interpolation.apply(vertices);
     let field = interpolation.apply(&vertices.iter().map(|p| linear(*p)).collect::<Vec<_>>());
     for (v, p) in mesh.rest_positions().iter().enumerate() {
         let weights = interpolation.vertices[v].map(|(_, weight)| weight);
@@ -57,7 +57,7 @@ fn check(lattice: &Lattice, mesh: &TriMesh) {
         assert!(
             (sum - 1.0).abs() < 1e-15 * 8.0 && weights.iter().all(|w| (-1e-12..=1.0 + 1e-12).contains(w))
         );
-        assert!((there[v] - *p).length() <= tolerance, "{} is not {p}", there[v]);
+        assert!((mapped[v] - *p).length() <= tolerance, "{} is not {p}", mapped[v]);
         assert!((field[v] - linear(*p)).length() <= 8.0 * tolerance);
     }
 }
@@ -76,7 +76,7 @@ fn mesh_volume(mesh: &TriMesh) -> f64 {
     mesh.faces().iter().map(of).sum()
 }
 
-/// Cubes to pass from a node to every other one.
+/// Returns the number of cubes on the shortest path from a node to each other one.
 fn distances(lattice: &Lattice, from: u32) -> Vec<u32> {
     let mut cubes_of = vec![Vec::new(); lattice.vertices.len()];
     for (cube, nodes) in lattice.cubes.iter().enumerate() {
@@ -98,7 +98,7 @@ fn distances(lattice: &Lattice, from: u32) -> Vec<u32> {
     distance
 }
 
-/// Cubes that share their cell with another one.
+/// Returns the number of cubes that share their cell with another one.
 fn duplicates(lattice: &Lattice) -> usize {
     let place = |cube: &[u32; 8]| {
         let p = lattice.vertices[cube[0] as usize] - lattice.vertices[0];

@@ -1,4 +1,4 @@
-//! Real models.
+//! Lattices of real models.
 
 use super::{lattice, mesh_volume, volume};
 

@@ -1,4 +1,4 @@
-//! Surfaces and resolutions that are refused, with words that say why.
+//! Errors for invalid surfaces and resolutions.
 
 use glam::DVec3;
 use sscc::{Progress, TriMesh};
@@ -53,7 +53,7 @@ fn several_bodies() {
             refusal(&joined(&[c.clone(), a.clone(), b.clone()]), cells),
             ModesError::Pieces { count: 3 }
         );
-        // A body within a body, and one that is inside out.
+        // A body within a body, and a body that is inside out.
         let inner = cuboid(DVec3::splat(0.3), DVec3::splat(0.7));
         assert_eq!(refusal(&joined(&[a.clone(), inner]), cells), ModesError::Nested { triangle: 12 });
         let inverse = refusal(&joined(&[a.clone(), inverted(&sphere(2)), c.clone()]), cells);
@@ -67,9 +67,9 @@ fn several_bodies() {
 fn resolutions() {
     let ball = sphere(3);
     for cells in [0, 1_000_000_000_000] {
-        let ModesError::Resolution { cells: asked, most } = refusal(&ball, Some(cells)) else { panic!() };
-        assert!(asked == cells && (100..400).contains(&most), "{most}");
-        assert_eq!(refusal(&ball, Some(most + 1)), ModesError::Resolution { cells: most + 1, most });
+        let ModesError::Resolution { cells: requested, max } = refusal(&ball, Some(cells)) else { panic!() };
+        assert!(requested == cells && (100..400).contains(&max), "{max}");
+        assert_eq!(refusal(&ball, Some(max + 1)), ModesError::Resolution { cells: max + 1, max });
     }
 }
 

@@ -1,4 +1,4 @@
-//! Lattices have the volume of what they are about.
+//! Lattices have the volume of their surface.
 
 use glam::{DQuat, DVec3};
 
@@ -10,8 +10,8 @@ use crate::shapes::{hare, serpent, spring};
 #[test]
 fn boxes() {
     let aligned = cuboid(DVec3::new(-1.0, 2.0, 0.0), DVec3::new(1.0, 3.3, 1.1));
-    let tilt = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
-    let tilted = moved(&aligned, |p| tilt * p);
+    let rotation = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
+    let tilted = moved(&aligned, |p| rotation * p);
     for mesh in [&aligned, &tilted, &inverted(&tilted)] {
         for cells in [None, Some(19), Some(20), Some(33)] {
             let lattice = lattice(mesh, cells);
@@ -19,10 +19,10 @@ fn boxes() {
             assert!(error.abs() < 0.005, "{cells:?}: {error}");
             assert_eq!(duplicates(&lattice), 0);
         }
-        let about = lattice(mesh, None).cubes.len();
-        assert!((18_000..22_000).contains(&about), "{about} cubes by default");
+        let count = lattice(mesh, None).cubes.len();
+        assert!((18_000..22_000).contains(&count), "{count} cubes by default");
     }
-    // A box of one cell, and all corners of a box.
+    // Exact numbers of cubes and nodes.
     let one = lattice(&aligned, Some(1));
     assert_eq!((one.cubes.len(), one.vertices.len()), (1, 8));
     let many = lattice(&aligned, Some(20));
@@ -56,7 +56,7 @@ fn embedded_shapes() {
     }
 }
 
-/// The same shape elsewhere and of another size has the same cubes.
+/// A moved and scaled shape has the same cubes.
 #[test]
 fn places_and_sizes() {
     let mesh = hare();

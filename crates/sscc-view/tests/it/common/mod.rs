@@ -1,4 +1,4 @@
-//! A small model, a page of it, and a client that says what it likes.
+//! A small model, a server of its page, and a client that can send any bytes.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -11,11 +11,11 @@ use serde_json::Value;
 use sscc::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
 use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
 
-/// Vertices of a strip.
+/// Number of vertices of a strip.
 const STRIP: usize = 40;
 
-/// Two strips of triangles, one above the other: mode 0 lowers the upper one, which is 1 above, mode 1 shifts it
-/// along, mode 2 bends it down at its end.
+/// Two strips of triangles at distance 1, one above the other. Mode 0 lowers the upper strip, mode 1 shifts it
+/// lengthwise, mode 2 bends its end down.
 pub fn strips() -> (ReducedModel, Certificates) {
     let vertex = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
     let positions = [0.0, 1.0].map(|z| (0..STRIP).map(|i| vertex(i, z)).collect::<Vec<_>>()).concat();
@@ -36,7 +36,7 @@ pub fn strips() -> (ReducedModel, Certificates) {
     (model, certificates)
 }
 
-/// What is shown of it.
+/// The scene of the strips and its arrays.
 pub fn scene(model: &ReducedModel, certificates: &Certificates) -> (Scene, Arrays) {
     let (mut scene, mut arrays) = (Scene::new("strips"), Arrays::default());
     let details = ModelDetails { frequencies: Some(vec![1.0, 2.0, 3.0]), ..ModelDetails::default() };
@@ -44,16 +44,16 @@ pub fn scene(model: &ReducedModel, certificates: &Certificates) -> (Scene, Array
     (scene, arrays)
 }
 
-/// Stops the server however a test ends.
-struct Stopping<'a>(&'a AtomicBool);
+/// Stops the server when it is dropped, also after a panic.
+struct StopOnDrop<'a>(&'a AtomicBool);
 
-impl Drop for Stopping<'_> {
+impl Drop for StopOnDrop<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
     }
 }
 
-/// Lets a test talk to a page of the strips.
+/// Runs a test with a client of a server of the strips.
 pub fn with_server(test: impl FnOnce(&Client)) {
     let (model, certificates) = strips();
     let (scene, arrays) = scene(&model, &certificates);
@@ -62,18 +62,18 @@ pub fn with_server(test: impl FnOnce(&Client)) {
     let stopped = AtomicBool::new(false);
     thread::scope(|scope| {
         scope.spawn(|| server.serve(&live, &|| stopped.load(Ordering::Relaxed)).unwrap());
-        let _stopping = Stopping(&stopped);
+        let _stop = StopOnDrop(&stopped);
         test(&Client::of(&server.address()));
     });
 }
 
-/// Knows where the page is.
+/// A client of the server: its port and token.
 pub struct Client {
     pub port: u16,
     pub token: String,
 }
 
-/// What came back.
+/// A reply of the server.
 #[derive(Debug)]
 pub struct Reply {
     pub status: u16,
@@ -86,7 +86,7 @@ impl Reply {
         serde_json::from_slice(&self.body).unwrap()
     }
 
-    /// The one line of a refusal.
+    /// The message of a refusal: one line.
     pub fn error(&self) -> String {
         let line = self.json()["error"].as_str().unwrap().to_owned();
         assert!(!line.is_empty() && !line.contains('\n'));
@@ -107,14 +107,14 @@ impl Client {
         stream
     }
 
-    /// Sends bytes over a connection of their own, and reads the reply.
+    /// Sends bytes over a new connection, and reads the reply.
     pub fn send(&self, bytes: &[u8]) -> io::Result<Reply> {
         let mut stream = self.connect();
         stream.write_all(bytes)?;
         read_reply(&mut stream)
     }
 
-    /// A request with all that is asked for, and more lines.
+    /// Returns a valid request with further header lines.
     pub fn request(&self, method: &str, path: &str, more: &str, body: &str) -> Vec<u8> {
         let Self { port, token } = self;
         let length = body.len();
@@ -139,7 +139,7 @@ pub fn read_reply(stream: &mut TcpStream) -> io::Result<Reply> {
     next_reply(stream, &mut Vec::new())
 }
 
-/// The next of several replies; `bytes` are those that were read beyond the one before.
+/// Reads the next reply; `bytes` are those that were read beyond the previous one.
 pub fn next_reply(stream: &mut TcpStream, bytes: &mut Vec<u8>) -> io::Result<Reply> {
     let head = loop {
         if let Some(end) = bytes.windows(4).position(|window| window == b"\r\n\r\n") {

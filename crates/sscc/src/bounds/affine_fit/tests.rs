@@ -27,17 +27,17 @@ fn residuals_hold_what_rounding_moves_corners_by() {
         let modes = Modes::new(rank, modes).unwrap();
         let model = ReducedModel::with_metric(mesh, modes, Metric::identity(rank)).unwrap();
         let scaled = ScaledModel::new(&model, model.metric(), &vec![0.0; rank]);
-        let row = scaled.row;
+        let row_len = scaled.row_len;
         let pair = PairCorners::of(&scaled, [0, 1, 2], [3, 4, 5]);
         let [a, b] = [(); 2].map(|()| {
             (0..1 + case % 12).fold(UNDIVIDED, |weights: Weights, _| quarter(&weights)[random.below(4)])
         });
-        let mut memory = vec![0.0; 18 * row];
+        let mut memory = vec![0.0; 18 * row_len];
         let part = SubPair { a, b, ..SubPair::UNDIVIDED }.corners(&pair, &mut memory);
         let points = [part.corners.a, part.corners.b].concat();
         let modes = [part.modes_a, part.modes_b].concat();
         let offsets: Vec<DVec3> = points.iter().map(|p| *p - points[0]).collect();
-        let mut affine = AffineFit::new(row);
+        let mut affine = AffineFit::new(row_len);
         assert!(affine.fit(&offsets, |i| modes[i]));
         // Both sides exactly: sums over the corners of the triangles, whose weights are exact.
         let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> BigRational {
@@ -50,10 +50,10 @@ fn residuals_hold_what_rounding_moves_corners_by() {
                 });
                 let mut square = exact(0.0);
                 for (axis, k) in (0..3).flat_map(|axis| (0..rank).map(move |k| (axis, k))) {
-                    let at = axis * row + k;
+                    let at = axis * row_len + k;
                     let relative = sum(b[j], &|v| pair.modes_b[v][at]) - sum(a[i], &|v| pair.modes_a[v][at]);
                     let fitted: BigRational =
-                        (0..3).map(|c| exact(affine.gradient[(3 * axis + c) * row + k]) * &d[c]).sum();
+                        (0..3).map(|c| exact(affine.gradient[(3 * axis + c) * row_len + k]) * &d[c]).sum();
                     let left = relative - fitted;
                     square += &left * &left;
                 }

@@ -36,21 +36,21 @@ fn residuals_hold_what_the_fit_has_rounded() {
         let scaled = ScaledModel::new(&model, model.metric(), &[0.0]);
         let vertices: Vec<u32> = (0..count).collect();
         let node = NodeModes::fit(&scaled, &vertices);
-        let row = scaled.row;
+        let row_len = scaled.row_len;
         for axis in 0..3 {
             // The rounding bound of one of the two nodes.
             let rounding = scaled.rounding.per_norm(DVec3::AXES[axis]);
             let allowed = exact(node.residual[axis]) + exact(rounding);
             for &v in &vertices {
                 let p = scaled.positions[v as usize];
-                let fitted = (0..3).fold(exact(node.modes[axis * row]), |sum, j| {
-                    let gradient = exact(node.gradient[(3 * j + axis) * row]);
-                    sum + gradient * (exact(p[j]) - exact(node.centre[j]))
+                let fitted = (0..3).fold(exact(node.modes[axis * row_len]), |sum, j| {
+                    let gradient = exact(node.gradient[(3 * j + axis) * row_len]);
+                    sum + gradient * (exact(p[j]) - exact(node.center[j]))
                 });
-                let left = exact(scaled.modes(v)[axis * row]) - fitted;
+                let left = exact(scaled.modes(v)[axis * row_len]) - fitted;
                 assert!(left <= allowed && -left <= allowed, "case {case}, vertex {v}, axis {axis}");
             }
-            let gradient = (0..3).map(|j| node.gradient[(3 * j + axis) * row].abs()).fold(0.0, f64::max);
+            let gradient = (0..3).map(|j| node.gradient[(3 * j + axis) * row_len].abs()).fold(0.0, f64::max);
             worst = worst.max(gradient * node.half.length());
         }
     }

@@ -18,29 +18,29 @@ fn corners_that_cancel_keep_their_rate() {
         let modes = Modes::new(rank, vec![DVec3::Z * 1e-9; 3 * rank]).unwrap();
         let model = ReducedModel::with_metric(mesh.clone(), modes, Metric::identity(rank)).unwrap();
         let scaled = ScaledModel::new(&model, model.metric(), &vec![0.0; rank]);
-        let row = scaled.row;
+        let row_len = scaled.row_len;
         // Along z alone: boxes of half extent 1, `gap` apart, which expand away from each other.
         let (gap, left) = (random.power(-9.0, -7.0), random.power(-10.0, -8.0));
         let rates: Vec<f64> = (0..rank).map(|_| 2.0 * random.uniform() - 1.0).collect();
         let node = |side: f64| {
-            let (mut modes, mut gradient) = (vec![0.0; 3 * row], vec![0.0; 9 * row]);
+            let (mut modes, mut gradient) = (vec![0.0; 3 * row_len], vec![0.0; 9 * row_len]);
             for (k, rate) in rates.iter().enumerate() {
-                modes[2 * row + k] = side * rate * (1.0 - 0.5 * left);
-                gradient[8 * row + k] = *rate;
+                modes[2 * row_len + k] = side * rate * (1.0 - 0.5 * left);
+                gradient[8 * row_len + k] = *rate;
             }
-            let centre = DVec3::Z * (side * (1.0 + 0.5 * gap));
-            NodeModes { centre, half: DVec3::new(0.0, 0.0, 1.0), residual: DVec3::ZERO, modes, gradient }
+            let center = DVec3::Z * (side * (1.0 + 0.5 * gap));
+            NodeModes { center, half: DVec3::new(0.0, 0.0, 1.0), residual: DVec3::ZERO, modes, gradient }
         };
         let (n, m) = (node(-1.0), node(1.0));
-        let mut scratch = NodePairScratch::new(row);
+        let mut scratch = NodePairScratch::new(row_len);
         inverse_gram(&n, &m, &mut scratch);
         let bound = bound_corners_along(&n, &m, DVec3::Z, &scaled, &mut scratch);
         // The corners that face each other, exactly.
-        let distance = exact(m.centre.z) - exact(1.0) - (exact(n.centre.z) + exact(1.0));
+        let distance = exact(m.center.z) - exact(1.0) - (exact(n.center.z) + exact(1.0));
         let square: num_rational::BigRational = (0..rank)
             .map(|k| {
                 let at = |node: &NodeModes, side: f64| {
-                    exact(node.modes[2 * row + k]) - exact(side) * exact(node.gradient[8 * row + k])
+                    exact(node.modes[2 * row_len + k]) - exact(side) * exact(node.gradient[8 * row_len + k])
                 };
                 at(&m, 1.0) - at(&n, -1.0)
             })

@@ -7,7 +7,7 @@ use sscc_testing::cases;
 
 use super::models::{KINDS, ROOM, all_bounds, node_pair_bound, pair_corners, random_pair, reference};
 use super::random::Random;
-use crate::bounds::cone::bound_rate_in_cone;
+use crate::bounds::cone_rate::bound_rate_in_cone;
 use crate::bounds::separating_direction::bound_rest_distance;
 use crate::bounds::strain::StrainGram;
 use crate::geometry::nearest_to_origin;

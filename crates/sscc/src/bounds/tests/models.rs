@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::random::Random;
 use super::true_minimum::OraclePair;
-use crate::bounds::affine::AffineBound;
+use crate::bounds::affine_bound::AffineBound;
 use crate::bounds::pair_corners::PairCorners;
 use crate::bounds::separating_direction::{bound_along, bound_rest_distance};
 use crate::bounds::{LeafPair, NodePairBounds, NodePairScratch, PairRefiner, RefinementTarget};
@@ -155,9 +155,9 @@ pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'st
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let pair = pair_corners(&scaled);
     let differences = pair.differences();
-    let row = scaled.row;
-    let mut projections = vec![0.0; 6 * row];
-    let mut affine = AffineBound::new(row);
+    let row_len = scaled.row_len;
+    let mut projections = vec![0.0; 6 * row_len];
+    let mut affine = AffineBound::new(row_len);
     let mut bounds = Vec::new();
     let among_others = with_others(model, random);
     let scaled_others = ScaledModel::new(&among_others, model.metric(), &vec![0.0; model.rank()]);
@@ -217,5 +217,5 @@ pub(super) fn node_pair_bound(model: &ReducedModel, split: u32) -> f64 {
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);
     let bounds = NodePairBounds::new(&scaled, &hierarchy);
-    bounds.bound(&scaled, 1, 2, f64::INFINITY, &mut NodePairScratch::new(scaled.row))
+    bounds.bound(&scaled, 1, 2, f64::INFINITY, &mut NodePairScratch::new(scaled.row_len))
 }

@@ -138,21 +138,21 @@ fn least_square(metric: &DMat3, [a, b, c]: &[DVec3; 3]) -> f64 {
 /// The smallest ball around a triangle, as centre and radius.
 fn enclosing_ball(p: [DVec3; 3]) -> (DVec3, f64) {
     let radius = |c: DVec3| p.iter().map(|p| p.distance(c)).fold(0.0, f64::max);
-    let mut centres = vec![(p[0] + p[1]) / 2.0, (p[1] + p[2]) / 2.0, (p[2] + p[0]) / 2.0];
+    let mut centers = vec![(p[0] + p[1]) / 2.0, (p[1] + p[2]) / 2.0, (p[2] + p[0]) / 2.0];
     let (u, v) = (p[1] - p[0], p[2] - p[0]);
     let normal = u.cross(v);
     let round = (normal.cross(u) * v.length_squared() + v.cross(normal) * u.length_squared())
         / (2.0 * normal.length_squared());
     if round.is_finite() {
-        centres.push(p[0] + round);
+        centers.push(p[0] + round);
     }
-    let best = centres.into_iter().min_by(|a, b| radius(*a).total_cmp(&radius(*b))).unwrap_or(p[0]);
+    let best = centers.into_iter().min_by(|a, b| radius(*a).total_cmp(&radius(*b))).unwrap_or(p[0]);
     (best, radius(best) * (1.0 + 1e-14))
 }
 
 /// A BD-tree box (James and Pai 2004): rest interval and, for each mode, how its centre moves and it grows.
 struct MovingBox {
-    centre: DVec3,
+    center: DVec3,
     half: DVec3,
     rates: Vec<(DVec3, DVec3)>,
 }
@@ -163,15 +163,15 @@ fn moving_box(p: &[DVec3], a: &[&[DVec3]]) -> MovingBox {
         let (lower, upper) = points.fold(empty, |(l, u), x| (l.min(x), u.max(x)));
         ((lower + upper) / 2.0, (upper - lower) / 2.0)
     };
-    let (centre, half) = range(&mut p.iter().copied());
+    let (center, half) = range(&mut p.iter().copied());
     let rates = (0..a[0].len()).map(|k| range(&mut a.iter().map(|a| a[k]))).collect();
-    MovingBox { centre, half, rates }
+    MovingBox { center, half, rates }
 }
 
 /// For each axis the gap of two BD-tree boxes and the rate at which each mode can close it.
 fn box_gaps(x: &MovingBox, y: &MovingBox) -> [(f64, Vec<f64>); 3] {
     std::array::from_fn(|c| {
-        let gap = (y.centre - x.centre)[c].abs() - x.half[c] - y.half[c];
+        let gap = (y.center - x.center)[c].abs() - x.half[c] - y.half[c];
         let rate = |(x, y): (&(DVec3, DVec3), &(DVec3, DVec3))| (y.0 - x.0)[c].abs() + x.1[c] + y.1[c];
         (gap, x.rates.iter().zip(&y.rates).map(rate).collect())
     })

@@ -6,8 +6,8 @@ use num_rational::BigRational;
 
 use super::models::{all_bounds, node_pair_bound};
 use super::random::Random;
+use crate::model::mode_rows::{dot, padded_rank};
 use crate::model::rounding::{norm_up, quotient_down};
-use crate::model::rows::{dot, padded_rank};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
 /// A number in exact arithmetic.

@@ -78,8 +78,8 @@ impl OraclePair {
         intersect_triangle_triangle(&[0, 1, 2].map(at), &[3, 4, 5].map(at))
     }
 
-    /// Searches the least `|z|` at which the two triangles meet. What it returns is an upper bound: that z
-    /// brings two points together, to rounding, or the exact test found a collision at it.
+    /// Searches the smallest `|z|` at which the two triangles meet. The result is an upper bound: at that z two points
+    /// coincide up to rounding, or the exact test finds a collision.
     pub(super) fn true_minimum(&self, effort: usize, random: &mut Random) -> Option<f64> {
         let zero = vec![0.0; self.rank()];
         if self.collides(&zero) {

@@ -1,41 +1,40 @@
 //! The BVTT under construction: node pairs with lower bounds of their radii, from which the pair tree is made.
 //!
-//! The BVTT begins with the pairs of children of each node that is not within a bucket. A pair is split by
-//! [`Hierarchy::split_above_buckets`] alone, so pairs are not stored with what they are split into: children are side by side,
-//! in the order of the split.
+//! It starts with the pairs of children of every node above the buckets. [`Hierarchy::split_above_buckets`] alone
+//! decides how a pair is split, so a pair stores only the index of its first child pair; the others follow it.
 
 use std::ops::Range;
 
-use crate::Pair;
-use crate::certificates::pair_tree::{round_down, sibling_pairs};
-use crate::hierarchy::Hierarchy;
+use crate::certificates::pair_tree::sibling_pairs;
+use crate::hierarchy::{Hierarchy, NodePair};
+use crate::model::rounding::to_f32_down;
 
 /// A node pair, in 16 bytes: a large model has millions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BvttPair {
-    pub(crate) nodes: Pair,
+    pub(crate) nodes: NodePair,
     /// A lower bound of its radius, at least its parent's.
     pub(crate) lower: f32,
-    /// [`OPEN`], [`BOUNDED`], or where its children start.
+    /// [`OPEN`], [`BOUNDED`], or the index of its first child pair.
     link: u32,
 }
 
 const OPEN: u32 = 0;
 const BOUNDED: u32 = u32::MAX;
 
-/// What a node pair has become.
+/// The state of a node pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PairState {
     /// Not split; only the lower bound is known.
     Open,
-    /// Two small nodes whose radius is known.
+    /// A pair of buckets whose radius is known.
     Bounded,
-    /// Split into pairs that start there.
+    /// Split into pairs; the index of the first of them.
     Split(u32),
 }
 
 impl BvttPair {
-    pub(crate) fn open(nodes: Pair, lower: f32) -> Self {
+    pub(crate) fn open(nodes: NodePair, lower: f32) -> Self {
         Self { nodes, lower, link: OPEN }
     }
 
@@ -64,12 +63,12 @@ impl BvttPair {
 /// All node pairs so far; parents come before their children.
 pub(super) struct Bvtt {
     pub(super) pairs: Vec<BvttPair>,
-    /// For each node where its pairs of children start, and the end of the last one's.
+    /// For each node the index of its first pair of children, and one end index.
     starts: Vec<u32>,
 }
 
 impl Bvtt {
-    /// A BVTT that says nothing of any node.
+    /// An empty BVTT: no lower bound is known.
     pub(super) fn empty() -> Self {
         Self { pairs: Vec::new(), starts: Vec::new() }
     }
@@ -84,12 +83,12 @@ impl Bvtt {
         bvtt
     }
 
-    /// The places of the pairs of a node's children; none if nothing is known of any node.
+    /// The indices of the pairs of a node's children; none if the BVTT is empty.
     pub(super) fn of_node(&self, n: usize) -> Option<Range<usize>> {
         Some(*self.starts.get(n)? as usize..*self.starts.get(n + 1)? as usize)
     }
 
-    /// The places of the pairs that a pair is split into.
+    /// The indices of the pairs that a pair is split into.
     pub(super) fn children(&self, hierarchy: &Hierarchy, pair: &BvttPair) -> Range<usize> {
         let PairState::Split(first) = pair.state() else { return 0..0 };
         let (n, m) = pair.nodes;
@@ -97,9 +96,9 @@ impl Bvtt {
         first as usize..first as usize + count
     }
 
-    /// Replaces an open pair by what it has become: the first of `subtree`, with the others behind all pairs.
-    pub(super) fn replace(&mut self, place: u32, subtree: Vec<BvttPair>) {
-        // The pair stays in its place; the others, numbered from 1 in the subtree, follow.
+    /// Replaces an open pair by a subtree. The root takes its index; the other pairs are appended.
+    pub(super) fn replace(&mut self, index: u32, subtree: Vec<BvttPair>) {
+        // The root keeps the index of the pair; the others, numbered from 1 in the subtree, follow all pairs.
         let offset = self.pairs.len() as u32 - 1;
         let mut moved = subtree.into_iter().map(|mut pair| {
             if let PairState::Split(first) = pair.state() {
@@ -108,18 +107,18 @@ impl Bvtt {
             pair
         });
         if let Some(pair) = moved.next() {
-            self.pairs[place as usize] = pair;
+            self.pairs[index as usize] = pair;
         }
         self.pairs.extend(moved);
     }
 
     /// Gives each pair that is split the smallest lower bound of its children.
     pub(super) fn pull_up(&mut self, hierarchy: &Hierarchy) {
-        for place in (0..self.pairs.len()).rev() {
-            let pair = self.pairs[place];
+        for index in (0..self.pairs.len()).rev() {
+            let pair = self.pairs[index];
             if let PairState::Split(_) = pair.state() {
                 let children = &self.pairs[self.children(hierarchy, &pair)];
-                self.pairs[place].lower =
+                self.pairs[index].lower =
                     children.iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
             }
         }
@@ -128,14 +127,14 @@ impl Bvtt {
     /// Gives each pair at least the radius of the node that contains it, and at least the lower bound of its parent.
     pub(super) fn push_down(&mut self, hierarchy: &Hierarchy, node_radii: &[f64]) {
         for (n, radius) in node_radii.iter().enumerate() {
-            let radius = round_down(*radius);
-            let places = self.of_node(n).unwrap_or_default();
-            for pair in &mut self.pairs[places] {
+            let radius = to_f32_down(*radius);
+            let indices = self.of_node(n).unwrap_or_default();
+            for pair in &mut self.pairs[indices] {
                 pair.lower = pair.lower.max(radius);
             }
         }
-        for place in 0..self.pairs.len() {
-            let parent = self.pairs[place];
+        for index in 0..self.pairs.len() {
+            let parent = self.pairs[index];
             let children = self.children(hierarchy, &parent);
             for child in &mut self.pairs[children] {
                 child.lower = child.lower.max(parent.lower);

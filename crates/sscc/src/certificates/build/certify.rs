@@ -1,12 +1,12 @@
-//! The computation of all certificates, stage by stage: pair tree, then radii of nodes (paper, section 5.2).
+//! Computes all certificates: the pair tree, then the radii of nodes (paper, section 5.2).
 
 use super::executor::{Executor, ThreadExecutor};
 use super::node_radii::NodeRadii;
 use super::pair_tree_builder::PairTreeBuilder;
-use super::prepare::Prepared;
+use super::preparation::Preparation;
 use crate::certificates::pair_tree::{PairEntry, PairTree};
 use crate::certificates::{CertificateParts, Certificates, CertifyOptions};
-use crate::threads::on_threads;
+use crate::thread_pool::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 impl Certificates {
@@ -21,10 +21,10 @@ impl Certificates {
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
         on_threads(options.threads, || {
-            let prepared = Prepared::new(model, options, progress)?;
-            let mut executor = ThreadExecutor { prepared: &prepared, progress };
-            let radii = CertifiedRadii::compute(&prepared, options.budget, &mut executor, progress)?;
-            Ok(radii.into_certificates(prepared))
+            let preparation = Preparation::new(model, options, progress)?;
+            let mut executor = ThreadExecutor { preparation: &preparation, progress };
+            let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
+            Ok(radii.into_certificates(preparation))
         })
     }
 }
@@ -38,22 +38,23 @@ pub(crate) struct CertifiedRadii {
 impl CertifiedRadii {
     /// Has all stages run. `budget`: bytes of the pair tree for each triangle.
     pub(crate) fn compute(
-        prepared: &Prepared,
+        preparation: &Preparation,
         budget: usize,
         executor: &mut dyn Executor,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        let hierarchy = &prepared.hierarchy;
+        let hierarchy = &preparation.hierarchy;
         let entries = budget.saturating_mul(hierarchy.order().len()) / size_of::<PairEntry>();
-        let builder = PairTreeBuilder::build(hierarchy, prepared.global_radius, entries, executor)?;
-        let radii = NodeRadii::compute(prepared, &builder, executor, progress)?;
+        let builder = PairTreeBuilder::build(hierarchy, preparation.global_radius, entries, executor)?;
+        let radii = NodeRadii::compute(preparation, &builder, executor, progress)?;
         let pair_tree = builder.finish(hierarchy, &radii.nodes);
         Ok(Self { radii, pair_tree })
     }
 
     /// The certificates of the model that was prepared.
-    pub(crate) fn into_certificates(self, prepared: Prepared) -> Certificates {
-        let Prepared { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } = prepared;
+    pub(crate) fn into_certificates(self, preparation: Preparation) -> Certificates {
+        let Preparation { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } =
+            preparation;
         Certificates::new(CertificateParts {
             digest,
             scope,

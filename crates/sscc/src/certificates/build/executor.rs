@@ -1,11 +1,12 @@
-//! Executors run the tasks of a stage: this one on the threads of this process, `remote/executor.rs` in other processes.
+//! The interface of executors, which run the tasks of a stage, and the executor on the threads of this process.
+//! `remote/executor.rs` has the one for other processes.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::prepare::Prepared;
-use super::search::RadiusSearch;
+use super::preparation::Preparation;
+use super::radius_search::RadiusSearch;
 use super::task::{Task, TaskResult, run_task};
 use crate::{Error, Progress};
 
@@ -15,32 +16,33 @@ pub(crate) struct Stage<'a> {
     pub(crate) count: usize,
     /// Makes the task with an index, when it is run: all at once would take too much memory.
     pub(crate) task: &'a (dyn Fn(usize) -> Task + Sync),
-    /// Most tasks that a thread takes at once. Tasks are unequal, and those taken cannot be shared any more.
+    /// The maximum number of tasks that a thread takes at once. Costs differ, and other threads cannot take over these
+    /// tasks.
     pub(crate) grain: usize,
-    /// Most node pairs that all results together may add to the BVTT.
-    pub(crate) room: usize,
+    /// The maximum number of node pairs that all results together may add to the BVTT.
+    pub(crate) max_added_pairs: usize,
     /// Receives numbers of tasks that have finished.
     pub(crate) on_finished: &'a (dyn Fn(usize) + Sync),
 }
 
 /// Runs tasks, stage by stage.
 pub(crate) trait Executor {
-    /// The results of a stage, in the order of its tasks. None if there is no room for them.
+    /// The results of a stage, in the order of its tasks. None if they would add too many node pairs.
     ///
     /// # Errors
     /// When cancelled, or when other processes fail.
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error>;
 }
 
-/// Counts the node pairs that results add, and stops work for which there is no room.
-pub(crate) struct Room {
-    room: usize,
+/// Counts the node pairs that results add to the BVTT, up to a limit.
+pub(crate) struct AddedPairLimit {
+    max_added_pairs: usize,
     added: AtomicUsize,
 }
 
-impl Room {
-    pub(crate) fn new(room: usize) -> Self {
-        Self { room, added: AtomicUsize::new(0) }
+impl AddedPairLimit {
+    pub(crate) fn new(max_added_pairs: usize) -> Self {
+        Self { max_added_pairs, added: AtomicUsize::new(0) }
     }
 
     pub(crate) fn add(&self, result: &TaskResult) {
@@ -48,32 +50,32 @@ impl Room {
     }
 
     pub(crate) fn is_exceeded(&self) -> bool {
-        self.added.load(Ordering::Relaxed) > self.room
+        self.added.load(Ordering::Relaxed) > self.max_added_pairs
     }
 }
 
 /// Runs tasks on the threads of the current pool.
 pub(crate) struct ThreadExecutor<'a> {
-    pub(crate) prepared: &'a Prepared,
+    pub(crate) preparation: &'a Preparation,
     pub(crate) progress: &'a dyn Progress,
 }
 
 impl Executor for ThreadExecutor<'_> {
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error> {
-        let Self { prepared, progress } = *self;
-        let room = Room::new(stage.room);
+        let Self { preparation, progress } = *self;
+        let limit = AddedPairLimit::new(stage.max_added_pairs);
         let run = |search: &mut RadiusSearch<'_>, index: usize| {
-            if room.is_exceeded() {
+            if limit.is_exceeded() {
                 return None;
             }
-            let result = run_task((stage.task)(index), prepared, search, progress)?;
-            room.add(&result);
+            let result = run_task((stage.task)(index), preparation, search, progress)?;
+            limit.add(&result);
             (stage.on_finished)(1);
             Some(result)
         };
         let tasks = (0..stage.count).into_par_iter().with_max_len(stage.grain);
-        let results: Vec<Option<TaskResult>> = tasks.map_init(|| prepared.search(progress), run).collect();
-        if room.is_exceeded() {
+        let results: Vec<Option<TaskResult>> = tasks.map_init(|| preparation.search(progress), run).collect();
+        if limit.is_exceeded() {
             return Ok(None);
         }
         results.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(Error::Cancelled)

@@ -1,9 +1,9 @@
-//! The frontier of the BVTT below some node pairs: the pairs that make them up and are not split.
+//! The frontier of the BVTT below some node pairs: the node pairs that are not split.
 
 use std::ops::Range;
 
 use super::bvtt::{Bvtt, PairState};
-use super::radius_bound::KnownPair;
+use super::radius_bound::BoundedNodePair;
 use crate::hierarchy::Hierarchy;
 
 /// The pairs of a frontier that may have a radius below a cap, with their lower bounds.
@@ -11,19 +11,19 @@ pub(super) struct Frontier {
     /// The smallest radius of the bounded pairs, at most the cap.
     pub(super) radius: f64,
     /// Pairs of which only a lower bound is known.
-    pub(super) open: Vec<KnownPair>,
-    /// Pairs of small nodes whose radius is known, with the error of the pair tree.
-    pub(super) bounded: Vec<KnownPair>,
+    pub(super) open: Vec<BoundedNodePair>,
+    /// Pairs of buckets whose radius is known, with the tolerance of the pair tree.
+    pub(super) bounded: Vec<BoundedNodePair>,
 }
 
 impl Frontier {
-    /// The frontier below the pairs at some places.
-    pub(super) fn below(bvtt: &Bvtt, hierarchy: &Hierarchy, places: Range<usize>, cap: f64) -> Self {
+    /// The frontier below the pairs of some indices.
+    pub(super) fn below(bvtt: &Bvtt, hierarchy: &Hierarchy, indices: Range<usize>, cap: f64) -> Self {
         let mut frontier = Self { radius: cap, open: Vec::new(), bounded: Vec::new() };
-        let mut stack: Vec<usize> = places.collect();
-        while let Some(place) = stack.pop() {
-            let pair = &bvtt.pairs[place];
-            let known = KnownPair { nodes: pair.nodes, lower: f64::from(pair.lower) };
+        let mut stack: Vec<usize> = indices.collect();
+        while let Some(index) = stack.pop() {
+            let pair = &bvtt.pairs[index];
+            let known = BoundedNodePair { nodes: pair.nodes, lower: f64::from(pair.lower) };
             if known.lower >= cap {
                 continue;
             }

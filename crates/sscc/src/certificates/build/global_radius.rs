@@ -1,7 +1,7 @@
 //! `R_global`, the largest radius of interest, at which all radii are capped (paper, section 5.2).
 
-use crate::certificates::pair_tree::round_down;
 use crate::geometry::Aabb;
+use crate::model::rounding::to_f32_down;
 use crate::{Metric, ReducedModel};
 
 /// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the box at the
@@ -19,7 +19,7 @@ pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64
         if largest > 0.0 && half_diagonal > 0.0 {
             let radius = half_diagonal / largest;
             let is_in_range = (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius);
-            return if is_in_range { f64::from(round_down(radius)) } else { radius };
+            return if is_in_range { f64::from(to_f32_down(radius)) } else { radius };
         }
     }
     f64::INFINITY

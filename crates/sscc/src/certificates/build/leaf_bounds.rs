@@ -1,15 +1,16 @@
 //! Lower bounds of all triangle pairs between two leaves, or within one, without subdivision (paper, section 5.1).
 //!
-//! All pairs first share the direction that is best for the two nodes. Then only the pair with the smallest bound is
-//! refined, again and again, until the smallest bound is a refined one: the direction that it needs, or one affine map of
-//! all vertices, often settles the other pairs.
+//! First, all pairs are bounded along the best direction of the two nodes. Then the pair with the smallest bound is
+//! refined, until the smallest bound belongs to a refined pair. Its direction, and one affine map of all vertices, are
+//! tried for all pairs and often suffice.
 
 use glam::DVec3;
 
-use super::context::SearchContext;
+use super::radius_search_context::RadiusSearchContext;
 use crate::Pair;
 use crate::bounds::{LeafPair, PairRefiner, RefinementTarget};
 use crate::filter::Hulls;
+use crate::hierarchy::NodePair;
 
 /// Directions along which all pairs are bounded, beside the first one.
 const MAX_SHARED_DIRECTIONS: usize = 3;
@@ -33,20 +34,20 @@ pub(super) struct BoundedTriangles {
 
 /// The triangle pairs between two leaves; owns its memory.
 pub(super) struct LeafBounds<'a> {
-    context: SearchContext<'a>,
+    context: RadiusSearchContext<'a>,
     leaves: LeafPair<'a>,
     hulls: Vec<HullPair>,
 }
 
 impl<'a> LeafBounds<'a> {
-    pub(super) fn new(context: SearchContext<'a>) -> Self {
+    pub(super) fn new(context: RadiusSearchContext<'a>) -> Self {
         Self { context, leaves: LeafPair::new(context.model), hulls: Vec::new() }
     }
 
     /// Takes the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. `dir`: a
     /// direction in which all are bounded.
-    pub(super) fn load(&mut self, (n, m): Pair, dir: Option<DVec3>, certified: f64) {
-        let SearchContext { hierarchy, filter, .. } = self.context;
+    pub(super) fn load(&mut self, (n, m): NodePair, dir: Option<DVec3>, certified: f64) {
+        let RadiusSearchContext { hierarchy, filter, .. } = self.context;
         let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
         self.leaves.load(x, y);
         if let Some(dir) = dir {
@@ -65,8 +66,8 @@ impl<'a> LeafBounds<'a> {
         }
     }
 
-    /// Refines the pair with the smallest bound until that of a refined one is the smallest. Upper bounds that are met
-    /// lower `target.upper`; gives the triangle pair of the last one, if one was.
+    /// Refines the pair with the smallest bound until the smallest bound belongs to a refined pair. Lowers
+    /// `target.upper`, and returns the triangle pair that lowered it last, if any.
     pub(super) fn refine(
         &mut self,
         refiner: &mut PairRefiner<'_>,

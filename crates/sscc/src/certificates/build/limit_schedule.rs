@@ -1,9 +1,9 @@
 //! The limits up to which the BVTT is built, one after the other, until the budget of the pair tree is used up.
 //!
-//! How many node pairs lie below a limit is not known in advance: each limit is estimated from how their number has grown
-//! so far. Measured in `docs/notes/2026-11-23-pair-tree-limits.md`.
+//! The number of node pairs below a limit is not known in advance, so each limit is extrapolated from its growth so far
+//! (docs/notes/2026-11-23-pair-tree-limits.md).
 
-use crate::certificates::pair_tree::round_down;
+use crate::model::rounding::to_f32_down;
 
 /// The first limit, as a share of the global radius.
 const FIRST_SHARE: f64 = 1.0 / 16.0;
@@ -35,7 +35,7 @@ pub(super) struct LimitSchedule {
 impl LimitSchedule {
     /// None if radii are out of the range of single precision, in which the tree stores them.
     pub(super) fn new(global_radius: f64) -> Option<Self> {
-        let limit = f64::from(round_down(global_radius * FIRST_SHARE));
+        let limit = f64::from(to_f32_down(global_radius * FIRST_SHARE));
         let is_in_range = limit > 0.0 && global_radius <= f64::from(f32::MAX);
         is_in_range.then_some(Self { global_radius, limit, complete_below: 0.0, too_large: f64::INFINITY })
     }
@@ -72,7 +72,7 @@ impl LimitSchedule {
 
     /// Half way, in logarithms, to the limit for which there was no room.
     fn half_way(&self) -> f64 {
-        f64::from(round_down((self.complete_below * self.too_large).sqrt()))
+        f64::from(to_f32_down((self.complete_below * self.too_large).sqrt()))
     }
 
     /// A limit that should just use up the budget, as if the number of pairs grew as a power of the limit; none if the
@@ -86,7 +86,7 @@ impl LimitSchedule {
         }
         let power = (stored / at_half).log2().max(1.0);
         let step = (BUDGET_MARGIN * room).powf(1.0 / power).min(MAX_STEP);
-        let next = f64::from(round_down(self.complete_below * step)).min(self.global_radius);
+        let next = f64::from(to_f32_down(self.complete_below * step)).min(self.global_radius);
         (next > self.complete_below).then_some(next)
     }
 }

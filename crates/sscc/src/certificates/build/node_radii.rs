@@ -1,20 +1,20 @@
 //! Radii of nodes, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's pairs)` (paper, section
 //! 5.2).
 //!
-//! Two passes. The first one is coarse: it takes what building the pair tree has bounded, and searches the rest with few
-//! subdivisions. On the way an upper bound of the root's radius is met; the second pass searches all radii that may be
-//! below it with the error asked for. Buckets are searched as a whole, and nodes in them get their radius, because no
-//! discrete or continuous query looks into a bucket.
+//! There are two passes. The first is coarse: it uses the bounds from building the pair tree and searches the rest with
+//! few subdivisions; it also yields an upper bound of the root's radius. The second searches every radius that may be
+//! below this bound, with the tolerance of the options. A bucket is searched as a whole, and the nodes within it get
+//! its radius, because traversals end at buckets.
 
 use std::ops::Range;
 
 use super::executor::{Executor, Stage};
 use super::frontier::Frontier;
-use super::goal::{Precision, SearchGoal};
 use super::pair_tree_builder::PairTreeBuilder;
-use super::prepare::Prepared;
+use super::preparation::Preparation;
 use super::progress_counter::ProgressCounter;
-use super::radius_bound::{KnownPair, RadiusBound};
+use super::radius_bound::{BoundedNodePair, RadiusBound};
+use super::search_goal::{Precision, SearchGoal};
 use super::task::{NodeRadiusTask, Task, TaskResult};
 use crate::hierarchy::Node;
 use crate::{Error, Progress};
@@ -33,18 +33,18 @@ pub(super) struct NodeRadii {
 }
 
 impl NodeRadii {
-    /// Computes all radii, given what building the pair tree has bounded.
+    /// Computes all radii, given the bounds from building the pair tree.
     pub(super) fn compute(
-        prepared: &Prepared,
+        preparation: &Preparation,
         builder: &PairTreeBuilder,
         executor: &mut dyn Executor,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        let nodes = prepared.hierarchy.nodes();
+        let nodes = preparation.hierarchy.nodes();
         let (count, pairs) = (nodes.len(), nodes[0].child_pairs().count());
         let counter = ProgressCounter::new(progress, 2 * (count + pairs));
         let radii = Self { nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] };
-        let mut passes = Passes { prepared, builder, counter, radii };
+        let mut passes = Passes { preparation, builder, counter, radii };
         let upper = passes.run(Precision::Coarse, f64::INFINITY, executor)?;
         let upper = upper.min(passes.root_upper_bound(executor)?);
         passes.run(Precision::Full, upper, executor)?;
@@ -55,19 +55,19 @@ impl NodeRadii {
 
 /// The radii so far, and what they are computed from.
 struct Passes<'a> {
-    prepared: &'a Prepared,
+    preparation: &'a Preparation,
     builder: &'a PairTreeBuilder,
     counter: ProgressCounter<'a>,
     radii: NodeRadii,
 }
 
 impl Passes<'_> {
-    /// Computes all radii that are below a limit; gives the smallest upper bound met of any radius.
+    /// Computes all radii that are below a limit. Returns the smallest upper bound found of any radius.
     ///
     /// Nodes of one level are independent of each other. So a stage is a level, from the leaves up, then the pairs of the
     /// root's children.
     fn run(&mut self, precision: Precision, below: f64, executor: &mut dyn Executor) -> Result<f64, Error> {
-        let hierarchy = &self.prepared.hierarchy;
+        let hierarchy = &self.preparation.hierarchy;
         let nodes = hierarchy.nodes();
         let is_in_bucket = hierarchy.nodes_within_buckets();
         let mut upper = f64::INFINITY;
@@ -93,7 +93,7 @@ impl Passes<'_> {
             let wanted: Vec<usize> =
                 (0..self.radii.root_pairs.len()).filter(|i| self.radii.root_pairs[*i] < below).collect();
             self.counter.add(self.radii.root_pairs.len() - wanted.len() + 1);
-            let cap = self.prepared.global_radius;
+            let cap = self.preparation.global_radius;
             let task = |index: usize| self.task(precision, 0, wanted[index]..wanted[index] + 1, cap);
             let bounds = search(executor, wanted.len(), &task, &|count| self.counter.add(count))?;
             wanted.into_iter().zip(bounds).for_each(|(i, bound)| take(&mut self.radii.root_pairs[i], bound));
@@ -109,10 +109,10 @@ impl Passes<'_> {
         Ok(upper)
     }
 
-    /// An upper bound of the root's radius, if it comes from pairs that building the pair tree has bounded: as a rule the
-    /// search of the pairs from which it comes meets one. Infinite if not: then the first pass has met one.
+    /// An upper bound of the root's radius, if that radius comes from pairs bounded while building the pair tree:
+    /// searching these pairs again usually finds one. Infinite otherwise; then the first pass has found one.
     fn root_upper_bound(&self, executor: &mut dyn Executor) -> Result<f64, Error> {
-        let hierarchy = &self.prepared.hierarchy;
+        let hierarchy = &self.preparation.hierarchy;
         let (nodes, radii) = (hierarchy.nodes(), &self.radii);
         let mut n = 0;
         while let Some(child) = nodes[n].children().find(|n| radii.nodes[*n as usize] == radii.nodes[0]) {
@@ -125,7 +125,7 @@ impl Passes<'_> {
             Some(pair) if n == 0 => pair..pair + 1,
             _ => 0..nodes[n].child_pairs().count(),
         };
-        let cap = self.prepared.global_radius.min(UPPER_BOUND_REACH * radii.nodes[0]);
+        let cap = self.preparation.global_radius.min(UPPER_BOUND_REACH * radii.nodes[0]);
         let task = |_| {
             // From the bounded pairs, too, but with the precision of the first pass.
             let mut task = self.task(Precision::Full, n, siblings.clone(), cap);
@@ -139,28 +139,28 @@ impl Passes<'_> {
     /// The smallest radius of a node's children, at most the global one.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
-        radii.fold(self.prepared.global_radius, f64::min)
+        radii.fold(self.preparation.global_radius, f64::min)
     }
 
     /// The task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings`: their
     /// indices among these pairs.
     fn task(&self, precision: Precision, n: usize, siblings: Range<usize>, cap: f64) -> NodeRadiusTask {
-        let hierarchy = &self.prepared.hierarchy;
+        let hierarchy = &self.preparation.hierarchy;
         let node = n as u32;
         if hierarchy.is_bucket_below_root(node) || hierarchy.nodes()[n].is_leaf() {
             // The radii of its parts are not known: they were not searched.
-            return NodeRadiusTask::within(node, precision, self.prepared.global_radius);
+            return NodeRadiusTask::within(node, precision, self.preparation.global_radius);
         }
         let goal = SearchGoal::new(cap, precision);
         let Some(frontier) = self.builder.frontier(hierarchy, n, siblings.clone(), cap) else {
             let pairs = hierarchy.nodes()[n].child_pairs().skip(siblings.start).take(siblings.len());
-            return NodeRadiusTask { node, pairs: pairs.map(KnownPair::unbounded).collect(), goal };
+            return NodeRadiusTask { node, pairs: pairs.map(BoundedNodePair::unbounded).collect(), goal };
         };
         let Frontier { radius, open, bounded } = frontier;
         match precision {
             Precision::Coarse => {
                 // Without a pair tree queries have no other radii than these.
-                let refine_up_to = if self.builder.is_empty() { cap } else { self.prepared.coarse_cap() };
+                let refine_up_to = if self.builder.is_empty() { cap } else { self.preparation.coarse_cap() };
                 let pairs = open.into_iter().filter(|pair| pair.lower < radius).collect();
                 NodeRadiusTask { node, pairs, goal: SearchGoal { cap: radius, refine_up_to, precision } }
             }
@@ -177,7 +177,7 @@ fn search(
     on_finished: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<RadiusBound>, Error> {
     let task = |index: usize| Task::NodeRadius(task(index));
-    let stage = Stage { count, task: &task, grain: RADIUS_GRAIN, room: usize::MAX, on_finished };
+    let stage = Stage { count, task: &task, grain: RADIUS_GRAIN, max_added_pairs: usize::MAX, on_finished };
     let results = executor.run(&stage)?.unwrap_or_default();
     results.into_iter().map(TaskResult::into_bound).collect()
 }

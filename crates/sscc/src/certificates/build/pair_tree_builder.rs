@@ -1,9 +1,9 @@
 //! Building of the pair tree: which node pairs it holds, and their radii (beyond the paper's section 5.2).
 //!
-//! The BVTT is built in rounds of ever higher limits: a pair with a lower bound below the limit is split, two small nodes
-//! get a radius, searched without subdivision. What becomes of a pair depends on the model alone; one priority queue for
-//! all would not, once several threads take from it. The budget ends the rounds: the last limit is the one below which
-//! all pairs are known.
+//! The BVTT is built in rounds with increasing limits. A pair with a lower bound below the limit is split; a pair of
+//! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
+//! threads, as it would with one shared priority queue. The rounds end when the budget is used up. All pairs below the
+//! last limit are known.
 
 use std::ops::Range;
 
@@ -12,17 +12,17 @@ use super::executor::{Executor, Stage};
 use super::frontier::Frontier;
 use super::limit_schedule::LimitSchedule;
 use super::pair_tree_layout::lay_out;
-use super::split::SplitTask;
+use super::split_task::SplitTask;
 use super::task::{Task, TaskResult};
+use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
-use crate::hierarchy::Hierarchy;
-use crate::{Error, Pair};
+use crate::hierarchy::{Hierarchy, NodePair};
 
-/// Most node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed. Tests should run
-/// out of room.
+/// The maximum number of node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed.
+/// In tests the limit is small, so that they reach it.
 const PAIRS_PER_ENTRY: usize = if cfg!(test) { 1 } else { 32 };
 
-/// Most node pairs of the BVTT, whatever the budget: places have 32 bits.
+/// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
 const MAX_PAIRS: usize = 1 << 31;
 
 /// Open pairs that a thread takes at once.
@@ -33,7 +33,7 @@ pub(super) struct PairTreeBuilder {
     bvtt: Bvtt,
     /// Radii below this are known; 0: none is.
     complete_below: f64,
-    /// Most entries of the tree.
+    /// The maximum number of entries of the tree.
     budget: usize,
 }
 
@@ -64,7 +64,8 @@ impl PairTreeBuilder {
         Ok(builder)
     }
 
-    /// Splits and bounds every pair below the limit. False, and nothing changed, if there would be more than `most`.
+    /// Splits or bounds every pair below the limit. Returns false, with the BVTT unchanged, if it would have more than
+    /// `most` pairs.
     fn run_round(
         &mut self,
         hierarchy: &Hierarchy,
@@ -85,23 +86,23 @@ impl PairTreeBuilder {
                 count: open.len(),
                 task: &task,
                 grain: SPLIT_GRAIN,
-                room: most.saturating_sub(bvtt.pairs.len()),
+                max_added_pairs: most.saturating_sub(bvtt.pairs.len()),
                 on_finished: &|_| {},
             };
             let Some(results) = executor.run(&stage)? else {
                 bvtt.pairs.truncate(before_round);
-                replaced.into_iter().for_each(|(place, pair)| bvtt.pairs[place] = pair);
+                replaced.into_iter().for_each(|(index, pair)| bvtt.pairs[index] = pair);
                 return Ok(false);
             };
-            let of_before = open.iter().map(|place| *place as usize).filter(|place| *place < before_round);
-            replaced.extend(of_before.map(|place| (place, bvtt.pairs[place])));
+            let of_before = open.iter().map(|index| *index as usize).filter(|index| *index < before_round);
+            replaced.extend(of_before.map(|index| (index, bvtt.pairs[index])));
             let before_stage = bvtt.pairs.len();
-            for (place, subtree) in open.into_iter().zip(results.into_iter().map(TaskResult::into_subtree)) {
-                bvtt.replace(place, subtree?);
+            for (index, subtree) in open.into_iter().zip(results.into_iter().map(TaskResult::into_subtree)) {
+                bvtt.replace(index, subtree?);
             }
             open = open_pairs(bvtt, before_stage..bvtt.pairs.len(), limit);
         }
-        let is_large = |(n, m): Pair| hierarchy.split_above_buckets(n, m).is_some();
+        let is_large = |(n, m): NodePair| hierarchy.split_above_buckets(n, m).is_some();
         if bvtt.pairs.iter().any(|pair| pair.is_open_below(limit) && is_large(pair.nodes)) {
             return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
         }
@@ -124,12 +125,12 @@ impl PairTreeBuilder {
         cap: f64,
     ) -> Option<Frontier> {
         let first = self.bvtt.of_node(node)?.start;
-        let places = first + siblings.start..first + siblings.end;
-        Some(Frontier::below(&self.bvtt, hierarchy, places, cap))
+        let indices = first + siblings.start..first + siblings.end;
+        Some(Frontier::below(&self.bvtt, hierarchy, indices, cap))
     }
 
-    /// The tree of all pairs below the limit that the budget allows. What is known of a node or a pair as a whole is a
-    /// lower bound for all pairs below it.
+    /// The pair tree: all pairs below the limit, as far as the budget allows. The radius of a node or a pair is a lower
+    /// bound for all pairs below it.
     pub(super) fn finish(mut self, hierarchy: &Hierarchy, node_radii: &[f64]) -> PairTree {
         if self.is_empty() {
             return PairTree::default();
@@ -139,7 +140,7 @@ impl PairTreeBuilder {
     }
 }
 
-/// The places of the open pairs that may collide below a limit.
-fn open_pairs(bvtt: &Bvtt, places: Range<usize>, limit: f64) -> Vec<u32> {
-    places.filter(|place| bvtt.pairs[*place].is_open_below(limit)).map(|place| place as u32).collect()
+/// The indices of the open pairs that may collide below a limit.
+fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
+    indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
 }

@@ -20,16 +20,16 @@ pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, limit: f64, budget: us
     }
     let mut entries: Vec<PairEntry> = Vec::new();
     let mut next = 0;
-    while let Some(places) = lists.lists.get(next).cloned() {
-        let first = places.start;
-        let last = places.clone().rev().find(|place| is_below(&bvtt.pairs[*place], limit));
-        for place in places.filter(|place| is_below(&bvtt.pairs[*place], limit)) {
-            let pair = &bvtt.pairs[place];
+    while let Some(indices) = lists.lists.get(next).cloned() {
+        let first = indices.start;
+        let last = indices.clone().rev().find(|index| is_below(&bvtt.pairs[*index], limit));
+        for index in indices.filter(|index| is_below(&bvtt.pairs[*index], limit)) {
+            let pair = &bvtt.pairs[index];
             let start = match pair.state() {
                 PairState::Split(_) => lists.add(bvtt.children(hierarchy, pair)).start,
                 PairState::Open | PairState::Bounded => 0,
             };
-            entries.push(PairEntry::new(pair.lower, start, place - first, Some(place) == last));
+            entries.push(PairEntry::new(pair.lower, start, index - first, Some(index) == last));
         }
         next += 1;
     }
@@ -67,12 +67,12 @@ struct SiblingList {
 }
 
 impl SiblingLists<'_> {
-    fn add(&mut self, places: Range<usize>) -> SiblingList {
-        let stored = self.bvtt.pairs[places.clone()].iter().filter(|p| is_below(p, self.limit)).count();
+    fn add(&mut self, indices: Range<usize>) -> SiblingList {
+        let stored = self.bvtt.pairs[indices.clone()].iter().filter(|p| is_below(p, self.limit)).count();
         let list = SiblingList { start: self.total, stored };
         if stored > 0 {
             self.total += stored;
-            self.lists.push(places);
+            self.lists.push(indices);
         }
         list
     }

@@ -1,4 +1,4 @@
-//! Counting of finished steps for a `Progress`.
+//! Counts finished steps and reports them to a `Progress`.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

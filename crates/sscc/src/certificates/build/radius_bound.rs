@@ -1,18 +1,18 @@
-//! Bounds of radii: of one node pair before a search, of all pairs searched after it.
+//! Input and result of a radius search: node pairs with lower bounds; a certified radius with an upper bound.
 
-use crate::Pair;
+use crate::hierarchy::NodePair;
 
 /// A node pair and a lower bound of its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KnownPair {
-    pub(crate) nodes: Pair,
+pub(crate) struct BoundedNodePair {
+    pub(crate) nodes: NodePair,
     /// 0: the pair has not been bounded yet.
     pub(crate) lower: f64,
 }
 
-impl KnownPair {
+impl BoundedNodePair {
     /// A pair that has not been bounded yet.
-    pub(crate) fn unbounded(nodes: Pair) -> Self {
+    pub(crate) fn unbounded(nodes: NodePair) -> Self {
         Self { nodes, lower: 0.0 }
     }
 }
@@ -22,6 +22,6 @@ impl KnownPair {
 pub(crate) struct RadiusBound {
     /// Certified: no triangle pair searched collides below this.
     pub(crate) radius: f64,
-    /// The smallest upper bound met of any such pair's radius; infinite if none was met.
+    /// The smallest upper bound found of any such pair's radius; infinite if none was found.
     pub(crate) upper: f64,
 }

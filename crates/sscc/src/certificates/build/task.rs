@@ -4,11 +4,11 @@
 //! alone. So it does not matter which executor runs a task, or in which order.
 
 use super::bvtt::BvttPair;
-use super::goal::{Precision, SearchGoal};
-use super::prepare::Prepared;
-use super::radius_bound::{KnownPair, RadiusBound};
-use super::search::RadiusSearch;
-use super::split::{SplitTask, split};
+use super::preparation::Preparation;
+use super::radius_bound::{BoundedNodePair, RadiusBound};
+use super::radius_search::RadiusSearch;
+use super::search_goal::{Precision, SearchGoal};
+use super::split_task::{SplitTask, split};
 use crate::{Error, Progress};
 
 /// A unit of work.
@@ -26,14 +26,14 @@ pub(crate) struct NodeRadiusTask {
     /// A leaf or a bucket is searched within.
     pub(crate) node: u32,
     /// Of any other node these pairs are searched; their radii make up the one wanted.
-    pub(crate) pairs: Vec<KnownPair>,
+    pub(crate) pairs: Vec<BoundedNodePair>,
     pub(crate) goal: SearchGoal,
 }
 
 /// The result of a task.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum TaskResult {
-    /// What the pair has become, and the pairs below it; places count in this list.
+    /// The pair itself and the pairs below it; indices refer to this list.
     Split(Vec<BvttPair>),
     NodeRadius(RadiusBound),
 }
@@ -41,17 +41,17 @@ pub(crate) enum TaskResult {
 /// Runs a task; `search` lends its memory. None if cancelled.
 pub(crate) fn run_task(
     task: Task,
-    prepared: &Prepared,
+    preparation: &Preparation,
     search: &mut RadiusSearch<'_>,
     progress: &dyn Progress,
 ) -> Option<TaskResult> {
     match task {
-        Task::Split(task) => split(task, prepared, search, progress).map(TaskResult::Split),
+        Task::Split(task) => split(task, preparation, search, progress).map(TaskResult::Split),
         Task::NodeRadius(task) => {
             if progress.is_cancelled() {
                 return None;
             }
-            task.run(prepared, search).map(TaskResult::NodeRadius)
+            task.run(preparation, search).map(TaskResult::NodeRadius)
         }
     }
 }
@@ -62,8 +62,8 @@ impl NodeRadiusTask {
         Self { node, pairs: Vec::new(), goal: SearchGoal::new(cap, precision) }
     }
 
-    fn run(self, prepared: &Prepared, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {
-        let hierarchy = &prepared.hierarchy;
+    fn run(self, preparation: &Preparation, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {
+        let hierarchy = &preparation.hierarchy;
         if hierarchy.nodes()[self.node as usize].is_leaf() || hierarchy.is_bucket_below_root(self.node) {
             search.within(self.node, self.goal)
         } else {

@@ -1,11 +1,11 @@
-//! The executor that has tasks run by workers in other processes.
+//! `Certificates::compute_in_shards`, and the executor that sends tasks as jobs to other processes.
 
 use super::job::JobWriter;
 use super::job_result::{JobResult, ResultLayout};
 use super::seal::{HASH, Key};
-use crate::certificates::build::{CertifiedRadii, Executor, Prepared, Room, Stage, TaskResult};
+use crate::certificates::build::{AddedPairLimit, CertifiedRadii, Executor, Preparation, Stage, TaskResult};
 use crate::certificates::{Certificates, CertifyOptions};
-use crate::threads::on_threads;
+use crate::thread_pool::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 /// Has jobs run, each by [`ShardWorker::run`](crate::ShardWorker::run) in some process; gives the results in the order
@@ -29,17 +29,17 @@ impl Certificates {
         if shards == 0 {
             return Err(Error::Option { name: "shards", value: 0.0, wanted: "at least 1" });
         }
-        let prepared = on_threads(options.threads, || Prepared::new(model, options, progress))?;
-        let key = Key::of(&prepared);
-        let mut executor = RemoteExecutor { prepared: &prepared, key, shards, run, progress };
-        let radii = CertifiedRadii::compute(&prepared, options.budget, &mut executor, progress)?;
-        Ok(radii.into_certificates(prepared))
+        let preparation = on_threads(options.threads, || Preparation::new(model, options, progress))?;
+        let key = Key::of(&preparation);
+        let mut executor = RemoteExecutor { preparation: &preparation, key, shards, run, progress };
+        let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
+        Ok(radii.into_certificates(preparation))
     }
 }
 
 /// Writes the tasks of a stage as jobs, has them run, and reads their results.
 struct RemoteExecutor<'a> {
-    prepared: &'a Prepared,
+    preparation: &'a Preparation,
     key: Key,
     shards: usize,
     run: &'a mut RunJobs<'a>,
@@ -55,7 +55,7 @@ struct SealedJob {
 impl RemoteExecutor<'_> {
     /// Job j of k has the tasks j, j + k, j + 2k, ..., because neighbours are often equally hard.
     fn seal(&self, stage: &Stage<'_>, job: usize, jobs: usize) -> SealedJob {
-        let (mut writer, mut layouts) = (JobWriter::new(stage.room), Vec::new());
+        let (mut writer, mut layouts) = (JobWriter::new(stage.max_added_pairs), Vec::new());
         for index in (job..stage.count).step_by(jobs) {
             let task = (stage.task)(index);
             writer.add(&task);
@@ -69,7 +69,7 @@ impl RemoteExecutor<'_> {
         let body = self.key.open("a result", result)?;
         let body =
             body.strip_prefix(&name).ok_or_else(|| Error::Shard("a result is of another job".to_owned()))?;
-        JobResult::read(&self.prepared.hierarchy, layouts, body)
+        JobResult::read(&self.preparation.hierarchy, layouts, body)
             .ok_or_else(|| Error::Shard("a result does not fit its job".to_owned()))
     }
 }
@@ -102,15 +102,15 @@ impl Executor for RemoteExecutor<'_> {
     }
 }
 
-/// The results in the order of their tasks; none if there is no room for all of them.
+/// The results in the order of their tasks; none if they would add too many node pairs.
 fn in_order(stage: &Stage<'_>, jobs: Vec<JobResult>) -> Option<Vec<TaskResult>> {
     let complete = |job: JobResult| match job {
         JobResult::OutOfRoom => None,
         JobResult::Complete(results) => Some(results.into_iter()),
     };
     let mut jobs = jobs.into_iter().map(complete).collect::<Option<Vec<_>>>()?;
-    let (room, count) = (Room::new(stage.room), jobs.len());
+    let (limit, count) = (AddedPairLimit::new(stage.max_added_pairs), jobs.len());
     let results: Vec<TaskResult> =
-        (0..stage.count).filter_map(|index| jobs[index % count].next()).inspect(|r| room.add(r)).collect();
-    (!room.is_exceeded()).then_some(results)
+        (0..stage.count).filter_map(|index| jobs[index % count].next()).inspect(|r| limit.add(r)).collect();
+    (!limit.is_exceeded()).then_some(results)
 }

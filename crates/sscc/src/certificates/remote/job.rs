@@ -1,18 +1,18 @@
 //! Jobs as bytes: some tasks of one stage, for a worker.
 //!
-//! The bytes are a stage's room, then the tasks one after the other. They carry lower bounds and caps from earlier
-//! stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are refused.
+//! The bytes are the stage's maximum number of added pairs, then the tasks in order. They carry lower bounds and caps
+//! from earlier stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are
+//! refused.
 
-use super::reader::Reader;
-use crate::Pair;
-use crate::certificates::build::{KnownPair, NodeRadiusTask, Precision, SearchGoal, SplitTask, Task};
-use crate::hierarchy::Hierarchy;
+use super::byte_reader::ByteReader;
+use crate::certificates::build::{BoundedNodePair, NodeRadiusTask, Precision, SearchGoal, SplitTask, Task};
+use crate::hierarchy::{Hierarchy, NodePair};
 
 /// Tasks that one worker runs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Job {
-    /// Most node pairs that the results may add.
-    pub(super) room: usize,
+    /// The maximum number of node pairs that the results may add.
+    pub(super) max_added_pairs: usize,
     pub(super) tasks: Vec<Task>,
 }
 
@@ -24,8 +24,8 @@ const FULL_RADIUS: u8 = 2;
 pub(super) struct JobWriter(Vec<u8>);
 
 impl JobWriter {
-    pub(super) fn new(room: usize) -> Self {
-        Self((room as u64).to_le_bytes().to_vec())
+    pub(super) fn new(max_added_pairs: usize) -> Self {
+        Self((max_added_pairs as u64).to_le_bytes().to_vec())
     }
 
     pub(super) fn add(&mut self, task: &Task) {
@@ -62,7 +62,7 @@ impl JobWriter {
         }
     }
 
-    fn add_nodes(&mut self, (n, m): Pair) {
+    fn add_nodes(&mut self, (n, m): NodePair) {
         self.0.extend(n.to_le_bytes());
         self.0.extend(m.to_le_bytes());
     }
@@ -71,8 +71,8 @@ impl JobWriter {
 impl Job {
     /// None if the bytes are no job on this hierarchy.
     pub(super) fn read(hierarchy: &Hierarchy, bytes: &[u8]) -> Option<Self> {
-        let mut from = Reader::new(bytes);
-        let room = usize::try_from(from.u64()?).ok()?;
+        let mut from = ByteReader::new(bytes);
+        let max_added_pairs = usize::try_from(from.u64()?).ok()?;
         let mut tasks = Vec::new();
         while !from.is_at_end() {
             tasks.push(match from.u8()? {
@@ -82,29 +82,33 @@ impl Job {
                 _ => return None,
             });
         }
-        Some(Self { room, tasks })
+        Some(Self { max_added_pairs, tasks })
     }
 }
 
-fn read_split(hierarchy: &Hierarchy, from: &mut Reader<'_>) -> Option<SplitTask> {
+fn read_split(hierarchy: &Hierarchy, from: &mut ByteReader<'_>) -> Option<SplitTask> {
     let nodes = read_nodes(hierarchy, from)?;
     Some(SplitTask { nodes, lower: from.single_radius()?, limit: from.radius()? })
 }
 
-fn read_radius(hierarchy: &Hierarchy, precision: Precision, from: &mut Reader<'_>) -> Option<NodeRadiusTask> {
+fn read_radius(
+    hierarchy: &Hierarchy,
+    precision: Precision,
+    from: &mut ByteReader<'_>,
+) -> Option<NodeRadiusTask> {
     let node = from.u32()?;
     hierarchy.nodes().get(node as usize)?;
     let goal = SearchGoal { cap: from.radius()?, refine_up_to: from.radius()?, precision };
     let count = from.u64()?;
-    // Nothing is allocated by a number that the bytes do not bear out.
+    // The count is untrusted: allocate only as pairs are read.
     let mut pairs = Vec::new();
     for _ in 0..count {
-        pairs.push(KnownPair { nodes: read_nodes(hierarchy, from)?, lower: from.radius()? });
+        pairs.push(BoundedNodePair { nodes: read_nodes(hierarchy, from)?, lower: from.radius()? });
     }
     Some(NodeRadiusTask { node, pairs, goal })
 }
 
-fn read_nodes(hierarchy: &Hierarchy, from: &mut Reader<'_>) -> Option<Pair> {
+fn read_nodes(hierarchy: &Hierarchy, from: &mut ByteReader<'_>) -> Option<NodePair> {
     let (n, m) = (from.u32()?, from.u32()?);
     (n != m && n.max(m) < hierarchy.nodes().len() as u32).then_some((n, m))
 }

@@ -1,14 +1,11 @@
-//! Results of jobs as bytes: those of the tasks one after the other.
-//!
-//! Of a pair that was split only states and lower bounds are written: which pairs they belong to follows from the pair
-//! and the splitting rule. So whoever reads a result must know the task.
+//! Job results as bytes: the results of the tasks, in order. For a split pair only states and lower bounds are written;
+//! the splitting rule gives the node pairs, so a reader needs the task.
 
-use super::reader::Reader;
-use crate::Pair;
+use super::byte_reader::ByteReader;
 use crate::certificates::build::{BvttPair, PairState, RadiusBound, Task, TaskResult};
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 
-/// The first byte: whether there was room for the results.
+/// The first byte: whether the results are within the maximum number of added pairs.
 const OUT_OF_ROOM: u8 = 0;
 const COMPLETE: u8 = 1;
 
@@ -20,7 +17,7 @@ const SPLIT: u8 = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ResultLayout {
     /// The pair that is split.
-    Split(Pair),
+    Split(NodePair),
     NodeRadius,
 }
 
@@ -36,7 +33,7 @@ impl ResultLayout {
 /// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum JobResult {
-    /// There is no room for the results.
+    /// The results would add too many node pairs.
     OutOfRoom,
     Complete(Vec<TaskResult>),
 }
@@ -59,7 +56,7 @@ impl JobResult {
 
     /// The results of some tasks; none if the bytes are no such results.
     pub(super) fn read(hierarchy: &Hierarchy, layouts: &[ResultLayout], bytes: &[u8]) -> Option<Self> {
-        let mut from = Reader::new(bytes);
+        let mut from = ByteReader::new(bytes);
         let result = match from.u8()? {
             OUT_OF_ROOM => Self::OutOfRoom,
             COMPLETE => {
@@ -81,7 +78,7 @@ fn write_pair(pair: &BvttPair, bytes: &mut Vec<u8>) {
     bytes.extend(pair.lower.to_le_bytes());
 }
 
-fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut Reader<'_>) -> Option<TaskResult> {
+fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut ByteReader<'_>) -> Option<TaskResult> {
     Some(match layout {
         ResultLayout::Split(nodes) => TaskResult::Split(read_subtree(hierarchy, nodes, from)?),
         ResultLayout::NodeRadius => {
@@ -90,7 +87,7 @@ fn read_result(hierarchy: &Hierarchy, layout: ResultLayout, from: &mut Reader<'_
     })
 }
 
-fn read_subtree(hierarchy: &Hierarchy, nodes: Pair, from: &mut Reader<'_>) -> Option<Vec<BvttPair>> {
+fn read_subtree(hierarchy: &Hierarchy, nodes: NodePair, from: &mut ByteReader<'_>) -> Option<Vec<BvttPair>> {
     let mut subtree = vec![BvttPair::open(nodes, 0.0)];
     let mut next = 0;
     while next < subtree.len() {

@@ -4,10 +4,10 @@
 //! in any process that has the same model and options. Jobs and results are sealed: one that was damaged, or is of another
 //! model, other options or another build, is refused.
 
+mod byte_reader;
 mod executor;
 mod job;
 mod job_result;
-mod reader;
 mod seal;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 //! not from a worker that lies: workers are trusted as this process is.
 
 use crate::Error;
-use crate::certificates::build::Prepared;
+use crate::certificates::build::Preparation;
 
 /// The length of a key and of a hash.
 pub(super) const HASH: usize = 32;
@@ -21,20 +21,20 @@ pub(super) struct Key([u8; HASH]);
 impl Key {
     /// The key of a computation: build, digest (model and scope), epsilon, global radius, and the hierarchy, whose nodes
     /// jobs name.
-    pub(super) fn of(prepared: &Prepared) -> Self {
+    pub(super) fn of(preparation: &Preparation) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("sscc shards 2026-11-22");
         hasher.update(&(BUILD.len() as u64).to_le_bytes()).update(BUILD.as_bytes());
-        hasher.update(&prepared.digest.0);
-        hasher.update(&prepared.epsilon.to_bits().to_le_bytes());
-        hasher.update(&prepared.global_radius.to_bits().to_le_bytes());
-        let nodes = prepared.hierarchy.nodes();
+        hasher.update(&preparation.digest.0);
+        hasher.update(&preparation.epsilon.to_bits().to_le_bytes());
+        hasher.update(&preparation.global_radius.to_bits().to_le_bytes());
+        let nodes = preparation.hierarchy.nodes();
         hasher.update(&(nodes.len() as u64).to_le_bytes());
         for node in nodes {
             for number in [node.first_triangle, node.triangle_count, node.first_child, node.child_count] {
                 hasher.update(&number.to_le_bytes());
             }
         }
-        prepared.hierarchy.order().iter().for_each(|t| {
+        preparation.hierarchy.order().iter().for_each(|t| {
             hasher.update(&t.to_le_bytes());
         });
         Self(*hasher.finalize().as_bytes())

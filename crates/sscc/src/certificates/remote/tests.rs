@@ -56,7 +56,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
     }
 }
 
-/// Models of a few triangles, whose root is a leaf or small.
+/// Models of a few triangles, whose root is a leaf or a bucket.
 #[test]
 fn small_models_can_be_sharded() {
     for quads in [2, 4, 9, 40] {
@@ -118,7 +118,7 @@ fn damaged_bytes_are_answered_with_an_error() {
         }
     }
     let mut refused = 0;
-    let hierarchy = &worker.prepared.hierarchy;
+    let hierarchy = &worker.preparation.hierarchy;
     for (job, result) in &all {
         let body = worker.key.open("a job", job).unwrap();
         for at in (0..body.len()).step_by(1 + body.len() / 97) {
@@ -129,7 +129,7 @@ fn damaged_bytes_are_answered_with_an_error() {
             let _ = Job::read(hierarchy, &body[..at]);
         }
         let job = Job::read(hierarchy, body).unwrap();
-        let mut writer = JobWriter::new(job.room);
+        let mut writer = JobWriter::new(job.max_added_pairs);
         job.tasks.iter().for_each(|task| writer.add(task));
         assert_eq!(writer.into_bytes(), body);
         let layouts: Vec<ResultLayout> = job.tasks.iter().map(ResultLayout::of).collect();

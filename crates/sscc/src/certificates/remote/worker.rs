@@ -4,13 +4,13 @@ use super::job::Job;
 use super::job_result::JobResult;
 use super::seal::Key;
 use crate::certificates::CertifyOptions;
-use crate::certificates::build::{Prepared, Room, run_task};
-use crate::threads::on_threads;
+use crate::certificates::build::{AddedPairLimit, Preparation, run_task};
+use crate::thread_pool::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 /// Runs jobs of one model; threads may share it.
 pub struct ShardWorker {
-    pub(super) prepared: Prepared,
+    pub(super) preparation: Preparation,
     pub(super) key: Key,
 }
 
@@ -26,9 +26,9 @@ impl ShardWorker {
         options: &CertifyOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        let prepared = on_threads(options.threads, || Prepared::new(model, options, progress))?;
-        let key = Key::of(&prepared);
-        Ok(Self { prepared, key })
+        let preparation = on_threads(options.threads, || Preparation::new(model, options, progress))?;
+        let key = Key::of(&preparation);
+        Ok(Self { preparation, key })
     }
 
     /// Runs a job on the calling thread; gives the bytes of its result.
@@ -37,7 +37,7 @@ impl ShardWorker {
     /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; when `progress` cancels.
     pub fn run(&self, job: &[u8], progress: &dyn Progress) -> Result<Vec<u8>, Error> {
         let name = Key::name(job);
-        let job = Job::read(&self.prepared.hierarchy, self.key.open("a job", job)?)
+        let job = Job::read(&self.preparation.hierarchy, self.key.open("a job", job)?)
             .ok_or_else(|| Error::Shard("a job is not of this hierarchy".to_owned()))?;
         let result = self.run_tasks(job, progress).filter(|_| !progress.is_cancelled());
         let mut body = name.to_vec();
@@ -47,13 +47,13 @@ impl ShardWorker {
 
     /// None if cancelled.
     fn run_tasks(&self, job: Job, progress: &dyn Progress) -> Option<JobResult> {
-        let mut search = self.prepared.search(progress);
-        let room = Room::new(job.room);
+        let mut search = self.preparation.search(progress);
+        let limit = AddedPairLimit::new(job.max_added_pairs);
         let mut results = Vec::with_capacity(job.tasks.len());
         for task in job.tasks {
-            let result = run_task(task, &self.prepared, &mut search, progress)?;
-            room.add(&result);
-            if room.is_exceeded() {
+            let result = run_task(task, &self.preparation, &mut search, progress)?;
+            limit.add(&result);
+            if limit.is_exceeded() {
                 return Some(JobResult::OutOfRoom);
             }
             results.push(result);

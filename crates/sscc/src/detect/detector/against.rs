@@ -9,6 +9,7 @@ use crate::detect::broad_phase::Counters;
 use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::two_meshes::{Side, traverse_two_meshes};
+use crate::hierarchy::NodePair;
 use crate::{Error, Impact, Pair};
 
 impl Detector<'_> {
@@ -31,8 +32,8 @@ impl Detector<'_> {
         let result = find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
-        self.discrete.narrow.0.found.sort_unstable();
-        Ok(&self.discrete.narrow.0.found)
+        self.discrete.narrow.0.hits.sort_unstable();
+        Ok(&self.discrete.narrow.0.hits)
     }
 
     /// All pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a straight
@@ -54,8 +55,8 @@ impl Detector<'_> {
         let result = find_between(contexts, [&mut self.swept, &mut other.swept], &motions, &mut self.stack);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
-        self.swept.narrow.0.found.sort_unstable_by_key(|impact| impact.pair);
-        Ok(&self.swept.narrow.0.found)
+        self.swept.narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.hits)
     }
 }
 
@@ -73,7 +74,7 @@ fn find_between<const E: usize, N: NarrowPhase<E>>(
     contexts: [&Context<'_>; 2],
     [x, y]: [&mut Search<E, N>; 2],
     motions: &[GivenMotion<'_, E>; 2],
-    stack: &mut Vec<Pair>,
+    stack: &mut Vec<NodePair>,
 ) -> Result<(), Error> {
     let mut counters = Counters::default();
     let result = match (x.parts(), y.parts()) {
@@ -85,7 +86,7 @@ fn find_between<const E: usize, N: NarrowPhase<E>>(
         _ => Ok(()),
     };
     if result.is_err() {
-        x.narrow.hits().found.clear();
+        x.narrow.hits().hits.clear();
     }
     x.counters = counters;
     result

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::detector::Detector;
 use super::statistics::DetectorStatistics;
-use crate::threads::on_threads;
+use crate::thread_pool::on_threads;
 use crate::{Error, Pair, Progress};
 
 /// The answer for one frame of a batch.

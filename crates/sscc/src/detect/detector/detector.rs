@@ -12,7 +12,7 @@ use crate::detect::context::Context;
 use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
 use crate::filter::{PairFilter, weld_classes_of_positions};
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 use crate::{ContactFilter, Error, Impact, Pair, Progress, TriMesh, limits};
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
@@ -49,7 +49,7 @@ pub struct Detector<'a> {
     pub(super) discrete: Search<1, DiscreteHits>,
     pub(super) swept: Search<2, SweptHits>,
     /// Scratch of searches in two meshes.
-    pub(super) stack: Vec<Pair>,
+    pub(super) stack: Vec<NodePair>,
     pub(super) statistics: DetectorStatistics,
 }
 
@@ -129,8 +129,8 @@ impl<'a> Detector<'a> {
         let result = self.discrete.find(&self.context, &motion);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
-        self.discrete.narrow.0.found.sort_unstable();
-        Ok(&self.discrete.narrow.0.found)
+        self.discrete.narrow.0.hits.sort_unstable();
+        Ok(&self.discrete.narrow.0.hits)
     }
 
     /// One colliding pair, if there is any; which one is not fixed.
@@ -160,8 +160,8 @@ impl<'a> Detector<'a> {
         let result = self.swept.find(&self.context, &motion);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
-        self.swept.narrow.0.found.sort_unstable_by_key(|impact| impact.pair);
-        Ok(&self.swept.narrow.0.found)
+        self.swept.narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.hits)
     }
 
     /// The cost of the last answer.

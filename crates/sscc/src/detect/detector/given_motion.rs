@@ -47,7 +47,7 @@ impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
     }
 
     #[inline]
-    fn whole(&self, _: &Layout) -> Aabb {
+    fn overall_aabb(&self, _: &Layout) -> Aabb {
         self.whole
     }
 
@@ -69,7 +69,7 @@ impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
 
     /// Boxes of nodes are refitted.
     #[inline]
-    fn node_box(&self, _: &Layout, _: u32) -> Option<Aabb> {
+    fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
         None
     }
 }

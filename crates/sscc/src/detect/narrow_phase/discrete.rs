@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::hits::Hits;
-use super::test::NarrowPhase;
+use super::narrow_phase::NarrowPhase;
 use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 

@@ -3,14 +3,14 @@
 /// Hits, and whether the limit stopped the search.
 #[derive(Clone)]
 pub(crate) struct Hits<T> {
-    pub(crate) found: Vec<T>,
+    pub(crate) hits: Vec<T>,
     limit: usize,
     is_full: bool,
 }
 
 impl<T> Default for Hits<T> {
     fn default() -> Self {
-        Self { found: Vec::new(), limit: usize::MAX, is_full: false }
+        Self { hits: Vec::new(), limit: usize::MAX, is_full: false }
     }
 }
 
@@ -18,15 +18,15 @@ impl<T> Hits<T> {
     /// Forgets all hits and starts a search for at most `limit` of them.
     #[inline]
     pub(crate) fn begin(&mut self, limit: usize) {
-        self.found.clear();
+        self.hits.clear();
         self.limit = limit;
         self.is_full = false;
     }
 
-    /// Whether the limit is reached. Called where there is something left to test: the answer is incomplete then.
+    /// Whether the limit is reached. Call it only if a test is left: it records that the answer is incomplete.
     #[inline]
-    pub(crate) fn is_full(&mut self) -> bool {
-        self.is_full |= self.found.len() >= self.limit;
+    pub(crate) fn note_if_full(&mut self) -> bool {
+        self.is_full |= self.hits.len() >= self.limit;
         self.is_full
     }
 
@@ -36,7 +36,7 @@ impl<T> Hits<T> {
         !self.is_full
     }
 
-    /// Ends the search as soon as it asks whether the limit is reached.
+    /// Makes the next call of [`Self::note_if_full`] end the search.
     pub(crate) fn stop(&mut self) {
         self.limit = 0;
     }

@@ -7,13 +7,15 @@
 mod ball;
 mod discrete;
 mod hits;
+mod impact;
+#[allow(clippy::module_inception)] // named after its trait, as all files here
+mod narrow_phase;
 mod separating_axis;
 mod swept;
-mod test;
 
 pub(crate) use ball::BallHits;
 pub(crate) use discrete::DiscreteHits;
+pub use impact::Impact;
+pub(crate) use narrow_phase::NarrowPhase;
 pub(crate) use separating_axis::are_separated;
-pub use swept::Impact;
 pub(crate) use swept::SweptHits;
-pub(crate) use test::NarrowPhase;

@@ -35,14 +35,14 @@ impl Directions {
         Self { axes: [0, 1, 2].map(|axis| Vec4::from_array(all.map(|v| v[axis]))) }
     }
 
-    /// Whether one of them has all of one triangle before all of the other, at each end, by more than the error of
-    /// positions and sums. In units of |d| (the sum over axes): positions 2 errors; differences, products and sums about 20
-    /// units of 2^-24, where the error bound is at least 14.
+    /// Whether one of the directions separates the triangles in every configuration, by more than the error of
+    /// positions and sums. In units of the direction's 1-norm: positions err by 2 `error`; differences, products and
+    /// sums by about 20 units of 2^-24, where `error` is at least 14.
     #[inline]
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
         // Underflow is far less than the last term.
-        let errors = right_or!(4.0, ApartSlackHalved, 2.0) * error;
+        let errors = right_or!(4.0, SeparatingAxisErrorHalved, 2.0) * error;
         let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut apart = [u32::MAX; 2];
@@ -105,8 +105,8 @@ mod tests {
         assert!(apart > 20_000 && missed < apart / 8 && met > 20_000, "{apart} {missed} {met}");
     }
 
-    /// Triangles with a common corner on both sides of the plane of one of them, each moved away from the other by all of
-    /// the margin: along the normal that uses up what positions may be wrong by, and sums are rounded as well.
+    /// Triangles with a common corner. Each is moved away from the other by the whole error bound, along the normal
+    /// that makes the error largest; sums are rounded as well.
     #[test]
     fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
         let random = &mut Random(9);

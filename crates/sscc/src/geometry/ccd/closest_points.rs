@@ -1,10 +1,10 @@
 //! The closest points of two moving triangles at one time, and a direction that separates the triangles there.
 //!
-//! Heuristics: [`separating_direction`](super::separating_direction) evaluates the directions.
+//! Both are heuristics. [`candidate_direction`](super::candidate_direction) certifies the directions.
 
 use glam::DVec3;
 
-use super::separating_direction::{CandidateDirection, MovingPair};
+use super::candidate_direction::{CandidateDirection, MovingPair};
 use crate::geometry::{TwoTriangles, intersect_triangle_triangle, nearest_to_origin};
 
 /// The closest points of the two triangles at a time.

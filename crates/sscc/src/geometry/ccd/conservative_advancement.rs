@@ -2,16 +2,17 @@
 //! 1996).
 //!
 //! Directions are tried from the cheapest to the most precise. A direction that is fixed, or turns linearly, evaluated
-//! with rounded numbers ([`separating_direction`](super::separating_direction)), settles nearly all pairs in a few steps.
-//! Thin sheets that turn together need more: a direction that follows two features is exact for as long as these two are
-//! closest, and exact numbers decide the signs of gaps along it where rounding does not ([`feature`](super::feature)). The
-//! number of steps then depends on how often the closest features change, and only by its logarithm on how narrow the gap
-//! is. Limits of steps: docs/notes/2026-11-23-continuous-tests.md.
+//! with rounded numbers ([`candidate_direction`](super::candidate_direction)), settles nearly all pairs in a few steps.
+//! Thin sheets that turn together need more: a direction that follows two features is exact for as long as these two
+//! are closest, and exact numbers decide the signs of gaps along it where rounding does not
+//! ([`feature_direction`](super::feature_direction)). The number of steps then depends on how often the closest
+//! features change, and only by its logarithm on how narrow the gap is. Limits of steps:
+//! docs/notes/2026-11-23-continuous-tests.md.
 
+use super::candidate_direction::MovingPair;
 use super::closest_points::ClosestPoints;
-use super::feature::find_gap_above;
+use super::feature_direction::find_gap_above;
 use super::moving_triangle::MovingTriangle;
-use super::separating_direction::MovingPair;
 
 /// Steps by rounded directions, at most.
 const MAX_STEPS: usize = 128;
@@ -61,8 +62,9 @@ pub(super) fn advance(
     }
 }
 
-/// Towards a contact the fixed direction of the closest points converges as Newton's method does. Along a narrow gap that
-/// turns only a turning direction advances far; it is tried where the fixed one does not bring the two much closer.
+/// Near a contact, the fixed direction of the closest points converges like Newton's method. Along a narrow gap that
+/// turns, only a turning direction advances far; it is tried when the fixed one does not bring the triangles much
+/// closer.
 fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -> Advance {
     let (mut t, mut step) = (0.0, 1.0);
     let mut here = ClosestPoints::at(pair, t);
@@ -110,9 +112,9 @@ fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -> Advance {
 
 /// Advances from `t` by directions that follow the closest features. The tolerance is a length.
 ///
-/// One direction is followed, with steps that double, until it fails; then the closest features are determined again.
-/// Where it fails at once, even for the shortest step, the same direction without turning advances at least the time in
-/// which the fastest vertices close the gap, up to the rounding bound of gaps.
+/// Follows one feature direction with doubling steps until it fails, then determines the closest features again. If
+/// even the shortest step fails, the fixed direction still advances by the time in which the fastest vertices could
+/// close the gap, up to its rounding bound.
 #[cold]
 fn advance_along_features(
     a: &MovingTriangle,

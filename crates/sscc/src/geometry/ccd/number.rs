@@ -1,8 +1,9 @@
 //! The arithmetic of polynomial predicates: one code, evaluated with two kinds of numbers.
 //!
-//! A predicate is evaluated with [`Bounded`](super::bounded::Bounded) numbers first. Where their error bound does not decide
-//! its sign, it is evaluated again with exact [`Dyadic`](super::dyadic::Dyadic) numbers. This is the filter of exact
-//! predicates (Shewchuk 1997), with an error bound computed beside the value instead of proven for one expression.
+//! A predicate is evaluated with [`BoundedFloat`](super::bounded_float::BoundedFloat) numbers first. Where their error
+//! bound does not decide its sign, it is evaluated again with exact [`Dyadic`](super::dyadic::Dyadic) numbers. This is
+//! the filter of exact predicates (Shewchuk 1997), with an error bound computed beside the value instead of proven for
+//! one expression.
 
 use glam::DVec3;
 

@@ -127,9 +127,8 @@ impl Metric {
         }
     }
 
-    /// The magnitudes of which rounding errors are a share: an upper bound of `|A||S||S^-1|`, for the rows of scaled
-    /// modes; `|A|` itself where the factor is diagonal. Errors of positions at z are at most `gamma` times this times
-    /// `|z|`, component by component.
+    /// An upper bound of `|A||S||S^-1|`, mode by mode (`|A|` if the factor is diagonal). Positions at z err by at most
+    /// `gamma |z|` times this, component by component.
     pub(crate) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(_) => out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),

@@ -5,10 +5,10 @@ mod kind;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod metric;
 mod norm;
-mod range;
+mod scaled_modes_check;
 mod triangular;
 
 pub use defaults::vertex_areas;
 pub use kind::MetricKind;
 pub use metric::Metric;
-pub(crate) use range::check_scaled_modes;
+pub(crate) use scaled_modes_check::check_scaled_modes;

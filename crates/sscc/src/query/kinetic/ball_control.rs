@@ -1,4 +1,4 @@
-//! Control of balls: how large the next one becomes, and whether there is one.
+//! Chooses the radius of the next ball, and whether a ball pays.
 
 /// A ball of fewer steps does not pay: its search costs two or three plain queries.
 pub(super) const MIN_STEPS: f64 = 8.0;
@@ -44,8 +44,8 @@ impl BallControl {
         has_paid: false,
     };
 
-    /// A step within a motion.
-    pub(super) fn stepped(&mut self, step: f64) {
+    /// Records a step within a motion.
+    pub(super) fn record_step(&mut self, step: f64) {
         self.step = step;
     }
 
@@ -55,8 +55,9 @@ impl BallControl {
         std::mem::take(&mut self.has_paid).then_some(self.step)
     }
 
-    /// A search is complete. The next ball becomes larger, or smaller, as long as that makes balls cheaper for their size.
-    pub(super) fn searched(&mut self, cost: u64, share: f64) {
+    /// Records a complete ball search. Radii go on growing or shrinking while the cost per radius falls; else the trend
+    /// reverses.
+    pub(super) fn record_search(&mut self, cost: u64, share: f64) {
         let rate = cost as f64 / share;
         if rate > self.rate {
             self.factor = 1.0 / self.factor;
@@ -65,15 +66,16 @@ impl BallControl {
         self.share = (share * self.factor).clamp(MIN_SHARE, MAX_SHARE);
     }
 
-    /// A search found more pairs than its limit.
-    pub(super) fn overflowed(&mut self, cost: u64, share: f64) {
+    /// Records a ball search that found more pairs than its limit.
+    pub(super) fn record_overflow(&mut self, cost: u64, share: f64) {
         self.cost = cost;
-        self.left(0);
+        self.end_ball(0);
         (self.share, self.factor, self.rate) = ((share / 4.0).max(MIN_SHARE), 1.0 / FACTOR, f64::INFINITY);
     }
 
-    /// A ball was left after so many steps. Its loss, if any, must be small beside the plain queries that follow.
-    pub(super) fn left(&mut self, steps: u64) {
+    /// Records the end of a ball after `steps` steps. A ball that cost more than plain queries delays the next one in
+    /// proportion.
+    pub(super) fn end_ball(&mut self, steps: u64) {
         let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain_cost));
         self.pause = PAUSE_FACTOR.saturating_mul(lost) / self.plain_cost.max(1);
         self.has_paid = lost == 0 && steps as f64 >= MIN_STEPS;

@@ -35,10 +35,10 @@ impl BallSearch {
         certified.broad.begin_volumes(&context.detect, motion);
         certified.find(context, norm, motion, narrow);
         certified.broad.end(narrow)?;
-        if narrow.0.is_full() {
+        if narrow.0.note_if_full() {
             return Ok(false);
         }
-        narrow.0.found.sort_unstable();
+        narrow.0.hits.sort_unstable();
         Ok(true)
     }
 }

@@ -1,14 +1,15 @@
-//! The kinetic query: plain queries, ball searches, and steps that test active pairs alone.
+//! `KineticQuery`: tests only active pairs while z stays in a ball, searches a new ball when z leaves it, and falls
+//! back to an ordinary query where no ball pays.
 
-use super::active_pairs::{ActivePairs, up};
 use super::ball_control::{BallControl, MAX_SHARE, MIN_STEPS};
+use super::ball_pairs::{BallPairs, up};
 use super::ball_search::BallSearch;
 use super::safe_distance::SafeDistances;
 use crate::detect::ball_motion::{BallMotion, BallRates};
 use crate::detect::broad_phase::Counters;
-use crate::detect::vertex_motion::Deformed;
+use crate::detect::vertex_motion::DeformedMotion;
 use crate::model::{ScaledModel, check_scaled_modes};
-use crate::query::discrete_search::Configuration;
+use crate::query::configuration::Configuration;
 use crate::query::query::Query;
 use crate::query::statistics::Statistics;
 use crate::{Certificates, Error, Pair, Progress, ReducedModel};
@@ -43,7 +44,7 @@ pub struct KineticQuery<'a> {
     search: BallSearch,
     rates: BallRates,
     distances: SafeDistances,
-    pub(super) active: ActivePairs,
+    pub(super) ball_pairs: BallPairs,
     pub(super) control: BallControl,
     /// The last q at which the root's certificate did not hold; empty if there was none.
     last_q: Vec<f64>,
@@ -69,7 +70,7 @@ impl<'a> KineticQuery<'a> {
             search: BallSearch::new(&query.context),
             rates: BallRates::new(&scaled, certificates.hierarchy(), layout),
             distances: SafeDistances::new(scaled),
-            active: ActivePairs::default(),
+            ball_pairs: BallPairs::default(),
             control: BallControl::FIRST,
             last_q: Vec::new(),
             offset: vec![0.0; model.rank()],
@@ -94,7 +95,7 @@ impl<'a> KineticQuery<'a> {
         let configuration = self.query.measure(q)?;
         self.query.norm = configuration.norm;
         if self.query.context.is_root_certified(configuration.norm) {
-            self.find_plainly(configuration)?;
+            self.find_without_ball(configuration)?;
         } else {
             self.find_beyond_root(configuration)?;
         }
@@ -116,7 +117,7 @@ impl<'a> KineticQuery<'a> {
         self.query.norm()
     }
 
-    fn find_plainly(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
+    fn find_without_ball(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
         let Query { context, discrete, statistics, .. } = &mut self.query;
         discrete.find(context, configuration, statistics)
     }
@@ -130,29 +131,29 @@ impl<'a> KineticQuery<'a> {
         };
         self.last_q.clear();
         self.last_q.extend_from_slice(q);
-        let had_ball = self.active.has_ball();
-        let is_bucket = step <= MAX_SHARE * norm;
-        if is_bucket {
-            self.active.advance(step);
+        let had_ball = self.ball_pairs.has_ball();
+        let is_small_step = step <= MAX_SHARE * norm;
+        if is_small_step {
+            self.ball_pairs.advance(step);
         } else {
-            self.active.forget();
+            self.ball_pairs.forget();
         }
-        if had_ball && !self.active.is_in_ball(reach) {
-            self.active.leave_ball();
-            self.control.left(self.active.steps);
+        if had_ball && !self.ball_pairs.is_in_ball(reach) {
+            self.ball_pairs.leave_ball();
+            self.control.end_ball(self.ball_pairs.steps);
         }
-        if is_bucket {
-            self.control.stepped(step);
+        if is_small_step {
+            self.control.record_step(step);
         } else {
             step = self.control.step_after_jump().unwrap_or(step);
         }
-        if !self.active.has_ball() && !self.begin_ball(configuration, step)? {
-            self.find_plainly(configuration)?;
+        if !self.ball_pairs.has_ball() && !self.begin_ball(configuration, step)? {
+            self.find_without_ball(configuration)?;
             self.control.plain_cost = plain_cost(&self.query.discrete.certified.broad.counters);
             return Ok(());
         }
         // After an error nothing is known of any pair.
-        self.find_active(configuration, step).inspect_err(|_| self.active.forget())
+        self.find_active(configuration, step).inspect_err(|_| self.ball_pairs.forget())
     }
 
     /// Searches a ball around this z; false if no ball would pay.
@@ -178,7 +179,7 @@ impl<'a> KineticQuery<'a> {
             return Ok(false);
         }
         let share = radius / norm;
-        let norm = right_or!(up(norm + radius), KineticBallAtCentre, norm);
+        let norm = right_or!(up(norm + radius), KineticBallAtCenter, norm);
         let reach = 2.0 * reach;
         self.distances.begin(norm);
         let most = MAX_PAIRS_PER_TRIANGLE * context.model.mesh().faces().len();
@@ -186,20 +187,20 @@ impl<'a> KineticQuery<'a> {
         let limit = most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024);
         let motion = BallMotion::new(&self.rates, q, radius, reach);
         let is_complete = self.search.find(context, &motion, norm, limit)?;
-        let found = &self.search.narrow.0.found;
+        let found = &self.search.narrow.0.hits;
         let counters = &self.search.certified.broad.counters;
         let cost = counters.box_tests + OPEN_COST * counters.opened + FIND_COST * found.len() as u64;
         if !is_complete {
-            self.control.overflowed(cost, share);
+            self.control.record_overflow(cost, share);
             return Ok(false);
         }
-        self.active.begin_ball(radius, reach);
-        self.active.take(found, &mut self.pending);
+        self.ball_pairs.begin_ball(radius, reach);
+        self.ball_pairs.take(found, &mut self.pending);
         self.control.cost = cost;
         if !is_cut {
-            self.control.searched(cost + DISTANCE_COST * self.pending.len() as u64, share);
+            self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
         }
-        // The tests of this step are counted on top.
+        // The counters of this step begin with those of the ball search.
         let broad = &mut self.query.discrete.certified.broad;
         broad.counters = Counters { triangle_tests: 0, ..*counters };
         Ok(true)
@@ -212,24 +213,24 @@ impl<'a> KineticQuery<'a> {
         step: f64,
     ) -> Result<(), Error> {
         let context = &self.query.context.detect;
-        let (search, active) = (&mut self.query.discrete, &mut self.active);
+        let (search, ball_pairs) = (&mut self.query.discrete, &mut self.ball_pairs);
         let (broad, narrow) = (&mut search.certified.broad, &mut search.narrow);
-        let motion = Deformed::new([q], reach);
+        let motion = DeformedMotion::new([q], reach);
         let mut cost = 0;
         broad.begin_volumes(context, &motion);
         broad.test_exceptions(context, &motion, narrow);
-        if active.steps.is_multiple_of(RETRY_STEPS) {
-            self.pending.append(&mut active.tested);
+        if ball_pairs.steps.is_multiple_of(RETRY_STEPS) {
+            self.pending.append(&mut ball_pairs.active);
         }
-        while let Some(pair) = self.pending.pop().or_else(|| active.next_expired()) {
+        while let Some(pair) = self.pending.pop().or_else(|| ball_pairs.next_expired()) {
             let corners = [pair.0, pair.1].map(|t| {
                 let vertices = broad.triangle(context, t).vertices;
                 broad.volumes.move_corners(vertices, &motion);
                 broad.volumes.corners(vertices)[0]
             });
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
-            if distance < STEPS_WORTH_STORING * step || !active.store(pair, distance) {
-                active.tested.push(pair);
+            if distance < STEPS_WORTH_STORING * step || !ball_pairs.store(pair, distance) {
+                ball_pairs.active.push(pair);
             }
             cost += DISTANCE_COST;
             if cost.is_multiple_of(DISTANCES_PER_CHECK * DISTANCE_COST) {
@@ -237,16 +238,17 @@ impl<'a> KineticQuery<'a> {
                 broad.end(narrow)?;
             }
         }
-        active.end_step();
-        self.control.cost = self.control.cost.saturating_add(cost + TEST_COST * active.tested.len() as u64);
-        for &(a, b) in &active.tested {
+        ball_pairs.end_step();
+        self.control.cost =
+            self.control.cost.saturating_add(cost + TEST_COST * ball_pairs.active.len() as u64);
+        for &(a, b) in &ball_pairs.active {
             let [x, y] = [a, b].map(|t| broad.triangle(context, t));
             broad.test_triangles(context, x, y, &motion, narrow);
         }
         let result = broad.end(narrow);
         self.query.statistics.set_counters(&broad.counters);
         result?;
-        narrow.0.found.sort_unstable();
+        narrow.0.hits.sort_unstable();
         self.query.statistics.complete = true;
         Ok(())
     }

@@ -26,7 +26,7 @@ impl SafeDistances {
         Self {
             error: model.rounding.between_configurations(0.0),
             largest: 0.0,
-            projections: vec![0.0; 6 * model.row],
+            projections: vec![0.0; 6 * model.row_len],
             model,
         }
     }

@@ -89,22 +89,22 @@ impl Pairing<'_> {
         self.kinetic.control.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
         self.kinetic.control.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
         self.kinetic.control.plain_cost = self.kinetic.control.plain_cost.max(1_000_000);
-        let stood = self.kinetic.active.has_ball();
-        let apart = self.kinetic.active.safe.len();
+        let stood = self.kinetic.ball_pairs.has_ball();
+        let apart = self.kinetic.ball_pairs.safe.len();
         let expected = self.oracle.discrete(&q).unwrap();
         let found = self.kinetic.discrete(&q).unwrap();
         assert_eq!(found, expected);
         let begins = !self.colliding && !found.is_empty();
         self.colliding = !found.is_empty();
-        let active = &self.kinetic.active;
+        let ball_pairs = &self.kinetic.ball_pairs;
         seen.steps += 1;
         seen.root_certified_within += usize::from(stood && self.kinetic.statistics().root_certified);
-        if active.steps == 1 && active.has_ball() {
+        if ball_pairs.steps == 1 && ball_pairs.has_ball() {
             seen.balls += 1;
-            seen.known += active.remembered.len();
+            seen.known += ball_pairs.remembered.len();
             self.norm = self.kinetic.norm();
-        } else if stood && active.has_ball() {
-            seen.expired += apart.saturating_sub(active.safe.len());
+        } else if stood && ball_pairs.has_ball() {
+            seen.expired += apart.saturating_sub(ball_pairs.safe.len());
             seen.begun += usize::from(begins);
             let root = self.certificates.root_radius();
             seen.begun_beyond += usize::from(begins && self.norm < 1.02 * root);
@@ -178,14 +178,14 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                 if random.signed() > 0.97 {
                     pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
                 }
-                // Towards a pair that stands.
-                let Some(standing) = pairing.kinetic.active.safe.peek().copied() else { continue };
+                // Towards a pair within its safe distance.
+                let Some(standing) = pairing.kinetic.ball_pairs.safe.peek().copied() else { continue };
                 if random.signed() < 0.8 {
                     continue;
                 }
                 seen.aimed += 1;
-                let margin = standing.key - pairing.kinetic.active.travelled;
-                let [a, b] = [standing.tie.0, standing.tie.1]
+                let margin = standing.key - pairing.kinetic.ball_pairs.travelled;
+                let [a, b] = [standing.order.0, standing.order.1]
                     .map(|f| model.mesh().faces()[f as usize][(random.signed().abs() * 3.0) as usize % 3]);
                 let q: Vec<f64> =
                     scope.metric.unscaled(&z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
@@ -248,20 +248,20 @@ fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
     };
     for t in [2.0, -3.0, 1.5, -2.0] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.active.has_ball() && !kinetic.control.has_paid);
+        assert!(!kinetic.ball_pairs.has_ball() && !kinetic.control.has_paid);
     }
     kinetic.control.plain_cost = 1_000_000;
     for i in 0..40 {
         kinetic.discrete(&q(-2.0 + f64::from(i) * 1e-6)).unwrap();
     }
-    assert!(kinetic.active.has_ball());
+    assert!(kinetic.ball_pairs.has_ball());
     kinetic.discrete(&q(2.0)).unwrap();
-    assert!(kinetic.active.has_ball());
+    assert!(kinetic.ball_pairs.has_ball());
     kinetic.discrete(&q(2.0 + 1e-6)).unwrap();
-    assert_eq!(kinetic.active.steps, 2);
+    assert_eq!(kinetic.ball_pairs.steps, 2);
     // A ball of two steps tells nothing, however dear plain queries were.
     for t in [-2.0, 2.0, -1.5] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.active.has_ball());
+        assert!(!kinetic.ball_pairs.has_ball());
     }
 }

@@ -112,8 +112,8 @@ fn soup(random: &mut Random) -> Soup {
     let size = random.power(-3.0, -0.3);
     let mut p = Vec::new();
     for _ in 0..count {
-        let centre = random.vector();
-        p.extend([(); 3].map(|()| centre + random.vector() * size));
+        let center = random.vector();
+        p.extend([(); 3].map(|()| center + random.vector() * size));
     }
     (p, (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
@@ -123,8 +123,8 @@ fn integer_soup(random: &mut Random) -> Soup {
     let count = 4 + random.below(12);
     let mut p = Vec::new();
     for t in 0..count {
-        let centre = DVec3::new((t % 3) as f64, (t / 3) as f64, 0.0) * 4.0;
-        p.extend([(); 3].map(|()| centre + (random.vector() * 2.2).round()));
+        let center = DVec3::new((t % 3) as f64, (t / 3) as f64, 0.0) * 4.0;
+        p.extend([(); 3].map(|()| center + (random.vector() * 2.2).round()));
     }
     (p, (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }

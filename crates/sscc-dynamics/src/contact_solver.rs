@@ -1,0 +1,294 @@
+//! Solver for contact impulses: projected Gauss-Seidel with an energy budget for each body.
+//!
+//! Springs and dampers are integrated implicitly. The solver visits one constraint after the other, several times. An
+//! impulse p changes the energy by exactly `p . (v + v') / 2`, where v and v' are the relative velocities before and
+//! after it.
+//!
+//! The energy budget of a body is the energy that its contacts have dissipated so far. An impulse may add at most the
+//! sum of the budgets of its bodies. Contacts therefore never add energy to that of the start, up to rounding, for
+//! every stiffness and step. Budgets of bodies that take no part in a contact are not used.
+
+use glam::{DMat3, DVec3};
+
+use crate::body::Body;
+use crate::contact::{Contact, ModalInverseMass, displacement};
+use crate::contact_constraint::{ContactConstraint, Side};
+
+/// Constants of a constraint in the solver.
+#[derive(Clone, Copy, Debug)]
+struct Coefficients {
+    /// Matrix from impulse to velocity change (inverse effective mass).
+    inverse_mass: DMat3,
+    /// Velocity change along the normal by a unit impulse along the normal.
+    normal_inverse_mass: f64,
+    /// Compliance of the implicit spring and damper (velocity by impulse). The constraint along the normal is
+    /// `v + compliance * normal_impulse = target_velocity`.
+    compliance: f64,
+    /// Velocity along the normal at which the spring separates the points.
+    target_velocity: f64,
+}
+
+/// Velocities and inverse masses of a body, updated with each impulse.
+#[derive(Clone, Copy, Debug)]
+struct RigidVelocity {
+    velocity: DVec3,
+    angular_velocity: DVec3,
+    inverse_mass: f64,
+    inverse_inertia: DMat3,
+    rotation: DMat3,
+}
+
+/// Constants of all contacts in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spring {
+    /// Angular frequency (rad/s).
+    pub rate: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Step (s).
+    pub step: f64,
+    /// Maximum number of iterations over all constraints.
+    pub max_iterations: usize,
+}
+
+/// Iterations end when one changes velocities by less than this share of the first one's change.
+const RELATIVE_TOLERANCE: f64 = 1e-3;
+
+/// Compliance added to a contact within one body, as a share of the inverse mass of the body.
+const SELF_CONTACT_COMPLIANCE: f64 = 1e-2;
+
+/// Contact constraints of a step, and the buffers to solve them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactSolver {
+    pub constraints: Vec<ContactConstraint>,
+    coefficients: Vec<Coefficients>,
+    velocities: Vec<RigidVelocity>,
+    /// Number of constraints of each body.
+    counts: Vec<usize>,
+}
+
+impl ContactSolver {
+    /// Computes the impulses of all constraints and applies them to the bodies.
+    pub fn solve(&mut self, bodies: &mut [Body<'_>], contacts: &[Contact], spring: &Spring) {
+        if self.constraints.is_empty() {
+            return;
+        }
+        self.velocities.clear();
+        self.velocities.extend(bodies.iter().map(RigidVelocity::of));
+        self.counts.clear();
+        self.counts.resize(bodies.len(), 0);
+        for side in self.constraints.iter().flat_map(ContactConstraint::sides) {
+            self.counts[side.body] += 1;
+        }
+        self.coefficients.clear();
+        for constraint in &self.constraints {
+            let (mut all_modes, mut slow_modes, mut count) = (DMat3::ZERO, DMat3::ZERO, 1);
+            for Side { n, body, .. } in constraint.sides() {
+                let [a, b] = self.velocities[body].inverse_masses(
+                    constraint.arms[n],
+                    &constraint.modal_inverse_mass[n],
+                    constraint.is_within(),
+                );
+                all_modes += a;
+                slow_modes += b;
+                count = self.counts[body].max(count);
+            }
+            let implicit = spring.implicit_share(count);
+            let mut coefficients = Coefficients::new(constraint, all_modes, slow_modes, spring, implicit);
+            if constraint.is_within() {
+                // Where hardly any mode separates the two points, the impulse would otherwise have no bound.
+                let mass = bodies[constraint.bodies[0] as usize].shape().mass().mass;
+                coefficients.compliance += SELF_CONTACT_COMPLIANCE / mass;
+            }
+            self.coefficients.push(coefficients);
+        }
+        let mut first_change = 0.0;
+        for iteration in 0..spring.max_iterations {
+            let mut max_change = 0.0_f64;
+            for n in 0..self.constraints.len() {
+                // Symmetric Gauss-Seidel: the order alternates.
+                let n = if iteration % 2 == 0 { n } else { self.constraints.len() - 1 - n };
+                max_change = max_change.max(self.update_impulse(n, bodies, contacts));
+            }
+            if iteration == 0 {
+                first_change = max_change;
+            }
+            if max_change <= RELATIVE_TOLERANCE * first_change {
+                break;
+            }
+        }
+    }
+
+    /// Updates the impulse of one constraint. Returns the change of velocity along its normal.
+    fn update_impulse(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact]) -> f64 {
+        let (coefficients, constraint) = (self.coefficients[n], self.constraints[n]);
+        let Coefficients { inverse_mass, normal_inverse_mass, compliance, target_velocity } = coefficients;
+        let budget: f64 = constraint.sides().map(|side| bodies[side.body].energy_budget).sum();
+        let v = self.relative_velocity(&constraint, bodies, contacts);
+        let normal = constraint.normal;
+        let approach = v.dot(normal);
+        let mut change = (target_velocity - approach - compliance * constraint.normal_impulse)
+            / (normal_inverse_mass + compliance);
+        change = change.max(-constraint.normal_impulse);
+        // Work of the normal impulse: change (approach + normal_inverse_mass change / 2).
+        if change * (approach + normal_inverse_mass * change / 2.0) > budget {
+            let limit = ((approach * approach + 2.0 * normal_inverse_mass * budget).sqrt() - approach)
+                / normal_inverse_mass;
+            change = if change > 0.0 { change.min(limit) } else { 0.0 };
+        }
+        let mut impulse = normal * change;
+        let after = v + inverse_mass * impulse;
+        let mut work = impulse.dot(v + after) / 2.0;
+        let normal_impulse = constraint.normal_impulse + change;
+        // The friction impulse that would stop the sliding, clamped to Coulomb's cone.
+        let sliding = after - normal * normal.dot(after);
+        let mut friction_impulse = constraint.friction_impulse;
+        if constraint.friction > 0.0 {
+            if let Some(direction) = sliding.try_normalize() {
+                friction_impulse -= direction * (sliding.length() / direction.dot(inverse_mass * direction));
+            }
+            friction_impulse = friction_impulse.clamp_length_max(constraint.friction * normal_impulse);
+            let friction_change = friction_impulse - constraint.friction_impulse;
+            let after_friction = after + inverse_mass * friction_change;
+            let friction_work = friction_change.dot(after + after_friction) / 2.0;
+            if friction_work <= 0.0 || work + friction_work <= budget {
+                impulse += friction_change;
+                work += friction_work;
+            } else {
+                friction_impulse = constraint.friction_impulse;
+            }
+        }
+        // Added energy is paid by the bodies in proportion to their budgets; dissipated energy is shared equally.
+        let count = constraint.sides().count() as f64;
+        for Side { body, .. } in constraint.sides() {
+            let own = &mut bodies[body].energy_budget;
+            let share = if work > 0.0 && budget > 0.0 { *own / budget } else { 1.0 / count };
+            *own = (*own - work * share).max(0.0);
+        }
+        self.constraints[n].normal_impulse = normal_impulse;
+        self.constraints[n].friction_impulse = friction_impulse;
+        self.apply_impulse(&constraint, impulse, bodies, contacts);
+        change.abs() * normal_inverse_mass
+    }
+
+    /// Returns the velocity of the first body at the contact, less that of the second.
+    fn relative_velocity(
+        &self,
+        constraint: &ContactConstraint,
+        bodies: &[Body<'_>],
+        contacts: &[Contact],
+    ) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for Side { n, body, sign } in constraint.sides() {
+            let rigid = &self.velocities[body];
+            let body = &bodies[body];
+            let modal = displacement(constraint.modes(n, body, contacts), &body.v);
+            sum += if constraint.is_within() {
+                modal
+            } else {
+                let rotation = rigid.angular_velocity.cross(constraint.arms[n]);
+                (rigid.velocity + rotation + rigid.rotation * modal) * sign
+            };
+        }
+        sum
+    }
+
+    /// Adds an impulse to the momenta and modal velocities of the bodies.
+    fn apply_impulse(
+        &mut self,
+        constraint: &ContactConstraint,
+        impulse: DVec3,
+        bodies: &mut [Body<'_>],
+        contacts: &[Contact],
+    ) {
+        for Side { n, body, sign } in constraint.sides() {
+            let rigid = &mut self.velocities[body];
+            let body = &mut bodies[body];
+            let mut local = impulse;
+            if !constraint.is_within() {
+                let impulse = impulse * sign;
+                if body.is_free() {
+                    let angular_impulse = constraint.arms[n].cross(impulse);
+                    rigid.velocity += impulse * rigid.inverse_mass;
+                    rigid.angular_velocity += rigid.inverse_inertia * angular_impulse;
+                    body.rigid.momentum += impulse;
+                    body.rigid.angular_momentum += angular_impulse;
+                }
+                local = rigid.rotation.transpose() * impulse;
+            }
+            body.mark_impulse();
+            let modes = constraint.modes(n, body, contacts);
+            body.v.iter_mut().zip(modes).for_each(|(v, u)| *v += u.dot(local));
+        }
+    }
+}
+
+impl Spring {
+    /// Returns the implicit share of the spring force when `count` constraints act on one body. The frequency of
+    /// `count` springs together is higher by the square root of `count`. A share of 0 conserves energy but is unstable
+    /// for long steps; a share of 1 is always stable but damps.
+    fn implicit_share(&self, count: usize) -> f64 {
+        let angle = self.rate * self.step;
+        (angle * angle * count as f64).clamp(f64::EPSILON, 1.0)
+    }
+}
+
+impl Coefficients {
+    fn new(
+        constraint: &ContactConstraint,
+        all_modes: DMat3,
+        slow_modes: DMat3,
+        spring: &Spring,
+        implicit: f64,
+    ) -> Self {
+        let normal = constraint.normal;
+        // Per mass: stiffness w^2, damping 2 zeta w.
+        let Spring { rate, damping, step, .. } = *spring;
+        let divisor = 2.0 * damping + implicit * rate * step;
+        Self {
+            inverse_mass: all_modes,
+            normal_inverse_mass: normal.dot(all_modes * normal),
+            compliance: normal.dot(slow_modes * normal) / (step * rate * divisor),
+            target_velocity: constraint.compression * rate / divisor,
+        }
+    }
+}
+
+impl RigidVelocity {
+    fn of(body: &Body<'_>) -> Self {
+        let rotation = body.rotation();
+        if !body.is_free() {
+            return Self {
+                velocity: DVec3::ZERO,
+                angular_velocity: DVec3::ZERO,
+                inverse_mass: 0.0,
+                inverse_inertia: DMat3::ZERO,
+                rotation,
+            };
+        }
+        let inverse_mass = 1.0 / body.shape().mass().mass;
+        Self {
+            velocity: body.rigid.momentum * inverse_mass,
+            angular_velocity: body.rigid.angular_velocity(),
+            inverse_mass,
+            inverse_inertia: rotation * body.rigid.inverse_inertia() * rotation.transpose(),
+            rotation,
+        }
+    }
+
+    /// Returns the matrices from impulse to velocity at a point: with all modes, and with slow modes only.
+    fn inverse_masses(&self, arm: DVec3, modal: &ModalInverseMass, within: bool) -> [DMat3; 2] {
+        if within {
+            return [modal.all_modes, modal.slow_modes];
+        }
+        let cross = DMat3::from_cols(
+            DVec3::new(0.0, arm.z, -arm.y),
+            DVec3::new(-arm.z, 0.0, arm.x),
+            DVec3::new(arm.y, -arm.x, 0.0),
+        );
+        let rigid =
+            DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross;
+        let total = |x: DMat3| rigid + self.rotation * x * self.rotation.transpose();
+        [total(modal.all_modes), total(modal.slow_modes)]
+    }
+}

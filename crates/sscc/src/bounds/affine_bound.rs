@@ -1,0 +1,123 @@
+//! The affine-residual bound of a triangle pair: for triangles that are close and move almost as one, such as triangles
+//! two rings apart on a surface. There the best separating direction changes with q, so a fixed one gives a weak bound.
+//!
+//! Take any affine map of the modes, `A_i = A_0 + G (p_i - p_0) + E_i` with residuals E. For two points at
+//! rest distance `|d| >= delta` and `u = d / |d|`: `|B'u| <= |d| g + e`, with `g >= max over unit u of |G(u)'u|` and
+//! `e >= |E_j - E_i|_2` over all pairs of corners. Hence
+//!
+//! ```text
+//! R_ab >= (delta - e0) / (g delta + e + e1)
+//! ```
+//!
+//! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows
+//! with delta, so a lower bound of the distance serves. Only the symmetric part of each mode's gradient enters g: a
+//! local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
+
+use glam::DVec3;
+
+use super::affine_fit::AffineFit;
+use super::cone_rate::bound_rate_in_cone;
+use super::pair_corners::PairCorners;
+use super::strain::{StrainGram, bound_rate, strain_gram};
+use crate::model::RoundingBound;
+use crate::model::rounding::{ROUND_UP, radius_down};
+
+/// An affine map of some points' modes and how fast it moves points apart. Owns its memory.
+pub(super) struct AffineBound {
+    row_len: usize,
+    fit: AffineFit,
+    gram: StrainGram,
+    /// An upper bound of `|G(u)'u|` over all unit vectors u.
+    rate: f64,
+}
+
+/// The input of the bound of one triangle pair.
+#[derive(Clone, Copy)]
+pub(super) struct AffinePair<'a> {
+    /// The differences of the corners.
+    pub(super) differences: &'a [DVec3; 9],
+    /// A lower bound of the rest distance.
+    pub(super) rest_distance: f64,
+    /// The largest [`AffineBound::squared_residual`] between a corner of a and one of b.
+    pub(super) squared_residual: f64,
+}
+
+impl AffineBound {
+    pub(super) fn new(row_len: usize) -> Self {
+        Self { row_len, fit: AffineFit::new(row_len), gram: [[0.0; 6]; 6], rate: 0.0 }
+    }
+
+    /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
+    pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
+        let is_fitted = self.fit.fit(offsets, modes);
+        if is_fitted {
+            self.gram = strain_gram(self.fit.gradient(), self.row_len);
+            self.rate = bound_rate(&self.gram, self.row_len);
+        }
+        is_fitted
+    }
+
+    /// The squared difference of the residuals of two points, rounded to nearest.
+    pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
+        self.fit.squared_residual(i, j)
+    }
+
+    /// The bound of two triangles among the points.
+    pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, rounding: &RoundingBound) -> f64 {
+        let delta = pair.rest_distance;
+        let residual = self.fit.residual_up(pair.squared_residual, rounding);
+        let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
+        let at_rest = rounding.at_rest(axes);
+        let per_norm = right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0);
+        let slack = (residual + per_norm) * ROUND_UP;
+        let rate_rounding = 8.0 * f64::EPSILON * self.fit.frobenius();
+        let bound = |rate: f64| {
+            radius_down(delta - at_rest, ((rate * ROUND_UP + rate_rounding) * delta + slack) * ROUND_UP)
+        };
+        let over_all_directions = bound(self.rate);
+        if over_all_directions >= sufficient {
+            return over_all_directions;
+        }
+        // The largest rate that gives a sufficient bound.
+        let wanted = ((delta - at_rest) / sufficient - slack) / delta - rate_rounding;
+        if wanted.is_nan() || wanted <= 0.0 {
+            return over_all_directions;
+        }
+        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted * (1.0 - 1e-9));
+        over_all_directions.max(bound(rate))
+    }
+
+    /// The bound of two triangles by an affine map of their own six corners.
+    pub(super) fn fit_and_bound(
+        &mut self,
+        pair: &PairCorners<'_>,
+        differences: &[DVec3; 9],
+        rest_distance: f64,
+        sufficient: f64,
+        rounding: &RoundingBound,
+    ) -> f64 {
+        let [a0, a1, a2] = pair.corners.a;
+        let [b0, b1, b2] = pair.corners.b;
+        let offsets = [a0, a1, a2, b0, b1, b2].map(|p| p - a0);
+        let [a0, a1, a2] = pair.modes_a;
+        let [b0, b1, b2] = pair.modes_b;
+        let modes = [a0, a1, a2, b0, b1, b2];
+        if !self.fit(&offsets, |i| modes[i]) {
+            return 0.0;
+        }
+        let mut squared_residual = 0.0_f64;
+        for i in 0..3 {
+            for j in 3..6 {
+                squared_residual = squared_residual.max(self.squared_residual(i, j));
+            }
+        }
+        self.bound(AffinePair { differences, rest_distance, squared_residual }, sufficient, rounding)
+    }
+}
+
+/// Whether two triangles are so close that the affine bound is usually the larger one: their distance is less than half
+/// the distance of their farthest corners.
+pub(super) fn is_near(differences: &[DVec3; 9], rest_distance: f64) -> bool {
+    let farthest = differences.iter().map(|d| d.length_squared()).fold(0.0, f64::max);
+    farthest > 4.0 * rest_distance * rest_distance
+}

@@ -1,0 +1,224 @@
+//! The certified bound of a triangle pair: cheap bounds first, subdivision only as far as necessary.
+//!
+//! Replaces the constant-mode bound of the paper's section 5.1 and keeps its scheme: a lower and an upper bound, and
+//! midpoint subdivision until they are within the tolerance.
+
+use std::collections::BinaryHeap;
+
+use glam::{DMat3, DVec3};
+
+use super::affine_bound::{AffineBound, is_near};
+use super::pair_corners::PairCorners;
+use super::separating_direction::{bound_along, bound_rest_distance};
+use super::sub_triangle::{MAX_DEPTH, SubPair};
+use super::upper_bound::RelativeModes;
+use crate::geometry::nearest_to_origin;
+use crate::min_heap::MinHeapEntry;
+use crate::model::mode_rows::squared_distance;
+use crate::model::{ScaledModel, scale_direction};
+
+/// How far the bound of a triangle pair is refined.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RefinementTarget {
+    /// Refinement stops at this radius.
+    pub(crate) cap: f64,
+    /// The smallest upper bound found so far.
+    pub(crate) upper: f64,
+    /// Relative error allowed.
+    pub(crate) epsilon: f64,
+    /// Subdivisions of one triangle pair, at most. The best lower bound after them is the result: certified, but smaller
+    /// than it could be.
+    pub(crate) subdivisions: usize,
+}
+
+impl RefinementTarget {
+    /// A lower bound of at least this needs no refinement.
+    pub(crate) fn sufficient(&self) -> f64 {
+        self.cap.min(self.upper * (1.0 - self.epsilon))
+    }
+
+    fn lower_upper_bound(&mut self, upper: f64) {
+        if upper < self.upper {
+            self.upper = upper;
+        }
+    }
+}
+
+/// Bounds triangle pairs. Owns the scratch memory for it.
+pub(crate) struct PairRefiner<'m> {
+    model: &'m ScaledModel,
+    /// The modes of the corners of sub-triangles: 18 rows.
+    corner_modes: Vec<f64>,
+    /// Scratch of six rows.
+    projections: Vec<f64>,
+    relative: RelativeModes,
+    affine: AffineBound,
+    /// Sub-triangles by their lower bound and, to break ties, a serial number.
+    open: BinaryHeap<MinHeapEntry<u32, SubPair>>,
+    /// The direction that gave the largest bound of the last pair.
+    best_direction: Option<DVec3>,
+}
+
+impl<'m> PairRefiner<'m> {
+    pub(crate) fn new(model: &'m ScaledModel) -> Self {
+        let row_len = model.row_len;
+        Self {
+            model,
+            corner_modes: vec![0.0; 6 * 3 * row_len],
+            projections: vec![0.0; 6 * row_len],
+            relative: RelativeModes::new(row_len),
+            affine: AffineBound::new(row_len),
+            open: BinaryHeap::new(),
+            best_direction: None,
+        }
+    }
+
+    /// The direction that gave the largest bound of the last pair.
+    pub(crate) fn best_direction(&self) -> Option<DVec3> {
+        self.best_direction
+    }
+
+    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` needs. Smaller upper
+    /// bounds found on the way go to `target.upper`.
+    pub(crate) fn refine(&mut self, a: [u32; 3], b: [u32; 3], target: &mut RefinementTarget) -> f64 {
+        let pair = PairCorners::of(self.model, a, b);
+        let lower = self.bound_corners(&pair, target);
+        if lower >= target.sufficient() || lower <= 0.0 {
+            return lower;
+        }
+        self.subdivide(&pair, lower, target)
+    }
+
+    /// The same without subdivision.
+    pub(crate) fn bound(&mut self, a: [u32; 3], b: [u32; 3], target: &mut RefinementTarget) -> f64 {
+        self.bound_corners(&PairCorners::of(self.model, a, b), target)
+    }
+
+    /// Best-first subdivision. The result is the smallest lower bound of the sub-triangles that remain.
+    fn subdivide(&mut self, pair: &PairCorners<'_>, lower: f64, target: &mut RefinementTarget) -> f64 {
+        let mut open = std::mem::take(&mut self.open);
+        let mut corner_modes = std::mem::take(&mut self.corner_modes);
+        open.clear();
+        open.push(MinHeapEntry { key: lower, order: 0, item: SubPair::UNDIVIDED });
+        let mut serial = 0;
+        // The smallest bound of sub-triangles of the largest depth.
+        let mut settled = f64::INFINITY;
+        for step in 1..=target.subdivisions {
+            let Some(entry) = open.pop() else { break };
+            if entry.key >= target.sufficient().min(settled) || entry.key <= 0.0 {
+                open.push(entry);
+                break;
+            }
+            let MinHeapEntry { key: lower, item: part, .. } = entry;
+            // Where the modes reach all directions, the bounds themselves find better upper bounds.
+            if step.is_power_of_two() && !self.relative.can_reach_everywhere(pair) {
+                // As far as the triangles may move: to the cap, or well beyond the lower bound.
+                let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
+                let part = part.corners(pair, &mut corner_modes);
+                let z = &mut self.projections[..self.model.row_len];
+                if let Some(upper) = self.relative.bound_along_ray(pair, &part, farthest, z) {
+                    target.lower_upper_bound(upper);
+                }
+            }
+            // Divide the sub-triangle whose modes vary more, so that both shrink alike.
+            let variation = |corners: &[&[f64]; 3], depth: u8| {
+                let d = |i: usize, j: usize| squared_distance(corners[i], corners[j]);
+                d(0, 1).max(d(1, 2)).max(d(0, 2)) * 0.25_f64.powi(i32::from(depth))
+            };
+            let is_a_divided =
+                variation(&pair.modes_a, part.depth_a) >= variation(&pair.modes_b, part.depth_b);
+            let depth = if is_a_divided { part.depth_a } else { part.depth_b };
+            if depth >= MAX_DEPTH {
+                settled = settled.min(lower);
+                continue;
+            }
+            for item in part.subdivide(is_a_divided) {
+                let bound = self.bound_corners(&item.corners(pair, &mut corner_modes), target);
+                serial += 1;
+                open.push(MinHeapEntry { key: bound.max(lower), order: serial, item });
+            }
+        }
+        let lower = open.peek().map_or(settled, |entry| entry.key.min(settled));
+        self.open = open;
+        self.corner_modes = corner_modes;
+        lower
+    }
+
+    /// The largest of the cheap bounds of two (sub-)triangles.
+    fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
+        self.best_direction = None;
+        let rounding = self.model.rounding;
+        let differences = pair.differences();
+        // The rest distance, from the Euclidean closest points.
+        let closest = nearest_to_origin(&differences);
+        let Some(dir) = scale_direction(closest.point) else { return 0.0 };
+        let rest_distance = bound_rest_distance(&differences, dir, &rounding);
+        if rest_distance <= 0.0 {
+            return 0.0;
+        }
+        let mut lower = bound_along(pair, &differences, dir, &rounding, &mut self.projections);
+        self.best_direction = Some(dir);
+        if lower >= target.sufficient() {
+            return lower;
+        }
+        // The affine bound is for near triangles; for others it comes last, which is seldom reached.
+        let is_near = is_near(&differences, rest_distance);
+        if is_near {
+            lower = lower.max(self.affine.fit_and_bound(
+                pair,
+                &differences,
+                rest_distance,
+                target.sufficient(),
+                &rounding,
+            ));
+            if lower >= target.sufficient() {
+                return lower;
+            }
+        }
+        // Repeat with the closest points in the metric that the modes at the last closest points induce.
+        let mut weights = closest.weights;
+        for _ in 0..3 {
+            let gram = self.relative.gram_at(pair, &weights);
+            let ridge = 1e-6 * (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z);
+            let metric = gram + DMat3::from_diagonal(DVec3::splat(ridge));
+            let Some(factor) = inverse_factor(metric) else { break };
+            let nearest = nearest_to_origin(&differences.map(|d| factor * d));
+            weights = nearest.weights;
+            let Some(dir) = scale_direction(factor.transpose() * nearest.point) else { break };
+            let better = bound_along(pair, &differences, dir, &rounding, &mut self.projections);
+            target.lower_upper_bound(self.relative.bound_at(pair, &differences, &weights));
+            let has_gained = better > lower * 1.001;
+            if better > lower {
+                self.best_direction = Some(dir);
+                lower = better;
+            }
+            if lower >= target.sufficient() || !has_gained {
+                break;
+            }
+        }
+        if !is_near && lower < target.sufficient() {
+            lower = lower.max(self.affine.fit_and_bound(
+                pair,
+                &differences,
+                rest_distance,
+                target.sufficient(),
+                &rounding,
+            ));
+        }
+        lower
+    }
+}
+
+/// `L^-1` of the Cholesky factor of a 3 x 3 matrix, or none when it is not positive definite.
+fn inverse_factor(m: DMat3) -> Option<DMat3> {
+    let l00 = m.x_axis.x.sqrt();
+    let l10 = m.x_axis.y / l00;
+    let l20 = m.x_axis.z / l00;
+    let l11 = (m.y_axis.y - l10 * l10).sqrt();
+    let l21 = (m.y_axis.z - l20 * l10) / l11;
+    let l22 = (m.z_axis.z - l20 * l20 - l21 * l21).sqrt();
+    let factor =
+        DMat3::from_cols(DVec3::new(l00, l10, l20), DVec3::new(0.0, l11, l21), DVec3::new(0.0, 0.0, l22));
+    let inverse = factor.inverse();
+    (inverse.is_finite() && l00 > 0.0 && l11 > 0.0 && l22 > 0.0).then_some(inverse)
+}

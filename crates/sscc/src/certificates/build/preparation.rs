@@ -1,0 +1,109 @@
+//! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
+//! the options alone, so every process computes its own, and all are equal.
+
+use super::global_radius::global_radius;
+use super::radius_search::RadiusSearch;
+use super::radius_search_context::RadiusSearchContext;
+use super::search_goal::coarse_cap;
+use crate::bounds::NodePairBounds;
+use crate::certificates::{CertifyOptions, Digest, Scope};
+use crate::detect::colliding_pairs;
+use crate::filter::PairFilter;
+use crate::hierarchy::Hierarchy;
+use crate::model::{ScaledModel, check_scaled_modes};
+use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
+
+/// The input of all tasks, and the parts of the certificates that need no task.
+pub(crate) struct Preparation {
+    pub(crate) digest: Digest,
+    pub(crate) scope: Scope,
+    pub(crate) hierarchy: Hierarchy,
+    pub(crate) global_radius: f64,
+    pub(crate) rest_collisions: u64,
+    pub(crate) epsilon: f64,
+    scaled: ScaledModel,
+    filter: PairFilter,
+    nodes: NodePairBounds,
+}
+
+impl Preparation {
+    /// Prepares a model on the threads of the current pool.
+    ///
+    /// # Errors
+    /// When an option is out of range, the metric does not fit the model, or `progress` cancels.
+    pub(crate) fn new(
+        model: &ReducedModel,
+        options: &CertifyOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
+            return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
+        }
+        let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
+        check_scaled_modes(model.mesh(), model.modes(), &metric)?;
+        let rest = vec![0.0; model.rank()];
+        let center = options.center.clone().unwrap_or_else(|| rest.clone());
+        model.check_coordinates(&center)?;
+        let mut filter = options.filter.clone();
+        let collide_at_rest = || {
+            let hierarchy = Hierarchy::build(model, &metric);
+            let at_rest = colliding_pairs(model, &hierarchy, &filter, &rest, progress);
+            (hierarchy, at_rest)
+        };
+        let ((hierarchy, at_rest), scaled) =
+            rayon::join(collide_at_rest, || ScaledModel::new(model, &metric, &center));
+        let at_rest = at_rest?;
+        let rest_collisions = at_rest.len() as u64;
+        let at_center = if center == rest {
+            at_rest.clone()
+        } else {
+            colliding_pairs(model, &hierarchy, &filter, &center, progress)?
+        };
+        if options.ignore_rest {
+            filter = filter.ignoring(at_rest);
+        }
+        let triangles = model.mesh().faces().len();
+        let max_exceptions =
+            options.max_exceptions.unwrap_or_else(|| CertifyOptions::default_exceptions(triangles));
+        let exceptions = exceptions(at_center, &filter, max_exceptions);
+        let scope = Scope { metric, center, filter, exceptions };
+        let (digest, nodes) =
+            rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
+        Ok(Self {
+            digest,
+            filter: PairFilter::new(model, &scope.filter).excluding(&scope.exceptions),
+            nodes,
+            global_radius: global_radius(model, &scope.metric, &scope.center),
+            rest_collisions,
+            epsilon: options.epsilon,
+            scope,
+            hierarchy,
+            scaled,
+        })
+    }
+
+    /// The radius up to which coarse searches go.
+    pub(crate) fn coarse_cap(&self) -> f64 {
+        coarse_cap(self.global_radius, self.epsilon)
+    }
+
+    /// A search for one thread.
+    pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
+        let Self { scaled, filter, hierarchy, nodes, .. } = self;
+        RadiusSearch::new(
+            RadiusSearchContext { model: scaled, filter, hierarchy, nodes },
+            self.epsilon,
+            progress,
+        )
+    }
+}
+
+/// The pairs that collide at the centre and are not ignored; none if there are more than allowed.
+fn exceptions(at_center: Vec<Pair>, filter: &ContactFilter, max_exceptions: usize) -> Vec<Pair> {
+    let is_counted = |pair: &Pair| filter.ignored().binary_search(pair).is_err();
+    let mut exceptions: Vec<Pair> = at_center.into_iter().filter(is_counted).collect();
+    if exceptions.len() > max_exceptions {
+        exceptions.clear();
+    }
+    exceptions
+}

@@ -1,0 +1,237 @@
+//! Best-first search for the smallest radius among many triangle pairs (paper, section 5.2).
+//!
+//! A queue holds node pairs and triangle pairs by their lower bounds. The one with the smallest bound is refined: a
+//! node pair is split, two leaves become their triangle pairs, a triangle pair is subdivided. The search ends when the
+//! smallest remaining lower bound is within the tolerance of the smallest upper bound found. The result depends on the
+//! sets searched and the goal alone, never on earlier searches.
+
+use std::collections::BinaryHeap;
+
+use super::leaf_bounds::{BoundedTriangles, LeafBounds};
+use super::radius_bound::{BoundedNodePair, RadiusBound};
+use super::radius_search_context::RadiusSearchContext;
+use super::search_goal::{
+    COARSE_EPSILON, COARSE_SUBDIVISIONS, FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
+};
+use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
+use crate::filter::Hulls;
+use crate::hierarchy::NodePair;
+use crate::min_heap::MinHeapEntry;
+use crate::{Pair, Progress};
+
+/// The maximum number of candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth
+/// first, in constant memory.
+const MAX_QUEUED: usize = 1 << 20;
+
+/// Two nodes whose triangle pairs have not been listed, or one triangle pair. Of two with the same lower bound a triangle
+/// pair is taken before nodes, then the one with the smaller index.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Candidate {
+    Triangles(u32, u32),
+    Nodes(u32, u32),
+}
+
+/// Searches radii of one model; owns the scratch memory for it.
+pub(crate) struct RadiusSearch<'a> {
+    context: RadiusSearchContext<'a>,
+    epsilon: f64,
+    refiner: PairRefiner<'a>,
+    scratch: NodePairScratch,
+    leaves: LeafBounds<'a>,
+    triangle_pairs: Vec<BoundedTriangles>,
+    queue: BinaryHeap<MinHeapEntry<Candidate>>,
+    target: RefinementTarget,
+    /// The smallest certified radius among the pairs that need no more refinement.
+    certified: f64,
+    /// The triangle pair with the smallest upper bound.
+    closest: Option<Pair>,
+    progress: &'a dyn Progress,
+}
+
+impl<'a> RadiusSearch<'a> {
+    pub(crate) fn new(context: RadiusSearchContext<'a>, epsilon: f64, progress: &'a dyn Progress) -> Self {
+        Self {
+            context,
+            epsilon,
+            refiner: PairRefiner::new(context.model),
+            scratch: NodePairScratch::new(context.model.row_len),
+            leaves: LeafBounds::new(context),
+            triangle_pairs: Vec::new(),
+            queue: BinaryHeap::new(),
+            target: RefinementTarget { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
+            certified: 0.0,
+            closest: None,
+            progress,
+        }
+    }
+
+    /// The triangle pair for which the last search found its smallest upper bound.
+    pub(crate) fn closest(&self) -> Option<Pair> {
+        self.closest
+    }
+
+    /// A certified lower bound for all triangle pairs between two nodes, by the nodes alone; a bound of at least
+    /// `refine_up_to` is not made better.
+    pub(crate) fn bound_nodes(&mut self, (n, m): NodePair, refine_up_to: f64) -> f64 {
+        self.context.nodes.bound(self.context.model, n, m, refine_up_to, &mut self.scratch)
+    }
+
+    /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
+    pub(crate) fn between(&mut self, pairs: Vec<BoundedNodePair>, goal: SearchGoal) -> Option<RadiusBound> {
+        self.start(goal);
+        // All at once: building a heap of many takes linear time.
+        let mut queued = std::mem::take(&mut self.queue).into_vec();
+        let bounded = pairs.iter().filter(|pair| pair.lower > 0.0);
+        queued.extend(bounded.map(|pair| {
+            let (n, m) = pair.nodes;
+            MinHeapEntry::new(pair.lower, Candidate::Nodes(n, m))
+        }));
+        self.queue = queued.into();
+        for pair in pairs.into_iter().filter(|pair| pair.lower <= 0.0) {
+            self.add_nodes(pair.nodes, 0.0);
+        }
+        self.run()
+    }
+
+    /// The radius, at most `cap`, of all triangle pairs between two nodes, with the error of the pair tree and without
+    /// subdivision. None if cancelled.
+    pub(crate) fn between_coarse(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
+        self.start(SearchGoal::new(cap, Precision::Full));
+        self.target =
+            RefinementTarget { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };
+        self.add_nodes(nodes, 0.0);
+        self.run()
+    }
+
+    /// The radius of all triangle pairs within a node. None if cancelled.
+    ///
+    /// Each child is searched first: the radius of one is the cap of the next.
+    pub(crate) fn within(&mut self, n: u32, goal: SearchGoal) -> Option<RadiusBound> {
+        let node = &self.context.hierarchy.nodes()[n as usize];
+        let (mut children, mut closest) = (RadiusBound { radius: goal.cap, upper: f64::INFINITY }, None);
+        for child in node.children() {
+            let bound = self.within(child, SearchGoal { cap: children.radius, ..goal })?;
+            if bound.radius < children.radius {
+                (children.radius, closest) = (bound.radius, self.closest);
+            }
+            children.upper = children.upper.min(bound.upper);
+        }
+        self.start(SearchGoal { cap: children.radius, ..goal });
+        if node.is_leaf() {
+            self.add_triangles((n, n), 0.0);
+        } else {
+            node.child_pairs().for_each(|nodes| self.add_nodes(nodes, 0.0));
+        }
+        let own = self.run()?;
+        if own.radius >= children.radius {
+            self.closest = closest;
+        }
+        Some(RadiusBound { radius: own.radius, upper: own.upper.min(children.upper) })
+    }
+
+    fn start(&mut self, goal: SearchGoal) {
+        self.queue.clear();
+        let (epsilon, subdivisions) = match goal.precision {
+            Precision::Coarse => (self.epsilon.max(COARSE_EPSILON), COARSE_SUBDIVISIONS),
+            Precision::Full => (self.epsilon, FULL_SUBDIVISIONS),
+        };
+        let cap = goal.cap.min(goal.refine_up_to);
+        self.target = RefinementTarget { cap, upper: f64::INFINITY, epsilon, subdivisions };
+        self.certified = goal.cap;
+        self.closest = None;
+    }
+
+    /// Refines the candidate with the smallest lower bound until none can lower the result by more than epsilon.
+    fn run(&mut self) -> Option<RadiusBound> {
+        let radius = loop {
+            let Some(MinHeapEntry { key: lower, order: candidate, .. }) = self.queue.pop() else {
+                break self.certified;
+            };
+            if self.progress.is_cancelled() {
+                return None;
+            }
+            if lower >= self.refine_up_to() {
+                break lower.min(self.certified);
+            }
+            self.refine(candidate, lower);
+            if self.certified <= 0.0 {
+                break 0.0;
+            }
+        };
+        Some(RadiusBound { radius, upper: self.target.upper })
+    }
+
+    /// A candidate with a lower bound of at least this cannot lower the result by more than epsilon.
+    fn refine_up_to(&self) -> f64 {
+        self.target.sufficient().min(self.certified)
+    }
+
+    /// Bounds two nodes and queues them if they matter. `inherited`: a lower bound of a pair that contains this one.
+    fn add_nodes(&mut self, nodes: NodePair, inherited: f64) {
+        let lower = self.bound_nodes(nodes, self.refine_up_to()).max(inherited);
+        self.add(Candidate::Nodes(nodes.0, nodes.1), lower);
+    }
+
+    /// Bounds the triangle pairs between two leaves, or within one, and queues those that matter.
+    fn add_triangles(&mut self, leaves: NodePair, inherited: f64) {
+        let (n, m) = leaves;
+        let dir = if n == m { None } else { self.context.nodes.direction(n, m, &mut self.scratch) };
+        self.leaves.load(leaves, dir, self.certified);
+        let closest = self.leaves.refine(&mut self.refiner, &mut self.target, self.certified);
+        self.closest = closest.or(self.closest);
+        let mut pairs = std::mem::take(&mut self.triangle_pairs);
+        pairs.extend(self.leaves.triangle_pairs());
+        for BoundedTriangles { triangles: (a, b), lower } in pairs.drain(..) {
+            self.add(Candidate::Triangles(a, b), lower.max(inherited));
+        }
+        self.triangle_pairs = pairs;
+    }
+
+    /// Queues a candidate that can lower the result. If the queue is full, refines it at once.
+    fn add(&mut self, candidate: Candidate, lower: f64) {
+        if lower >= self.certified {
+            return;
+        }
+        if self.queue.len() < MAX_QUEUED {
+            self.queue.push(MinHeapEntry::new(lower, candidate));
+        } else if lower < self.refine_up_to() {
+            self.refine(candidate, lower);
+        } else {
+            self.certified = lower;
+        }
+    }
+
+    fn refine(&mut self, candidate: Candidate, lower: f64) {
+        match candidate {
+            Candidate::Triangles(a, b) => self.refine_triangles((a, b), lower),
+            Candidate::Nodes(n, m) => self.split_nodes((n, m), lower),
+        }
+    }
+
+    /// Refines a triangle pair by subdivision, as far as it matters.
+    fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
+        let upper = self.target.upper;
+        for Hulls { a: x, b: y } in self.context.filter.hulls(a, b) {
+            let refined = self.refiner.refine(x, y, &mut self.target);
+            self.certified = self.certified.min(refined.max(lower));
+        }
+        if self.target.upper < upper {
+            self.closest = Some((a, b));
+        }
+    }
+
+    /// Splits the node with the larger box, or two leaves into their triangle pairs.
+    fn split_nodes(&mut self, (n, m): NodePair, lower: f64) {
+        let RadiusSearchContext { hierarchy, nodes, .. } = self.context;
+        let (node_n, node_m) = (&hierarchy.nodes()[n as usize], &hierarchy.nodes()[m as usize]);
+        if node_n.is_leaf() && node_m.is_leaf() {
+            return self.add_triangles((n, m), lower);
+        }
+        let is_larger = nodes.size(n) >= nodes.size(m);
+        if node_m.is_leaf() || (!node_n.is_leaf() && is_larger) {
+            node_n.children().for_each(|child| self.add_nodes((child, m), lower));
+        } else {
+            node_m.children().for_each(|child| self.add_nodes((n, child), lower));
+        }
+    }
+}

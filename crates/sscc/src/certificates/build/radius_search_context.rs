@@ -1,0 +1,16 @@
+//! The input shared by all radius searches: scaled model, contact filter, hierarchy and bounds of nodes.
+
+use crate::bounds::NodePairBounds;
+use crate::filter::PairFilter;
+use crate::hierarchy::Hierarchy;
+use crate::model::ScaledModel;
+
+/// The input of all radius searches on one model.
+#[derive(Clone, Copy)]
+pub(crate) struct RadiusSearchContext<'a> {
+    pub(crate) model: &'a ScaledModel,
+    /// The contact filter, which also excludes exceptions.
+    pub(crate) filter: &'a PairFilter,
+    pub(crate) hierarchy: &'a Hierarchy,
+    pub(crate) nodes: &'a NodePairBounds,
+}

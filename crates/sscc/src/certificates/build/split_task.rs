@@ -1,0 +1,69 @@
+//! Splits an open node pair of the BVTT, and the pairs below it, while their lower bounds are below a limit.
+
+use super::bvtt::{BvttPair, PairState};
+use super::preparation::Preparation;
+use super::radius_search::RadiusSearch;
+use crate::Progress;
+use crate::hierarchy::NodePair;
+use crate::model::rounding::to_f32_down;
+
+/// A pair of buckets is bounded up to this many times the limit, so that most need no further search in the next round.
+const BUCKET_LOOKAHEAD: f64 = 2.0;
+
+/// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
+/// finish together. Tests have small models, and should leave some open, too.
+const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
+
+/// Pairs between two tests for cancellation; searches test for themselves.
+const CANCEL_INTERVAL: usize = 64;
+
+/// An open node pair that may collide below a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SplitTask {
+    pub(crate) nodes: NodePair,
+    /// A lower bound of its radius.
+    pub(crate) lower: f32,
+    /// Pairs with a lower bound below this are split.
+    pub(crate) limit: f64,
+}
+
+/// Splits a pair breadth first. The result begins with the pair itself, and its indices refer to the result. After
+/// [`MAX_BOUNDED`] pairs the rest stay open. None if cancelled.
+pub(super) fn split(
+    task: SplitTask,
+    preparation: &Preparation,
+    search: &mut RadiusSearch<'_>,
+    progress: &dyn Progress,
+) -> Option<Vec<BvttPair>> {
+    let SplitTask { limit, .. } = task;
+    let mut subtree = vec![BvttPair::open(task.nodes, task.lower)];
+    let mut next = 0;
+    while next < subtree.len().min(MAX_BOUNDED) {
+        if next.is_multiple_of(CANCEL_INTERVAL) && progress.is_cancelled() {
+            return None;
+        }
+        let nodes @ (n, m) = subtree[next].nodes;
+        let first = subtree.len() as u32;
+        let pair = &mut subtree[next];
+        match preparation.hierarchy.split_above_buckets(n, m) {
+            None => {
+                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
+                let radius = search.between_coarse(nodes, cap)?.radius;
+                if radius < cap || cap == preparation.global_radius {
+                    pair.set_state(PairState::Bounded);
+                }
+                pair.lower = pair.lower.max(to_f32_down(radius));
+            }
+            Some(split) => {
+                let lower = pair.lower.max(to_f32_down(search.bound_nodes(nodes, limit)));
+                pair.lower = lower;
+                if f64::from(lower) < limit {
+                    pair.set_state(PairState::Split(first));
+                    subtree.extend(split.pairs().map(|nodes| BvttPair::open(nodes, lower)));
+                }
+            }
+        }
+        next += 1;
+    }
+    Some(subtree)
+}

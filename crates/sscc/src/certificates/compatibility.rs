@@ -1,0 +1,51 @@
+//! Checks that certificates were computed for a given model and contact filter. For any other they prove nothing.
+
+use super::{Certificates, Digest};
+use crate::{ContactFilter, Error, ReducedModel};
+
+impl Certificates {
+    /// Refuses a model for which these certificates were not computed.
+    ///
+    /// # Errors
+    /// When faces, positions or modes differ in any bit from the certified ones, or when hierarchy, metric or pairs do not
+    /// fit the model.
+    pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
+        let (parts, scope) = (self.parts(), &self.parts().scope);
+        let found = Digest::of(model, scope);
+        if found != parts.digest {
+            return Err(Error::OtherModel { certificates: parts.digest.short(), model: found.short() });
+        }
+        let damaged = |cause: &str| Err(Error::Certificates(cause.to_owned()));
+        let triangles = model.mesh().faces().len();
+        if parts.hierarchy.order().len() != triangles {
+            return damaged("the hierarchy is of another mesh");
+        }
+        if scope.metric.rank() != model.rank() {
+            return damaged("the metric is of another rank");
+        }
+        if scope.exceptions.iter().chain(scope.filter.ignored()).any(|(_, b)| *b as usize >= triangles) {
+            return damaged("a pair names a triangle that does not exist");
+        }
+        model.check_coordinates(self.center()).map(|_| ())
+    }
+
+    /// Refuses a contact filter under which other pairs count than those that were certified.
+    ///
+    /// # Errors
+    /// When neighbours, weld or ignored pairs differ.
+    pub fn check_filter(&self, filter: &ContactFilter) -> Result<(), Error> {
+        let certified = self.filter();
+        let what = if certified.neighbours != filter.neighbours {
+            let [certified, asked] = [certified, filter].map(|filter| filter.neighbours.name());
+            format!("they were made with the neighbour rule {certified}, not {asked}")
+        } else if certified.weld != filter.weld {
+            format!("they were made with{} welding", if certified.weld { "" } else { "out" })
+        } else if certified.ignored() != filter.ignored() {
+            let [certified, asked] = [certified, filter].map(|filter| filter.ignored().len());
+            format!("the {certified} pairs that they ignore are not the {asked} asked for")
+        } else {
+            return Ok(());
+        };
+        Err(Error::OtherPairs { what })
+    }
+}

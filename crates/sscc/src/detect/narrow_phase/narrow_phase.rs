@@ -1,0 +1,26 @@
+//! The trait `NarrowPhase`: tests one triangle pair and collects the hits.
+
+use glam::DVec3;
+
+use super::hits::Hits;
+use crate::Pair;
+use crate::filter::{PairFilter, Relation};
+
+/// Tests two triangles, and collects the hits. The discrete and the swept one are exact; the ball one compares AABBs.
+/// All methods share them, so that all give the same answers.
+pub(crate) trait NarrowPhase<const E: usize> {
+    /// The entry of a colliding pair in the answer.
+    type Hit: Copy;
+
+    /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each end.
+    fn test(
+        filter: &PairFilter,
+        relation: Relation,
+        pair: Pair,
+        a: &[[DVec3; 3]; E],
+        b: &[[DVec3; 3]; E],
+    ) -> Option<Self::Hit>;
+
+    /// The hits so far.
+    fn hits(&mut self) -> &mut Hits<Self::Hit>;
+}

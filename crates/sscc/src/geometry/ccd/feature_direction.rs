@@ -1,0 +1,205 @@
+//! Separating directions that follow two features (vertex, edge, face) of two moving triangles, as polynomials of time.
+//!
+//! The closest points of two disjoint triangles lie on a pair of features, and the direction between these points is
+//! perpendicular to both features: a difference of two vertices, the part of such a difference that is perpendicular to
+//! an edge, the cross product of two edges, or the normal of a face. While vertices move linearly, such a direction
+//! (multiplied by the squared length of the edge, in the second case) is a polynomial in t of degree 1 to 3, and so
+//! are, one degree higher, the gaps of vertices along it. As long as the same two features are closest, the direction
+//! follows them and separates the two triangles, however narrow the gap between them and however fast both turn. The
+//! Bernstein coefficients of the gaps prove it ([`bernstein`](super::bernstein)).
+
+use glam::DVec3;
+
+use super::bernstein::{Polynomial, cross, dot, subtract};
+use super::bounded_float::BoundedFloat;
+use super::dyadic::Dyadic;
+use super::moving_triangle::MovingTriangle;
+use super::number::{Bounds, Number};
+
+/// Both triangles at one time or on an interval of time, relative to the first corner of a: the corners of a, then
+/// those of b.
+struct Corners<T>([[Polynomial<T>; 3]; 6]);
+
+/// The index of the first corner of each triangle.
+const A: usize = 0;
+const B: usize = 3;
+
+/// A pair of features, one of a and one of b, by the numbers of vertices (0, 1, 2) and of edges (edge i begins at vertex
+/// i).
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FeaturePair {
+    /// The face of a and a vertex of b.
+    FaceA,
+    /// A vertex of a and the face of b.
+    FaceB,
+    /// An edge of each.
+    Edges(usize, usize),
+    /// A vertex of a and an edge of b.
+    VertexEdge(usize, usize),
+    /// An edge of a and a vertex of b.
+    EdgeVertex(usize, usize),
+    /// A vertex of each.
+    Vertices(usize, usize),
+}
+
+/// A direction that follows a pair of features.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FeatureDirection {
+    features: FeaturePair,
+    /// Whether the direction is that from b to a.
+    is_reversed: bool,
+    /// The direction at one time, rounded.
+    pub(super) vector: DVec3,
+}
+
+/// Bounds of the gap of two triangles along the direction of a pair of features at one time, 0 where it is negative.
+struct FeatureGap {
+    features: FeaturePair,
+    is_reversed: bool,
+    gap: Bounds,
+}
+
+impl FeaturePair {
+    /// All pairs of features of two triangles.
+    fn all() -> impl Iterator<Item = Self> {
+        let pairs = (0..9).map(|ij| (ij / 3, ij % 3)).flat_map(|(i, j)| {
+            [Self::Edges(i, j), Self::VertexEdge(i, j), Self::EdgeVertex(i, j), Self::Vertices(i, j)]
+        });
+        [Self::FaceA, Self::FaceB].into_iter().chain(pairs)
+    }
+}
+
+impl FeatureDirection {
+    /// Whether the direction provably separates both triangles from `t` to `s`: by the signs of coefficients, which exact
+    /// numbers decide where rounded ones do not.
+    pub(super) fn separates(&self, a: &MovingTriangle, b: &MovingTriangle, t: f64, s: f64) -> bool {
+        let rounded = Corners::<BoundedFloat>::between(a, b, t, s).is_separated_along(self);
+        rounded
+            .unwrap_or_else(|| Corners::<Dyadic>::between(a, b, t, s).is_separated_along(self) == Some(true))
+    }
+}
+
+/// A direction between two features along which the gap of the two triangles at time `t` exceeds `tolerance`: of those
+/// for which rounded numbers prove this the one with the widest gap, else the one that exact numbers find. None when
+/// their distance is at most `tolerance`, up to 1e-14 of it: the distance is the widest gap of all pairs of features.
+pub(super) fn find_gap_above(
+    tolerance: f64,
+    a: &MovingTriangle,
+    b: &MovingTriangle,
+    t: f64,
+) -> Option<FeatureDirection> {
+    let rounded = Corners::<BoundedFloat>::at(a, b, t);
+    let gaps: Vec<FeatureGap> = FeaturePair::all().flat_map(|features| rounded.gaps(features)).collect();
+    if let Some(found) = rounded.find_gap_above(tolerance, &gaps) {
+        return Some(found);
+    }
+    let mut undecided: Vec<FeaturePair> =
+        gaps.iter().filter(|entry| entry.gap.upper > tolerance).map(|entry| entry.features).collect();
+    if undecided.is_empty() {
+        return None;
+    }
+    undecided.dedup();
+    let exact = Corners::<Dyadic>::at(a, b, t);
+    let gaps: Vec<FeatureGap> = undecided.into_iter().flat_map(|features| exact.gaps(features)).collect();
+    exact.find_gap_above(tolerance, &gaps)
+}
+
+impl<T: Number> Corners<T> {
+    /// At one time: polynomials of degree 0.
+    fn at(a: &MovingTriangle, b: &MovingTriangle, t: f64) -> Self {
+        Self::map(a, b, |from, to| Polynomial::constant(interpolate(from, to, t)))
+    }
+
+    /// From `t` to `s`.
+    fn between(a: &MovingTriangle, b: &MovingTriangle, t: f64, s: f64) -> Self {
+        Self::map(a, b, |from, to| Polynomial::linear(interpolate(from, to, t), interpolate(from, to, s)))
+    }
+
+    /// Each coordinate, given its values at times 0 and 1.
+    fn map(a: &MovingTriangle, b: &MovingTriangle, f: impl Fn(&T, &T) -> Polynomial<T>) -> Self {
+        Self(std::array::from_fn(|i| {
+            let triangle = if i < B { a } else { b };
+            std::array::from_fn(|axis| {
+                let [from, to] = [(triangle.t0, a.t0), (triangle.t1, a.t1)]
+                    .map(|(corners, origin)| T::difference(corners[i % 3][axis], origin[0][axis]));
+                f(&from, &to)
+            })
+        }))
+    }
+
+    /// Edge i of the triangle whose corners begin at `first`.
+    fn edge(&self, first: usize, i: usize) -> [Polynomial<T>; 3] {
+        subtract(&self.0[first + (i + 1) % 3], &self.0[first + i])
+    }
+
+    /// The direction of a pair of features. Where it contains a vertex and no face, the direction is that from a to b.
+    fn direction(&self, features: FeaturePair) -> [Polynomial<T>; 3] {
+        let between = |i: usize, j: usize| subtract(&self.0[B + j], &self.0[A + i]);
+        let perpendicular = |d: [Polynomial<T>; 3], e: [Polynomial<T>; 3]| {
+            let (square, along) = (dot(&e, &e), dot(&d, &e));
+            std::array::from_fn(|axis| d[axis].times(&square).minus(&e[axis].times(&along)))
+        };
+        match features {
+            FeaturePair::FaceA => cross(&self.edge(A, 0), &self.edge(A, 1)),
+            FeaturePair::FaceB => cross(&self.edge(B, 0), &self.edge(B, 1)),
+            FeaturePair::Edges(i, j) => cross(&self.edge(A, i), &self.edge(B, j)),
+            FeaturePair::VertexEdge(i, j) => perpendicular(between(i, j), self.edge(B, j)),
+            FeaturePair::EdgeVertex(i, j) => perpendicular(between(i, j), self.edge(A, i)),
+            FeaturePair::Vertices(i, j) => between(i, j),
+        }
+    }
+
+    /// The gaps of all nine pairs of a vertex of a and one of b along a direction.
+    fn gaps_of_vertices(&self, dir: &[Polynomial<T>; 3]) -> [Polynomial<T>; 9] {
+        let projected: [Polynomial<T>; 6] = std::array::from_fn(|i| dot(dir, &self.0[i]));
+        std::array::from_fn(|ij| projected[B + ij % 3].minus(&projected[A + ij / 3]))
+    }
+
+    /// The gaps of the triangles along the direction of a pair of features and along its opposite, at the time of these
+    /// corners.
+    fn gaps(&self, features: FeaturePair) -> [FeatureGap; 2] {
+        let dir = self.direction(features);
+        let square = dot(&dir, &dir);
+        let vertices = self.gaps_of_vertices(&dir).map(|gap| gap.coefficients()[0].clone());
+        let minimum =
+            |gaps: &[T]| gaps[1..].iter().fold(gaps[0].clone(), |smallest, gap| smallest.minimum(gap));
+        let opposite = vertices.each_ref().map(|gap| T::zero().minus(gap));
+        [(false, minimum(&vertices)), (true, minimum(&opposite))].map(|(is_reversed, gap)| FeatureGap {
+            features,
+            is_reversed,
+            gap: gap.over_root(&square.coefficients()[0]),
+        })
+    }
+
+    /// The direction of the widest of some gaps, if that is certainly wider than the tolerance.
+    fn find_gap_above(&self, tolerance: f64, gaps: &[FeatureGap]) -> Option<FeatureDirection> {
+        let widest = gaps.iter().max_by(|a, b| a.gap.lower.total_cmp(&b.gap.lower))?;
+        let FeatureGap { features, is_reversed, gap } = *widest;
+        (gap.lower > tolerance).then(|| {
+            let vector = T::direction(&self.direction(features).map(|n| n.coefficients()[0].clone()));
+            FeatureDirection { features, is_reversed, vector: if is_reversed { -vector } else { vector } }
+        })
+    }
+
+    /// Whether all gaps along a direction are positive during the interval, by their coefficients. None where the error
+    /// bounds do not decide it.
+    fn is_separated_along(&self, direction: &FeatureDirection) -> Option<bool> {
+        let mut all = Some(true);
+        for gap in self.gaps_of_vertices(&self.direction(direction.features)) {
+            for coefficient in gap.coefficients() {
+                let forwards =
+                    if direction.is_reversed { &T::zero().minus(coefficient) } else { coefficient };
+                match forwards.is_positive() {
+                    Some(true) => {}
+                    Some(false) => return Some(false),
+                    None => all = None,
+                }
+            }
+        }
+        all
+    }
+}
+
+fn interpolate<T: Number>(from: &T, to: &T, t: f64) -> T {
+    from.plus(&to.minus(from).times(&T::from_f64(t)))
+}

@@ -1,0 +1,93 @@
+//! Both kinds of numbers of polynomial predicates against rational arithmetic.
+
+use num_rational::BigRational;
+use num_traits::Signed;
+
+use super::bounded_float::BoundedFloat;
+use super::dyadic::Dyadic;
+use super::number::{Bounds, Number, power_of_two};
+
+fn rational(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap()
+}
+
+/// The value of a [`Dyadic`].
+fn value(x: &Dyadic) -> BigRational {
+    let two = BigRational::from_integer(2.into());
+    BigRational::from_integer(x.mantissa.clone()) * num_traits::Pow::pow(two, x.exponent as i32)
+}
+
+/// Random sums and products of random numbers of very different sizes: exact ones equal rational arithmetic,
+/// rounded ones differ from it by at most their error bound, and neither has a wrong sign.
+#[test]
+fn both_kinds_agree_with_rational_arithmetic() {
+    let mut state = 1_u64;
+    let mut random = |n: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % n
+    };
+    let double = |random: &mut dyn FnMut(u64) -> u64, widest: i64| {
+        let fraction = random(1 << 31) as f64 / (1_u64 << 30) as f64 - 1.0;
+        fraction * power_of_two(random(2 * widest as u64 + 1) as i64 - widest)
+    };
+    let (mut decided, mut open) = (0, 0);
+    for case in 0..3_000 {
+        let widest = if case % 2 == 0 { 8 } else { 300 };
+        let (a, b) = (double(&mut random, widest), double(&mut random, widest));
+        let mut numbers =
+            (BoundedFloat::difference(a, b), Dyadic::difference(a, b), rational(a) - rational(b));
+        for _ in 0..6 {
+            let (c, d) = (double(&mut random, widest), double(&mut random, widest));
+            let (x, y, z) =
+                (BoundedFloat::difference(c, d), Dyadic::difference(c, d), rational(c) - rational(d));
+            numbers = match random(5) {
+                4 => (numbers.0.minimum(&x), numbers.1.minimum(&y), numbers.2.min(z)),
+                0 => (numbers.0.plus(&x), numbers.1.plus(&y), numbers.2 + z),
+                1 => (numbers.0.minus(&x), numbers.1.minus(&y), numbers.2 - z),
+                2 => (numbers.0.times(&x), numbers.1.times(&y), numbers.2 * z),
+                // Only rounding errors are left.
+                _ => {
+                    let again = numbers.0.times(&x).minus(&x.times(&numbers.0));
+                    let exact = numbers.1.times(&y).minus(&y.times(&numbers.1));
+                    assert_eq!(exact.is_positive(), Some(false));
+                    assert_eq!(again.is_positive(), None);
+                    numbers
+                }
+            };
+            let (bounded, dyadic, truth) = &numbers;
+            assert_eq!(value(dyadic), *truth);
+            if bounded.value.is_finite() && bounded.error.is_finite() {
+                assert!((rational(bounded.value) - truth).abs() <= rational(bounded.error), "{bounded:?}");
+            }
+            assert_eq!(dyadic.is_positive(), Some(truth.is_positive()));
+            match bounded.is_positive() {
+                Some(sign) => assert_eq!(sign, truth.is_positive()),
+                None => open += 1,
+            }
+            decided += usize::from(bounded.is_positive().is_some());
+        }
+    }
+    assert!(decided > 10_000 && open > 5, "{decided} {open}");
+}
+
+#[test]
+fn quotients_by_roots_are_rounded_down() {
+    for (n, square, exact) in
+        [(3.0, 4.0, 1.5), (5.0, 2.0, 12.5_f64.sqrt()), (-1.0, 4.0, 0.0), (1.0, 0.0, 0.0)]
+    {
+        let bounded = BoundedFloat::from_f64(n).over_root(&BoundedFloat::from_f64(square));
+        let dyadic = Dyadic::from_f64(n).over_root(&Dyadic::from_f64(square));
+        for Bounds { lower, upper } in [bounded, dyadic] {
+            assert!(lower <= exact && lower >= exact * (1.0 - 1e-14), "{n} / sqrt({square}): {lower}");
+            let open = square == 0.0 && upper == f64::INFINITY;
+            assert!(
+                open || upper >= exact && upper <= exact * (1.0 + 1e-14),
+                "{n} / sqrt({square}): {upper}"
+            );
+        }
+    }
+    // Where squares of doubles underflow.
+    let small = Dyadic::from_f64(1e-290);
+    let Bounds { lower: found, .. } = small.times(&small).over_root(&small.times(&small));
+    assert!((found / 1e-290 - 1.0).abs() < 1e-14, "{found:e}");
+}

@@ -1,0 +1,42 @@
+//! Continuous queries: which pairs of triangles collide between two configurations, and when (paper, section 7).
+
+use super::query::Query;
+use super::swept_search::SweptSearch;
+use crate::{Error, Impact};
+
+impl Query<'_> {
+    /// All pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1`
+    /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time of
+    /// impact.
+    ///
+    /// None is missed: every pair with a point in common at any time from 0 to 1, both ends included, is listed, with a
+    /// time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times the
+    /// size of the triangles. Only pairs that come that close without a contact can differ between methods. Triangles that
+    /// share exactly one vertex, where the contact filter includes them, are listed when the edge opposite to it of one of
+    /// them meets the other, which they must do to have another point in common.
+    ///
+    /// A certificate holds during the motion if it holds at both ends: its region is convex, and a radius contains the
+    /// rounding bound at the radius itself, which covers positions between two rounded ones. So [`Query::norm`] is the
+    /// larger one of both ends.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`], for both ends.
+    pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
+        self.begin(usize::MAX);
+        let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
+        self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
+        let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
+        swept.find(&self.context, [t0, t1], self.norm, &mut self.statistics)?;
+        let impacts = &swept.narrow.0.hits;
+        self.discrete.narrow.0.hits.extend(impacts.iter().map(|impact| impact.pair));
+        Ok(impacts)
+    }
+
+    /// The earliest [`Impact::time`] of all pairs between two configurations: the shape is free before.
+    ///
+    /// # Errors
+    /// As [`Query::continuous`].
+    pub fn time_of_impact(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<Option<f64>, Error> {
+        Ok(self.continuous(q_t0, q_t1)?.iter().map(|impact| impact.time).min_by(f64::total_cmp))
+    }
+}

@@ -1,0 +1,87 @@
+//! `Query::discrete_between`: the colliding pairs of two nodes, without certificates, for audits.
+
+use super::method::Method;
+use super::query::Query;
+use crate::detect::vertex_motion::DeformedMotion;
+use crate::hierarchy::{BUCKET_TRIANGLES, Node, NodePair};
+use crate::{Certificates, Error, Pair};
+
+impl Query<'_> {
+    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
+    /// but exceptions, found without certificates.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub(crate) fn discrete_between(&mut self, (n, m): NodePair, q: &[f64]) -> Result<&[Pair], Error> {
+        debug_assert_ne!(self.context.method, Method::Certified);
+        self.begin(usize::MAX);
+        let configuration = self.measure(q)?;
+        self.norm = configuration.norm;
+        let (context, narrow) = (&self.context, &mut self.discrete.narrow);
+        let (detect, broad) = (&context.detect, &mut self.discrete.certified.broad);
+        let motion = DeformedMotion::new([q], configuration.reach);
+        broad.begin_volumes(detect, &motion);
+        broad.traverse(detect, (n, m), &motion, narrow);
+        broad.end(narrow)?;
+        let exceptions = context.certificates.map_or(&[][..], Certificates::exceptions);
+        let hierarchy = &detect.hierarchy;
+        let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
+        let contains = |node: &Node, t| {
+            node.triangle_count as usize > BUCKET_TRIANGLES || hierarchy.triangles(node).contains(&t)
+        };
+        narrow.0.hits.retain(|pair| {
+            let (a, b) = *pair;
+            let is_between = contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a);
+            is_between && exceptions.binary_search(pair).is_err()
+        });
+        narrow.0.hits.sort_unstable();
+        Ok(&narrow.0.hits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Modes, ReducedModel, Scope, TriMesh};
+    use glam::DVec3;
+
+    /// A crumpled strip, of which nearly everything meets.
+    fn model() -> ReducedModel {
+        let mut state = 3_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as f64 / 2.0_f64.powi(31)
+        };
+        let p: Vec<DVec3> =
+            (0..302).map(|i| DVec3::new(0.01 * f64::from(i) + random(), random(), random())).collect();
+        let faces = (0..300).map(|i| [i, i + 1, i + 2]).collect();
+        let modes = Modes::new(1, p.iter().map(|x| *x * 0.1).collect()).unwrap();
+        ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
+    }
+
+    #[test]
+    fn pairs_of_nodes_of_every_size_are_theirs_alone() {
+        let model = model();
+        let query = |method| Query::without_certificates(&model, Scope::of(&model), method).unwrap();
+        let all = query(Method::BruteForce).discrete(&[0.5]).unwrap().to_vec();
+        let mut queries = [query(Method::Traditional), query(Method::BdTree)];
+        let hierarchy = queries[0].context.detect.hierarchy.clone();
+        let mut found = 0;
+        for (n, x) in hierarchy.nodes().iter().enumerate() {
+            for (m, y) in hierarchy.nodes().iter().enumerate().skip(n) {
+                let end = |node: &Node| node.first_triangle + node.triangle_count;
+                if n != m && x.first_triangle < end(y) && y.first_triangle < end(x) {
+                    continue; // one is within the other
+                }
+                let has = |node, t| hierarchy.triangles(node).contains(&t);
+                let mut expected = all.clone();
+                expected.retain(|&(i, j)| has(x, i) && has(y, j) || has(x, j) && has(y, i));
+                for query in &mut queries {
+                    assert_eq!(query.discrete_between((n as u32, m as u32), &[0.5]).unwrap(), expected);
+                }
+                found += usize::from(!expected.is_empty());
+            }
+        }
+        assert!(found > 100, "{found}");
+    }
+}

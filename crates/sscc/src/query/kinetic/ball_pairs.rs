@@ -1,0 +1,203 @@
+//! The pairs that a ball search found. A pair is safe until z has travelled its safe distance; an active pair is tested
+//! in every step.
+//!
+//! Time here is the travelled distance of z, which is never shorter than the distance between two of its positions.
+
+use std::collections::BinaryHeap;
+
+use crate::Pair;
+use crate::min_heap::MinHeapEntry;
+use crate::model::rounding::ROUND_DOWN;
+
+/// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
+const MAX_REMEMBERED: usize = 8;
+
+/// A pair that stays free until z has travelled as far as its key. The next to expire comes first, equal ones by their
+/// triangles.
+pub(super) type SafePair = MinHeapEntry<Pair>;
+
+/// All pairs that can collide in the ball. All other pairs are free in the whole ball.
+#[derive(Debug, Default)]
+pub(super) struct BallPairs {
+    /// The distance that z has travelled since the last jump, rounded up.
+    pub(super) travelled: f64,
+    /// The travelled distance at which z may leave the ball; 0: there is no ball.
+    end: f64,
+    /// An upper bound of the magnitude of every term of every position in the ball.
+    reach: f64,
+    /// Queries that were answered in the ball.
+    pub(super) steps: u64,
+    /// Pairs within their safe distance.
+    pub(super) safe: BinaryHeap<SafePair>,
+    /// Pairs that are tested in every step.
+    pub(super) active: Vec<Pair>,
+    /// Safe pairs that earlier searches found, sorted by pair, and scratch for them: a search finds most pairs again.
+    pub(super) remembered: Vec<SafePair>,
+    next_remembered: Vec<SafePair>,
+}
+
+impl BallPairs {
+    /// z moves by a step.
+    pub(super) fn advance(&mut self, step: f64) {
+        self.travelled = right_or!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
+    }
+
+    /// Begins a ball of this radius around the current z.
+    pub(super) fn begin_ball(&mut self, radius: f64, reach: f64) {
+        (self.end, self.reach, self.steps) = (self.travelled_after(radius), reach, 0);
+    }
+
+    /// Ends the ball.
+    pub(super) fn leave_ball(&mut self) {
+        self.end = 0.0;
+    }
+
+    /// The travelled distance at which z may be that far from here, rounded down.
+    fn travelled_after(&self, distance: f64) -> f64 {
+        (self.travelled + distance * ROUND_DOWN) * ROUND_DOWN
+    }
+
+    /// Stores a pair with its safe distance; false if that vanishes in rounding.
+    pub(super) fn store(&mut self, pair: Pair, distance: f64) -> bool {
+        let until = self.travelled_after(distance);
+        if until <= self.travelled {
+            return false;
+        }
+        if until < self.end {
+            self.safe.push(SafePair::new(until, pair));
+        } else if self.steps == 0 {
+            self.next_remembered.push(SafePair::new(until, pair));
+        }
+        true
+    }
+
+    /// Removes and returns a pair whose safe distance is used up; none if there is none.
+    #[inline]
+    pub(super) fn next_expired(&mut self) -> Option<Pair> {
+        // Equality would be a proof here, too: the key was rounded down, the travelled distance up.
+        let until = self.safe.peek()?.key;
+        if right_or!(until > self.travelled, SafeDistanceReached, until >= self.travelled) {
+            return None;
+        }
+        self.safe.pop().map(|safe| safe.order)
+    }
+
+    /// Ends a step.
+    pub(super) fn end_step(&mut self) {
+        if self.steps == 0 {
+            std::mem::swap(&mut self.remembered, &mut self.next_remembered);
+            self.remembered.sort_unstable_by_key(|safe| safe.order);
+        }
+        self.steps += 1;
+    }
+
+    /// Forgets everything: z has jumped.
+    pub(super) fn forget(&mut self) {
+        (self.travelled, self.end) = (0.0, 0.0);
+        self.remembered.clear();
+    }
+
+    /// Whether z is in the ball, and the reach of the shape at most that in it.
+    pub(super) fn is_in_ball(&self, reach: f64) -> bool {
+        self.travelled < self.end && reach <= self.reach
+    }
+
+    /// Whether there is a ball.
+    pub(super) fn has_ball(&self) -> bool {
+        self.end > 0.0
+    }
+
+    /// Takes the sorted pairs of a ball search. Pushes to `pending` those that no remembered safe distance keeps
+    /// separate throughout the ball.
+    pub(super) fn take(&mut self, found: &[Pair], pending: &mut Vec<Pair>) {
+        self.safe.clear();
+        self.active.clear();
+        pending.clear();
+        if self.remembered.len() > MAX_REMEMBERED * found.len() + 1024 {
+            self.remembered.clear();
+        }
+        let mut remembered =
+            self.remembered.iter().copied().filter(|safe| safe.key > self.travelled).peekable();
+        self.next_remembered.clear();
+        for pair in found {
+            while let Some(earlier) = remembered.next_if(|safe| safe.order < *pair) {
+                self.next_remembered.push(earlier);
+            }
+            match remembered.next_if(|safe| safe.order == *pair) {
+                Some(safe) if safe.key >= self.end => self.next_remembered.push(safe),
+                _ => pending.push(*pair),
+            }
+        }
+        self.next_remembered.extend(remembered);
+    }
+}
+
+/// A rounded sum of two numbers that are not negative, rounded up.
+pub(super) fn up(sum: f64) -> f64 {
+    sum * (1.0 + 4.0 * f64::EPSILON)
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+
+    use super::*;
+
+    /// The travelled distance against the sum of its steps in exact arithmetic.
+    #[test]
+    fn the_travelled_distance_is_never_short() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let (mut ball_pairs, mut sum) = (BallPairs::default(), exact(0.0));
+        for i in 0..500 {
+            let step = f64::from(i * i % 37 + 1).sqrt() * 0.1_f64.powi(i % 7);
+            ball_pairs.advance(step);
+            sum += exact(step);
+            assert!(exact(ball_pairs.travelled) >= sum, "{i}");
+        }
+    }
+
+    #[test]
+    fn pairs_expire_in_order_and_never_late() {
+        let mut ball_pairs = BallPairs::default();
+        let mut pending = Vec::new();
+        ball_pairs.begin_ball(8.0, 1.0);
+        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
+        assert_eq!(pending, [(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)]);
+        for (pair, margin) in pending.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
+            ball_pairs.store(*pair, margin);
+        }
+        // A distance that vanishes in rounding is none.
+        ball_pairs.advance(1.0);
+        assert!(!ball_pairs.store((0, 5), 1e-18) && !ball_pairs.store((0, 5), 0.0));
+        ball_pairs.end_step();
+        assert_eq!(ball_pairs.next_expired(), Some((0, 5)));
+        assert_eq!(ball_pairs.next_expired(), None);
+        ball_pairs.advance(0.5);
+        assert_eq!(ball_pairs.next_expired(), None);
+        // A margin used up exactly no longer holds.
+        ball_pairs.advance(0.5);
+        assert_eq!(ball_pairs.next_expired(), Some((0, 2)));
+        ball_pairs.advance(5.0);
+        assert_eq!(ball_pairs.next_expired(), Some((0, 1)));
+        assert!(ball_pairs.has_ball() && ball_pairs.is_in_ball(1.0) && !ball_pairs.is_in_ball(1.1));
+        ball_pairs.advance(1.0);
+        assert!(!ball_pairs.is_in_ball(1.0));
+        // In the next ball (8 to 12) one of the others is known to stay apart; one only up to 9.
+        ball_pairs.leave_ball();
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        assert_eq!(pending, [(0, 2), (0, 3), (1, 2)]);
+        pending.drain(..).for_each(|pair| assert!(ball_pairs.store(pair, 50.0)));
+        ball_pairs.end_step();
+        ball_pairs.advance(3.0);
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        assert_eq!(pending, [(0, 1)]);
+        // After a jump nothing is known.
+        ball_pairs.forget();
+        assert!(!ball_pairs.has_ball());
+        ball_pairs.begin_ball(4.0, 1.0);
+        ball_pairs.take(&[(0, 4)], &mut pending);
+        assert_eq!(pending, [(0, 4)]);
+    }
+}
