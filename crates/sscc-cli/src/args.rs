@@ -59,7 +59,7 @@ pub enum Command {
     Simulate(Simulate),
     /// Measure queries by every method, and by another library for comparison
     Bench(Bench),
-    /// Show a model in the browser: its modes, its collisions and its certified radii, live
+    /// Show a model in the browser (modes, collisions and certified radii, live), or the report of a folder
     View(View),
 }
 
@@ -490,6 +490,8 @@ pub struct Bench {
     after_help = "\
 The server listens on this machine only, and its address contains a random token. The page works offline. Ctrl-C or \
 SIGTERM stops the server.\n\
+MODEL may be a folder with a report, as written by sscc simulate or sscc demo --out: the page then shows the report, \
+and takes no options of models.\n\
 The certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a flag that contradicts \
 them is refused."
 )]

@@ -212,8 +212,8 @@ mod tests {
         let strata = Strata::new(vec![RootCertified; 10], Some([700, 90, 10]));
         assert_eq!(
             strata.missing().unwrap(),
-            "none of the 90 steps that are free where the root's certificate fails and none of the 10 steps that collide is measured: \
-             choose more with --steps"
+            "none of the 90 steps that are free where the root's certificate fails and none of the 10 steps that collide \
+             is measured: choose more with --steps"
         );
         assert!(Strata::new(vec![Colliding], None).missing().is_none());
     }
