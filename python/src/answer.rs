@@ -76,7 +76,7 @@ impl Answer {
     }
 
     fn __bool__(&self) -> PyResult<bool> {
-        Err(kind("an Answer is neither true nor false: use .colliding"))
+        Err(kind("an Answer has no truth value: use .colliding"))
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -190,7 +190,9 @@ fn borrow<'py, T: Element>(
     array: &Bound<'py, PyArrayDyn<T>>,
     name: &str,
 ) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
-    array.try_readonly().map_err(|_| value(format!("{name} is borrowed for writing: pass a copy")))
+    array
+        .try_readonly()
+        .map_err(|_| value(format!("{name} is in use by code that may write to it: pass a copy")))
 }
 
 /// An array that the first access creates and the object keeps.

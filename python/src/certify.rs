@@ -54,7 +54,7 @@ impl CertifyArguments<'_, '_> {
         let scheme = choice(self.scheme, "scheme", &[("full", Scheme::Full), ("paper", Scheme::Paper)])?;
         let budget = count(self.budget, "budget", 0..=u32::MAX as usize)?;
         if scheme == Some(Scheme::Paper) && budget.is_some() {
-            return Err(value("scheme 'paper' stores no pairs of nodes: leave budget out"));
+            return Err(value("scheme 'paper' stores no pair tree: leave budget out"));
         }
         let budget = if scheme == Some(Scheme::Paper) { 0 } else { budget.unwrap_or(default.budget) };
         let rules = [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|rule| (rule.name(), rule));

@@ -87,7 +87,7 @@ impl Impacts {
     }
 
     fn __bool__(&self) -> PyResult<bool> {
-        Err(kind("Impacts are neither true nor false: use .colliding"))
+        Err(kind("Impacts have no truth value: use .colliding"))
     }
 
     fn __eq__(&self, other: &Self) -> bool {

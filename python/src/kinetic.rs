@@ -34,7 +34,9 @@ impl KineticQuery {
             })
         })?;
         let found = found.ok_or_else(|| {
-            PyRuntimeError::new_err("this thread uses the KineticQuery already: use another one")
+            PyRuntimeError::new_err(
+                "this KineticQuery is already in a call: create another one by certs.kinetic()",
+            )
         })?;
         found.map_err(|error: Error| refused(&error, "q"))
     }

@@ -151,7 +151,7 @@ fn elastic(
     if let Some([a, b]) = fixed_box {
         let within = solid.within(a.min(b), a.max(b));
         if within.is_empty() {
-            return Err(SimError::refused("fix_box", "no vertex is in the box"));
+            return Err(SimError::refused("fix_box", "it contains no vertex: enlarge or move it"));
         }
         held.extend(within);
     }

@@ -51,7 +51,7 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
     let [epsilon, metric, center, scheme, budget, neighbours, weld, ignore_rest, max_exceptions, threads] =
         &found[..]
     else {
-        return Err(kind("options: certify has other keywords"));
+        return Err(kind("options: unknown keyword; use those of Model.certify"));
     };
     let arguments = CertifyArguments {
         epsilon: epsilon.as_ref(),

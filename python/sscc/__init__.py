@@ -1,4 +1,4 @@
-"""Proven self-collision detection for deformable models: a mesh that deforms by modes, ``x = p + U q``.
+"""Exact self-collision detection for deformable triangle meshes: a mesh deforms by modes, ``x = p + U q``.
 
 >>> model = sscc.Model(vertices, faces, modes)
 >>> certs = model.certify()

@@ -1,7 +1,7 @@
 """Seals of results that other processes compute.
 
 A result is accepted only if it is complete and has the expected key. Both sides compute the key from the build, the
-model and the options. Seals find damage and mix-ups. They do not detect workers that lie: workers are trusted.
+model and the options. Seals find damage and mix-ups. They do not detect malicious workers.
 """
 
 from __future__ import annotations

@@ -37,7 +37,8 @@ def simulate(
     out: the folder to write to; None: the scene's name. A stopped run in this folder is resumed.
     steps: number of steps from the beginning; None: the scene's number.
     restart: True: simulate from the beginning, also if the folder has a stopped run.
-    models: the folder of real models.
+    models: the folder of bunny_14964_closed.obj and dragon_77202_closed.ply; None: that of the environment variable
+        SSCC_MODELS, without it embedded shapes replace them.
     cache: the folder that keeps models and certificates between runs.
     threads: None: all cores.
 

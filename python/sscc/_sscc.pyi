@@ -27,7 +27,8 @@ class Model:
     vertices: (V, 3), rest positions p in any unit of length.
     faces: (F, 3) integers, vertex numbers counted from 0.
     modes: U as (3V, r), (V, 3, r) or (r, V, 3): the displacement of each vertex for a unit of each entry of q.
-    metric: the weights of modes in norms: a name, weights (r,) or a matrix (r, r); None: "displacement".
+    metric: the matrix M of the norm ``sqrt(q'Mq)``: a name, its diagonal (r,) or all of it (r, r); None:
+        "displacement".
 
     Raises TypeError or ValueError; the message names the argument and the row.
     """
@@ -222,7 +223,7 @@ class KineticQuery:
 
 @final
 class Answer:
-    """The result of a query at one q. It is neither true nor false: use ``colliding``."""
+    """The result of a query at one q. It has no truth value: use ``colliding``."""
 
     @property
     def pairs(self) -> _U32:
@@ -252,7 +253,7 @@ class Answer:
 
 @final
 class Impacts:
-    """The result of a continuous query. It is neither true nor false: use ``colliding``."""
+    """The result of a continuous query. It has no truth value: use ``colliding``."""
 
     @property
     def pairs(self) -> _U32:

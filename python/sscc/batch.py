@@ -1,7 +1,7 @@
 """Many models, one large model, or many configurations on many machines, by ``dask.distributed``.
 
 Every function takes a ``distributed.Client``. Results equal those of one process, byte for byte. Workers need only this
-package: the client sends them the models. Another worker repeats the tasks of a lost worker.
+package: the client sends them the models. dask repeats the jobs of a lost worker on another one.
 
 Needs ``pip install './python[dask]'``.
 """

@@ -84,7 +84,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"center": [[0, 0, 0]]}, ValueError, "center has shape [1, 3]: one configuration was expected"),
     ({"scheme": "best"}, ValueError, "scheme is 'best': 'full' or 'paper' was expected"),
     ({"scheme": 1}, TypeError, "scheme is a int: 'full' or 'paper' was expected"),
-    ({"scheme": "paper", "budget": 1}, ValueError, "scheme 'paper' stores no pairs of nodes: leave budget out"),
+    ({"scheme": "paper", "budget": 1}, ValueError, "scheme 'paper' stores no pair tree: leave budget out"),
     ({"budget": -1}, ValueError, "budget is -1"),
     ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' was expected"),
     ({"weld": "on"}, TypeError, "weld is a str: True or False was expected"),

@@ -87,7 +87,7 @@ def test_a_signal_handler_cannot_use_the_query_that_it_interrupted(one_point: ss
     before = signal.signal(signal.SIGALRM, handle)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.3)
-        with pytest.raises(RuntimeError, match="^this thread uses the KineticQuery already"):
+        with pytest.raises(RuntimeError, match="^this KineticQuery is already in a call"):
             kinetic.check([1.0])
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

@@ -38,7 +38,7 @@ let searches = 0;
 
 export async function toFirstCollision(app: App, direction: number[], name: string): Promise<void> {
     app.motion.stop();
-    app.say(`searching the first self-collision along ${name}…`);
+    app.say(`searching for the first self-collision along ${name}…`);
     const search = ++searches;
     const { serial } = app.pose;
     let found: SafeScale;

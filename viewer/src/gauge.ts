@@ -34,7 +34,7 @@ export function verdict(app: App): Verdict {
 
 /** The largest number of pairs in one step between the previous frame and this one, as text. */
 export function sinceText(since: number): string {
-    return since > 0 ? `collided since the last frame: at most ${count(since, "pair")}` : "";
+    return since > 0 ? `collided between frames: at most ${count(since, "pair")} in one step` : "";
 }
 
 export class Gauge {

@@ -37,7 +37,7 @@ export function help(): void {
         h(
             "p",
             {},
-            "“Free” is a proof; “colliding” lists exactly the intersecting pairs (docs/guarantees.md). " +
+            "For the guarantee of each answer see docs/guarantees.md. " +
                 "The gauge shows an answer only for the displayed shape, and “checking…” until it arrives.",
         ),
         h("button", { type: "button", class: "primary", onclick: () => dismiss(dialog) }, "Close"),

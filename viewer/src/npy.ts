@@ -16,7 +16,7 @@ export function readNpy(buffer: ArrayBuffer): number[][] {
         .filter((s) => s.trim() !== "")
         .map(Number);
     if (type !== "<f8" && type !== "<f4")
-        throw new Error(`the .npy file has the type '${type.slice(0, 10)}', not <f4 or <f8`);
+        throw new Error(`the .npy file has the type '${type.slice(0, 10)}': save it as float64 or float32`);
     if (shape.length < 1 || shape.length > 2) throw new Error(`the .npy file has ${shape.length} axes, not 1 or 2`);
     const [rows, columns] = shape.length === 2 ? shape : [1, shape[0]];
     const size = type === "<f8" ? 8 : 4;

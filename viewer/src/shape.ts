@@ -20,7 +20,10 @@ export class Shape {
         const { vertices, triangles, rank } = model;
         const sizes = [shape.positions.length, shape.faces.length, shape.modes.length];
         const due = [3 * vertices, 3 * triangles, 3 * vertices * rank];
-        if (sizes.some((size, i) => size !== due[i])) throw new Error(`the arrays of ${model.name} have wrong sizes`);
+        if (sizes.some((size, i) => size !== due[i]))
+            throw new Error(
+                `the arrays of ${model.name} have wrong sizes: reload the page, or write the report anew`,
+            );
         return shape;
     }
 

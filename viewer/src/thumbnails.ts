@@ -25,7 +25,11 @@ export function thumbnails(app: App): HTMLElement {
         "section",
         { "aria-label": "extremal deformations" },
         h("h2", {}, "Extremal deformations"),
-        h("p", { class: "hint" }, "Shapes at the root's radius: the certificate proves all smaller ones free."),
+        h(
+            "p",
+            { class: "hint" },
+            "Shapes at the root's radius: the root's certificate proves all smaller deformations free.",
+        ),
         h("div", { class: "thumbnails" }, ...pictures.map((p) => p.button)),
     );
     const draw = (): void => {

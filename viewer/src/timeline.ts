@@ -179,7 +179,7 @@ export class Timeline {
         this.play.setAttribute("aria-label", this.playing ? "pause" : "play");
         this.slider.value = String(this.frame);
         const touching = pairs && pairs[this.frame] > 0 ? `, ${count(pairs[this.frame], "colliding pair")}` : "";
-        const touched = since && since[this.frame] > 0 ? ", collided since the last frame" : "";
+        const touched = since && since[this.frame] > 0 ? ", collided between frames" : "";
         this.slider.setAttribute("aria-valuetext", `${digits(times[this.frame], 3)} seconds${touching}${touched}`);
         this.clock.textContent = `${times[this.frame].toFixed(3)} s`;
     }

@@ -198,11 +198,8 @@ describe("playback", () => {
             await slider.fill("40");
             await settled(page);
             assert.equal(await verdict.innerText(), "free (as recorded)");
-            assert.equal(await since.innerText(), "collided since the last frame: at most 2,922 pairs");
-            assert.match(
-                await slider.getAttribute("aria-valuetext"),
-                /^1.33 seconds, collided since the last frame$/,
-            );
+            assert.equal(await since.innerText(), "collided between frames: at most 2,922 pairs in one step");
+            assert.match(await slider.getAttribute("aria-valuetext"), /^1.33 seconds, collided between frames$/);
             assert.equal(orange(await pixels(page)), 0);
             // Low marks here and at the end of the longer contact, lower than all others.
             const heights = (which) =>

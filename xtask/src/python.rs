@@ -50,9 +50,10 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     let python = environment(&package)?;
     let wheels = package.join(".venv/wheels");
     let _ = fs::remove_dir_all(&wheels);
-    // The profile of the other tests, so that dependencies are compiled once.
+    // The profile and the features of the other tests, so that dependencies are compiled once.
     let mut maturin = Command::new(&python);
-    maturin.args(["-m", "maturin", "build", "--profile", "dev", "--interpreter"]).arg(&python);
+    maturin.args(["-m", "maturin", "build", "--profile", "dev", "--features", "shared-dependencies"]);
+    maturin.arg("--interpreter").arg(&python);
     maturin.arg("--out").arg(&wheels).current_dir(&package);
     succeed(&mut maturin, "the wheel cannot be built")?;
     install(&python, &wheels)?;

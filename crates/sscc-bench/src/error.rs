@@ -32,8 +32,8 @@ pub enum Error {
     /// Error of a model or a simulation.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// The data of the page cannot be written.
-    #[error("the page cannot be made: {0}")]
+    /// The data of the report cannot be written.
+    #[error("the report cannot be written: {0}")]
     Page(#[from] serde_json::Error),
     /// The thread of a simulation cannot be started.
     #[error("the thread of a simulation cannot be started: {0}")]

@@ -102,7 +102,7 @@ impl PaperTable {
 
 fn table_1(records: &[Record]) -> Vec<String> {
     let mut lines = vec![
-        "Table 1, ours and the paper's (ms in a step; parry/ours: detection by parry3d over ours):"
+        "Table 1, ours and the paper's (ms per step; parry/ours: time of parry3d over time of sscc):"
             .to_owned(),
         format!(
             "  {:<24}{:>10}{:>14}{:>10}{:>10}{:>12}{:>10}{:>12}{:>12}",
@@ -150,7 +150,7 @@ fn table_1(records: &[Record]) -> Vec<String> {
 
 fn table_2(record: &Record) -> Vec<String> {
     let mut lines = vec![
-        format!("Table 2, ours and the paper's ({}, ms in a step):", record.scenario),
+        format!("Table 2, ours and the paper's ({}, ms per step):", record.scenario),
         format!("  {:<24}{:>12}{:>12}{:>10}", "", "traditional", "certified", "speedup"),
     ];
     let line = |name: &str, traditional: f64, certified: f64, speedup: f64| {
@@ -170,7 +170,7 @@ fn table_3(record: &Record) -> Vec<String> {
         format!("Table 3, ours and the paper's ({}, % of the time):", record.scenario),
         format!(
             "  {:<24}{:>10}{:>16}{:>10}{:>10}{:>14}",
-            "", "self", "dynamics, sound", "ground", "penalty", "ms in a step"
+            "", "self", "dynamics, sound", "ground", "penalty", "ms per step"
         ),
     ];
     let ms = |part: &str| record.simulation_ms.get(part).unwrap_or(f64::NAN);

@@ -59,7 +59,7 @@ pub enum Command {
     Simulate(Simulate),
     /// Measure queries by every method, and by another library for comparison
     Bench(Bench),
-    /// Show a model in the browser: its modes, its collisions and its certified radii, live
+    /// Show a model in the browser (modes, collisions and certified radii, live), or the report of a folder
     View(View),
 }
 
@@ -170,7 +170,7 @@ pub struct Model {
 /// refused.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Relative error of the root's radius, and of other radii that are not much larger; between 0 and 1 [default: 0.1]
+    /// Largest relative error of the root's radius; between 0 and 1. Much larger radii are less precise [default: 0.1]
     #[arg(long, value_name = "E", value_parser = parse_epsilon)]
     pub epsilon: Option<f64>,
     /// The metric: energy (of models with a stiffness), displacement, mass, identity, or a file with the matrix M: its
@@ -182,7 +182,7 @@ pub struct Options {
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub center: Option<String>,
     /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
-    #[arg(long, value_enum, value_name = "RULE")]
+    #[arg(long, value_enum, value_name = "FILTER")]
     pub neighbours: Option<Neighbours>,
     /// Ignore the pairs that collide at rest: they never count
     #[arg(long)]
@@ -235,7 +235,7 @@ pub struct Threads {
 pub enum Scheme {
     /// A radius for each node of the BVH, and for each pair of the root's children
     Paper,
-    /// Also the pair tree, the node pairs that collide first, as many as the budget holds: queries are faster where the
+    /// Also the pair tree: the node pairs with radii below a limit, within the budget. Queries are faster where the
     /// root's certificate fails, but the file is larger and takes longer to compute
     Full,
 }
@@ -245,7 +245,7 @@ pub enum Scheme {
 #[command(
     help_template = with_examples!(
         "sscc certify bunny.model.safetensors -o bunny.sscc.safetensors"
-        "sscc certify bunny.model.safetensors -o small.sscc.safetensors --budget 64"
+        "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 64"
         "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
         "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
     )
@@ -278,7 +278,8 @@ pub struct Certify {
         "sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'"
     ),
     after_help = "\
-The metric and the other options come from the certificates; a flag that contradicts them is refused.\n\
+The certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a flag that contradicts \
+them is refused.\n\
 Exit codes: 0 every q is free, 1 some q collides, 2 error."
 )]
 pub struct Check {
@@ -293,13 +294,15 @@ pub struct Check {
     /// a time of impact from 0 to 1 for each pair; for the tolerance see docs/guarantees.md in the repository
     #[arg(long, conflicts_with_all = ["q", "pose"])]
     pub continuous: bool,
-    /// The method of the search; all methods give the same answer
+    /// The method of the search; all methods list the same pairs (with --continuous they may differ in pairs that come
+    /// within the tolerance without touching)
     #[arg(long, value_enum, default_value_t = Method::Certified)]
     pub method: Method,
-    /// List one colliding pair of each q (with --continuous: the first to meet)
+    /// List one colliding pair of each q (with --continuous: the one with the earliest time of impact)
     #[arg(long, conflicts_with = "limit")]
     pub first: bool,
-    /// List at most N colliding pairs of each q (with --continuous: the first to meet); the count is then a lower bound
+    /// List at most N colliding pairs of each q (with --continuous: those with the earliest times of impact); if the
+    /// limit stops the search, the count is a lower bound
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
     /// Also write the shape at --q with its colliding triangles marked: .ply (red) or .obj (in groups)
@@ -395,7 +398,8 @@ pub struct Info {
     ),
     after_help = "\
 The command writes trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, for scenes with sound, \
-sound.wav and sound_float.wav. The same command resumes a simulation that was interrupted or killed, to the same bits.\n\
+sound.wav and sound_float.wav. The same command resumes a simulation that was interrupted or killed. The results are \
+bit for bit those of an uninterrupted one.\n\
 Embedded scenes: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.\n\
 Exit codes: 0 done, 2 error or the motion diverges (the steps before are written), 130 interrupted."
 )]
@@ -486,7 +490,10 @@ pub struct Bench {
     after_help = "\
 The server listens on this machine only, and its address contains a random token. The page works offline. Ctrl-C or \
 SIGTERM stops the server.\n\
-The metric and the other options come from the certificates; a flag that contradicts them is refused."
+MODEL may be a folder with a report, as written by sscc simulate or sscc demo --out: the page then shows the report, \
+and takes no options of models.\n\
+The certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a flag that contradicts \
+them is refused."
 )]
 pub struct View {
     #[command(flatten)]

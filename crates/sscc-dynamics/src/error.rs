@@ -33,7 +33,7 @@ pub enum DynamicsError {
     Coupled,
     /// Mass or inertia is not positive and finite.
     #[error(
-        "the mass is {mass:e} and the smallest minor of the inertia {inertia:e}: both must be positive and finite"
+        "the mass is {mass:e} and the smallest minor of the inertia tensor is {inertia:e}: both must be positive and finite; check the density and the volume of the body"
     )]
     Mass {
         /// Mass.

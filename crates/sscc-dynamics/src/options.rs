@@ -21,12 +21,12 @@ pub struct ContactOptions {
     /// bear the weight: `(2 pi frequency)^2 skin` must be well above the acceleration of gravity.
     pub skin: Option<f64>,
     /// Maximum number of iterations of the impulse solver.
-    pub rounds: usize,
+    pub iterations: usize,
 }
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { frequency: 100.0, damping: 0.3, friction: 0.4, skin: None, rounds: 8 }
+        Self { frequency: 100.0, damping: 0.3, friction: 0.4, skin: None, iterations: 8 }
     }
 }
 
@@ -113,8 +113,8 @@ impl WorldOptions {
         check("friction", contact.friction, contact.friction >= 0.0, natural)?;
         let skin = contact.skin.unwrap_or(1.0);
         check("the skin", skin, skin > 0.0, positive)?;
-        let rounds = contact.rounds as f64;
-        check("the number of rounds", rounds, rounds >= 1.0, "at least 1")?;
+        let iterations = contact.iterations as f64;
+        check("the number of iterations", iterations, iterations >= 1.0, "at least 1")?;
         if let Some(ground) = self.ground {
             let length = ground.normal.length();
             check("the length of the ground's normal", length, (length - 1.0).abs() < 1e-9, "1")?;

@@ -235,7 +235,7 @@ impl<'a> World<'a> {
             return;
         }
         let contact = &self.options.contact;
-        let (rate, damping, max_iterations) = (contact.rate(), contact.damping, contact.rounds);
+        let (rate, damping, max_iterations) = (contact.rate(), contact.damping, contact.iterations);
         let spring = Spring { rate, damping, step: self.options.step, max_iterations };
         self.solver.solve(&mut self.bodies, &self.contacts.list, &spring);
         for constraint in &self.solver.constraints {

@@ -231,7 +231,7 @@ fn invalid_options_and_starts_are_refused() {
         WorldOptions { contact: ContactOptions { damping: -0.1, ..contact }, ..fine },
         WorldOptions { contact: ContactOptions { friction: f64::INFINITY, ..contact }, ..fine },
         WorldOptions { contact: ContactOptions { skin: Some(0.0), ..contact }, ..fine },
-        WorldOptions { contact: ContactOptions { rounds: 0, ..contact }, ..fine },
+        WorldOptions { contact: ContactOptions { iterations: 0, ..contact }, ..fine },
         WorldOptions { ground: Some(Ground { normal: DVec3::ONE, ..ground }), ..fine },
         WorldOptions { ground: Some(Ground { height: f64::NAN, ..ground }), ..fine },
         WorldOptions { ground: Some(Ground { friction: -1.0, ..ground }), ..fine },

@@ -32,7 +32,8 @@ impl Allowance {
                 Ok(())
             }
             None => Err(format!(
-                "its numbers would take more than {} MiB of memory, too much for a file of this size",
+                "its numbers would take more than {} MiB of memory, too much for a file of this size: the file is damaged \
+                 or malformed; write it anew",
                 self.total >> 20
             )),
         }

@@ -9,7 +9,7 @@ pub enum ModesError {
     NoArea,
     /// The surface is so far from the origin that its shape is lost in the rounding of its positions.
     #[error(
-        "the surface (radius {radius:e}) is too small beside its distance {distance:e} from the origin: move it closer"
+        "the surface (radius {radius:e}) is too small compared with its distance {distance:e} from the origin: move the surface closer to the origin"
     )]
     TooFarFromOrigin {
         /// Root mean square distance of the surface from its centroid (model unit).
@@ -37,7 +37,7 @@ pub enum ModesError {
     },
     /// The iteration for the eigenvalues of a dense matrix did not end. Not known to happen.
     #[error(
-        "the eigenvalues of a matrix of {rows} rows did not converge, which is not known to happen: please report it; another number of modes may help"
+        "the eigenvalues of a matrix of {rows} rows did not converge: request another number of modes, and please report it"
     )]
     NoEigenvalues {
         /// Its number of rows.
@@ -60,9 +60,9 @@ pub enum ModesError {
         /// Whether the rounding errors of the lowest vibration are larger than the error allowed for the highest.
         is_rounding: bool,
     },
-    /// Rounding hides the number of vibrations, so one may be missing.
+    /// Rounding errors are too large to count the vibrations, so one may be missing.
     #[error(
-        "rounding hides whether a vibration was missed: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; use elements and materials that differ less, or larger elements"
+        "rounding errors prevent the check that no vibration is missing: the stiffness of vertices differs by a factor of {contrast:.0e}, and the lowest eigenvalue is {lowest:.0e} of the mean one; use elements and materials that differ less, or larger elements"
     )]
     Uncounted {
         /// The largest entry on the diagonal of the stiffness over the smallest.
@@ -138,7 +138,7 @@ pub enum ModesError {
     },
     /// Parts are connected by less than a face.
     #[error(
-        "the body has {found} motions without energy, but a connected body has {expected}: parts share only an edge, a vertex or nothing (join them, or fix more vertices), or rounding hides the lowest vibrations of a very slender body or very different materials (use larger elements)"
+        "the body has {found} motions without energy, but a connected body has {expected}: parts share only an edge, a vertex or nothing (join them, or fix more vertices), or rounding errors exceed the lowest vibrations of a very slender body or very different materials (use larger elements)"
     )]
     Mechanism {
         /// Motions found.
@@ -174,9 +174,7 @@ pub enum ModesError {
         backward: usize,
     },
     /// The surface encloses no volume.
-    #[error(
-        "the surface encloses no volume: use the surface of a solid that is thicker than rounding errors"
-    )]
+    #[error("the surface encloses no volume: use a closed surface of a solid with volume")]
     NoVolume,
     /// The surface collides with itself at rest, so its inside is ambiguous.
     #[error(
@@ -267,10 +265,10 @@ fn unconverged(converged: usize, wanted: usize, ratio: f64, is_rounding: bool) -
     let found = format!("{converged} of {wanted} vibrations converged");
     match is_rounding {
         true => format!(
-            "{found}: the highest frequency is about {ratio:.0} times the lowest, so rounding hides it; request fewer modes"
+            "{found}: the highest frequency is about {ratio:.0} times the lowest, so the lowest is below the rounding errors; request fewer modes"
         ),
         false => format!(
-            "{found} within the maximum number of steps, which is not known to happen: please report it; another number of modes may help"
+            "{found} within the maximum number of iterations: request another number of modes, and please report it"
         ),
     }
 }

@@ -176,5 +176,8 @@ fn an_uncertain_count_is_an_error_with_its_cause() {
     let error = linear_modes(&solid, &[], 20, &()).unwrap_err();
     let ModesError::Uncounted { contrast, lowest } = error else { panic!("{error}") };
     assert!(contrast > 1e13 && lowest > 0.0, "{error}");
-    assert!(error.to_string().contains("rounding hides whether a vibration was missed"), "{error}");
+    assert!(
+        error.to_string().contains("rounding errors prevent the check that no vibration is missing"),
+        "{error}"
+    );
 }

@@ -16,7 +16,7 @@ pub enum SolidError {
         count: usize,
     },
     /// The mesh has no elements.
-    #[error("the mesh has no elements: no tetrahedra and no cubes (hexahedra)")]
+    #[error("the mesh has no elements: add tetrahedra or hexahedra")]
     NoElements,
     /// The material indices do not fit the elements.
     #[error(
@@ -28,8 +28,10 @@ pub enum SolidError {
         /// Number of material numbers.
         found: usize,
     },
-    /// The filled shares do not fit the cubes.
-    #[error("the filled shares do not fit {cubes} cubes: each cube needs eight numbers, from 0 to 1")]
+    /// The volume fractions do not fit the cubes.
+    #[error(
+        "the number of volume fractions does not match {cubes} cubes: each cube needs eight, from 0 to 1"
+    )]
     Fill {
         /// Number of cubes.
         cubes: usize,

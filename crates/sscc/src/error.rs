@@ -159,7 +159,7 @@ pub enum Error {
         what: String,
     },
     /// Parts of certificates that do not fit together.
-    #[error("the certificates are damaged: {0}")]
+    #[error("the certificates are damaged: {0}; certify the model anew")]
     Certificates(String),
     /// A job or a result of certificates computed by several processes that is damaged, foreign or could not be computed.
     #[error("shards: {0}")]

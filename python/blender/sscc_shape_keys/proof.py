@@ -77,7 +77,7 @@ def status(obj: bpy.types.Object | None, ignore_rest: bool) -> Status:
     if certified is None:
         if CERTIFIED in obj:
             return Status("changed", "changed, or certified in another session: certify again")
-        return Status("uncertified", "not certified yet")
+        return Status("uncertified", "not certified yet: press Certify")
     _known.move_to_end((shape.fingerprint(), ignore_rest))
     certificates = certified.certificates
     try:

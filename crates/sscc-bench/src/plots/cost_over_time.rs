@@ -16,7 +16,7 @@ pub fn cost_over_time(scenario: &str, times: &Times, seconds: impl Fn(usize) -> 
     Plot {
         title: format!("Cost over time: {scenario}"),
         x: Axis::linear("time (s)"),
-        y: Axis::logarithmic("discrete query, ms in a step"),
+        y: Axis::logarithmic("discrete query, ms per step"),
         series: shown.into_iter().filter(|(_, times)| !times.is_empty()).map(line).collect(),
     }
 }

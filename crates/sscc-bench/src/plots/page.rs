@@ -27,7 +27,7 @@ impl BenchPage {
     /// Returns the page, titled with the name of the scenario.
     ///
     /// # Errors
-    /// When the page cannot be made.
+    /// When the report cannot be written.
     pub fn html(&self, scenario: &str) -> Result<String, Error> {
         let records = &self.records;
         let mut scene = Scene::new(format!("sscc bench {scenario}"));

@@ -114,7 +114,8 @@ impl Strata {
     /// none.
     pub fn missing(&self) -> Option<String> {
         let counts = Stratum::counts(self.of.iter().copied());
-        let names = ["the root certifies", "the root leaves open", "collide"];
+        let names =
+            ["the root's certificate proves free", "are free where the root's certificate fails", "collide"];
         let missing: Vec<String> = (0..3)
             .filter(|stratum| counts[*stratum] == 0 && self.scene[*stratum] > 0)
             .map(|stratum| format!("none of the {} steps that {}", self.scene[stratum], names[stratum]))
@@ -211,8 +212,8 @@ mod tests {
         let strata = Strata::new(vec![RootCertified; 10], Some([700, 90, 10]));
         assert_eq!(
             strata.missing().unwrap(),
-            "none of the 90 steps that the root leaves open and none of the 10 steps that collide is measured: \
-             choose more with --steps"
+            "none of the 90 steps that are free where the root's certificate fails and none of the 10 steps that collide \
+             is measured: choose more with --steps"
         );
         assert!(Strata::new(vec![Colliding], None).missing().is_none());
     }

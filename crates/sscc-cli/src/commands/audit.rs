@@ -47,7 +47,10 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
         match found.violations.len() {
             0 => out.line(format_args!("{samples} attacks, no violation found"))?,
             n => {
-                out.line(format_args!("{samples} attacks, {n} VIOLATIONS: do not use these certificates"))?
+                out.line(format_args!(
+                    "{samples} attacks, {n} VIOLATIONS: do not use these certificates; certify the model anew, and \
+                     report the defect if this build computed them"
+                ))?
             }
         }
         out.line("tightness (radius over the closest collision found; 1 is the best possible):")?;

@@ -155,7 +155,7 @@ fn measurements() {
     let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let seconds = format!("simulated in {all:.2} s of processor time, ");
-    let strata = "means are of the whole scene: the root certifies ";
+    let strata = "means are of the whole scene: ";
     for part in [&seconds[..], strata, "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
     }

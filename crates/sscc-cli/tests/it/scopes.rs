@@ -218,10 +218,10 @@ fn flags_must_not_contradict_certificates() {
         assert_eq!(run(&[agrees]).code, Some(0), "{agrees}");
     }
     for (contradicts, named) in [
-        ("--weld", "they were made without welding"),
-        ("--weld=on", "they were made without welding"),
+        ("--weld", "they were computed without welding"),
+        ("--weld=on", "they were computed without welding"),
         ("--center=0,1", "another centre"),
-        ("--neighbours=include-one-vertex", "neighbour rule"),
+        ("--neighbours=include-one-vertex", "they have neighbours = exclude, but include-one-vertex"),
     ] {
         assert!(run(&[contradicts]).refusal().contains(named), "{contradicts}");
     }
@@ -242,7 +242,7 @@ fn poses_that_cannot_be_written() {
     let directory = strips();
     let folder = directory.path();
     for (args, named) in [
-        (&["--q=0,0", "--pose", "pose.stl"][..], "pose.stl: a pose is written as .ply or .obj"),
+        (&["--q=0,0", "--pose", "pose.stl"][..], "pose.stl: the name of a pose must end in .ply or .obj"),
         (&["--q=0,0", "--pose", "none/pose.ply"], "none/pose.ply: cannot be written"),
         (&["--q=0,0", "--pose", "mesh.obj"], "mesh.obj: the output is an input"),
         (&["--trajectory", "modes.npy", "--pose", "pose.ply"], "--trajectory"),

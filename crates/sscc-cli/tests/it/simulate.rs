@@ -226,14 +226,14 @@ fn the_motion_is_the_same_for_any_number_of_threads_and_any_detection() {
 /// Certificates are measured in amplitudes of modes: with doubled amplitudes the radius is halved.
 #[test]
 fn radii_are_measured_in_amplitudes() {
-    let radius = |spread: &str| {
-        let folder = folder(&SCENE.replace("rank = 10", &format!("rank = 10{spread}")));
+    let radius = |amplitudes: &str| {
+        let folder = folder(&SCENE.replace("rank = 10", &format!("rank = 10{amplitudes}")));
         let run = simulate(folder.path(), &["scene.toml", "--steps", "1", "--json"]);
         assert_eq!(run.code, Some(0), "{run:?}");
         run.json()[0]["models"][0]["root_radius"].as_f64().unwrap()
     };
-    let spread = |amplitude: f64| format!("\nspread = {:?}", [amplitude; 10]);
-    let [energy, one, two] = ["", &spread(0.125), &spread(0.25)].map(radius);
+    let all = |amplitude: f64| format!("\namplitudes = {:?}", [amplitude; 10]);
+    let [energy, one, two] = ["", &all(0.125), &all(0.25)].map(radius);
     assert!((one - 2.0 * two).abs() < 1e-9 * one && (one / energy - 1.0).abs() > 0.1, "{energy} {one} {two}");
 }
 

@@ -39,7 +39,7 @@ impl Kind {
             ))),
             Ok(number) if number > 0 && number.to_string() == version => Ok(number),
             _ => {
-                let cause = format!("{} is no version number", quoted(version));
+                let cause = format!("{} is not a version number: create the file anew", quoted(version));
                 Err(FormatError::new(Place::Key("version".into()), cause))
             }
         }

@@ -167,7 +167,7 @@ fn checked_header(bytes: &[u8]) -> Result<&str, FormatError> {
             Ok(text) => return Ok(text),
             Err(_) => "the header is not UTF-8 text".into(),
         },
-        None => format!("a header of {length} bytes does not fit into the file"),
+        None => format!("a header of {length} bytes does not fit into the file: create the file anew"),
     };
     Err(FormatError::new(Place::Byte(0), cause))
 }

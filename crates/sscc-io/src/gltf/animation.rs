@@ -171,7 +171,7 @@ fn check(models: &[NamedModel<'_>], times: &[f64], tracks: &[Track]) -> Result<(
     }
     // Times in the precision of the file.
     if let Some(at) = times.windows(2).position(|pair| (pair[0] as f32) >= pair[1] as f32) {
-        return Err(format!("key frame {} is not after the one before it", at + 1));
+        return Err(format!("key frame {} is not later than the one before it: times must increase", at + 1));
     }
     for Track { name, model, positions, orientations, weights, .. } in tracks {
         let Some(NamedModel { model, .. }) = models.get(*model) else {

@@ -46,7 +46,10 @@ impl<'a> Buffers<'a> {
             Some(uri) => {
                 let path = beside(uri).map_err(refused)?;
                 let Some(folder) = self.folder else {
-                    return Err(refused(format!("the file {} is needed beside this one", quoted(uri))));
+                    return Err(refused(format!(
+                        "the file {} is needed, but these data have no folder: read the glTF file by its path",
+                        quoted(uri)
+                    )));
                 };
                 if !self.files.contains_key(&path) {
                     let bytes =

@@ -166,9 +166,9 @@ impl Assembly<'_> {
             let cause = format!("names vertex {largest} (counted from 0), but there are {count}");
             return Err(refused(cause));
         }
-        topology
-            .triangles(&corners)
-            .ok_or_else(|| refused(format!("{} corners do not make triangles", corners.len())))
+        topology.triangles(&corners).ok_or_else(|| {
+            refused(format!("{} indices are not a multiple of 3: each triangle needs three", corners.len()))
+        })
     }
 
     fn take(&mut self, count: usize, size: u64, part: &str) -> Result<(), FormatError> {

@@ -38,7 +38,9 @@ pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatErr
     let Some(name) = name else {
         return match movable[..] {
             [one] => Ok(one),
-            [] => Err(FormatError::whole("no mesh of the file has morph targets")),
+            [] => Err(FormatError::whole(
+                "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes",
+            )),
             _ => {
                 let cause = format!(
                     "{} meshes have morph targets: choose one with --mesh-name: {}",
@@ -107,7 +109,10 @@ mod tests {
         );
         assert_eq!(choose(&many, Some("#2")), Ok(2));
         assert!(message(&many, Some("#4")).starts_with("there is no mesh '#4'"));
-        assert_eq!(message(&root(&[]), None), "no mesh of the file has morph targets");
+        assert_eq!(
+            message(&root(&[]), None),
+            "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes"
+        );
         assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; meshes with morph targets: none");
         let infos = list(&many);
         assert_eq!((infos[0].name.as_str(), infos[2].targets, infos[2].primitives), ("#0", 3, 1));

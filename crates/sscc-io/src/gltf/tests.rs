@@ -134,7 +134,10 @@ fn external_and_embedded_buffers() {
     assert_eq!(read(&path, None).unwrap(), whole);
     assert_eq!(list_meshes(&path).unwrap()[0].targets, 2);
     let alone = parse(json.as_bytes(), None).unwrap_err().to_string();
-    assert!(alone.contains("buffers[0]: the file './sub%20dir/b.bin' is needed beside this one"), "{alone}");
+    assert!(
+        alone.contains("buffers[0]: the file './sub%20dir/b.bin' is needed, but these data have no folder"),
+        "{alone}"
+    );
     let data = base64::engine::general_purpose::STANDARD.encode(binary());
     let json = with_uri(&format!("data:application/gltf-buffer;base64,{data}"));
     assert_eq!(parse(json.as_bytes(), None).unwrap(), whole);

@@ -42,7 +42,10 @@ impl Builder {
 
     pub fn vertex(&mut self, position: DVec3, place: Place) -> Result<(), FormatError> {
         if !sscc::limits::contains(position) {
-            return Err(FormatError::new(place, "a coordinate is larger than 2^200 or not finite"));
+            return Err(FormatError::new(
+                place,
+                "a coordinate is not finite, or beyond 2^200: repair it, or change the unit",
+            ));
         }
         self.parts.vertices.push(position);
         Ok(())

@@ -172,7 +172,10 @@ mod tests {
         assert_eq!(with("\n3\nV", "\n2\nV"), "line 4: dimension 2 is not supported, only 3");
         assert_eq!(with("Dimension\n3\n", ""), "line 3: 'Dimension 3' is missing before the vertices");
         assert_eq!(with("1 0 0 0", "nan 0 0 0"), "line 7: 'nan' is not a finite number");
-        assert_eq!(with("1 0 0 0", "2e60 0 0 0"), "line 7: a coordinate is larger than 2^200 or not finite");
+        assert_eq!(
+            with("1 0 0 0", "2e60 0 0 0"),
+            "line 7: a coordinate is not finite, or beyond 2^200: repair it, or change the unit"
+        );
         assert_eq!(
             with("2 3 4 5 -1", "2 3 4 0 -1"),
             "line 17: names vertex 0, but vertices are counted from 1"

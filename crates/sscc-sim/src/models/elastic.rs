@@ -13,7 +13,8 @@ const LINEAR_RANK: usize = 20;
 const NONLINEAR_RANK: usize = 30;
 
 /// Cause of the error if polynomial modes are requested with a rank or with fixed vertices.
-pub const POLYNOMIAL_MODES_ERROR: &str = "polynomial modes are always all 24, and move every vertex";
+pub const POLYNOMIAL_MODES_ERROR: &str =
+    "polynomial modes are always 24 and have no fixed vertices: leave these flags out";
 
 /// Kinds of modes of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

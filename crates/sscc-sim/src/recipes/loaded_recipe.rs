@@ -177,14 +177,14 @@ mod tests {
     }
 
     #[test]
-    fn the_spread_is_the_unit_of_certificates() {
+    fn amplitudes_are_the_units_of_certificates() {
         let plain = Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6));
         let (model, _) =
             LoadedRecipe::load(&plain, None, &()).unwrap().modes(ModesSpec::Linear(6), &()).unwrap();
         assert_eq!(&plain.metric(&model).unwrap(), model.metric());
-        let spread = vec![0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
-        let metric = Recipe { spread: Some(spread.clone()), ..plain }.metric(&model).unwrap();
+        let amplitudes = vec![0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+        let metric = Recipe { amplitudes: Some(amplitudes.clone()), ..plain }.metric(&model).unwrap();
         assert_eq!(metric.kind(), MetricKind::Given);
-        assert!((metric.norm(&spread) - 6.0_f64.sqrt()).abs() < 1e-12);
+        assert!((metric.norm(&amplitudes) - 6.0_f64.sqrt()).abs() < 1e-12);
     }
 }

@@ -23,7 +23,7 @@ pub struct Recipe {
     /// Longest side of the AABB of a surface; none: not scaled.
     pub size: Option<f64>,
     /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
-    pub spread: Option<Vec<f64>>,
+    pub amplitudes: Option<Vec<f64>>,
 }
 
 /// Modes of a free elastic body.
@@ -60,7 +60,7 @@ impl Recipe {
             material: PartialMaterial::default(),
             cells: None,
             size: None,
-            spread: None,
+            amplitudes: None,
         }
     }
 
@@ -73,10 +73,10 @@ impl Recipe {
     /// Returns the metric for the certificates of its model.
     ///
     /// # Errors
-    /// When the spread has a number out of range.
+    /// When an amplitude is out of range.
     pub fn metric(&self, model: &ReducedModel) -> Result<Metric, SimError> {
-        let Some(spread) = &self.spread else { return Ok(model.metric().clone()) };
-        let scales = spread.iter().map(|amplitude| 1.0 / amplitude).collect();
-        Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: spread", self.name))
+        let Some(amplitudes) = &self.amplitudes else { return Ok(model.metric().clone()) };
+        let scales = amplitudes.iter().map(|amplitude| 1.0 / amplitude).collect();
+        Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: amplitudes", self.name))
     }
 }

@@ -65,7 +65,10 @@ impl StateLog {
         // Two simulations at once would overwrite each other's states.
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
-                return Err(SimError::refused(path.display(), "another simulation is writing to this file"));
+                return Err(SimError::refused(
+                    path.display(),
+                    "another simulation is writing to this file: wait for it, or choose another folder with --out",
+                ));
             }
             Err(TryLockError::Error(error)) => return Err(error).system(&path),
             Ok(()) => {}
@@ -116,7 +119,10 @@ impl StateLog {
         }
         let (digest, rest) = rest.split_at_checked(DIGEST).ok_or_else(damaged)?;
         if digest != self.digest {
-            return Err(SimError::refused(path.display(), "this file belongs to another simulation"));
+            return Err(SimError::refused(
+                path.display(),
+                "this file belongs to another simulation: choose another folder, or begin again with --restart",
+            ));
         }
         let (of_states, rest) = rest.split_at_checked(HASH).ok_or_else(damaged)?;
         let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { return Err(damaged()) };

@@ -174,7 +174,7 @@ impl Summary {
     fn contact(&self) -> String {
         let share = |part: usize, all: usize| 100.0 * part as f64 / all.max(1) as f64;
         format!(
-            "{} of {} steps ({:.1}%), in {:.1}% with each body counted",
+            "{} of {} steps ({:.1}%); {:.1}% of the steps of single bodies",
             grouped(self.colliding_steps as u64),
             grouped(self.steps as u64),
             share(self.colliding_steps, self.steps),

@@ -36,11 +36,13 @@ pub fn read(scene: &Section<'_>, models: &[ModelSpec]) -> Result<Vec<BodySpec>> 
     for section in scene.sections("bodies", &KEYS)? {
         push(&section, models, &mut bodies)?;
         if bodies.len() > MAX_BODIES {
-            return Err(scene.refused("bodies", format!("there are more than {MAX_BODIES}")));
+            return Err(
+                scene.refused("bodies", format!("a scene may have at most {MAX_BODIES} bodies: use fewer"))
+            );
         }
     }
     if bodies.is_empty() {
-        return Err(scene.refused("bodies", "there are none"));
+        return Err(scene.refused("bodies", "the scene has no bodies: add at least one [[bodies]]"));
     }
     Ok(bodies)
 }
@@ -51,7 +53,7 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
     let Some(model) = models.iter().position(|model| model.recipe.name == name) else {
         let meant = nearest(name, models.iter().map(|model| model.recipe.name.as_str()));
         let cause = match meant {
-            None => "there are no models".into(),
+            None => "the scene has no models: add a table [models.NAME]".into(),
             Some(meant) => format!("there is no such model; did you mean '{meant}'?"),
         };
         return Err(section.refused("model", cause));
@@ -74,7 +76,7 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
     let Some(grid) = section.vector("grid")? else {
         for key in ["turn", "spacing"] {
             if section.has(key) {
-                return Err(section.refused(key, "only a grid has it"));
+                return Err(section.refused(key, "this key needs grid: add grid, or leave it out"));
             }
         }
         bodies.push(first);
@@ -108,6 +110,8 @@ fn rotation(section: &Section<'_>) -> Result<DQuat> {
     let degrees = rotation.require("degrees", rotation.number("degrees")?)?;
     match axis.try_normalize() {
         Some(axis) => Ok(DQuat::from_axis_angle(axis, degrees.to_radians())),
-        None => Err(rotation.refused("axis", "it has no direction")),
+        None => {
+            Err(rotation.refused("axis", "the axis is 0: give an axis with a direction, such as [0, 0, 1]"))
+        }
     }
 }

@@ -37,15 +37,29 @@ impl ModelSpec {
 
     /// Replaces the model by the small spring.
     pub fn quicken(&mut self) {
-        let Recipe { shape, modes, cells, spread, .. } = &mut self.recipe;
+        let Recipe { shape, modes, cells, amplitudes, .. } = &mut self.recipe;
         (*shape, *modes, *cells) = (Shape::SMALL_SPRING, ModesSpec::Linear(QUICK_RANK), None);
-        *spread = None;
+        *amplitudes = None;
         self.is_linear = true;
     }
 }
 
-const KEYS: [&str; 10] =
-    ["shape", "file", "size", "resolution", "kind", "rank", "material", "damping", "dynamics", "spread"];
+const KEYS: [&str; 11] = [
+    "shape",
+    "file",
+    "size",
+    "resolution",
+    "kind",
+    "rank",
+    "material",
+    "damping",
+    "dynamics",
+    "amplitudes",
+    "spread",
+];
+
+/// The names of the key of the amplitudes of modes.
+const AMPLITUDES: [&str; 2] = ["amplitudes", "spread"];
 
 /// Names of embedded shapes, and of those that they stand in for.
 const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
@@ -73,7 +87,9 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         (Some(_), Some(_)) => {
             return Err(model.refused("file", "the model has both shape and file: leave one of them out"));
         }
-        (None, None) => return Err(model.refused("shape", "it is missing (or a file)")),
+        (None, None) => {
+            return Err(model.refused("shape", "it is missing: give shape = \"NAME\" or file = \"PATH\""));
+        }
         (None, Some(file)) => Shape::File(folder.join(file)),
         (Some("spring"), _) => Shape::SPRING,
         (Some("spring-4k"), _) => Shape::SMALL_SPRING,
@@ -86,13 +102,16 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         "linear" => (ModesSpec::Linear(rank.unwrap_or(20)), true),
         "nonlinear" => (ModesSpec::Nonlinear(rank.unwrap_or(30)), false),
         _ if rank.is_some_and(|rank| rank != 24) => {
-            return Err(model.refused("rank", "polynomial modes are always all 24"));
+            return Err(model.refused("rank", "polynomial modes are always 24: leave rank out"));
         }
         _ => (ModesSpec::Polynomial, true),
     };
     let dynamics = model.word("dynamics", &[("linear", true), ("nonlinear", false)])?;
     if let (ModesSpec::Linear(_), Some(false)) = (modes, dynamics) {
-        return Err(model.refused("dynamics", "linear modes move linearly"));
+        return Err(model.refused(
+            "dynamics",
+            "linear modes have no nonlinear forces: use dynamics = \"linear\", or kind = \"nonlinear\"",
+        ));
     }
     let (material, default_damping) = material(model)?;
     let recipe = Recipe {
@@ -102,22 +121,23 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         material,
         cells: model.count("resolution", MAX_CELLS)?,
         size: model.positive("size")?,
-        spread: spread(model, modes.rank())?,
+        amplitudes: amplitudes(model, modes.rank())?,
     };
     let damping = damping(model)?.unwrap_or(default_damping);
     Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
 }
 
-/// Reads `spread = [...]`: the amplitude of each mode.
-fn spread(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
-    let Some(spread) = model.numbers("spread")? else { return Ok(None) };
-    if spread.len() != rank {
-        return Err(model.refused("spread", format!("{} numbers for {rank} modes", spread.len())));
+/// Reads `amplitudes = [...]`, one of each mode.
+fn amplitudes(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
+    let key = model.either(AMPLITUDES)?;
+    let Some(amplitudes) = model.numbers(key)? else { return Ok(None) };
+    if amplitudes.len() != rank {
+        return Err(model.refused(key, format!("{} numbers for {rank} modes", amplitudes.len())));
     }
-    if spread.iter().any(|amplitude| *amplitude <= 0.0) {
-        return Err(model.refused("spread", "numbers above 0 were expected"));
+    if amplitudes.iter().any(|amplitude| *amplitude <= 0.0) {
+        return Err(model.refused(key, "numbers above 0 were expected"));
     }
-    Ok(Some(spread))
+    Ok(Some(amplitudes))
 }
 
 /// Reads `damping = { mass, stiffness }`.

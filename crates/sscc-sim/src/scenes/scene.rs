@@ -125,7 +125,10 @@ impl Scene {
             return Err(SimError::refused(path.display(), cause));
         }
         let text = str::from_utf8(&bytes).map_err(|error| {
-            SimError::refused(format_args!("{}: not a text file", path.display()), error.to_string())
+            SimError::refused(
+                format_args!("{}: not UTF-8 text: save it as UTF-8", path.display()),
+                error.to_string(),
+            )
         })?;
         Self::parse(path, text)
     }
@@ -153,8 +156,8 @@ impl Scene {
         let contact = contact(&scene)?;
         if rate < MIN_CONTACT_STEPS * contact.frequency {
             let cause = format!(
-                "the period of contacts of {} Hz is less than {MIN_CONTACT_STEPS} of these steps: use more steps, or \
-                 a lower frequency",
+                "the period of contacts of {} Hz is less than {MIN_CONTACT_STEPS} steps: raise steps_per_second, or \
+                 lower the frequency of [contact]",
                 contact.frequency
             );
             return Err(scene.refused("steps_per_second", cause));
@@ -200,16 +203,19 @@ fn ground(scene: &Section<'_>) -> Result<Option<Ground>> {
     }))
 }
 
+/// The names of the key of the number of solver iterations.
+const ITERATIONS: [&str; 2] = ["iterations", "rounds"];
+
 fn contact(scene: &Section<'_>) -> Result<ContactOptions> {
     let default = ContactOptions::default();
-    let keys = ["frequency", "damping", "friction", "skin", "rounds"];
+    let keys = ["frequency", "damping", "friction", "skin", "iterations", "rounds"];
     let Some(contact) = scene.section("contact", &keys)? else { return Ok(default) };
     Ok(ContactOptions {
         frequency: contact.positive("frequency")?.unwrap_or(default.frequency),
         damping: contact.not_negative("damping")?.unwrap_or(default.damping),
         friction: contact.not_negative("friction")?.unwrap_or(default.friction),
         skin: contact.positive("skin")?,
-        rounds: contact.count("rounds", 1000)?.unwrap_or(default.rounds),
+        iterations: contact.count(contact.either(ITERATIONS)?, 1000)?.unwrap_or(default.iterations),
     })
 }
 

@@ -86,6 +86,20 @@ impl<'a> Section<'a> {
         self.value(key).is_some()
     }
 
+    /// Returns which of the two names of a key the table has; the first if it has neither.
+    ///
+    /// # Errors
+    /// When the table has both.
+    pub fn either<'k>(&self, [name, alias]: [&'k str; 2]) -> Result<&'k str> {
+        match (self.has(name), self.has(alias)) {
+            (true, true) => {
+                Err(self.refused(alias, format_args!("the same key as {name}: leave one of them out")))
+            }
+            (false, true) => Ok(alias),
+            _ => Ok(name),
+        }
+    }
+
     /// Reads a finite number.
     pub fn number(&self, key: &str) -> Result<Option<f64>> {
         let Some(value) = self.value(key) else { return Ok(None) };
@@ -183,7 +197,7 @@ impl<'a> Section<'a> {
         let mut found = Vec::new();
         for (name, value) in all.iter() {
             let DeValue::Table(table) = value.get_ref() else {
-                return self.expected(key, "a table of tables");
+                return self.expected(key, &format!("a table such as [{key}.NAME]"));
             };
             found.push((name.get_ref().as_ref(), Self::within(self.text, table, value.span(), keys)?));
         }
@@ -191,12 +205,12 @@ impl<'a> Section<'a> {
         Ok(found)
     }
 
-    /// Reads a list of tables.
+    /// Reads an array of tables.
     pub fn sections(&self, key: &str, keys: &[&str]) -> Result<Vec<Section<'a>>> {
         let mut found = Vec::new();
         for value in self.array(key)?.into_iter().flat_map(|array| array.iter()) {
             let DeValue::Table(table) = value.get_ref() else {
-                return self.expected(key, "a list of tables");
+                return self.expected(key, &format!("an array of tables such as [[{key}]]"));
             };
             found.push(Self::within(self.text, table, value.span(), keys)?);
         }

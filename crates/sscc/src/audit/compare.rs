@@ -81,7 +81,7 @@ impl Comparison<'_> {
                     let found = query.continuous(&motion.q_t0, &motion.q_t1)?;
                     violations.extend(self.missed(&expected, found, &motion).map(|missed| {
                         format!(
-                            "triangles {} and {} meet from q = {:?} to {:?}, but only one of the {methods} answers \
+                            "triangles {} and {} collide between q = {:?} and {:?}, but only one of the {methods} answers \
                              lists them",
                             missed.0, missed.1, motion.q_t0, motion.q_t1
                         )

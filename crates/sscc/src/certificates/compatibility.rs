@@ -36,13 +36,13 @@ impl Certificates {
     pub fn check_filter(&self, filter: &ContactFilter) -> Result<(), Error> {
         let certified = self.filter();
         let what = if certified.neighbours != filter.neighbours {
-            let [certified, asked] = [certified, filter].map(|filter| filter.neighbours.name());
-            format!("they were made with the neighbour rule {certified}, not {asked}")
+            let [certified, requested] = [certified, filter].map(|filter| filter.neighbours.name());
+            format!("they have neighbours = {certified}, but {requested} was requested")
         } else if certified.weld != filter.weld {
-            format!("they were made with{} welding", if certified.weld { "" } else { "out" })
+            format!("they were computed with{} welding", if certified.weld { "" } else { "out" })
         } else if certified.ignored() != filter.ignored() {
-            let [certified, asked] = [certified, filter].map(|filter| filter.ignored().len());
-            format!("the {certified} pairs that they ignore are not the {asked} asked for")
+            let [certified, requested] = [certified, filter].map(|filter| filter.ignored().len());
+            format!("their {certified} ignored pairs differ from the {requested} requested ones")
         } else {
             return Ok(());
         };

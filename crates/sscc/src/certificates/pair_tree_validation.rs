@@ -28,10 +28,10 @@ impl PairTree {
             return if is_empty { Ok(Vec::new()) } else { Err("it has pairs, but no limit") };
         }
         if self.starts().len() != hierarchy.nodes().len() {
-            return Err("there is not one start for each node");
+            return Err("the number of starts is not the number of nodes");
         }
         if self.len() > MAX_ENTRIES {
-            return Err("it has more pairs than links can name");
+            return Err("it has more node pairs than its indices can address");
         }
         let mut pairs: Vec<NodePair> = Vec::new();
         for (n, start) in self.starts().iter().enumerate() {

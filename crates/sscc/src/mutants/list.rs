@@ -15,7 +15,7 @@ mutants! {
     /// Radii of the pair tree are rounded to the nearest single-precision number.
     RadiusToNearest: CaughtBy("it rounding::radii_in_single_precision_are_no_larger");
     /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
-    DenseRateOfModesAlone: CaughtBy("it rounding::dense_metrics_see_what_their_modes_cancel");
+    DenseRateOfModesAlone: CaughtBy("it rounding::dense_metrics_bound_cancellation");
     /// Of a dense metric, products that cancel are not rounded up.
     DenseProductsExact: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// The rounding bound of a dense metric omits the error of the inverse of its factor.
@@ -27,19 +27,19 @@ mutants! {
     /// Quotients of bounds are not rounded down.
     QuotientToNearest: CaughtBy("lib bounds::tests::rounding::roots_are_rounded_up_and_quotients_down");
     /// The bound along a separating direction omits the rounding error of rest positions (e0).
-    DirectionWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_positions_at_rest_are_rounded");
+    DirectionWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_include_rounding_of_rest_positions");
     /// The bound along a separating direction omits the rounding error of motion (e1).
-    DirectionWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
+    DirectionWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_include_rounding_of_motion");
     /// The bound of two nodes omits the rounding error of rest positions (e0).
-    NodePairWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_positions_at_rest_are_rounded");
+    NodePairWithoutRestError: CaughtBy("lib bounds::tests::rounding::bounds_include_rounding_of_rest_positions");
     /// The bound of two nodes omits the rounding error of motion (e1).
-    NodePairWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
+    NodePairWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_include_rounding_of_motion");
     /// The affine residual of a node omits its rounding error.
     NodeFitExact: CaughtBy("lib bounds::node_modes::tests::residuals_hold_what_the_fit_has_rounded");
     /// Norms from the Gram matrix of two nodes omit its rounding error.
     NodePairProductsExact: CaughtBy("lib bounds::node_pair::tests::corners_that_cancel_keep_their_rate");
     /// The affine bound omits the rounding error of motion (e1).
-    AffineWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_know_that_motion_is_rounded");
+    AffineWithoutRateError: CaughtBy("lib bounds::tests::rounding::bounds_include_rounding_of_motion");
     /// The affine residual of two triangles omits its rounding error.
     AffineResidualExact: CaughtBy("lib bounds::affine_fit::tests::residuals_hold_what_rounding_moves_corners_by");
     /// Closing rates on a cone of directions omit the rounding error of their Gram matrix.
@@ -55,13 +55,13 @@ mutants! {
     /// A |z| that equals a node's radius is certified in a traversal of the pair tree.
     TreeNodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of a stored pair is certified.
-    TreeRadiusReached: CaughtBy("it pair_tree_traversal::what_equals_a_radius_is_not_certified");
+    TreeRadiusReached: CaughtBy("it pair_tree_traversal::norms_equal_to_a_radius_are_not_certified");
     /// At a |z| that equals the limit of the pair tree, what is not stored is certified.
     TreeLimitReached: CaughtBy("it pair_tree::absence_means_nothing_at_the_limit");
     /// Pairs that collide at the centre are not tested.
-    ExceptionsForgotten: CaughtBy("it pair_tree_traversal::traversal_finds_what_brute_force_finds");
+    ExceptionsForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Of two triangles with a common vertex only one of the edges opposite to it is bounded.
-    OneHullOfTwo: CaughtBy("it neighbours::one_vertex_neighbours_are_found_when_asked_for");
+    OneHullOfTwo: CaughtBy("it neighbours::shared_vertex_pairs_are_found_on_request");
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
     /// The separating-axis test uses half of its error bound.
@@ -77,11 +77,11 @@ mutants! {
     /// The error bound of positions in single precision omits quantization.
     QuantizationExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
-    CoarseTrianglesNotWidened: CaughtBy("it rounding::what_touches_exactly_is_met_in_single_precision");
+    CoarseTrianglesNotWidened: CaughtBy("it rounding::exact_contacts_are_found_in_single_precision");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Swept AABBs of triangles contain the start only.
-    SweptTrianglesAtStart: CaughtBy("it pair_tree_traversal::traversal_finds_what_brute_force_finds");
+    SweptTrianglesAtStart: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Swept AABBs of nodes contain the start only.
     SweptNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// Swept AABBs of nodes in single precision contain the start only.

@@ -61,7 +61,7 @@ fn beyond_a_vertex_is_decided_exactly() {
 
 /// Two triangles with a common corner: one stands, the other is lowered through it.
 #[test]
-fn one_vertex_neighbours_are_found_when_asked_for() {
+fn shared_vertex_pairs_are_found_on_request() {
     let p = vec![
         DVec3::ZERO,
         DVec3::new(2.0, -1.0, -1.0),

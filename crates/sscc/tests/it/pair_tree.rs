@@ -161,8 +161,8 @@ fn damaged_trees_are_refused() {
         change(&mut starts);
         refusal(PairTree::from_parts(limit, starts, entries.clone()))
     };
-    assert_eq!(of_starts(&|s| _ = s.pop()), "pair tree: there is not one start for each node");
-    assert_eq!(of_starts(&|s| s.clear()), "pair tree: there is not one start for each node");
+    assert_eq!(of_starts(&|s| _ = s.pop()), "pair tree: the number of starts is not the number of nodes");
+    assert_eq!(of_starts(&|s| s.clear()), "pair tree: the number of starts is not the number of nodes");
     assert_eq!(of_starts(&|s| s[0] = 1), "pair tree: lists of siblings are out of order");
     assert!(of_starts(&|s| s[0] = u32::MAX).starts_with("pair tree: "));
     let leaf = good.hierarchy().nodes().iter().position(|node| node.is_leaf()).unwrap();

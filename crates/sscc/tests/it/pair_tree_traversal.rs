@@ -13,7 +13,7 @@ fn scaled(z: &[f64], size: f64) -> Vec<f64> {
 }
 
 #[test]
-fn traversal_finds_what_brute_force_finds() {
+fn traversal_agrees_with_brute_force() {
     let (mut below, mut hits, mut beyond, mut with_exceptions, mut partial) = (0, 0, 0, 0, 0);
     for seed in 0..40 {
         let random = &mut Random::new(seed + 500);
@@ -108,7 +108,7 @@ fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool
 
 /// "Less" is a proof, "equal" is none, for radii and for the limit.
 #[test]
-fn what_equals_a_radius_is_not_certified() {
+fn norms_equal_to_a_radius_are_not_certified() {
     let model = sheets();
     let options = CertifyOptions { budget: 1 << 16, epsilon: 0.5, ..CertifyOptions::default() };
     let computed = Certificates::compute(&model, &options, &()).unwrap();

@@ -99,7 +99,7 @@ fn positions_about_a_centre_are_rounded_on_the_way_there() {
 /// A dense metric in which the motion of everything is next to nothing, since its modes cancel: |A| is small there,
 /// |A||S||S^-1|, which rounds positions, is not.
 #[test]
-fn dense_metrics_see_what_their_modes_cancel() {
+fn dense_metrics_bound_cancellation() {
     let random = &mut Random::new(3);
     let (mut certified, mut colliding) = (0, 0);
     for _ in 0..40 {
@@ -186,7 +186,7 @@ fn safe_scales_end_before_rounding_closes_a_gap() {
 /// At q = 1 each of many triangles touches another one exactly, by a motion of its own: their boxes, made from positions
 /// in single precision, must not pass by each other.
 #[test]
-fn what_touches_exactly_is_met_in_single_precision() {
+fn exact_contacts_are_found_in_single_precision() {
     let random = &mut Random::new(6);
     let (mut p, mut displacements) = (Vec::new(), Vec::new());
     for i in 0..300 {

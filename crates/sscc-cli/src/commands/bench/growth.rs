@@ -2,7 +2,7 @@
 
 use sscc_bench::{Exponents, GROWTH_RANK};
 
-/// Returns the powers of the number of triangles with which costs grow, one a line; no lines for a single size.
+/// Returns the growth exponents of costs over the number of triangles, one a line; no lines for a single size.
 pub fn exponent_lines(exponents: &Exponents) -> Vec<String> {
     if exponents.certify_seconds.is_none() {
         return Vec::new();
@@ -12,9 +12,7 @@ pub fn exponent_lines(exponents: &Exponents) -> Vec<String> {
         format!("  {name:<24}{value:>6}")
     };
     let mut lines = vec![
-        format!(
-            "exponents: the power of the number of triangles with which each grows ({GROWTH_RANK} modes):"
-        ),
+        format!("growth exponents over the number of triangles ({GROWTH_RANK} modes):"),
         line("seconds to certify", exponents.certify_seconds),
         line("peak memory", exponents.certify_peak_bytes),
     ];

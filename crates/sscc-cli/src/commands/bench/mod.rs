@@ -40,7 +40,10 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     if let Some(report) = &args.report {
         write_whole(report, page.html(name)?.as_bytes())?;
     }
-    ensure!(mismatches == 0, "exact methods differ in {mismatches} steps: this is a defect of sscc");
+    ensure!(
+        mismatches == 0,
+        "exact methods differ in {mismatches} steps: this is a defect of sscc; please report it with this command and its output"
+    );
     Ok(Outcome::Done)
 }
 

@@ -45,7 +45,7 @@ impl<'a> Table<'a> {
         ));
         if first.scene_steps > first.steps {
             lines.push(format!(
-                "whole scene: {} of {} steps collide, {} of {} with each body counted",
+                "whole scene: {} of {} steps collide, {} of {} queries (one for each body and step)",
                 first.scene_colliding_steps,
                 first.scene_steps,
                 grouped(first.scene_colliding_body_steps as u64),
@@ -64,7 +64,7 @@ impl<'a> Table<'a> {
             let [scene, compared] = first.strata;
             let scene = scene.map(|steps| grouped(steps as u64));
             lines.push(format!(
-                "means are of the whole scene: the root certifies {} steps ({} compared), leaves {} open ({}), and {} collide ({})",
+                "means are of the whole scene: {} steps free by the root's certificate ({} compared), {} free where it fails ({}), {} colliding ({})",
                 scene[0], compared[0], scene[1], compared[1], scene[2], compared[2]
             ));
         }

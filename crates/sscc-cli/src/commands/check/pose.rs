@@ -14,7 +14,7 @@ pub fn check(path: &Path, model: &args::Model) -> Result<()> {
     let ending = match ending(path) {
         Some("ply") => ".ply",
         Some("obj") => ".obj",
-        _ => bail!("{}: a pose is written as .ply or .obj", path.display()),
+        _ => bail!("{}: the name of a pose must end in .ply or .obj", path.display()),
     };
     let inputs: Vec<&Path> =
         [Some(model.path.as_path()), model.modes.as_deref()].into_iter().flatten().collect();

@@ -79,7 +79,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     out.finish()?;
     ensure!(
         report.mismatches == 0,
-        "the methods differ in {} frames: this is a defect of sscc",
+        "the methods differ in {} frames: this is a defect of sscc; please report it with this command and its output",
         report.mismatches
     );
     Ok(Outcome::Done)

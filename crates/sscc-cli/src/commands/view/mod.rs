@@ -73,7 +73,7 @@ fn compare_metrics(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
 /// Serves the report of a folder: its data, in the page of this program.
 fn show_report(args: &View, report: &Path) -> Result<Outcome> {
     if let Some(option) = first_model_option(args) {
-        bail!("{option} is for models, and {} is a folder: leave it out", args.model.path.display());
+        bail!("{option} is for models, but {} is a folder: leave {option} out", args.model.path.display());
     }
     ensure!(
         fs::metadata(report).map_or(0, |file| file.len()) <= MAX_REPORT_BYTES,

@@ -151,7 +151,8 @@ fn other_kinds_and_versions_are_rejected() {
     );
     for version in ["0", "01", "+1", "-1", "x", ""] {
         let header = header_of(&TEXTS.replace(r#"n":"1""#, &format!(r#"n":"{version}""#)), "");
-        let expected = format!("metadata 'version': '{version}' is no version number");
+        let expected =
+            format!("metadata 'version': '{version}' is not a version number: create the file anew");
         assert_eq!(message(&with_header(&pad(header), b"")), expected);
     }
     assert_eq!(message(b"hello"), "not a file written by sscc, or its beginning is damaged");

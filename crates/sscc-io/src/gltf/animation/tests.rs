@@ -139,7 +139,10 @@ fn invalid_animations_are_rejected() {
     let message = |times: &[f64], track: Track| animation_to_bytes(&models, times, &[track]).unwrap_err();
     let good = || track("a", 0.0);
     assert_eq!(message(&[0.0, 1.0], good()), "body a needs one entry for each of the 2 key frames");
-    assert_eq!(message(&[0.0, 1.0, 1.0 + 1e-12], good()), "key frame 2 is not after the one before it");
+    assert_eq!(
+        message(&[0.0, 1.0, 1.0 + 1e-12], good()),
+        "key frame 2 is not later than the one before it: times must increase"
+    );
     assert_eq!(message(&TIMES, Track { model: 1, ..good() }), "body a refers to model 1, but there are 1");
     let mut wide = good();
     wide.weights[3] = 1e300;

@@ -50,7 +50,10 @@ fn read_vertices(
 ) -> Result<(), FormatError> {
     let axis = |name: &str| match element.properties.iter().position(|p| p.name == name) {
         Some(at) if matches!(element.properties[at].kind, Kind::Number(_)) => Ok(at),
-        _ => Err(FormatError::line(element.line, format!("the element 'vertex' has no number '{name}'"))),
+        _ => Err(FormatError::line(
+            element.line,
+            format!("the element 'vertex' has no scalar property '{name}'"),
+        )),
     };
     let axes = [axis("x")?, axis("y")?, axis("z")?];
     for _ in 0..element.count {

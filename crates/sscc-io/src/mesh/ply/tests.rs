@@ -79,7 +79,10 @@ fn truncations_and_extra_bytes_are_rejected() {
     for len in 0..text.len() - 2 {
         assert!(parse(&text.as_bytes()[..len]).is_err(), "{len}");
     }
-    assert_eq!(message(format!("{text}7").as_bytes()), "line 24: 1 bytes more than the header declares");
+    assert_eq!(
+        message(format!("{text}7").as_bytes()),
+        "line 24: the file has 1 bytes more than the header declares"
+    );
 }
 
 #[test]
@@ -111,7 +114,7 @@ fn errors_in_headers_name_the_line() {
         with("list uchar short", "list float short"),
         "line 7: the length of a list must be of an integer type"
     );
-    assert_eq!(with("int z", "int w"), "line 8: the element 'vertex' has no number 'z'");
+    assert_eq!(with("int z", "int w"), "line 8: the element 'vertex' has no scalar property 'z'");
     assert_eq!(with("int z", "int x"), "line 12: a second property 'x'");
     assert_eq!(with("element camera", "element vertex"), "line 8: a second element 'vertex'");
     assert_eq!(

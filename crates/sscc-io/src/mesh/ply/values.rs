@@ -107,7 +107,10 @@ impl<'a> Values<'a> {
         let place = self.place();
         match self.bytes.len() - self.at {
             0 => Ok(()),
-            left => Err(FormatError::new(place, format!("{left} bytes more than the header declares"))),
+            left => Err(FormatError::new(
+                place,
+                format!("the file has {left} bytes more than the header declares"),
+            )),
         }
     }
 

@@ -102,7 +102,10 @@ fn errors_name_the_line() {
     assert_eq!(v2("\"soft body\"", "soft"), "line 7: a name in double quotes was expected");
     assert_eq!(v2("30 0 1 0", "20 0 1 0"), "line 15: two nodes have the tag 20");
     assert_eq!(v2("30 0 1 0", "30 0 1 nan"), "line 13: 'nan' is not a finite number");
-    assert_eq!(v2("30 0 1 0", "30 0 1 1e61"), "line 13: a coordinate is larger than 2^200 or not finite");
+    assert_eq!(
+        v2("30 0 1 0", "30 0 1 1e61"),
+        "line 13: a coordinate is not finite, or beyond 2^200: repair it, or change the unit"
+    );
     assert_eq!(v2("30 0 1 0", "-30 0 1 0"), "line 13: -30 is not a tag");
     assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: names node 8, which does not exist");
     assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: names node 20 twice");

@@ -62,7 +62,10 @@ fn errors_name_the_line() {
     assert_eq!(with("5 3 0 0", "6 3 0 0"), "line 3: the file has 5 of the 6 vertices declared here");
     assert_eq!(with("5 3 0 0", "4 3 0 0"), "line 8: the section has more vertices than the declared 4");
     assert_eq!(with("4 0 0 1", "4 0 0 nan"), "line 7: 'nan' is not a finite number");
-    assert_eq!(with("4 0 0 1", "4 0 0 -2e60"), "line 7: a coordinate is larger than 2^200 or not finite");
+    assert_eq!(
+        with("4 0 0 1", "4 0 0 -2e60"),
+        "line 7: a coordinate is not finite, or beyond 2^200: repair it, or change the unit"
+    );
     let gaps = "are numbered from 0 or 1 without gaps:";
     assert_eq!(with("4 0 0 1", "5 0 0 1"), format!("line 7: vertices {gaps} 4 was expected, not 5"));
     assert_eq!(with("\n1 1 2 3 4", "\n7 1 2 3 4"), format!("line 13: elements {gaps} 1 was expected, not 7"));

@@ -45,7 +45,7 @@ fn check(heights: [f64; 2], modes: &[[f64; 2]], q: &[f64]) {
 
 /// Far from the origin the last 0.4 units of the gap are closed by rounding.
 #[test]
-fn bounds_know_that_positions_at_rest_are_rounded() {
+fn bounds_include_rounding_of_rest_positions() {
     let random = &mut Random::new(1);
     for case in 0..60 {
         let far = 2.0_f64.powi(case % 60) * (1.0 + random.uniform());
@@ -57,7 +57,7 @@ fn bounds_know_that_positions_at_rest_are_rounded() {
 
 /// A large common motion swallows the gap, while the relative one is next to nothing.
 #[test]
-fn bounds_know_that_motion_is_rounded() {
+fn bounds_include_rounding_of_motion() {
     let random = &mut Random::new(2);
     for _ in 0..60 {
         let common = 2.0_f64.powi(random.below(50) as i32) * (1.0 + random.uniform());

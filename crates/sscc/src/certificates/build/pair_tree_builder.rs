@@ -104,7 +104,7 @@ impl PairTreeBuilder {
         }
         let is_large = |(n, m): NodePair| hierarchy.split_above_buckets(n, m).is_some();
         if bvtt.pairs.iter().any(|pair| pair.is_open_below(limit) && is_large(pair.nodes)) {
-            return Err(Error::Certificates("a pair of nodes was left open".to_owned()));
+            return Err(Error::Certificates("a node pair was not processed".to_owned()));
         }
         bvtt.pull_up(hierarchy);
         Ok(true)

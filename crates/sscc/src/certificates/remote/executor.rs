@@ -91,7 +91,7 @@ impl Executor for RemoteExecutor<'_> {
         }
         let results = (self.run)(bytes)?;
         if results.len() != jobs {
-            return Err(Error::Shard(format!("{} results came back for {jobs} jobs", results.len())));
+            return Err(Error::Shard(format!("{} results were returned for {jobs} jobs", results.len())));
         }
         let mut of_jobs = Vec::with_capacity(jobs);
         for (result, (name, layouts)) in results.into_iter().zip(known) {

@@ -52,7 +52,9 @@ impl Key {
 
     /// The bytes that were sealed. `what` names them in errors: "a job" or "a result".
     pub(super) fn open<'a>(&self, what: &str, sealed: &'a [u8]) -> Result<&'a [u8], Error> {
-        let damaged = || Error::Shard(format!("{what} is damaged: it was cut off or changed on its way"));
+        let damaged = || {
+            Error::Shard(format!("{what} is damaged: it was truncated or changed in transfer; send it again"))
+        };
         let (bytes, seal) = sealed.split_last_chunk::<HASH>().ok_or_else(damaged)?;
         let (key, body) = bytes.split_first_chunk::<HASH>().ok_or_else(damaged)?;
         if blake3::hash(bytes).as_bytes() != seal {
@@ -60,8 +62,8 @@ impl Key {
         }
         if *key != self.0 {
             return Err(Error::Shard(format!(
-                "{what} is of another model, other options or another build of sscc (here {BUILD}): install the same \
-                 version everywhere"
+                "{what} belongs to another model, other options or another build of sscc (this process has {BUILD}): \
+                 install the same version on all machines"
             )));
         }
         Ok(body)

@@ -95,7 +95,7 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     assert_eq!(error.to_string(), "shards: a result is of another job");
     let mut fewer = |_: Vec<Vec<u8>>| Ok(Vec::new());
     let error = Certificates::compute_in_shards(&model, &options, 4, &mut fewer, &()).unwrap_err();
-    assert_eq!(error.to_string(), "shards: 0 results came back for 4 jobs");
+    assert_eq!(error.to_string(), "shards: 0 results were returned for 4 jobs");
     let error = Certificates::compute_in_shards(&model, &options, 0, &mut fewer, &()).unwrap_err();
     assert_eq!(error.to_string(), "shards is 0: it must be at least 1");
 }
