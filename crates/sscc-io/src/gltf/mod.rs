@@ -13,8 +13,11 @@ mod animation;
 mod buffers;
 mod component;
 mod glb;
+mod joined;
 mod json;
 mod morph;
+mod role;
+mod scene;
 mod select;
 mod triangles;
 
@@ -25,7 +28,9 @@ use self::json::Root;
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
-pub use morph::{MorphModel, PrimitiveRange};
+pub use joined::PrimitiveRange;
+pub use morph::MorphModel;
+pub use scene::{AnimatedScene, AnimationInfo, MeshNode, ScenePose, SkinWeights, parse_scene, read_scene};
 pub use select::MeshInfo;
 
 /// Reads a mesh with its morph targets: the mesh of that name (`#3` is the fourth), else the only one with targets.
