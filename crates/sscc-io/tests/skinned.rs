@@ -121,7 +121,7 @@ fn sizes_and_weld_classes_are_known() {
 #[test]
 fn positions_have_the_known_bounds() {
     let Some(folder) = models("positions_have_the_known_bounds") else { return };
-    let (mut frames, mut largest) = (0, 0.0_f64);
+    let mut frames = 0;
     each_record(&folder.join("skinned"), |scene, record, place| {
         for frame in ["frames", "dropped"].iter().flat_map(|list| record[list].as_array().unwrap()) {
             if frame["bounds"].is_null() {
@@ -144,13 +144,11 @@ fn positions_have_the_known_bounds() {
                 let min = positions.iter().copied().reduce(DVec3::min).unwrap();
                 let max = positions.iter().copied().reduce(DVec3::max).unwrap();
                 let error = (min - known.0).abs().max((max - known.1).abs()).max_element() / size;
-                largest = largest.max(error);
                 assert!(error < 1e-6, "{place} at {}: {error} of the size", frame["time"]);
             }
         }
     });
-    println!("{frames} frames, largest error {largest:e} of the size");
-    assert!(frames >= 150, "{frames}");
+    assert!(frames >= 170, "{frames}");
 }
 
 #[test]
@@ -175,6 +173,5 @@ fn pairs_are_known() {
             dropped += 1;
         }
     });
-    println!("{kept} kept frames with {count} pairs, {dropped} dropped frames");
-    assert!(kept >= 150 && count > 0);
+    assert!(kept >= 170 && dropped > 0 && count > 8000);
 }

@@ -12,6 +12,7 @@ mod mesh_node;
 mod nodes;
 mod pose;
 mod read;
+mod rotation;
 mod sampler;
 mod shape;
 mod skin;

@@ -57,7 +57,8 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
         .map(|(number, skin)| Skin::read(&mut accessors, &nodes, number, skin))
         .collect::<Result<Vec<_>, _>>()?;
     let mesh_nodes = mesh_nodes(&mut accessors, &root, &scene, &skins)?;
-    let targets = |node: &json::Node| root.meshes.get(node.mesh? as usize).map(morph_targets);
+    let of_meshes: Vec<usize> = root.meshes.iter().map(morph_targets).collect();
+    let targets = |node: &json::Node| of_meshes.get(node.mesh? as usize).copied();
     let targets: Vec<usize> = scene.nodes.iter().map(|node| targets(node).unwrap_or(0)).collect();
     let mut reader = AnimationReader {
         accessors: &mut accessors,
@@ -98,6 +99,7 @@ fn mesh_nodes(
     scene: &SceneRoot,
     skins: &[Skin],
 ) -> Result<Vec<MeshNode>, FormatError> {
+    let has_triangles: Vec<bool> = root.meshes.iter().map(has_triangles).collect();
     let mut shapes: BTreeMap<(usize, bool), Arc<Shape>> = BTreeMap::new();
     let mut mesh_nodes = Vec::new();
     for (number, node) in scene.nodes.iter().enumerate() {
@@ -110,7 +112,7 @@ fn mesh_nodes(
         if let Some(skin) = skin.filter(|skin| *skin >= skins.len()) {
             return Err(refused(format!("skins[{skin}] does not exist")));
         }
-        if !has_triangles(mesh) {
+        if !has_triangles[index] {
             continue;
         }
         let shape = match shapes.get(&(index, skin.is_some())) {

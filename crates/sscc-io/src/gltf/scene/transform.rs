@@ -3,6 +3,7 @@
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
 use super::json::Node;
+use super::rotation::unit;
 
 /// Transform as the file stores it.
 #[derive(Clone, Copy)]
@@ -82,19 +83,6 @@ impl Parts {
     }
 }
 
-/// Returns a quaternion divided by its length; none if that is 0 or not finite.
-pub(super) fn unit(q: DQuat) -> Option<DQuat> {
-    let [x, y, z, w] = q.to_array();
-    // Squares of large numbers overflow.
-    let largest = [x, y, z, w].into_iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-    if !(largest > 0.0 && largest.is_finite()) {
-        return None;
-    }
-    let scaled = DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest);
-    let length = scaled.length();
-    length.is_finite().then(|| scaled / length)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,17 +112,6 @@ mod tests {
         assert_eq!(matrix.transform_point3(DVec3::ONE), DVec3::new(3.0, 4.0, 5.0));
         assert_eq!(matrix.w_axis.w, 1.0);
         assert_eq!(Transform::of(&node("{}")).ok().unwrap().matrix(), DMat4::IDENTITY);
-    }
-
-    #[test]
-    fn quaternions_of_any_length_are_normalized() {
-        let expected = DQuat::from_xyzw(0.6, 0.0, 0.0, 0.8);
-        for length in [1e-300, 0.5, 1.0, 1e200] {
-            let q = DQuat::from_xyzw(0.6 * length, 0.0, 0.0, 0.8 * length);
-            assert!((unit(q).unwrap() - expected).length() < 1e-15);
-        }
-        assert!(unit(DQuat::from_xyzw(0.0, -0.0, 0.0, 0.0)).is_none());
-        assert!(unit(DQuat::from_xyzw(0.0, f64::INFINITY, 0.0, 0.0)).is_none());
         assert_eq!(
             Transform::of(&node(r#"{"rotation":[0,0,0,0]}"#)).err(),
             Some("its rotation has length 0")
