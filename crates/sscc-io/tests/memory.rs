@@ -71,8 +71,8 @@ fn scenes_use_little_memory() {
         (format!(r#""nodes":[{{"weights":[{}]}}]"#, many("0")), true),
         (format!(r#""nodes":[{{}}],"skins":[{}]"#, many(r#"{"joints":[0]}"#)), true),
         (format!(r#""nodes":[{{}}],"skins":[{{"joints":[{}]}}]"#, many("0")), true),
-        (format!(r#""animations":[{}]"#, many(r#"{"channels":[],"samplers":[]}"#)), false),
-        (format!(r#""animations":[{{"channels":[],"samplers":[{}]}}]"#, many(sampler)), false),
+        (format!(r#""animations":[{}]"#, many(r#"{"channels":[],"samplers":[]}"#)), true),
+        (format!(r#""animations":[{{"channels":[],"samplers":[{}]}}]"#, many(sampler)), true),
         (
             format!(
                 r#""nodes":[{{}}],"animations":[{{"channels":[{}],"samplers":[{sampler}]}}]"#,
@@ -84,7 +84,7 @@ fn scenes_use_little_memory() {
         let text = gltf_text(&format!("{accessor},{zeros}"), mesh);
         let text = format!("{},{parts}}}", text.strip_suffix('}').unwrap());
         let peak = peak(|| assert_eq!(gltf::parse_scene(text.as_bytes()).is_ok(), is_valid));
-        assert!(peak < 200 * text.len() as u64, "{peak} for {}: {}", text.len(), &parts[..80]);
+        assert!(peak < 100 * text.len() as u64, "{peak} for {}: {}", text.len(), &parts[..80]);
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::Path;
 use glam::DVec3;
 use serde_json::Value;
 use sscc::intersect_triangle_triangle;
-use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
+use sscc_io::gltf::{self, AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_testing::models;
 
 type Pairs = BTreeSet<(u64, u64)>;
@@ -174,4 +174,26 @@ fn pairs_are_known() {
         }
     });
     assert!(kept >= 170 && dropped > 0 && count > 8000);
+}
+
+/// Without a skin, the node transform is the only difference from the reduced model of the same mesh.
+#[test]
+fn morph_targets_agree_with_the_reduced_model() {
+    let Some(folder) = models("morph_targets_agree_with_the_reduced_model") else { return };
+    for file in ["AnimatedMorphSphere.gltf", "MorphStressTest.gltf", "RobotExpressive.glb"] {
+        let path = folder.join("morph").join(file);
+        let (model, scene) = (gltf::read(&path, None).unwrap(), read_scene(&path).unwrap());
+        let morphed = scene.mesh_nodes().iter().find(|node| node.morph_targets() > 0).unwrap();
+        assert_eq!(morphed.faces(), model.mesh.faces(), "{file}");
+        assert_eq!(morphed.rest_positions(), model.mesh.rest_positions(), "{file}");
+        assert_eq!(morphed.morph_targets(), model.modes.rank(), "{file}");
+        let mut positions = Vec::new();
+        for animation in 0..scene.animations().len() {
+            let pose = scene.pose(Some(animation), 0.5 * scene.animations()[animation].last_time).unwrap();
+            for node in scene.mesh_nodes() {
+                pose.positions(node.node(), SkinWeights::Normalized, &mut positions).unwrap();
+                assert_eq!(positions.len(), node.rest_positions().len());
+            }
+        }
+    }
 }

@@ -11,6 +11,22 @@ use super::skin::Skin;
 ///
 /// Nodes count whether or not one of the file's scenes contains them. Vertices are in the unit of the file (by the
 /// standard: metres), times in seconds.
+///
+/// ```no_run
+/// use sscc_io::gltf::{SkinWeights, read_scene};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let scene = read_scene("fox.glb".as_ref())?;
+/// let mut positions = Vec::new();
+/// for frame in 0..=100 {
+///     let pose = scene.pose(Some(0), scene.animations()[0].last_time * f64::from(frame) / 100.0)?;
+///     for mesh_node in scene.mesh_nodes() {
+///         pose.positions(mesh_node.node(), SkinWeights::Normalized, &mut positions)?;
+///     }
+/// }
+/// # Ok(())
+/// # }
+/// ```
 pub struct AnimatedScene {
     pub(super) nodes: Nodes,
     pub(super) mesh_nodes: Vec<MeshNode>,

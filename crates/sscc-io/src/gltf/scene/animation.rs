@@ -14,11 +14,11 @@ use crate::FormatError;
 pub struct AnimationInfo {
     /// Its name, if the file has one. Names may repeat.
     pub name: Option<String>,
-    /// Time of the first key frame of any channel (s).
+    /// Time of the first key frame of any channel (s). Players begin at 0, and hold the first key frame until then.
     pub first_time: f64,
     /// Time of the last key frame of any channel (s).
     pub last_time: f64,
-    /// Number of channels in the file, at least 1.
+    /// Number of channels in the file. An animation without channels has the times 0, and cannot be evaluated.
     pub channels: usize,
 }
 

@@ -72,8 +72,9 @@ impl AnimationReader<'_, '_> {
             let sampler = self.sampler(times, sampler, role, width, &sampler_part)?;
             channels.push(Channel { node, property, sampler });
         }
-        if info.first_time > info.last_time {
-            return Err(FormatError::part(part, "it has no key frames"));
+        if info.channels == 0 {
+            // Some exporters write animations without channels. They are errors where they are evaluated.
+            (info.first_time, info.last_time) = (0.0, 0.0);
         }
         let animation = Animation::new(channels).map_err(|node| {
             FormatError::part(part, format!("two channels move the same property of nodes[{node}]"))

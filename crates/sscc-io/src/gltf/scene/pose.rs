@@ -25,7 +25,7 @@ impl AnimatedScene {
     /// that key frame's. Costs O(nodes + channels log key frames).
     ///
     /// # Errors
-    /// When there is no such animation, or the time is NaN.
+    /// When there is no such animation, it has no key frames, or the time is NaN.
     pub fn pose(&self, animation: Option<usize>, time: f64) -> Result<ScenePose<'_>, FormatError> {
         let moved = match animation {
             None => Moved { transforms: Vec::new(), weights: BTreeMap::new() },
@@ -35,6 +35,9 @@ impl AnimatedScene {
                 let Some(animation) = self.animations.get(number) else {
                     return Err(refused(format!("there is no such animation; the file has {count}")));
                 };
+                if self.infos[number].channels == 0 {
+                    return Err(refused("it has no key frames".into()));
+                }
                 if time.is_nan() {
                     return Err(refused("the time is not a number".into()));
                 }

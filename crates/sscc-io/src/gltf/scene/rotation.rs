@@ -29,13 +29,14 @@ pub(super) fn slerp(a: &[f64], b: &[f64], share: f64) -> DQuat {
     if unit_a.dot(unit_b) < 0.0 {
         (unit_b, of_b) = (-unit_b, -of_b);
     }
-    // From lengths: acos of the dot product has errors of 1e-8 for small angles.
-    let angle = 2.0 * (unit_a - unit_b).length().atan2((unit_a + unit_b).length());
-    let sine = angle.sin();
+    // From lengths: acos of the dot product has errors of 1e-8 for small angles. The functions of libm have the same
+    // results on every machine, and so have the pairs that collide.
+    let angle = 2.0 * libm::atan2((unit_a - unit_b).length(), (unit_a + unit_b).length());
+    let sine = libm::sin(angle);
     let (share_a, share_b) = if sine < 1e-12 {
         (1.0 - share, share)
     } else {
-        (((1.0 - share) * angle).sin() / sine, (share * angle).sin() / sine)
+        (libm::sin((1.0 - share) * angle) / sine, libm::sin(share * angle) / sine)
     };
     let blended = DQuat::from_slice(a) * share_a + DQuat::from_slice(b) * (share_b * of_b);
     unit(blended).unwrap_or(unit_a)

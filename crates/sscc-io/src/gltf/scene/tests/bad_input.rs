@@ -159,7 +159,10 @@ fn bad_animations_are_rejected() {
         &(JSON[..JSON.find("\"channels\"").unwrap()].to_owned() + r#""channels":[],"samplers":[]}]}"#),
         &binary(),
     );
-    assert_eq!(parse_scene(&empty).unwrap_err().to_string(), "animations[0]: it has no key frames");
+    let empty = parse_scene(&empty).unwrap();
+    assert_eq!((empty.animations()[0].channels, empty.animations()[0].last_time), (0, 0.0));
+    assert_eq!(empty.pose(Some(0), 0.0).err().unwrap().to_string(), "animations[0]: it has no key frames");
+    assert!(empty.pose(None, 0.0).is_ok());
     let unsorted = with_bytes(304 + 8, &1.5_f32.to_le_bytes());
     assert_eq!(unsorted, format!("{sampler}[0]: the time of key frame 2 is before that of key frame 1"));
     assert_eq!(
