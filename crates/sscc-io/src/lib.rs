@@ -38,6 +38,7 @@
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
+//! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |

@@ -27,6 +27,7 @@ fn parse_all(bytes: &[u8]) {
     one_line(&npz::parse_model(bytes));
     one_line(&gltf::parse(bytes, None));
     one_line(&gltf::parse(bytes, Some("#0")));
+    one_line(&gltf::parse_scene(bytes));
     one_line(&model_from_bytes(bytes));
     one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
@@ -140,6 +141,7 @@ proptest! {
     #[test]
     fn exchanged_numbers(text in swapped_gltf()) {
         one_line(&gltf::parse(text.as_bytes(), None));
+        one_line(&gltf::parse_scene(text.as_bytes()));
     }
 
     #[test]

@@ -56,6 +56,38 @@ fn json_uses_little_memory() {
     }
 }
 
+#[test]
+fn scenes_use_little_memory() {
+    let many = |item: &str| vec![item; 100_000].join(",");
+    let accessor = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let zeros = r#"{"componentType":5126,"count":4000000000,"type":"SCALAR"}"#;
+    let mesh = r#"{"primitives":[{"attributes":{"POSITION":0}}]}"#;
+    let sampler = r#"{"input":1,"output":1}"#;
+    let channel = r#"{"sampler":0,"target":{"node":0,"path":"scale"}}"#;
+    for (parts, is_valid) in [
+        (format!(r#""nodes":[{}]"#, many("{}")), true),
+        (format!(r#""nodes":[{}]"#, many(r#"{"mesh":0}"#)), true),
+        (format!(r#""nodes":[{}]"#, many(r#"{"children":[0]}"#)), false),
+        (format!(r#""nodes":[{{"weights":[{}]}}]"#, many("0")), true),
+        (format!(r#""nodes":[{{}}],"skins":[{}]"#, many(r#"{"joints":[0]}"#)), true),
+        (format!(r#""nodes":[{{}}],"skins":[{{"joints":[{}]}}]"#, many("0")), true),
+        (format!(r#""animations":[{}]"#, many(r#"{"channels":[],"samplers":[]}"#)), true),
+        (format!(r#""animations":[{{"channels":[],"samplers":[{}]}}]"#, many(sampler)), true),
+        (
+            format!(
+                r#""nodes":[{{}}],"animations":[{{"channels":[{}],"samplers":[{sampler}]}}]"#,
+                many(channel)
+            ),
+            false,
+        ),
+    ] {
+        let text = gltf_text(&format!("{accessor},{zeros}"), mesh);
+        let text = format!("{},{parts}}}", text.strip_suffix('}').unwrap());
+        let peak = peak(|| assert_eq!(gltf::parse_scene(text.as_bytes()).is_ok(), is_valid));
+        assert!(peak < 100 * text.len() as u64, "{peak} for {}: {}", text.len(), &parts[..80]);
+    }
+}
+
 /// A deflated entry that grows a thousandfold is rejected by its declared size, before it is unpacked.
 #[test]
 fn bombs_are_not_unpacked() {

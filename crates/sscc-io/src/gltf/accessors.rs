@@ -2,18 +2,10 @@
 
 use super::buffers::Buffers;
 use super::component::Component;
-use super::json::{Accessor, Kind, Root};
+use super::json::{Accessor, Root};
+use super::role::Role;
 use crate::FormatError;
 use crate::allowance::Allowance;
-
-/// Use of an accessor.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    /// Positions or displacements: three floating point or quantized numbers.
-    Positions,
-    /// Indices of vertices.
-    Indices,
-}
 
 /// Reads accessors within a memory allowance.
 pub(super) struct Accessors<'a> {
@@ -51,22 +43,11 @@ impl<'a> Accessors<'a> {
     pub fn read(&mut self, index: usize, role: Role) -> Result<Vec<f64>, FormatError> {
         let refused = |cause| FormatError::part(format!("accessors[{index}]"), cause);
         let accessor = self.accessor(index)?;
-        let (kind, width) = match role {
-            Role::Positions => (Kind::Vec3, 3),
-            Role::Indices => (Kind::Scalar, 1),
-        };
+        let width = role.width();
         let component = Component::from_code(accessor.component_type)
-            .filter(|component| match role {
-                Role::Positions => component.is_position(),
-                Role::Indices => component.is_index() && !accessor.normalized,
-            })
-            .filter(|_| accessor.kind == kind);
+            .filter(|component| role.accepts(accessor.kind, *component, accessor.normalized));
         let Some(component) = component else {
-            let expected = match role {
-                Role::Positions => "positions must be VEC3 of float32 (or of 8 or 16 bit integers)",
-                Role::Indices => "vertex numbers must be SCALAR of unsigned integers",
-            };
-            return Err(refused(expected.into()));
+            return Err(refused(role.requirement().into()));
         };
         if accessor.count == 0 {
             return Err(refused("it has no items".into()));
@@ -99,6 +80,18 @@ impl<'a> Accessors<'a> {
             }
         }
         Ok(values)
+    }
+
+    /// As [`Accessors::read`]; NaN and infinite numbers are errors.
+    pub fn read_finite(&mut self, index: usize, role: Role) -> Result<Vec<f64>, FormatError> {
+        let values = self.read(index, role)?;
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(at) => {
+                let cause = format!("item {} (counted from 0) is not finite", at / role.width());
+                Err(FormatError::part(format!("accessors[{index}]"), cause))
+            }
+            None => Ok(values),
+        }
     }
 
     fn accessor(&self, index: usize) -> Result<&'a Accessor, FormatError> {

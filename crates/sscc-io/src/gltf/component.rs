@@ -34,11 +34,6 @@ impl Component {
         }
     }
 
-    /// Whether positions may be of this type: float32, or those of the extension KHR_mesh_quantization.
-    pub fn is_position(self) -> bool {
-        self != Self::U32
-    }
-
     /// Whether indices may be of this type.
     pub fn is_index(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32)

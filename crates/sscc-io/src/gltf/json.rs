@@ -64,6 +64,10 @@ pub(super) enum Kind {
     Scalar,
     #[serde(rename = "VEC3")]
     Vec3,
+    #[serde(rename = "VEC4")]
+    Vec4,
+    #[serde(rename = "MAT4")]
+    Mat4,
     #[serde(other)]
     Other,
 }
@@ -185,12 +189,16 @@ const SUPPORTED_EXTENSIONS: [&str; 8] = [
     "KHR_mesh_quantization",
 ];
 
+/// Parses those parts of the JSON that a type has.
+pub(super) fn parse_parts<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, FormatError> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    serde_json::from_slice(text).map_err(|e| FormatError::part("JSON", cut(&e.to_string(), 160)))
+}
+
 impl Root {
     pub fn parse(text: &[u8]) -> Result<Self, FormatError> {
-        let refused = |e: serde_json::Error| FormatError::part("JSON", cut(&e.to_string(), 160));
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         // The version is checked first: other versions have another structure.
-        let Head { asset } = serde_json::from_slice(text).map_err(refused)?;
+        let Head { asset } = parse_parts(text)?;
         let is_supported = asset.min_version.as_ref().is_none_or(|minimum| minimum == "2.0");
         if !asset.version.starts_with("2.") || !is_supported {
             let version =
@@ -199,7 +207,7 @@ impl Root {
                 format!("version {version} of the format is not supported: save the file as glTF 2.0");
             return Err(FormatError::part("asset", cause));
         }
-        let root: Self = serde_json::from_slice(text).map_err(refused)?;
+        let root: Self = parse_parts(text)?;
         match root
             .extensions_required
             .iter()

@@ -1,9 +1,12 @@
-//! Reads morph targets from glTF 2.0 files (`.gltf` and `.glb`), and writes animated bodies as `.glb`
-//! ([`write_animation`]).
+//! Reads morph targets ([`read`]) and animated scenes ([`read_scene`]) from glTF 2.0 files (`.gltf` and `.glb`), and
+//! writes animated bodies as `.glb` ([`write_animation`]).
 //!
 //! A mesh with morph targets is a reduced model: rest positions are the base mesh, and mode k is the displacement of
-//! target k. Other content (nodes and their transforms, skins, materials, animations) is ignored. The transform of a
-//! node does not change which triangles collide: an affine map preserves intersections.
+//! target k. [`read`] ignores nodes and their transforms, skins and animations. The transform of a node does not change
+//! which triangles collide: an affine map preserves intersections.
+//!
+//! A scene ([`AnimatedScene`]) has world positions at any time of an animation, with node hierarchy, morph targets and
+//! skins.
 //!
 //! The module has its own parser: version 1.4.1 of the crate `gltf` panics on unchecked accessors. See
 //! `docs/notes/2026-11-23-parsers-of-other-crates.md`.
@@ -13,8 +16,11 @@ mod animation;
 mod buffers;
 mod component;
 mod glb;
+mod joined;
 mod json;
 mod morph;
+mod role;
+mod scene;
 mod select;
 mod triangles;
 
@@ -25,7 +31,9 @@ use self::json::Root;
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
-pub use morph::{MorphModel, PrimitiveRange};
+pub use joined::PrimitiveRange;
+pub use morph::MorphModel;
+pub use scene::{AnimatedScene, AnimationInfo, MeshNode, ScenePose, SkinWeights, parse_scene, read_scene};
 pub use select::MeshInfo;
 
 /// Reads a mesh with its morph targets: the mesh of that name (`#3` is the fourth), else the only one with targets.

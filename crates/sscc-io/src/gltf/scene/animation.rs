@@ -1,0 +1,89 @@
+//! Animations: the state of the nodes at a time.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DVec3};
+
+use super::nodes::Nodes;
+use super::sampler::Sampler;
+use crate::FormatError;
+
+/// An animation of a glTF file.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AnimationInfo {
+    /// Its name, if the file has one. Names may repeat.
+    pub name: Option<String>,
+    /// Time of the first key frame of any channel (s). Players begin at 0, and hold the first key frame until then.
+    pub first_time: f64,
+    /// Time of the last key frame of any channel (s).
+    pub last_time: f64,
+    /// Number of channels in the file. An animation without channels has the times 0, and cannot be evaluated.
+    pub channels: usize,
+}
+
+/// Channels of an animation, sorted by node.
+pub(super) struct Animation {
+    channels: Vec<Channel>,
+}
+
+/// Key frames of one property of a node.
+pub(super) struct Channel {
+    pub node: usize,
+    pub property: Property,
+    pub sampler: Sampler,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Property {
+    Translation,
+    Rotation,
+    Scale,
+    Weights,
+}
+
+/// State of the nodes that an animation moves.
+pub(super) struct Moved {
+    /// Local transforms.
+    pub transforms: Vec<(usize, DMat4)>,
+    /// Weights of morph targets.
+    pub weights: BTreeMap<usize, Vec<f64>>,
+}
+
+impl Animation {
+    /// Takes the channels of an animation. The error is a node for which two channels move the same property.
+    pub fn new(mut channels: Vec<Channel>) -> Result<Self, usize> {
+        let property = |channel: &Channel| (channel.node, channel.property);
+        channels.sort_by_key(property);
+        match channels.windows(2).find(|pair| property(&pair[0]) == property(&pair[1])) {
+            Some(pair) => Err(pair[0].node),
+            None => Ok(Self { channels }),
+        }
+    }
+
+    /// Returns the nodes that the animation moves, at a time (s).
+    pub fn moved_at(&self, time: f64, nodes: &Nodes) -> Result<Moved, FormatError> {
+        let mut moved = Moved { transforms: Vec::new(), weights: BTreeMap::new() };
+        for channels in self.channels.chunk_by(|a, b| a.node == b.node) {
+            let node = channels[0].node;
+            let mut parts = None;
+            for Channel { property, sampler, .. } in channels {
+                if *property == Property::Weights {
+                    moved.weights.insert(node, sampler.values_at(time));
+                    continue;
+                }
+                let parts = match &mut parts {
+                    Some(parts) => parts,
+                    None => parts.insert(nodes.parts(node)?),
+                };
+                match property {
+                    Property::Translation => parts.translation = DVec3::from_slice(&sampler.values_at(time)),
+                    Property::Scale => parts.scale = DVec3::from_slice(&sampler.values_at(time)),
+                    _ => parts.rotation = sampler.rotation_at(time),
+                }
+            }
+            moved.transforms.extend(parts.map(|parts| (node, parts.matrix())));
+        }
+        Ok(moved)
+    }
+}

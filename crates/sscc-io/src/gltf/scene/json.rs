@@ -1,0 +1,120 @@
+//! Structure of a glTF file's JSON, as far as nodes, skins and animations need it.
+//!
+//! Fields are boxed where most entries leave them out: the format allows empty nodes, which take 3 bytes of text.
+
+use std::fmt;
+
+use serde::de::{IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+#[derive(Deserialize)]
+pub(super) struct SceneRoot {
+    #[serde(default)]
+    pub nodes: Vec<Node>,
+    #[serde(default)]
+    pub meshes: Vec<Mesh>,
+    #[serde(default)]
+    pub skins: Vec<Skin>,
+    #[serde(default)]
+    pub animations: Vec<Animation>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Node {
+    pub name: Option<Box<str>>,
+    #[serde(default)]
+    pub children: Box<[u32]>,
+    pub mesh: Option<u32>,
+    pub skin: Option<u32>,
+    /// Columns first.
+    pub matrix: Option<Box<[f64; 16]>>,
+    pub translation: Option<Box<[f64; 3]>>,
+    /// Quaternion x, y, z, w.
+    pub rotation: Option<Box<[f64; 4]>>,
+    pub scale: Option<Box<[f64; 3]>>,
+    #[serde(default)]
+    pub weights: Box<[f64]>,
+}
+
+/// The same mesh as in the structure for meshes, with the attributes of its skin alone.
+#[derive(Deserialize)]
+pub(super) struct Mesh {
+    pub primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Primitive {
+    pub attributes: SkinAttributes,
+}
+
+/// Accessors of the attributes `JOINTS_n` and `WEIGHTS_n`, by n.
+pub(super) struct SkinAttributes {
+    pub joints: Vec<(u32, usize)>,
+    pub weights: Vec<(u32, usize)>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub inverse_bind_matrices: Option<usize>,
+    pub joints: Vec<u32>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Animation {
+    pub name: Option<String>,
+    pub channels: Vec<Channel>,
+    pub samplers: Vec<Sampler>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Channel {
+    pub sampler: usize,
+    pub target: Target,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Target {
+    pub node: Option<usize>,
+    pub path: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Sampler {
+    pub input: usize,
+    pub output: usize,
+    pub interpolation: Option<String>,
+}
+
+impl<'de> Deserialize<'de> for SkinAttributes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(AttributesVisitor)
+    }
+}
+
+struct AttributesVisitor;
+
+impl<'de> Visitor<'de> for AttributesVisitor {
+    type Value = SkinAttributes;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object of attributes")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<SkinAttributes, A::Error> {
+        let mut attributes = SkinAttributes { joints: Vec::new(), weights: Vec::new() };
+        while let Some(key) = map.next_key::<String>()? {
+            let number = |prefix| key.strip_prefix(prefix)?.parse::<u32>().ok();
+            if let Some(n) = number("JOINTS_") {
+                attributes.joints.push((n, map.next_value()?));
+            } else if let Some(n) = number("WEIGHTS_") {
+                attributes.weights.push((n, map.next_value()?));
+            } else {
+                map.next_value::<IgnoredAny>()?;
+            }
+        }
+        attributes.joints.sort_unstable();
+        attributes.weights.sort_unstable();
+        Ok(attributes)
+    }
+}

@@ -1,0 +1,127 @@
+//! The node hierarchy.
+
+use glam::DMat4;
+
+use super::json;
+use super::transform::{Parts, Transform};
+use crate::FormatError;
+
+/// Nodes with their parents and stored transforms.
+pub(super) struct Nodes {
+    transforms: Vec<Transform>,
+    parents: Vec<Option<u32>>,
+    /// Every node after its parent.
+    order: Vec<u32>,
+}
+
+impl Nodes {
+    /// Takes the nodes of a file. A child that does not exist, a node with two parents, and a cycle are errors.
+    pub fn new(nodes: &[json::Node]) -> Result<Self, FormatError> {
+        let refused = |node: usize, cause: String| Err(FormatError::part(format!("nodes[{node}]"), cause));
+        let mut transforms = Vec::with_capacity(nodes.len());
+        let mut parents: Vec<Option<u32>> = vec![None; nodes.len()];
+        for (number, node) in nodes.iter().enumerate() {
+            match Transform::of(node) {
+                Ok(transform) => transforms.push(transform),
+                Err(cause) => return refused(number, cause.into()),
+            }
+            for child in node.children.iter() {
+                let Some(parent) = parents.get_mut(*child as usize) else {
+                    return refused(number, format!("its child nodes[{child}] does not exist"));
+                };
+                if let Some(first) = parent {
+                    let cause = format!("it is a child of nodes[{first}] and of nodes[{number}]");
+                    return refused(*child as usize, cause);
+                }
+                *parent = Some(number as u32);
+            }
+        }
+        let mut order: Vec<u32> =
+            (0..nodes.len() as u32).filter(|n| parents[*n as usize].is_none()).collect();
+        let mut next = 0;
+        while let Some(node) = order.get(next) {
+            order.extend(&nodes[*node as usize].children);
+            next += 1;
+        }
+        // A node that no root reaches is in a cycle, or below one.
+        if order.len() < nodes.len() {
+            let mut is_reached = vec![false; nodes.len()];
+            order.iter().for_each(|node| is_reached[*node as usize] = true);
+            let first = is_reached.iter().position(|reached| !reached).unwrap_or_default();
+            return refused(first, "its ancestors form a cycle".into());
+        }
+        Ok(Self { transforms, parents, order })
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.transforms.len()
+    }
+
+    /// Returns translation, rotation and scale of a node. An axis of length 0 in its matrix is an error.
+    pub fn parts(&self, node: usize) -> Result<Parts, FormatError> {
+        self.transforms[node].parts().ok_or_else(|| {
+            let cause = "an animation moves it, but its matrix has an axis of length 0: store translation, \
+                         rotation and scale instead";
+            FormatError::part(format!("nodes[{node}]"), cause)
+        })
+    }
+
+    /// Returns the world transforms of all nodes. `moved` has the local transforms that an animation changes.
+    pub fn world_transforms(&self, moved: &[(usize, DMat4)]) -> Vec<DMat4> {
+        let mut world: Vec<DMat4> = self.transforms.iter().map(Transform::matrix).collect();
+        moved.iter().for_each(|(node, matrix)| world[*node] = *matrix);
+        for node in &self.order {
+            if let Some(parent) = self.parents[*node as usize] {
+                world[*node as usize] = world[parent as usize] * world[*node as usize];
+            }
+        }
+        world
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn nodes(json: &str) -> Result<Nodes, String> {
+        let nodes: Vec<json::Node> = serde_json::from_str(json).unwrap();
+        Nodes::new(&nodes).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn parents_move_their_children() {
+        // A child may stand before its parent.
+        let nodes = nodes(
+            r#"[{"translation":[1,0,0]},{"children":[0],"scale":[2,2,2]},{"children":[1],"translation":[0,0,5]}]"#,
+        )
+        .ok()
+        .unwrap();
+        let at = |moved: &[(usize, DMat4)]| nodes.world_transforms(moved)[0].transform_point3(DVec3::Y);
+        assert_eq!(at(&[]), DVec3::new(2.0, 2.0, 5.0));
+        assert_eq!(at(&[(2, DMat4::IDENTITY), (1, DMat4::ZERO)]), DVec3::ZERO);
+        assert_eq!(nodes.len(), 3);
+    }
+
+    #[test]
+    fn graphs_that_are_no_forest_are_rejected() {
+        for (json, message) in [
+            (r#"[{"children":[1]}]"#, "nodes[0]: its child nodes[1] does not exist"),
+            (r#"[{"children":[0]}]"#, "nodes[0]: its ancestors form a cycle"),
+            (r#"[{},{"children":[2]},{"children":[1,0]}]"#, "nodes[0]: its ancestors form a cycle"),
+            (
+                r#"[{"children":[2]},{"children":[2]},{}]"#,
+                "nodes[2]: it is a child of nodes[0] and of nodes[1]",
+            ),
+            (r#"[{"children":[1,1]},{}]"#, "nodes[1]: it is a child of nodes[0] and of nodes[0]"),
+            (r#"[{"rotation":[0,0,0,0]}]"#, "nodes[0]: its rotation has length 0"),
+        ] {
+            assert_eq!(nodes(json).err().as_deref(), Some(message));
+        }
+        assert_eq!(nodes("[]").ok().unwrap().len(), 0);
+        // A chain is not walked by recursion.
+        let chain: Vec<_> = (1..=50_000).map(|n| format!(r#"{{"children":[{n}]}}"#)).collect();
+        assert_eq!(nodes(&format!("[{},{{}}]", chain.join(","))).ok().unwrap().len(), 50_001);
+    }
+}

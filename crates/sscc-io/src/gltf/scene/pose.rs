@@ -1,0 +1,108 @@
+//! Evaluation of a scene at a time.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DVec3};
+use sscc::limits;
+
+use super::animated_scene::AnimatedScene;
+use super::animation::Moved;
+use super::shape::SkinWeights;
+use crate::FormatError;
+
+/// A scene at one time of one animation: all node transforms and morph weights.
+pub struct ScenePose<'a> {
+    scene: &'a AnimatedScene,
+    /// World transforms of all nodes.
+    world: Vec<DMat4>,
+    /// Animated weights of morph targets, by node.
+    weights: BTreeMap<usize, Vec<f64>>,
+}
+
+impl AnimatedScene {
+    /// Evaluates one animation at a time (s), or the stored state without an animation. Properties that the animation
+    /// does not move have their stored values. Times before the first or after the last key frame of a channel count as
+    /// that key frame's. Costs O(nodes + channels log key frames).
+    ///
+    /// # Errors
+    /// When there is no such animation, it has no key frames, or the time is NaN.
+    pub fn pose(&self, animation: Option<usize>, time: f64) -> Result<ScenePose<'_>, FormatError> {
+        let moved = match animation {
+            None => Moved { transforms: Vec::new(), weights: BTreeMap::new() },
+            Some(number) => {
+                let refused = |cause: String| FormatError::part(format!("animations[{number}]"), cause);
+                let count = self.animations.len();
+                let Some(animation) = self.animations.get(number) else {
+                    return Err(refused(format!("there is no such animation; the file has {count}")));
+                };
+                if self.infos[number].channels == 0 {
+                    return Err(refused("it has no key frames".into()));
+                }
+                if time.is_nan() {
+                    return Err(refused("the time is not a number".into()));
+                }
+                animation.moved_at(time, &self.nodes)?
+            }
+        };
+        let world = self.nodes.world_transforms(&moved.transforms);
+        Ok(ScenePose { scene: self, world, weights: moved.weights })
+    }
+
+    /// As [`AnimatedScene::pose`] and [`ScenePose::positions`], for one node.
+    ///
+    /// # Errors
+    /// As those.
+    pub fn positions(
+        &self,
+        node: usize,
+        animation: Option<usize>,
+        time: f64,
+        weights: SkinWeights,
+        positions: &mut Vec<DVec3>,
+    ) -> Result<(), FormatError> {
+        self.pose(animation, time)?.positions(node, weights, positions)
+    }
+}
+
+impl ScenePose<'_> {
+    /// Replaces `positions` by the world positions (V, double precision) of the mesh at a node, by its index in the
+    /// file. Each vertex is moved by the morph targets first, with the weights of the animation, else of the node, else
+    /// of the mesh; then
+    /// - with a skin, to `sum w (J B x)` over its influences with world transform J and inverse bind matrix B of the
+    ///   joint. The transform of the node itself and the skin's `skeleton` have no effect;
+    /// - without a skin, by the world transform of the node.
+    ///
+    /// # Errors
+    /// When the node shows no mesh with triangles, or a position is not finite or exceeds [`sscc::limits::LARGEST`].
+    pub fn positions(
+        &self,
+        node: usize,
+        weights: SkinWeights,
+        positions: &mut Vec<DVec3>,
+    ) -> Result<(), FormatError> {
+        positions.clear();
+        let refused = |cause: String| Err(FormatError::part(format!("nodes[{node}]"), cause));
+        let mesh_nodes = &self.scene.mesh_nodes;
+        let Ok(at) = mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node) else {
+            return refused("it shows no mesh with triangles, or does not exist".into());
+        };
+        let mesh_node = &mesh_nodes[at];
+        let shape = &mesh_node.shape;
+        let morph_weights = self.weights.get(&node).unwrap_or(&mesh_node.weights);
+        match (&shape.influences, mesh_node.skin) {
+            (Some(influences), Some(skin)) => {
+                let skin = &self.scene.skins[skin];
+                let transform = |joint: &u32| skin.joint_transform(*joint, &self.world);
+                let joints: Vec<DMat4> = influences.joints.iter().map(transform).collect();
+                shape.skinned(influences, morph_weights, &joints, weights, positions);
+            }
+            _ => shape.transformed(morph_weights, &self.world[node], positions),
+        }
+        match positions.iter().position(|x| !limits::contains(*x)) {
+            Some(vertex) => {
+                refused(format!("the position of vertex {vertex} (counted from 0) is not finite"))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Damaged files: an error of one line or a scene, and never a panic.
+
+use proptest::prelude::*;
+
+use super::file::{JSON, binary, changed, glb};
+use crate::gltf::{SkinWeights, parse_scene};
+
+#[test]
+fn every_truncation_is_rejected() {
+    let bytes = changed(&[]);
+    for len in 0..bytes.len() {
+        let error = parse_scene(&bytes[..len]).unwrap_err().to_string();
+        assert!(!error.contains('\n') && error.len() < 400, "{len}: {error}");
+    }
+}
+
+/// Evaluates everything that a file has. Errors have one line.
+fn evaluate(bytes: &[u8]) {
+    let one_line = |error: crate::FormatError| {
+        let error = error.to_string();
+        assert!(!error.contains('\n') && error.len() < 400, "{error}");
+    };
+    let scene = match parse_scene(bytes) {
+        Ok(scene) => scene,
+        Err(error) => return one_line(error),
+    };
+    let mut found = Vec::new();
+    for animation in (0..scene.animations().len()).map(Some).chain([None]) {
+        for time in [0.0, 1.2, 1e300] {
+            match scene.pose(animation, time) {
+                Ok(pose) => {
+                    for mesh_node in scene.mesh_nodes() {
+                        for weights in [SkinWeights::Normalized, SkinWeights::AsStored] {
+                            match pose.positions(mesh_node.node(), weights, &mut found) {
+                                Ok(()) => assert_eq!(found.len(), mesh_node.rest_positions().len()),
+                                Err(error) => one_line(error),
+                            }
+                        }
+                    }
+                }
+                Err(error) => one_line(error),
+            }
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn damaged_files(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+        in_binary: bool,
+    ) {
+        let mut bytes = changed(&[]);
+        let begin = if in_binary { bytes.len() - 512 } else { 0 };
+        let len = bytes.len() - begin;
+        for (at, value) in damage {
+            bytes[begin + at.index(len)] = value;
+        }
+        evaluate(&bytes);
+    }
+
+    /// Exchanged numbers leave the JSON valid.
+    #[test]
+    fn exchanged_numbers(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..12), 1..4),
+    ) {
+        const NUMBERS: [&str; 12] =
+            ["0", "1", "2", "3", "4", "9", "12", "5121", "5123", "5126", "4294967295", "18446744073709551615"];
+        let mut words: Vec<String> = Vec::new();
+        for c in JSON.chars() {
+            match words.last_mut() {
+                Some(last) if last.ends_with(|l: char| l.is_ascii_digit()) == c.is_ascii_digit() => last.push(c),
+                _ => words.push(c.into()),
+            }
+        }
+        let digits: Vec<_> =
+            (0..words.len()).filter(|i| words[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
+        for (at, number) in changes {
+            words[digits[at.index(digits.len())]] = NUMBERS[number].into();
+        }
+        evaluate(&glb(&words.concat(), &binary()));
+    }
+}

@@ -1,0 +1,51 @@
+//! Nodes with a mesh, animations and weld classes.
+
+use glam::DVec3;
+
+use super::file::{JSON, REST, binary, glb, positions, scene};
+use crate::gltf::{AnimationInfo, parse_scene};
+
+#[test]
+fn nodes_and_animations_are_listed() {
+    let scene = scene(&[]);
+    let [skinned, rigid] = scene.mesh_nodes() else { panic!() };
+    assert_eq!((skinned.node(), skinned.name(), skinned.skin()), (3, Some("skinned"), Some(0)));
+    assert_eq!((rigid.node(), rigid.name(), rigid.is_skinned()), (4, None, false));
+    for node in [skinned, rigid] {
+        assert_eq!((node.mesh(), node.mesh_name(), node.morph_targets()), (0, Some("flag"), 1));
+        assert_eq!(node.faces(), [[0, 1, 2], [1, 3, 2]]);
+        assert_eq!(node.rest_positions(), REST.map(|x| DVec3::from_array(x.map(f64::from))));
+        assert_eq!(node.largest_weight_error(), 0.0);
+        // Order and zeros of influences do not count, nor the sign of zero.
+        assert_eq!(node.weld_classes(), [0, 1, 2, 2]);
+    }
+    let info = AnimationInfo { name: Some("wave".into()), first_time: 1.0, last_time: 4.0, channels: 5 };
+    assert_eq!(scene.animations(), [info]);
+    fn is_shared<T: Send + Sync>(_: &T) -> bool {
+        true
+    }
+    assert!(is_shared(&scene));
+}
+
+#[test]
+fn influences_separate_classes_of_skinned_nodes_alone() {
+    let mut binary = binary();
+    binary[112 + 2 * 16..][..4].copy_from_slice(&0.5_f32.to_le_bytes());
+    let scene = parse_scene(&glb(JSON, &binary)).unwrap();
+    let [skinned, rigid] = scene.mesh_nodes() else { panic!() };
+    assert_eq!((skinned.weld_classes(), rigid.weld_classes()), (&[0, 1, 2, 3][..], &[0, 1, 2, 2][..]));
+    assert_eq!((skinned.largest_weight_error(), rigid.largest_weight_error()), (0.25, 0.0));
+}
+
+#[test]
+fn unusual_files_are_read() {
+    let flat = scene(&[(r#""scale":[-1,1,1]"#, r#""scale":[0,0,0]"#)]);
+    assert_eq!(positions(&flat, 4, None), [DVec3::new(0.0, 0.0, 5.0); 4]);
+    assert!(scene(&[(r#""mode":5"#, r#""mode":0"#)]).mesh_nodes().is_empty());
+    let none = parse_scene(br#"{"asset":{"version":"2.0"}}"#).unwrap();
+    assert!(none.mesh_nodes().is_empty() && none.animations().is_empty());
+    // Channels for extensions count for the times alone.
+    let json = JSON.replace(r#""node":3,"#, "").replace(r#""mesh":0,"#, "");
+    let unused = parse_scene(&glb(&json, &binary())).unwrap();
+    assert_eq!((unused.mesh_nodes().len(), unused.animations()[0].channels), (0, 5));
+}
