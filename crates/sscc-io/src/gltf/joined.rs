@@ -123,9 +123,9 @@ fn faces_of(
         let cause = format!("names vertex {largest} (counted from 0), but there are {count}");
         return Err(refused(cause));
     }
-    topology
-        .triangles(&corners)
-        .ok_or_else(|| refused(format!("{} indices are not a multiple of 3: each triangle needs three", corners.len())))
+    topology.triangles(&corners).ok_or_else(|| {
+        refused(format!("{} indices are not a multiple of 3: each triangle needs three", corners.len()))
+    })
 }
 
 fn take(accessors: &mut Accessors<'_>, count: usize, size: u64, part: &str) -> Result<(), FormatError> {

@@ -31,13 +31,7 @@ impl<'a> Context<'a> {
         let filter = PairFilter::new(model, filter);
         let layout =
             needs.map_or_else(Layout::default, |needs| Layout::new(model, &hierarchy, &filter, needs));
-        Self {
-            hierarchy,
-            filter: Arc::new(filter),
-            exceptions,
-            layout: Arc::new(layout),
-            progress: &(),
-        }
+        Self { hierarchy, filter: Arc::new(filter), exceptions, layout: Arc::new(layout), progress: &() }
     }
 
     /// Whether a pair is an exception.

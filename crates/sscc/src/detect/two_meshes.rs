@@ -1,13 +1,13 @@
 //! The traversal of two hierarchies: colliding pairs of two meshes.
 
+use super::aabb8::LANES;
 use super::broad_phase::Counters;
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::{BucketSlot, NodeVolumes, are_slots_separated};
-use super::aabb8::LANES;
 use super::vertex_motion::VertexMotion;
-use crate::filter::Relation;
 use crate::Error;
+use crate::filter::Relation;
 use crate::hierarchy::NodePair;
 
 /// Visits between two checks whether the search was cancelled.
@@ -112,7 +112,8 @@ fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: Narro
 ) {
     x.volumes.open_bucket(a, x.motion);
     y.volumes.open_bucket(b, y.motion);
-    let (x_layout, y_layout) = (std::sync::Arc::clone(&x.volumes.layout), std::sync::Arc::clone(&y.volumes.layout));
+    let (x_layout, y_layout) =
+        (std::sync::Arc::clone(&x.volumes.layout), std::sync::Arc::clone(&y.volumes.layout));
     let [x_buckets, y_buckets] = [&x_layout.buckets, &y_layout.buckets];
     let y_box = *y.volumes.node(y_buckets.node(b));
     counters.box_tests += 1 + LANES as u64;

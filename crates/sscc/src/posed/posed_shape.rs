@@ -45,7 +45,15 @@ impl<'a> PosedShape<'a> {
         let q = vec![0.0; model.rank()];
         let reach = model.check_coordinates(&q)?;
         let motion = PosedMotion { q, pose: Pose::default(), around: Aabb::default(), reach };
-        Ok(Self { model, context, volumes, motion, is_current: false, stack: Vec::new(), hits: DiscreteHits::default() })
+        Ok(Self {
+            model,
+            context,
+            volumes,
+            motion,
+            is_current: false,
+            stack: Vec::new(),
+            hits: DiscreteHits::default(),
+        })
     }
 
     /// Deforms and moves the shape, and returns an AABB of it in the world, at a cost of O(r).
@@ -79,7 +87,8 @@ impl<'a> PosedShape<'a> {
         let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
         // Nobody cancels: the contexts have no progress.
-        let _ = traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
+        let _ =
+            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
         found.extend_from_slice(&self.hits.0.hits);
         found[first..].sort_unstable();
     }
@@ -161,8 +170,7 @@ mod tests {
                 let mut below = Vec::new();
                 shape.vertices_below(normal, height, &mut below);
                 let vertices = 0..shape.model.mesh().rest_positions().len() as u32;
-                let is_below =
-                    |v: &u32| normal.dot(pose.apply(shape.model.position(*v, &q))) < height;
+                let is_below = |v: &u32| normal.dot(pose.apply(shape.model.position(*v, &q))) < height;
                 assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());
             }
             // Any box is right, also one turned round.

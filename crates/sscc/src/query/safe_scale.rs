@@ -34,8 +34,7 @@ impl Query<'_> {
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
-        let aabbs =
-            LineAabbs::new(&line, &self.context.detect.hierarchy, self.context.model.mesh().faces());
+        let aabbs = LineAabbs::new(&line, &self.context.detect.hierarchy, self.context.model.mesh().faces());
         for &(x, y) in self.context.certificates.map_or(&[][..], Certificates::exceptions) {
             if self.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);

@@ -199,8 +199,7 @@ fn batches_answer_as_single_frames_do() {
     let random = &mut Random::new(4);
     let (rest, faces) = soup(random, 300, 1.0);
     let mut detector = Detector::new(&TriMesh::new(rest.clone(), faces).unwrap());
-    let frames: Vec<Vec<DVec3>> =
-        (0..20).map(|_| rest.iter().map(|_| random.vector()).collect()).collect();
+    let frames: Vec<Vec<DVec3>> = (0..20).map(|_| rest.iter().map(|_| random.vector()).collect()).collect();
     let expected: Vec<Vec<Pair>> = frames.iter().map(|x| detector.discrete(x).unwrap().to_vec()).collect();
     for threads in [Some(1), Some(3), None] {
         let answers = detector.batch(&frames, threads, &()).unwrap();

@@ -29,7 +29,8 @@ impl Detector<'_> {
         self.begin_discrete(&motions[0], positions, usize::MAX);
         other.begin_discrete(&motions[1], other_positions, 0);
         let contexts = [&self.context, &other.context];
-        let result = find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
+        let result =
+            find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
         self.discrete.narrow.0.hits.sort_unstable();

@@ -71,11 +71,7 @@ impl<'a> Detector<'a> {
     ///
     /// # Errors
     /// When there are not as many classes as vertices.
-    pub fn with_weld_classes(
-        mesh: &TriMesh,
-        classes: &[u32],
-        filter: &ContactFilter,
-    ) -> Result<Self, Error> {
+    pub fn with_weld_classes(mesh: &TriMesh, classes: &[u32], filter: &ContactFilter) -> Result<Self, Error> {
         check_count(classes.len(), mesh.rest_positions().len())?;
         Ok(Self::build(mesh, Some(classes), filter))
     }

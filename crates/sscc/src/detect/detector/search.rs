@@ -23,24 +23,13 @@ pub(super) struct Search<const E: usize, N> {
 
 impl<const E: usize, N: Default> Default for Search<E, N> {
     fn default() -> Self {
-        Self {
-            broad: None,
-            narrow: N::default(),
-            first_cost: 0.0,
-            cost: 0.0,
-            counters: Counters::default(),
-        }
+        Self { broad: None, narrow: N::default(), first_cost: 0.0, cost: 0.0, counters: Counters::default() }
     }
 }
 
 impl<const E: usize, N: NarrowPhase<E>> Search<E, N> {
     /// Starts a search for at most `limit` hits: refits all boxes. False if the hierarchy should be built again.
-    pub(super) fn begin(
-        &mut self,
-        context: &Context<'_>,
-        motion: &GivenMotion<'_, E>,
-        limit: usize,
-    ) -> bool {
+    pub(super) fn begin(&mut self, context: &Context<'_>, motion: &GivenMotion<'_, E>, limit: usize) -> bool {
         let is_first = self.broad.is_none();
         let broad = self.broad.get_or_insert_with(|| Box::new(BroadPhase::new(&context.layout, false, None)));
         self.narrow.hits().begin(limit);

@@ -28,7 +28,11 @@ impl DetectorStatistics {
     }
 
     /// Takes over those of a search.
-    pub(super) fn set<const E: usize, N: NarrowPhase<E>>(&mut self, search: &mut Search<E, N>, is_done: bool) {
+    pub(super) fn set<const E: usize, N: NarrowPhase<E>>(
+        &mut self,
+        search: &mut Search<E, N>,
+        is_done: bool,
+    ) {
         let Counters { opened, box_tests, triangle_tests } = search.counters;
         let complete = is_done && search.narrow.hits().is_complete();
         let (tree_cost, rebuilds) = (search.cost, self.rebuilds);
