@@ -17,6 +17,42 @@ pub(crate) struct AdjacencyMasks {
     masks: Vec<PacketMask>,
 }
 
+/// The triangles around each vertex class, as `8 packet + lane`.
+struct TrianglesAround {
+    /// For each class its first triangle, and the end of all.
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl TrianglesAround {
+    fn new(slots: &[u32], triangles: &[u32], filter: &PairFilter) -> Self {
+        let mut starts = vec![0_u32; filter.class_count() + 1];
+        // A degenerate triangle is counted once.
+        let classes = |t: u32| {
+            let [a, b, c] = filter.vertex_classes(t);
+            [Some(a), (b != a).then_some(b), (c != a && c != b).then_some(c)].into_iter().flatten()
+        };
+        triangles.iter().flat_map(|&t| classes(t)).for_each(|class| starts[class as usize + 1] += 1);
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut next = starts.clone();
+        let mut sorted = vec![0; starts.last().map_or(0, |end| *end as usize)];
+        for packet in 0..slots.len() - 1 {
+            for (lane, slot) in (slots[packet]..slots[packet + 1]).enumerate() {
+                for class in classes(triangles[slot as usize]) {
+                    sorted[next[class as usize] as usize] = (LANES * packet + lane) as u32;
+                    next[class as usize] += 1;
+                }
+            }
+        }
+        Self { starts, triangles: sorted }
+    }
+
+    fn of_class(&self, class: u32) -> &[u32] {
+        let [start, end] = [class, class + 1].map(|class| self.starts[class as usize] as usize);
+        &self.triangles[start..end]
+    }
+}
+
 /// The masked pairs of one packet with another one.
 #[derive(Clone, Copy)]
 struct PacketMask {
@@ -32,25 +68,13 @@ impl AdjacencyMasks {
     /// Computes the masks of triangles in packets: `slots[p]..slots[p + 1]` are the slots of packet p.
     pub(crate) fn new(slots: &[u32], triangles: &[u32], filter: &PairFilter) -> Self {
         let members = |packet: usize| &triangles[slots[packet] as usize..slots[packet + 1] as usize];
-        // For each vertex class the triangles around it, as `8 packet + lane`.
-        let mut around: Vec<Vec<u32>> = vec![Vec::new(); filter.class_count()];
-        for packet in 0..slots.len() - 1 {
-            for (lane, &t) in members(packet).iter().enumerate() {
-                let own = (LANES * packet + lane) as u32;
-                for class in filter.vertex_classes(t) {
-                    let all = &mut around[class as usize];
-                    if all.last() != Some(&own) {
-                        all.push(own);
-                    }
-                }
-            }
-        }
+        let around = TrianglesAround::new(slots, triangles, filter);
         let (mut starts, mut masks) = (vec![0], Vec::new());
         let mut found: Vec<PacketMask> = Vec::new();
         for first in 0..slots.len() - 1 {
             found.push(PacketMask { other: first as u32, pairs: NOT_AFTER });
             for (i, &t) in members(first).iter().enumerate() {
-                let around = filter.vertex_classes(t).map(|class| &around[class as usize]);
+                let around = filter.vertex_classes(t).map(|class| around.of_class(class));
                 for &other in around.into_iter().filter(|all| all.len() <= MAX_VERTEX_TRIANGLES).flatten() {
                     let (second, j) = (other as usize / LANES, other as usize % LANES);
                     if second >= first && filter.relation(t, members(second)[j]) == Relation::Adjacent {
@@ -68,6 +92,12 @@ impl AdjacencyMasks {
             found.clear();
         }
         Self { starts, masks }
+    }
+
+    /// The pairs of two packets, without the masks of adjacent triangles: of one packet with itself those with `j <= i`.
+    #[inline]
+    pub(crate) fn masked_without(first: usize, second: usize) -> u64 {
+        if first == second { NOT_AFTER } else { 0 }
     }
 
     /// The pairs of two packets, the first not after the second, that never count: bit `8 i + j` for lane i of the first

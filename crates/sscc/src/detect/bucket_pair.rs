@@ -6,6 +6,7 @@ use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::BucketSlot;
 use super::vertex_motion::VertexMotion;
+use crate::filter::Relation;
 
 /// A packet: its bucket and its lane there.
 #[derive(Clone, Copy)]
@@ -15,6 +16,12 @@ struct BucketLane {
 }
 
 impl<const E: usize> BroadPhase<E> {
+    /// Whether the triangles in two slots never count.
+    fn are_adjacent(&self, context: &Context<'_>, slots: [usize; 2]) -> bool {
+        let [a, b] = slots.map(|slot| self.volumes.layout.buckets.triangle(slot));
+        context.filter.relation(a, b) == Relation::Adjacent
+    }
+
     /// Tests a bucket against itself.
     pub(crate) fn test_bucket<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
@@ -80,7 +87,7 @@ impl<const E: usize> BroadPhase<E> {
         let columns =
             self.volumes.triangles(second).overlapping_lane(self.volumes.packets(x.bucket), x.lane).0;
         self.counters.box_tests += 2 * LANES as u64;
-        let masked = buckets.adjacency.masked_pairs(first, second);
+        let (masked, has_adjacent) = buckets.masked_pairs(first, second);
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
         for row in rows {
             let open = columns & !(masked >> (LANES as u32 * row)) as u32;
@@ -92,6 +99,9 @@ impl<const E: usize> BroadPhase<E> {
                 self.volumes.triangles(second).overlapping_lane(self.volumes.triangles(first), row as usize);
             for column in Lanes(overlapping.0 & open) {
                 let slots = [start_x + row as usize, start_y + column as usize];
+                if !has_adjacent && self.are_adjacent(context, slots) {
+                    continue;
+                }
                 let [a, b] = [(x, slots[0]), (y, slots[1])]
                     .map(|(packet, slot)| BucketSlot { bucket: packet.bucket, slot });
                 if self.volumes.are_separated(a, b) {

@@ -2,6 +2,7 @@
 //! to eight triangles.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
@@ -34,8 +35,8 @@ pub(crate) struct Buckets {
     /// For each bucket its first vertex, and the end.
     vertex_starts: Vec<u32>,
     vertices: Vec<u32>,
-    /// The triangle pairs that never count.
-    pub(crate) adjacency: AdjacencyMasks,
+    /// The triangle pairs that never count, once they have been computed.
+    adjacency: OnceLock<AdjacencyMasks>,
 }
 
 impl Buckets {
@@ -44,8 +45,9 @@ impl Buckets {
         let (faces, p) = (filter.faces(), positions);
         let centroid = |t: u32| {
             let [a, b, c] = faces[t as usize].map(|v| p[v as usize] / 3.0);
-            a + b + c
+            (a + b + c, t)
         };
+        let mut last_bucket = vec![u32::MAX; p.len()];
         let mut of_node = vec![None; hierarchy.nodes().len()];
         let (mut nodes, mut packets, mut slots, mut triangles) = (vec![], vec![0], vec![0], vec![]);
         let (mut vertex_starts, mut vertices) = (vec![0], vec![]);
@@ -53,23 +55,50 @@ impl Buckets {
             if of_node[n].is_none() && node.triangle_count as usize <= BUCKET_TRIANGLES {
                 of_node[n] = Some(nodes.len() as u32);
                 nodes.push(n as u32);
-                let mut own = hierarchy.triangles(node).to_vec();
-                cut(&mut own, &centroid);
+                let mut own: Vec<(DVec3, u32)> =
+                    hierarchy.triangles(node).iter().map(|&t| centroid(t)).collect();
+                cut(&mut own);
                 slots.extend(
                     (1..=own.len().div_ceil(LANES))
                         .map(|b| triangles.len() as u32 + (b * LANES).min(own.len()) as u32),
                 );
                 packets.push(slots.len() as u32 - 1);
-                triangles.extend(own);
-                vertices.extend(hierarchy.vertices(node, faces));
+                let first_vertex = vertices.len();
+                for (_, t) in own {
+                    triangles.push(t);
+                    for v in faces[t as usize] {
+                        if std::mem::replace(&mut last_bucket[v as usize], nodes.len() as u32)
+                            != nodes.len() as u32
+                        {
+                            vertices.push(v);
+                        }
+                    }
+                }
+                vertices[first_vertex..].sort_unstable();
                 vertex_starts.push(vertices.len() as u32);
             }
             // Parents come before their children.
             node.children().for_each(|child| of_node[child as usize] = of_node[n]);
         }
         let corners: Vec<[u32; 3]> = triangles.iter().map(|&t| faces[t as usize]).collect();
-        let adjacency = AdjacencyMasks::new(&slots, &triangles, filter);
+        let adjacency = OnceLock::new();
         Self { of_node, nodes, packets, slots, triangles, corners, vertex_starts, vertices, adjacency }
+    }
+
+    /// Computes the masks of adjacent triangles, unless they are known. They take longer than one search and save about a
+    /// third of each later one (docs/notes/2026-11-23-one-shot.md).
+    pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
+        self.adjacency.get_or_init(|| AdjacencyMasks::new(&self.slots, &self.triangles, filter));
+    }
+
+    /// The pairs of two packets that need no test, see [`AdjacencyMasks::masked_pairs`]; and whether adjacent triangles are
+    /// among them.
+    #[inline]
+    pub(crate) fn masked_pairs(&self, first: usize, second: usize) -> (u64, bool) {
+        match self.adjacency.get() {
+            Some(masks) => (masks.masked_pairs(first, second), true),
+            None => (AdjacencyMasks::masked_without(first, second), false),
+        }
     }
 
     /// The bucket that a node is, or lies in; none for a larger node.
@@ -140,15 +169,15 @@ impl Buckets {
 }
 
 /// Sorts triangles so that each eight in a row are close together: by halves along the longest axis, in whole packets.
-fn cut(triangles: &mut [u32], centroid: &impl Fn(u32) -> DVec3) {
+fn cut(triangles: &mut [(DVec3, u32)]) {
     let packets = triangles.len().div_ceil(LANES);
     if packets < 2 {
         return;
     }
-    let Aabb { lower, upper } = Aabb::of_points(triangles.iter().map(|&t| centroid(t)));
+    let Aabb { lower, upper } = Aabb::of_points(triangles.iter().map(|(centroid, _)| *centroid));
     let axis = (upper * 0.5 - lower * 0.5).max_position();
-    triangles.sort_unstable_by(|&a, &b| centroid(a)[axis].total_cmp(&centroid(b)[axis]).then(a.cmp(&b)));
+    triangles.sort_unstable_by(|(x, a), (y, b)| x[axis].total_cmp(&y[axis]).then(a.cmp(b)));
     let (left, right) = triangles.split_at_mut(packets / 2 * LANES);
-    cut(left, centroid);
-    cut(right, centroid);
+    cut(left);
+    cut(right);
 }

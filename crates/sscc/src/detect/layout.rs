@@ -54,6 +54,7 @@ impl Layout {
         needs: Needs,
     ) -> Self {
         let mut buckets = Buckets::new(model.mesh().rest_positions(), hierarchy, filter);
+        buckets.mask_adjacent(filter);
         let vertices = VertexStore::new(model, buckets.all_vertices());
         buckets.renumber(|v| vertices.index_of(v));
         let is_visited = |n| buckets.of_node(n).is_none_or(|bucket| buckets.node(bucket) == n);

@@ -51,6 +51,8 @@ pub struct Detector<'a> {
     /// Scratch of searches in two meshes.
     pub(super) stack: Vec<NodePair>,
     pub(super) statistics: DetectorStatistics,
+    /// Whether the hierarchy has been searched for self-collisions.
+    is_used: bool,
 }
 
 impl<'a> Detector<'a> {
@@ -95,6 +97,7 @@ impl<'a> Detector<'a> {
             swept: Search::default(),
             stack: Vec::new(),
             statistics: DetectorStatistics::default(),
+            is_used: false,
         }
     }
 
@@ -121,6 +124,7 @@ impl<'a> Detector<'a> {
     /// As [`Detector::discrete`].
     pub fn discrete_at_most(&mut self, positions: &[DVec3], limit: usize) -> Result<&[Pair], Error> {
         let motion = self.check([positions])?;
+        self.mask_adjacent();
         self.begin_discrete(&motion, positions, limit);
         let result = self.discrete.find(&self.context, &motion);
         self.statistics.set(&mut self.discrete, result.is_ok());
@@ -152,6 +156,7 @@ impl<'a> Detector<'a> {
     /// As [`Detector::discrete`], for both.
     pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
         let motion = self.check([x_t0, x_t1])?;
+        self.mask_adjacent();
         self.begin_swept(&motion, x_t0);
         let result = self.swept.find(&self.context, &motion);
         self.statistics.set(&mut self.swept, result.is_ok());
@@ -204,6 +209,15 @@ impl<'a> Detector<'a> {
         }
     }
 
+    /// Computes the masks of adjacent triangles at the second search with a hierarchy: a detector that is used once does not
+    /// pay for them.
+    fn mask_adjacent(&mut self) {
+        if self.is_used {
+            self.context.layout.buckets.mask_adjacent(&self.context.filter);
+        }
+        self.is_used = true;
+    }
+
     /// Builds the hierarchy again, by these positions.
     fn rebuild(&mut self, positions: &[DVec3]) {
         let filter = &self.context.filter;
@@ -213,6 +227,7 @@ impl<'a> Detector<'a> {
         self.context.hierarchy = Cow::Owned(hierarchy);
         self.discrete = Search::default();
         self.swept = Search::default();
+        self.is_used = false;
         self.statistics.rebuilds += 1;
     }
 }
