@@ -130,7 +130,7 @@ impl Sub for Magnitude {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        self + other
+        self.add(other)
     }
 }
 
