@@ -21,7 +21,7 @@ use glam::DVec3;
 use num_bigint::BigInt;
 
 use super::hull::lexicographic;
-use crate::geometry::Aabb;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::double_double::DoubleDouble;
 use crate::geometry::exact_orientation::{integers, is_robust_exact};
 
