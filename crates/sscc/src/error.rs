@@ -46,6 +46,16 @@ pub enum Error {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// A pair names a triangle that does not exist.
+    #[error("pair {pair} (counted from 0) names triangle {triangle}, but there are {triangles}")]
+    PairIndex {
+        /// The pair, from 0.
+        pair: usize,
+        /// The triangle that it names, from 0.
+        triangle: u32,
+        /// How many triangles there are.
+        triangles: usize,
+    },
     /// No modes.
     #[error("the model has no modes (rank 0): at least one is needed")]
     RankZero,

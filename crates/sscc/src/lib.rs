@@ -62,6 +62,9 @@
 //! | Do the certificates hold under attack, and how tight are they? | [`audit()`] |
 //! | Do shapes in the world collide with each other? | [`PosedShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
+//! | Which points do two triangles have in common? | [`intersection_triangle_triangle`] |
+//! | What is the smallest translation that parts two triangles? | [`penetration_triangle_triangle`] |
+//! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`contact_curves`], [`contact_curves_between`] |
 //! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
 //! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh. Above it a
@@ -270,12 +273,17 @@ pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
 };
+pub use detect::contact_curves::{
+    ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,
+    contact_curves_between,
+};
 pub use detect::{Detector, DetectorStatistics, FrameAnswer, Impact};
 pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair};
 pub use geometry::{
-    Aabb, MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face,
-    intersect_shared_vertex_pair, intersect_triangle_triangle,
+    Aabb, Feature, Intersection, IntersectionPoint, MovingTriangle, Penetration, impact_edge_edge,
+    impact_triangle_triangle, impact_vertex_face, intersect_shared_vertex_pair, intersect_triangle_triangle,
+    intersection_triangle_triangle, penetration_triangle_triangle,
 };
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};

@@ -18,6 +18,7 @@ pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
 mod coarse_vertices;
 mod colliding_pairs;
+pub(crate) mod contact_curves;
 pub(crate) mod context;
 mod contour_test;
 mod detector;

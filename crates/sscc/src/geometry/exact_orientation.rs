@@ -57,12 +57,14 @@ fn orient2d_integer(a: DVec2, b: DVec2, c: DVec2) -> i8 {
 }
 
 /// Whether `robust` is exact for determinants with this coordinate; see [`ROBUST_MIN`].
-fn is_robust_exact(x: f64) -> bool {
+pub(super) fn is_robust_exact(x: f64) -> bool {
     x == 0.0 || x.abs() >= ROBUST_MIN
 }
 
 /// The points multiplied by one power of two (which changes no sign) that makes all coordinates integers.
-fn integers<const DIM: usize, const COUNT: usize>(points: [[f64; DIM]; COUNT]) -> [[BigInt; DIM]; COUNT] {
+pub(super) fn integers<const DIM: usize, const COUNT: usize>(
+    points: [[f64; DIM]; COUNT],
+) -> [[BigInt; DIM]; COUNT] {
     let numbers = points.map(|p| p.map(Binary64::of));
     // Zeros have the smallest exponent of all, but need no longer integers.
     let nonzero = numbers.iter().flatten().filter(|x| x.mantissa != 0);

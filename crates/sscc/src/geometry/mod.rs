@@ -1,7 +1,8 @@
 //! Geometry of boxes and triangles: AABBs, exact intersection tests, nearest points, continuous tests of moving triangles
 //! ([`ccd`]).
 //!
-//! Intersection tests are named `intersect_shape_shape`. Every shape is the closed convex hull of its corners, so touching
+//! Intersection tests are named `intersect_shape_shape`; their common points are `intersection_shape_shape`
+//! ([`intersection`]). Every shape is the closed convex hull of its corners, so touching
 //! counts, and the answer is that of exact arithmetic on the given f64 coordinates. This holds for coordinates up to
 //! [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal number.
 //!
@@ -12,7 +13,9 @@
 mod aabb;
 mod binary64;
 pub(crate) mod ccd;
+mod double_double;
 mod exact_orientation;
+mod intersection;
 mod nearest_point;
 mod orientation;
 mod planar;
@@ -24,6 +27,11 @@ mod two_triangles;
 
 pub use aabb::Aabb;
 pub use ccd::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
+pub(crate) use intersection::TriangleContact;
+pub use intersection::{
+    Feature, Intersection, IntersectionPoint, Penetration, intersection_triangle_triangle,
+    penetration_triangle_triangle,
+};
 pub(crate) use nearest_point::nearest_to_origin;
 pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_triangle::intersect_triangle_triangle;

@@ -108,4 +108,8 @@ mutants! {
     SmallPairsNotEnlarged: CaughtBy("it impact_tolerance::the_tolerance_holds_at_every_size");
     /// Tolerances of continuous tests may be below what rounding leaves of gaps.
     ToleranceBelowRounding: CaughtBy("it impact_tolerance::tolerances_below_rounding_do_not_end_the_search_early");
+    /// Where an edge crosses a face is computed with 106 bits even if the distances have lost all of them.
+    CrossingByDoubleDoubles: CaughtBy("it intersection::determinants_that_cancel");
+    /// The depth of triangles that touch without crossing is what rounding leaves of it.
+    TouchingDepthRounded: CaughtBy("it penetration::on_a_grid");
 }

@@ -7,6 +7,8 @@ use num_traits::Num;
 use sscc::{intersect_triangle_triangle, limits};
 use sscc_testing::{cases, threshold};
 
+use crate::{intersection, penetration};
+
 type Triangle = [DVec3; 3];
 
 /// The six orders of three corners.
@@ -108,6 +110,8 @@ fn intersect(a: &Triangle, b: &Triangle) -> bool {
 fn check(a: &Triangle, b: &Triangle) -> bool {
     let found = intersect(a, b);
     assert_eq!(found, intersect_exactly(a, b), "{a:?} {b:?}");
+    intersection::check(a, b);
+    penetration::check(a, b);
     found
 }
 
@@ -232,6 +236,10 @@ fn tiny_whole_coordinates() {
         // Chance brings every order of corners; asking for all of them each time is slow.
         let found = if i % 8 == 0 { intersect(&a, &b) } else { intersect_triangle_triangle(&a, &b) };
         assert_eq!(found, intersect_whole(&a, &b), "{a:?} {b:?}");
+        if i % 8 == 0 {
+            intersection::check(&a, &b);
+            penetration::check(&a, &b);
+        }
         count[usize::from(found)] += 1;
     }
     assert!(count.iter().all(|c| *c > threshold(5_000)), "one-sided: {count:?}");
@@ -376,6 +384,8 @@ fn powers_of_two() {
         let power = POWERS[i % POWERS.len()];
         let (a, b) = (scaled(&a, power_of_two(power)), scaled(&b, power_of_two(power)));
         assert_eq!(intersect(&a, &b), expected, "2^{power}: {a:?} {b:?}");
+        intersection::check(&a, &b);
+        penetration::check(&a, &b);
     }
 }
 

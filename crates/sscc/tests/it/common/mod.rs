@@ -1,5 +1,6 @@
 //! Small random models, with every kind of odd mesh and odd modes.
 
+pub mod exact;
 pub mod pair_trees;
 
 use glam::{DMat3, DVec3};

@@ -1,0 +1,94 @@
+//! Normals of triangles and of pairs of edges, with about 106 bits.
+
+use glam::DVec3;
+use num_bigint::BigInt;
+
+use super::hull::Hull;
+use crate::geometry::binary64::Binary64;
+use crate::geometry::double_double::DoubleDouble;
+use crate::geometry::exact_orientation::integers;
+
+/// A vector of [`DoubleDouble`] numbers.
+pub(super) type Vector = [DoubleDouble; 3];
+
+/// Components of a cross product of edges with components of at most 1 that may be rounding errors: 2^-95.
+const ROUNDING: f64 = f64::from_bits((1023 - 95) << 52);
+
+/// The difference `q - p`, exactly.
+pub(super) fn difference(q: DVec3, p: DVec3) -> Vector {
+    std::array::from_fn(|k| DoubleDouble::difference(q[k], p[k]))
+}
+
+/// The scalar product.
+pub(super) fn dot(u: &Vector, v: &Vector) -> DoubleDouble {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+/// A vector rounded to doubles.
+pub(super) fn to_dvec3(v: &Vector) -> DVec3 {
+    DVec3::from_array(v.map(DoubleDouble::to_f64))
+}
+
+/// The vector times the power of two that brings its largest component into [1/2, 1); none for 0.
+pub(super) fn normalize(v: &Vector) -> Option<Vector> {
+    let exponent = binary_exponent(to_dvec3(v).abs().max_element())?;
+    Some(v.map(|x| x.times_power_of_two(-exponent)))
+}
+
+/// The e with `2^(e - 1) <= x < 2^e`; none for 0.
+pub(super) fn binary_exponent(x: f64) -> Option<i32> {
+    let Binary64 { mantissa, exponent } = Binary64::of(x);
+    (mantissa != 0).then(|| exponent as i32 - 1075 + 64 - mantissa.unsigned_abs().leading_zeros() as i32)
+}
+
+/// The edges of a triangle, each normalized; none where its ends are equal.
+pub(super) fn edges(corners: &[DVec3; 3]) -> [Option<Vector>; 3] {
+    std::array::from_fn(|i| normalize(&difference(corners[(i + 1) % 3], corners[i])))
+}
+
+/// A normal of two normalized edges and its size before normalization, which is within a factor of 6 of the sine of the
+/// angle between them. None for parallel edges, and where all digits may be lost.
+pub(super) fn cross(e: &Vector, f: &Vector) -> Option<(f64, Vector)> {
+    let minor = |i: usize, j: usize| e[i] * f[j] - e[j] * f[i];
+    let normal = [minor(1, 2), minor(2, 0), minor(0, 1)];
+    let size = to_dvec3(&normal).abs().max_element();
+    if size <= ROUNDING {
+        return None;
+    }
+    Some((size, normalize(&normal)?))
+}
+
+/// The normal of a triangle, normalized: by the two edges with the largest angle between them.
+pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
+    let mut best: Option<(f64, Vector)> = None;
+    for i in 0..3 {
+        let candidate = edges[i].zip(edges[(i + 1) % 3]).and_then(|(e, f)| cross(&e, &f));
+        if let Some(candidate) = candidate
+            && best.is_none_or(|best| candidate.0 > best.0)
+        {
+            best = Some(candidate);
+        }
+    }
+    best.map(|(_, normal)| normal)
+}
+
+/// The unit normal of a triangle, to which its corners turn counterclockwise; 0 if it is degenerate.
+pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
+    if !hull.is_triangle() {
+        return DVec3::ZERO;
+    }
+    let rounded = normal(&edges(hull.corners)).map(|normal| to_dvec3(&normal));
+    rounded.unwrap_or_else(|| exact_normal(hull.corners)).normalize()
+}
+
+/// A multiple of the normal of a triangle with angles below about 2^-95, from integers.
+#[cold]
+#[inline(never)]
+fn exact_normal(corners: &[DVec3; 3]) -> DVec3 {
+    const BITS: u64 = 60;
+    let [a, b, c] = integers(corners.map(|p| p.to_array()));
+    let [q, r]: [[BigInt; 3]; 2] = [b, c].map(|p| std::array::from_fn(|k| &p[k] - &a[k]));
+    let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &q[i] * &r[j] - &q[j] * &r[i]);
+    let excess = normal.iter().map(BigInt::bits).max().unwrap_or(0).saturating_sub(BITS);
+    DVec3::from_array(normal.map(|x| i64::try_from(x >> excess).map_or(0.0, |x| x as f64)))
+}
