@@ -120,9 +120,13 @@ fn one_vertex_neighbours() {
         assert_eq!(check(&["--method", method, "--neighbours=include-one-vertex"]).code, Some(1));
     }
     let refused = check(&["--certificates", "exclude.sscc.safetensors", "--neighbours=include-one-vertex"]);
-    assert!(refused.refusal().contains("neighbour rule exclude, not include-one-vertex; certify anew"));
+    assert!(
+        refused
+            .refusal()
+            .contains("neighbours = exclude, but include-one-vertex was requested; certify anew")
+    );
     let refused = check(&["--certificates", "include.sscc.safetensors", "--neighbours=exclude"]);
-    assert!(refused.refusal().contains("neighbour rule include-one-vertex, not exclude"));
+    assert!(refused.refusal().contains("neighbours = include-one-vertex, but exclude was requested"));
     let audit = [&["audit"], &model[..], &["--certificates", "include.sscc.safetensors", "--samples", "100"]]
         .concat();
     assert_eq!(sscc(folder, &audit).code, Some(0));

@@ -158,7 +158,7 @@ fn refusals() {
     refused(&with(&["--epsilon", "0.5"]), &["certified with --epsilon 0.1, not 0.5"]);
     refused(&with(&["--metric", "mass"]), &["certified with another metric"]);
     refused(&with(&["--center=1,0"]), &["certified about another centre"]);
-    refused(&with(&["--neighbours", "include-one-vertex"]), &["neighbour rule exclude"]);
+    refused(&with(&["--neighbours", "include-one-vertex"]), &["neighbours = exclude"]);
     refused(&with(&["--weld=on"]), &["without welding"]);
     // Certificates of another model.
     let text = fs::read_to_string(folder.join("mesh.obj")).unwrap().replacen("v 0 0 0", "v 0 0 0.5", 1);

@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn empty_meshes_and_invalid_coordinates_are_rejected() {
         assert!(with_vertices(0).finish().unwrap_err().to_string().contains("no vertices"));
-        assert!(with_vertices(4).finish().unwrap_err().to_string().contains("no tetrahedra"));
+        assert!(with_vertices(4).finish().unwrap_err().to_string().contains("no elements"));
         for x in [f64::NAN, f64::INFINITY, 2e60] {
             assert!(with_vertices(0).vertex(DVec3::new(0.0, x, 0.0), Place::Whole).is_err());
         }

@@ -191,7 +191,7 @@ mod tests {
         assert!(with("Ridges", "Prisms").starts_with("line 18: 'Prisms' is not supported: only Tetrahedra"));
         assert!(with("Ridges", "TetrahedraP2").contains("'TetrahedraP2' is not supported"));
         assert_eq!(with("End", "End\n7"), "line 21: text follows 'End'");
-        assert!(with("Tetrahedra", "Edges").contains("no tetrahedra and no cubes"));
+        assert!(with("Tetrahedra", "Edges").contains("the mesh has no elements"));
         assert_eq!(with("Vertices 5", "Vertices 99999999999"), "line 11: 'Triangles' is not a number");
         assert_eq!(
             message("MeshVersionFormatted 1\nDimension 3\nVertices 9"),

@@ -86,7 +86,7 @@ fn results_of_other_models_options_and_jobs_are_refused() {
         (ring(200, 3, 0.9), CertifyOptions { metric, ..options.clone() }),
     ] {
         let worker = ShardWorker::new(&model, &options, &()).unwrap();
-        assert!(refusal(&worker).contains("a job is of another model"), "{}", refusal(&worker));
+        assert!(refusal(&worker).contains("a job belongs to another model"), "{}", refusal(&worker));
     }
     // Results of the right model that are swapped.
     let worker = ShardWorker::new(&model, &options, &()).unwrap();

@@ -1,7 +1,5 @@
 //! Random bytes and damaged files for every parser: each returns a result or an error, and never panics.
 
-#![allow(clippy::unwrap_used)]
-
 use std::io::Write;
 
 use proptest::prelude::*;

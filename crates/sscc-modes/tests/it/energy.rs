@@ -1,13 +1,8 @@
 //! The energy metric measures strain energy, and the filter is the paper's formula.
 
-#[allow(dead_code)] // other tests use the rest
-mod common;
-#[allow(dead_code)]
-mod matrix;
-
-use common::{Random, bumpy};
+use crate::common::{Random, bumpy};
+use crate::matrix::{difference, dot, numbers, random_modes, stiffness, times, transpose, with_spectrum};
 use glam::DVec3;
-use matrix::{difference, dot, numbers, random_modes, stiffness, times, transpose, with_spectrum};
 use sscc::{Certificates, CertifyOptions, Modes, Query, ReducedModel, TriMesh};
 use sscc_modes::{
     DEFAULT_ELL, ModesError, diagonalize, energy_metric, filter_eigenvalues, polynomial_modes,

@@ -1,7 +1,5 @@
 //! Natural vibrations match closed forms, and bodies without a spectrum are rejected.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use glam::DVec3;

@@ -1,6 +1,4 @@
 //! Real meshes and modes: their sizes and properties match known values.
-#![allow(clippy::unwrap_used)]
-
 use glam::DVec3;
 use sscc_io::gltf::{self, PrimitiveRange};
 use sscc_io::{LoadOptions, load_model, load_model_with, read_mesh, read_modes};

@@ -1,8 +1,6 @@
 //! Polynomial modes are orthonormal, complete and reproducible, without rigid motions.
 
-mod common;
-
-use common::{Random, bumpy, cube, moved, plane, sphere};
+use crate::common::{Random, bumpy, cube, moved, plane, sphere};
 use glam::DVec3;
 use sscc::{Error, Modes, TriMesh, vertex_areas};
 use sscc_modes::{ModesError, polynomial_modes, shapes::spring};

@@ -1,12 +1,7 @@
 //! Diagonalization is accurate and complete, and preserves shapes.
 
-#[allow(dead_code)] // other tests use the rest
-mod common;
-#[allow(dead_code)]
-mod matrix;
-
-use common::{Random, bumpy};
-use matrix::{
+use crate::common::{Random, bumpy};
+use crate::matrix::{
     diagonal, difference, numbers, product, random_modes, stiffness, times, transpose, with_spectrum,
 };
 use sscc::{Metric, Modes, ReducedModel};

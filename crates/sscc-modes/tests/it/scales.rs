@@ -1,7 +1,5 @@
 //! Frequencies scale as `sqrt(E / density) / size`, from soft to stiff, light to heavy and small to large bodies.
 
-#![allow(clippy::unwrap_used)]
-
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc_modes::shapes::spring_of;

@@ -1,12 +1,7 @@
 //! Reduced stiffness matrices are correct and symmetric, and invalid ones are rejected.
 
-#[allow(dead_code)] // other tests use the rest
-mod common;
-#[allow(dead_code)]
-mod matrix;
-
-use common::Random;
-use matrix::{diagonal, dot, random_modes, stiffness, times, transpose, with_spectrum};
+use crate::common::Random;
+use crate::matrix::{diagonal, dot, random_modes, stiffness, times, transpose, with_spectrum};
 use sscc::Modes;
 use sscc_modes::{ModesError, diagonalize, reduced_stiffness};
 use sscc_solid::SolidError;

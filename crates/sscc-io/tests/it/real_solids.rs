@@ -1,6 +1,4 @@
 //! Real volumetric meshes and reduced forces: their sizes and properties match known values.
-#![allow(clippy::unwrap_used)]
-
 use std::collections::{BTreeMap, BTreeSet};
 
 use sscc_io::{read_mesh, read_reduced_forces, read_volume_mesh};

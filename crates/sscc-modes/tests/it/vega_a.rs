@@ -1,7 +1,5 @@
 //! VegaFEM's reduced forces of the letter A.
 
-#![allow(clippy::unwrap_used)]
-
 use sscc::Modes;
 use sscc_modes::diagonalize;
 

@@ -1,11 +1,6 @@
 //! Principal components of animations of known low rank.
 
-#![allow(clippy::unwrap_used)]
-
-#[allow(dead_code)] // other tests use the rest
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use glam::DVec3;
 use sscc::{TriMesh, deformed_position};
 use sscc_modes::{Pca, pca_modes};

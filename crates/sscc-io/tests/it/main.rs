@@ -1,0 +1,7 @@
+//! Readers of real and hostile files. One program, so that the crate is linked once; tests that measure memory are programs
+//! of their own.
+#![allow(clippy::unwrap_used)]
+
+mod hostile;
+mod real_data;
+mod real_solids;
