@@ -100,10 +100,29 @@ impl Answer {
 /// Returns the pickled form of an answer.
 pub fn pickled<'py>(py: Python<'py>, answer: &sscc::Answer) -> PickledAnswer<'py> {
     let s = &answer.statistics;
-    let bytes: Vec<u8> =
-        answer.pairs.iter().flat_map(|(i, j)| [i.to_le_bytes(), j.to_le_bytes()]).flatten().collect();
     let cost = (s.root_certified, s.complete, s.opened, s.box_tests, s.triangle_tests);
-    (PyBytes::new(py, &bytes), answer.norm, cost)
+    (pair_bytes(py, &answer.pairs), answer.norm, cost)
+}
+
+/// Returns pairs as bytes (little-endian).
+pub fn pair_bytes<'py>(py: Python<'py>, pairs: &[Pair]) -> Bound<'py, PyBytes> {
+    let bytes: Vec<u8> =
+        pairs.iter().flat_map(|(i, j)| [i.to_le_bytes(), j.to_le_bytes()]).flatten().collect();
+    PyBytes::new(py, &bytes)
+}
+
+/// Returns the pairs in such bytes.
+///
+/// # Errors
+/// If the bytes are not a whole number of pairs.
+pub fn pairs_of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Pair>> {
+    let (numbers, []) = bytes.as_bytes().as_chunks::<8>() else {
+        return Err(value("the pickled answer is damaged: its bytes are not a whole number of pairs"));
+    };
+    let pair = |[a, b, c, d, e, f, g, h]: &[u8; 8]| {
+        (u32::from_le_bytes([*a, *b, *c, *d]), u32::from_le_bytes([*e, *f, *g, *h]))
+    };
+    Ok(numbers.iter().map(pair).collect())
 }
 
 /// Returns the answer of a pickled form.
@@ -113,13 +132,7 @@ pub fn pickled<'py>(py: Python<'py>, answer: &sscc::Answer) -> PickledAnswer<'py
 pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answer> {
     let (root_certified, complete, opened, box_tests, triangle_tests) = *cost;
     let statistics = Statistics { root_certified, complete, opened, box_tests, triangle_tests };
-    let (numbers, []) = bytes.as_bytes().as_chunks::<8>() else {
-        return Err(value("the pickled answer is damaged: its bytes are not a whole number of pairs"));
-    };
-    let pair = |[a, b, c, d, e, f, g, h]: &[u8; 8]| {
-        (u32::from_le_bytes([*a, *b, *c, *d]), u32::from_le_bytes([*e, *f, *g, *h]))
-    };
-    Ok(sscc::Answer { pairs: numbers.iter().map(pair).collect(), norm: *norm, statistics })
+    Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, norm: *norm, statistics })
 }
 
 /// Constructor for pickled answers.

@@ -54,7 +54,8 @@ pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonly
     let array = numbers(any, name)?;
     let dtype = array.getattr("dtype")?;
     let letter: char = dtype.getattr("kind")?.extract()?;
-    if !matches!(letter, 'i' | 'u') {
+    // An empty list is float64 to NumPy.
+    if !matches!(letter, 'i' | 'u') && !is_empty(&array)? {
         return Err(kind(format!("{name} is an array of {dtype}: integers were expected")));
     }
     if letter == 'u' && dtype.getattr("itemsize")?.extract::<usize>()? == 8 && !is_empty(&array)? {

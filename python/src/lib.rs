@@ -7,6 +7,10 @@ mod batch;
 mod certificates;
 mod certify;
 mod core_seconds;
+mod detector;
+mod detector_answer;
+mod detector_batch;
+mod detector_pool;
 mod errors;
 mod hierarchy;
 mod impacts;
@@ -17,6 +21,7 @@ mod model;
 mod model_methods;
 mod modes;
 mod pool;
+mod positions;
 mod shards;
 mod simulate;
 
@@ -33,6 +38,12 @@ mod _sscc {
     use super::certificates::{_certificates, Certificates};
     #[pymodule_export]
     use super::core_seconds::_core_seconds;
+    #[pymodule_export]
+    use super::detector::{_detector, Detector, self_intersections};
+    #[pymodule_export]
+    use super::detector_answer::{_detector_answer, _detector_impacts, DetectorAnswer, DetectorImpacts};
+    #[pymodule_export]
+    use super::detector_batch::{_detector_batch, DetectorBatch};
     #[pymodule_export]
     use super::hierarchy::Hierarchy;
     #[pymodule_export]

@@ -52,23 +52,38 @@ pub fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<T
 
 /// Returns a mesh from vertices and faces (F, 3); `name` is the argument of the vertices.
 pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> PyResult<TriMesh> {
-    let corners = integers(faces, "faces")?;
-    if corners.ndim() != 2 || corners.shape()[1] != 3 {
-        return Err(value(format!("faces has shape {:?}: (F, 3) was expected", corners.shape())));
-    }
-    let count = positions.len();
-    let mut faces = room(corners.shape()[0], "faces")?;
-    for (face, corners) in corners.as_slice()?.as_chunks::<3>().0.iter().enumerate() {
-        let vertex = |v: i64| match u32::try_from(v) {
-            Ok(vertex) if v < count as i64 => Ok(vertex),
-            _ => Err(value(format!("faces[{face}] names vertex {v}: {name} has {count}, counted from 0"))),
-        };
-        faces.push([vertex(corners[0])?, vertex(corners[1])?, vertex(corners[2])?]);
-    }
+    let faces = face_corners(faces, Some((positions.len(), name)))?;
     TriMesh::new(positions, faces).map_err(|error| match error {
         sscc::Error::NoFaces => refused(&error, "faces"),
         error => refused(&error, name),
     })
+}
+
+/// Returns faces from an array (F, 3) of vertex numbers. `vertices`: how many there are, and their argument's name, if
+/// they are known.
+pub fn face_corners(faces: &Bound<'_, PyAny>, vertices: Option<(usize, &str)>) -> PyResult<Vec<[u32; 3]>> {
+    let array = integers(faces, "faces")?;
+    if array.shape() == [0] {
+        return Ok(Vec::new());
+    }
+    if array.ndim() != 2 || array.shape()[1] != 3 {
+        return Err(value(format!("faces has shape {:?}: (F, 3) was expected", array.shape())));
+    }
+    let mut faces = room(array.shape()[0], "faces")?;
+    for (face, corners) in array.as_slice()?.as_chunks::<3>().0.iter().enumerate() {
+        let vertex = |v: i64| match (u32::try_from(v), vertices) {
+            (Ok(vertex), Some((count, _))) if (vertex as usize) < count => Ok(vertex),
+            (Ok(vertex), None) if vertex < u32::MAX => Ok(vertex),
+            (_, Some((count, name))) => {
+                Err(value(format!("faces[{face}] names vertex {v}: {name} has {count}, counted from 0")))
+            }
+            (_, None) => Err(value(format!(
+                "faces[{face}] names vertex {v}: a number from 0 to 2^32 - 2 was expected"
+            ))),
+        };
+        faces.push([vertex(corners[0])?, vertex(corners[1])?, vertex(corners[2])?]);
+    }
+    Ok(faces)
 }
 
 /// Returns positions from an array (V, 3).

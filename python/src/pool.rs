@@ -106,7 +106,7 @@ impl Kinetic {
 }
 
 /// Locks a mutex, also after a panic: each query initialises its state.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -1,7 +1,13 @@
-"""Exact self-collision detection for deformable triangle meshes: a mesh deforms by modes, ``x = p + U q``.
+"""Exact collision detection for deforming triangle meshes.
 
->>> model = sscc.Model(vertices, faces, modes)
->>> certs = model.certify()
+Any mesh, at given positions:
+
+>>> sscc.self_intersections(vertices, faces)
+>>> sscc.Detector(faces, rest).check(positions).pairs
+
+A mesh that deforms by modes, ``x = p + U q``:
+
+>>> certs = sscc.Model(vertices, faces, modes).certify()
 >>> certs.check(q).pairs
 """
 
@@ -10,11 +16,16 @@ from sscc._sscc import (
     Answer,
     Batch,
     Certificates,
+    Detector,
+    DetectorAnswer,
+    DetectorBatch,
+    DetectorImpacts,
     Hierarchy,
     Impacts,
     KineticQuery,
     Model,
     __version__,
+    self_intersections,
 )
 from sscc._simulate import Simulation, simulate
 
@@ -22,6 +33,10 @@ __all__ = [
     "Answer",
     "Batch",
     "Certificates",
+    "Detector",
+    "DetectorAnswer",
+    "DetectorBatch",
+    "DetectorImpacts",
     "Hierarchy",
     "Impacts",
     "KineticQuery",
@@ -29,5 +44,6 @@ __all__ = [
     "Simulation",
     "__version__",
     "modes",
+    "self_intersections",
     "simulate",
 ]

@@ -310,6 +310,187 @@ class Batch:
     def __getitem__(self, index: SupportsIndex, /) -> Answer: ...
     def __iter__(self) -> Iterator[Answer]: ...
 
+def self_intersections(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    *,
+    weld: bool | ArrayLike | None = None,
+    neighbours: Literal["exclude", "include-one-vertex"] | None = None,
+) -> _U32:
+    """The pairs of triangles of a mesh that have a point in common, exactly: (n, 2), i < j, sorted. Touching counts.
+
+    vertices: (V, 3); faces: (F, 3) integers, counted from 0. A mesh without faces has no pairs.
+    weld, neighbours: as in ``Detector``; by default all pairs count that share no vertex number.
+
+    The predicates are exact: the result is that of real arithmetic on the float64 positions. For many positions of one
+    mesh, ``Detector`` builds its BVH once. Ctrl-C stops the search. Raises TypeError or ValueError.
+    """
+
+@final
+class Detector:
+    """Collisions of any deforming mesh at given positions, without modes. Any number of threads may use it at once.
+
+    It builds a BVH once, refits it in each call, and rebuilds it where it has degraded. Answers do not depend on the
+    BVH. Each call copies its arrays first.
+
+    faces: (F, 3) integers, vertex numbers counted from 0; at least one face.
+    rest: (V, 3), the positions for which the BVH is built; None: the first ones that are checked, which also set V.
+    weld: True: vertices of equal rest position are one vertex, for adjacency (needs ``rest``). (V,) integers:
+        vertices with the same number are one. False (default): every vertex number is a vertex of its own.
+    neighbours: "exclude" (default): triangles that share a vertex do not count; "include-one-vertex": triangles that
+        share one vertex count where they have another common point.
+    ignored: (n, 2), pairs of triangles that never count.
+
+    Raises TypeError or ValueError; the message names the argument and the row.
+    """
+
+    def __new__(
+        cls,
+        faces: ArrayLike,
+        rest: ArrayLike | None = None,
+        *,
+        weld: bool | ArrayLike | None = None,
+        neighbours: Literal["exclude", "include-one-vertex"] | None = None,
+        ignored: ArrayLike | None = None,
+    ) -> Detector: ...
+    def check(
+        self, positions: ArrayLike, limit: SupportsIndex | None = None, *, first: bool | None = None
+    ) -> DetectorAnswer:
+        """The pairs of triangles that collide at these positions (V, 3), exactly.
+
+        ``limit``: the search ends after this number of pairs; ``first=True``: after one.
+        """
+    def check_many(
+        self,
+        frames: ArrayLike,
+        limit: SupportsIndex | None = None,
+        *,
+        threads: int | None = None,
+        progress: _Progress = None,
+    ) -> DetectorBatch:
+        """``check`` for every frame (T, V, 3). ``threads``: None: all cores. ``progress``: as in ``Model.certify``."""
+    def continuous(self, x0: ArrayLike, x1: ArrayLike) -> DetectorImpacts:
+        """The pairs that collide while each vertex moves on a straight line from x0 to x1 (V, 3), and when."""
+    def against(
+        self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
+    ) -> DetectorAnswer:
+        """The pairs (triangle of this mesh, triangle of the other) that have a point in common, exactly.
+
+        All such pairs count: neither mesh's ``neighbours``, ``weld`` and ``ignored`` apply.
+        """
+    def against_continuous(
+        self, x0: ArrayLike, x1: ArrayLike, other: Detector, y0: ArrayLike, y1: ArrayLike
+    ) -> DetectorImpacts:
+        """The pairs of ``against`` that collide while this mesh moves from x0 to x1 and the other from y0 to y1."""
+    @property
+    def faces(self) -> _U32:
+        """Vertex numbers, (F, 3); a copy."""
+    @property
+    def rest(self) -> _F64 | None:
+        """The argument, (V, 3); a copy."""
+    @property
+    def neighbours(self) -> str: ...
+    @property
+    def weld(self) -> bool | _U32:
+        """The argument; classes (V,) are numbered from 0."""
+    @property
+    def ignored(self) -> _U32:
+        """Pairs that never count, (n, 2)."""
+
+@final
+class DetectorAnswer:
+    """The result at given positions. It has no truth value: use ``colliding``.
+
+    Answers are equal if ``pairs`` and ``complete`` are. Their cost depends on the state of the BVH.
+    """
+
+    @property
+    def pairs(self) -> _U32:
+        """Colliding pairs, sorted: (n, 2), read-only. Within one mesh i < j."""
+    @property
+    def colliding(self) -> bool:
+        """Whether any pair collides."""
+    @property
+    def count(self) -> int:
+        """Number of pairs; a lower bound if not ``complete``."""
+    @property
+    def complete(self) -> bool:
+        """Whether all pairs are listed; False if ``limit`` or ``first`` stopped the search."""
+    @property
+    def opened(self) -> int:
+        """Number of opened nodes and node pairs."""
+    @property
+    def box_tests(self) -> int: ...
+    @property
+    def triangle_tests(self) -> int: ...
+    @property
+    def tree_cost(self) -> float:
+        """The cost of the refitted BVH by the surface area heuristic."""
+    @property
+    def rebuilds(self) -> int:
+        """How often this copy of the BVH has been rebuilt."""
+
+@final
+class DetectorImpacts:
+    """The result between given positions. It has no truth value: use ``colliding``.
+
+    Impacts are equal if ``pairs``, ``times`` and ``complete`` are.
+    """
+
+    @property
+    def pairs(self) -> _U32:
+        """Pairs that collide during the motion, sorted: (n, 2), read-only."""
+    @property
+    def times(self) -> _F64:
+        """The time of impact of each pair, from 0 to 1: (n,), read-only."""
+    @property
+    def time_of_impact(self) -> float | None:
+        """The earliest time of impact; None: free from start to end."""
+    @property
+    def colliding(self) -> bool: ...
+    @property
+    def count(self) -> int: ...
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def opened(self) -> int: ...
+    @property
+    def box_tests(self) -> int: ...
+    @property
+    def triangle_tests(self) -> int: ...
+    @property
+    def tree_cost(self) -> float: ...
+    @property
+    def rebuilds(self) -> int: ...
+
+@final
+class DetectorBatch:
+    """The answers for T frames: read-only arrays with one entry for each, and ``batch[t]``, a DetectorAnswer."""
+
+    @property
+    def colliding(self) -> _Bool: ...
+    @property
+    def count(self) -> _I64: ...
+    @property
+    def complete(self) -> _Bool: ...
+    @property
+    def opened(self) -> _U64: ...
+    @property
+    def box_tests(self) -> _U64: ...
+    @property
+    def triangle_tests(self) -> _U64: ...
+    @property
+    def tree_cost(self) -> _F64: ...
+    @property
+    def pairs(self) -> _U32:
+        """The pairs of all frames, joined: (m, 2)."""
+    @property
+    def offsets(self) -> _I64:
+        """(T + 1,): the pairs of frame t are ``pairs[offsets[t]:offsets[t + 1]]``."""
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: SupportsIndex, /) -> DetectorAnswer: ...
+    def __iter__(self) -> Iterator[DetectorAnswer]: ...
+
 def _core_seconds(
     certificates: Certificates, Q: ArrayLike, threads: int | None, one_by_one: bool = True
 ) -> tuple[float, list[float]]: ...

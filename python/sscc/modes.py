@@ -12,6 +12,8 @@ Common arguments:
 - ``resolution``: number of cubes along the longest side of the lattice; None: about 20,000 cubes in all.
 - ``threads``, ``progress``: as in ``Model.certify``.
 
+``skinning`` returns modes, not a model: those of linear blend skinning.
+
 All raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
 """
 
@@ -20,12 +22,16 @@ from __future__ import annotations
 from os import PathLike
 from typing import Literal
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from sscc._progress import Report
 from sscc._sscc import Model, _elastic, _pca, _polynomial
 
-__all__ = ["linear", "nonlinear", "pca", "polynomial"]
+__all__ = ["linear", "nonlinear", "pca", "polynomial", "skinning", "skinning_q"]
+
+#: The largest difference from 1 of a vertex's sum of weights: files store weights in as few as 8 bits.
+MAX_WEIGHT_ERROR = 0.01
 
 Source = str | PathLike[str] | tuple[ArrayLike, ArrayLike]
 
@@ -105,3 +111,75 @@ def pca(
     rank: number of components, less than the number of shapes; None: as many as explain 99.9% of the variance.
     """
     return _pca(shapes, faces, rank, threads, progress)
+
+
+def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
+    """The modes U (V, 3, 12 B) of linear blend skinning by B bones: ``vertices + U q`` is the skinned mesh.
+
+    vertices: (V, 3), in the pose in which the mesh was bound to its bones (for body models: with all corrections).
+    weights: (V, B), not negative. Each row must sum to 1 (within 0.01) and is divided by its sum.
+
+    q has 12 entries for each bone: the first three rows of its matrix minus the identity, row by row. So q[12 b + 4 i +
+    j] is entry (i, j) of the matrix of bone b, minus 1 where i = j; j = 3 is the translation. ``skinning_q`` computes
+    it. A matrix maps the vertex in the bind pose to its place: in glTF it is ``joint_world @ inverse_bind``.
+
+    Answers are exact for every q. But a usual motion of one bone is a large q, so certificates prove only small motions
+    about their center (docs/python.md has measurements). For poses of an animation, ``Detector`` is faster.
+    """
+    x = _numbers(vertices, "vertices")
+    w = _numbers(weights, "weights")
+    if x.ndim != 2 or x.shape[1] != 3:
+        raise ValueError(f"vertices has shape {list(x.shape)}: (V, 3) was expected")
+    if w.ndim != 2 or w.shape[0] != len(x) or w.shape[1] == 0:
+        raise ValueError(f"weights has shape {list(w.shape)}: ({len(x)}, B) was expected, a row for each vertex")
+    for wrong, what in ((~np.isfinite(w), "finite"), (w < 0, "at least 0")):
+        if wrong.any():
+            vertex, bone = np.argwhere(wrong)[0]
+            raise ValueError(f"weights[{vertex}, {bone}] is {w[vertex, bone]}: every weight must be {what}")
+    sums = w.sum(axis=1, keepdims=True)
+    far = np.abs(sums[:, 0] - 1) > MAX_WEIGHT_ERROR
+    if far.any():
+        vertex = int(np.argmax(far))
+        raise ValueError(
+            f"weights[{vertex}] sums to {sums[vertex, 0]:.6g}: 1 was expected; "
+            "to normalize, pass weights / weights.sum(axis=1, keepdims=True)"
+        )
+    moved = np.concatenate([x, np.ones((len(x), 1))], axis=1)
+    of_bones = ((w / sums)[:, :, None] * moved[:, None, :]).reshape(len(x), -1, 4)
+    modes = np.zeros((len(x), 3, w.shape[1], 3, 4))
+    for axis in range(3):
+        modes[:, axis, :, axis, :] = of_bones
+    return modes.reshape(len(x), 3, -1)
+
+
+def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
+    """q (12 B,) of the bone matrices (B, 3, 4) or (B, 4, 4), for the modes of ``skinning``.
+
+    More axes in front are poses: (n, B, 4, 4) gives Q (n, 12 B). The last row of a 4 x 4 matrix must be (0, 0, 0, 1).
+    """
+    m = _numbers(matrices, "matrices")
+    if m.ndim < 3 or m.shape[-2:] not in ((3, 4), (4, 4)):
+        raise ValueError(f"matrices has shape {list(m.shape)}: (B, 3, 4) or (B, 4, 4) was expected")
+    if not np.isfinite(m).all():
+        place = [int(i) for i in np.argwhere(~np.isfinite(m))[0]]
+        raise ValueError(f"matrices{place} is {m[tuple(place)]}: every entry must be finite")
+    projective = (m[..., 3:, :] != (0, 0, 0, 1)).any(axis=(-2, -1))
+    if projective.any():
+        place = [int(i) for i in np.argwhere(projective)[0]]
+        raise ValueError(
+            f"matrices{place} has the last row {m[tuple(place)][3].tolist()}: [0, 0, 0, 1] was expected; "
+            "matrices that multiply row vectors must be transposed"
+        )
+    rows: NDArray[np.float64] = m[..., :3, :] - np.eye(3, 4)
+    return rows.reshape(*m.shape[:-3], -1)
+
+
+def _numbers(given: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Returns a copy as float64."""
+    try:
+        array = np.array(given)
+    except ValueError as error:
+        raise ValueError(f"{name}: an array of numbers was expected: {error}") from None
+    if array.dtype.kind not in "fiu" or isinstance(given, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a {type(given).__name__} of {array.dtype}: an array of numbers was expected")
+    return array.astype(np.float64)

@@ -59,6 +59,13 @@ def test_a_hundred_thousand_configurations() -> None:
         assert answers[row] == certificates.check(Q[row])
 
 
+def test_frames_of_a_deforming_mesh() -> None:
+    batch, begins, met = example("deforming").main()
+    assert 0 < batch.colliding.sum() < len(batch) and 0 < met.sum() < len(met)
+    starts = np.flatnonzero(~batch.colliding[:-1] & batch.colliding[1:])
+    assert len(starts) > 0 and set(starts) <= set(begins)
+
+
 @pytest.mark.filterwarnings("default")
 def test_a_cluster() -> None:
     pytest.importorskip("distributed", reason="dask.distributed is not installed")

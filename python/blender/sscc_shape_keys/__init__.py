@@ -1,4 +1,4 @@
-"""Blender add-on: proves that a mesh with shape keys has no self-collisions, or marks the colliding faces."""
+"""Blender add-on: marks the colliding faces of any mesh, and proves that shape keys have no self-collisions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ bl_info = {
     "version": (0, 1, 0),
     "blender": (4, 2, 0),
     "location": "3D Viewport > Sidebar > sscc",
-    "description": "Proves that a mesh with shape keys has no self-collisions, or marks the colliding faces",
+    "description": "Marks the colliding faces of any mesh, and proves that shape keys have no self-collisions",
     "category": "Mesh",
 }
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import bpy
 
-from . import proof
+from . import evaluated, proof
 from .shape import Unsupported
+from .status import Status
 
 ICONS = {
     "free": "CHECKMARK",
@@ -19,8 +20,20 @@ RED = (1.0, 0.1, 0.05, 1.0)
 _overlay = None
 
 
-def _status(context: bpy.types.Context) -> proof.Status:
+def _proof(context: bpy.types.Context) -> Status:
+    """The status of the shape keys."""
     return proof.status(context.object, context.scene.sscc_ignore_rest)
+
+
+def _evaluated(context: bpy.types.Context) -> Status | None:
+    """The status of the evaluated mesh; None if it has not been checked."""
+    return evaluated.status(context.object, context.evaluated_depsgraph_get())
+
+
+def _shown(context: bpy.types.Context) -> Status:
+    """The status that is marked and selected: of the evaluated mesh if it is known, else of the shape keys."""
+    found = _evaluated(context)
+    return found if found is not None and found.kind in ("free", "colliding") else _proof(context)
 
 
 class SSCC_OT_certify(bpy.types.Operator):
@@ -45,6 +58,23 @@ class SSCC_OT_certify(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class SSCC_OT_check_evaluated(bpy.types.Operator):
+    """Find the faces of the active object that collide now, after armatures and all modifiers"""
+
+    bl_idname = "sscc.check_evaluated"
+    bl_label = "Check Evaluated Mesh"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            found = evaluated.check(context.object, context.evaluated_depsgraph_get())
+        except (Unsupported, ValueError, MemoryError) as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        self.report({"INFO"}, found.text)
+        _changed()
+        return {"FINISHED"}
+
+
 class SSCC_OT_select(bpy.types.Operator):
     """Select the faces that collide"""
 
@@ -53,9 +83,12 @@ class SSCC_OT_select(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        status = _status(context)
+        status = _shown(context)
         if status.kind not in ("free", "colliding"):
             self.report({"ERROR"}, status.text)
+            return {"CANCELLED"}
+        if len(status.corners) > 0 and len(status.polygons) == 0:
+            self.report({"ERROR"}, "modifiers change the faces: the colliding ones are only marked")
             return {"CANCELLED"}
         mesh = context.object.data
         mesh.vertices.foreach_set("select", [False] * len(mesh.vertices))
@@ -78,10 +111,14 @@ class SSCC_PT_panel(bpy.types.Panel):
     bl_category = "sscc"
 
     def draw(self, context: bpy.types.Context) -> None:
-        status = _status(context)
+        status = _proof(context)
         self.layout.label(text=status.text, icon=ICONS[status.kind])
         self.layout.prop(context.scene, "sscc_ignore_rest")
         self.layout.operator("sscc.certify")
+        found = _evaluated(context)
+        if found is not None:
+            self.layout.label(text=found.text, icon=ICONS[found.kind])
+        self.layout.operator("sscc.check_evaluated")
         self.layout.operator("sscc.select")
         self.layout.prop(context.scene, "sscc_mark")
 
@@ -94,7 +131,7 @@ def _draw_mark() -> None:
     context = bpy.context
     if not context.scene.sscc_mark or context.object is None:
         return
-    status = _status(context)
+    status = _shown(context)
     if status.kind != "colliding":
         return
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
@@ -116,7 +153,7 @@ def _changed(*_: object) -> None:
                 area.tag_redraw()
 
 
-CLASSES = (SSCC_OT_certify, SSCC_OT_select, SSCC_PT_panel)
+CLASSES = (SSCC_OT_certify, SSCC_OT_check_evaluated, SSCC_OT_select, SSCC_PT_panel)
 HANDLERS = (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post)
 
 
@@ -146,4 +183,5 @@ def unregister() -> None:
     del bpy.types.Scene.sscc_ignore_rest
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    evaluated.forget()
     proof.forget()

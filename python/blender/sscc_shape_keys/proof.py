@@ -7,7 +7,7 @@ fingerprint. So a status never belongs to another shape, and a shape after an un
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -15,6 +15,7 @@ import sscc
 
 from . import shape as shapes
 from .shape import Unsupported
+from .status import Status, colliding
 
 #: Certificates of at most this many shapes are kept.
 MAX_CERTIFIED = 8
@@ -30,16 +31,6 @@ class Certified:
     certificates: sscc.Certificates
     faces: np.ndarray  #: (F, 3) vertex numbers of the triangles
     polygons: np.ndarray  #: (F) polygon of each triangle
-
-
-@dataclass(frozen=True)
-class Status:
-    """The status of an object. ``kind`` is free, colliding, changed, uncertified or unsupported."""
-
-    kind: str
-    text: str
-    polygons: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))  #: colliding polygons, ascending
-    corners: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))  #: of the colliding triangles, three each
 
 
 _known: OrderedDict[tuple[bytes, bool], Certified] = OrderedDict()
@@ -89,8 +80,5 @@ def status(obj: bpy.types.Object | None, ignore_rest: bool) -> Status:
     ignoring = f", apart from {ignored} pairs that collide in the basis" if ignored else ""
     if len(pairs) == 0:
         return Status("free", f"free (proven){ignoring}")
-    triangles = np.unique(pairs)
-    polygons = np.unique(certified.polygons[triangles])
-    corners = certificates.model.positions(q)[certified.faces[triangles].reshape(-1)]
-    text = f"{len(polygons)} faces collide ({len(pairs)} pairs of triangles){ignoring}"
-    return Status("colliding", text, polygons, corners)
+    found = colliding(pairs, certified.polygons, certificates.model.positions(q), certified.faces)
+    return Status(found.kind, found.text + ignoring, found.polygons, found.corners)

@@ -58,10 +58,16 @@ pub(crate) fn traverse_two_meshes<
     if x.volumes.node(0).overlaps(y.volumes.node(0)) {
         stack.push((0, 0));
     }
+    let mut next_check = VISITS_PER_CHECK;
     while let Some((n, m)) = stack.pop() {
         counters.opened += 1;
-        if counters.opened.is_multiple_of(VISITS_PER_CHECK) && x.context.progress.is_cancelled() {
-            return Err(Error::Cancelled);
+        // One pair of buckets may have thousands of triangle tests.
+        let visits = counters.opened + counters.triangle_tests;
+        if visits >= next_check {
+            next_check = visits + VISITS_PER_CHECK;
+            if x.context.progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
         }
         match [x.bucket(n), y.bucket(m)] {
             [Some(a), Some(b)] => {

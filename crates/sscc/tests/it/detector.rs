@@ -204,6 +204,12 @@ fn batches_answer_as_single_frames_do() {
     for threads in [Some(1), Some(3), None] {
         let answers = detector.batch(&frames, threads, &()).unwrap();
         assert!(answers.iter().map(|answer| &answer.pairs).eq(&expected));
+        let limited = detector.batch_at_most(&frames, 2, threads, &()).unwrap();
+        for (some, all) in limited.iter().zip(&expected) {
+            assert_eq!(some.pairs.len(), all.len().min(2));
+            assert!(some.pairs.iter().all(|pair| all.contains(pair)));
+            assert!(some.statistics.complete || all.len() >= 2);
+        }
     }
     struct Stop;
     impl sscc::Progress for Stop {

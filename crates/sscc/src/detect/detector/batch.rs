@@ -31,10 +31,27 @@ impl Detector<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<FrameAnswer>, Error> {
+        self.batch_at_most(frames, usize::MAX, threads, progress)
+    }
+
+    /// As [`Detector::batch`], at most `limit` pairs of each frame: see [`Detector::discrete_at_most`].
+    ///
+    /// # Errors
+    /// As [`Detector::batch`].
+    pub fn batch_at_most<X: AsRef<[DVec3]> + Sync>(
+        &self,
+        frames: &[X],
+        limit: usize,
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<FrameAnswer>, Error> {
         let done = AtomicUsize::new(0);
         let detector = || self.clone().cancelled_by(progress);
         let answer = |detector: &mut Detector<'_>, positions: &X| {
-            let pairs = detector.discrete(positions.as_ref())?.to_vec();
+            if progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let pairs = detector.discrete_at_most(positions.as_ref(), limit)?.to_vec();
             progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, frames.len());
             Ok(FrameAnswer { pairs, statistics: detector.statistics() })
         };

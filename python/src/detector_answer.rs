@@ -1,0 +1,236 @@
+//! `sscc.DetectorAnswer` and `sscc.DetectorImpacts`: the results of a detector at given positions and between them.
+//!
+//! The cost of an answer depends on earlier calls, because the detector rebuilds its BVH. So equality compares pairs,
+//! times and completeness alone.
+
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use sscc::{DetectorStatistics, FrameAnswer, Impact, Pair};
+
+use crate::answer::{Reduction, pair_bytes, pairs_of_bytes};
+use crate::arrays::{CachedArray, cached, line, pairs};
+use crate::errors::{kind, value};
+
+/// The pickled form of an answer: pairs, and `complete`, `opened`, `box_tests`, `triangle_tests`, `tree_cost`,
+/// `rebuilds`.
+pub type PickledFrame<'py> = (Bound<'py, PyBytes>, (bool, u64, u64, u64, f64, u64));
+
+#[pyclass(frozen, module = "sscc", name = "DetectorAnswer")]
+pub struct DetectorAnswer {
+    frame: FrameAnswer,
+    pairs_array: CachedArray,
+}
+
+impl DetectorAnswer {
+    pub fn of(frame: FrameAnswer) -> Self {
+        Self { frame, pairs_array: CachedArray::new() }
+    }
+}
+
+#[pymethods]
+impl DetectorAnswer {
+    #[getter]
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.pairs_array, || pairs(py, &self.frame.pairs))
+    }
+
+    #[getter]
+    fn colliding(&self) -> bool {
+        !self.frame.pairs.is_empty()
+    }
+
+    #[getter]
+    fn count(&self) -> usize {
+        self.frame.pairs.len()
+    }
+
+    #[getter]
+    fn complete(&self) -> bool {
+        self.frame.statistics.complete
+    }
+
+    #[getter]
+    fn opened(&self) -> u64 {
+        self.frame.statistics.opened
+    }
+
+    #[getter]
+    fn box_tests(&self) -> u64 {
+        self.frame.statistics.box_tests
+    }
+
+    #[getter]
+    fn triangle_tests(&self) -> u64 {
+        self.frame.statistics.triangle_tests
+    }
+
+    #[getter]
+    fn tree_cost(&self) -> f64 {
+        self.frame.statistics.tree_cost
+    }
+
+    #[getter]
+    fn rebuilds(&self) -> u64 {
+        self.frame.statistics.rebuilds
+    }
+
+    fn __bool__(&self) -> PyResult<bool> {
+        Err(kind("a DetectorAnswer has no truth value: use .colliding"))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        is_same(&self.frame, &other.frame)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (PickledFrame<'py>,)>> {
+        Ok((py.import("sscc._sscc")?.getattr("_detector_answer")?, (pickled(py, &self.frame),)))
+    }
+
+    fn __repr__(&self) -> String {
+        match (self.frame.pairs.len(), self.frame.statistics.complete) {
+            (0, _) => "<sscc.DetectorAnswer: free>".into(),
+            (count, true) => format!("<sscc.DetectorAnswer: colliding, {count} pairs>"),
+            (count, false) => format!("<sscc.DetectorAnswer: colliding, at least {count} pairs>"),
+        }
+    }
+}
+
+#[pyclass(frozen, module = "sscc", name = "DetectorImpacts")]
+pub struct DetectorImpacts {
+    /// The pairs and the cost.
+    frame: FrameAnswer,
+    /// The time of impact of each pair.
+    times: Vec<f64>,
+    pairs_array: CachedArray,
+    times_array: CachedArray,
+}
+
+impl DetectorImpacts {
+    pub fn of(impacts: &[Impact], statistics: DetectorStatistics) -> Self {
+        let pairs: Vec<Pair> = impacts.iter().map(|impact| impact.pair).collect();
+        let times = impacts.iter().map(|impact| impact.time).collect();
+        Self::from_parts(FrameAnswer { pairs, statistics }, times)
+    }
+
+    fn from_parts(frame: FrameAnswer, times: Vec<f64>) -> Self {
+        Self { frame, times, pairs_array: CachedArray::new(), times_array: CachedArray::new() }
+    }
+}
+
+#[pymethods]
+impl DetectorImpacts {
+    #[getter]
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.pairs_array, || pairs(py, &self.frame.pairs))
+    }
+
+    #[getter]
+    fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        cached(py, &self.times_array, || Ok(line(py, self.times.clone())))
+    }
+
+    #[getter]
+    fn time_of_impact(&self) -> Option<f64> {
+        self.times.iter().copied().min_by(f64::total_cmp)
+    }
+
+    #[getter]
+    fn colliding(&self) -> bool {
+        !self.times.is_empty()
+    }
+
+    #[getter]
+    fn count(&self) -> usize {
+        self.times.len()
+    }
+
+    #[getter]
+    fn complete(&self) -> bool {
+        self.frame.statistics.complete
+    }
+
+    #[getter]
+    fn opened(&self) -> u64 {
+        self.frame.statistics.opened
+    }
+
+    #[getter]
+    fn box_tests(&self) -> u64 {
+        self.frame.statistics.box_tests
+    }
+
+    #[getter]
+    fn triangle_tests(&self) -> u64 {
+        self.frame.statistics.triangle_tests
+    }
+
+    #[getter]
+    fn tree_cost(&self) -> f64 {
+        self.frame.statistics.tree_cost
+    }
+
+    #[getter]
+    fn rebuilds(&self) -> u64 {
+        self.frame.statistics.rebuilds
+    }
+
+    fn __bool__(&self) -> PyResult<bool> {
+        Err(kind("DetectorImpacts have no truth value: use .colliding"))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        is_same(&self.frame, &other.frame) && self.times == other.times
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (PickledFrame<'py>, Vec<f64>)>> {
+        let make = py.import("sscc._sscc")?.getattr("_detector_impacts")?;
+        Ok((make, (pickled(py, &self.frame), self.times.clone())))
+    }
+
+    fn __repr__(&self) -> String {
+        match self.time_of_impact() {
+            None => "<sscc.DetectorImpacts: free from start to end>".into(),
+            Some(time) => {
+                format!("<sscc.DetectorImpacts: {} pairs, the first at {time:.4}>", self.times.len())
+            }
+        }
+    }
+}
+
+/// Whether two answers are the same but for their cost.
+pub fn is_same(a: &FrameAnswer, b: &FrameAnswer) -> bool {
+    a.pairs == b.pairs && a.statistics.complete == b.statistics.complete
+}
+
+/// Returns the pickled form of an answer.
+pub fn pickled<'py>(py: Python<'py>, frame: &FrameAnswer) -> PickledFrame<'py> {
+    let s = &frame.statistics;
+    let cost = (s.complete, s.opened, s.box_tests, s.triangle_tests, s.tree_cost, s.rebuilds);
+    (pair_bytes(py, &frame.pairs), cost)
+}
+
+/// Returns the answer of a pickled form.
+///
+/// # Errors
+/// If the bytes are not a whole number of pairs.
+pub fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<FrameAnswer> {
+    let (complete, opened, box_tests, triangle_tests, tree_cost, rebuilds) = *cost;
+    let statistics = DetectorStatistics { complete, opened, box_tests, triangle_tests, tree_cost, rebuilds };
+    Ok(FrameAnswer { pairs: pairs_of_bytes(bytes)?, statistics })
+}
+
+/// Constructor for pickled answers.
+#[pyfunction]
+pub fn _detector_answer(frame: PickledFrame<'_>) -> PyResult<DetectorAnswer> {
+    Ok(DetectorAnswer::of(unpickled(&frame)?))
+}
+
+/// Constructor for pickled impacts.
+#[pyfunction]
+pub fn _detector_impacts(frame: PickledFrame<'_>, times: Vec<f64>) -> PyResult<DetectorImpacts> {
+    let frame = unpickled(&frame)?;
+    if frame.pairs.len() != times.len() {
+        return Err(value("the pickled impacts are damaged: pairs and times differ in number"));
+    }
+    Ok(DetectorImpacts::from_parts(frame, times))
+}
