@@ -113,7 +113,8 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
     })
 }
 
-fn neighbours(typed: args::Neighbours) -> Neighbours {
+/// Returns the value of `--neighbours`.
+pub fn neighbours(typed: args::Neighbours) -> Neighbours {
     match typed {
         args::Neighbours::Exclude => Neighbours::Exclude,
         args::Neighbours::IncludeOneVertex => Neighbours::IncludeOneVertex,

@@ -1,6 +1,6 @@
 //! The progress bar on standard error, shown for work that takes more than a second.
 
-use std::io::{IsTerminal, stderr};
+use std::io::{IsTerminal, stderr, stdout};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -26,9 +26,9 @@ impl Bar {
         Self { message, start: Instant::now(), is_visible: stderr().is_terminal(), bar: OnceLock::new() }
     }
 
-    /// Hides the bar unless `condition` holds.
-    pub fn only_if(mut self, condition: bool) -> Self {
-        self.is_visible &= condition;
+    /// Hides the bar if standard output is a terminal, where the printed lines show the progress.
+    pub fn beside_output(mut self) -> Self {
+        self.is_visible &= !stdout().is_terminal();
         self
     }
 

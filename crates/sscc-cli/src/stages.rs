@@ -51,6 +51,8 @@ impl Watch for Stages {
             Stage::Modes => Some(Indicator::Bar(Bar::new("modes"))),
             Stage::Certificates => Some(Indicator::Bar(Bar::new("certifying"))),
             Stage::Steps { step } => Some(Indicator::Meter(Meter::new(step))),
+            Stage::Reading => Some(Indicator::Bar(Bar::new("reading"))),
+            Stage::Detection => Some(Indicator::Bar(Bar::new("checking").beside_output())),
             Stage::Comparison => Some(Indicator::Bar(Bar::new("measuring"))),
             _ => None,
         });
@@ -59,5 +61,10 @@ impl Watch for Stages {
     fn note(&self, note: &str) {
         self.show(None);
         output::note(note);
+    }
+
+    fn warn(&self, warning: &str) {
+        self.show(None);
+        output::write_stderr(format_args!("warning: {warning}"));
     }
 }

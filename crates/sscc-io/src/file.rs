@@ -15,24 +15,39 @@ use crate::{FormatError, IoError};
 /// When the file does not exist, is not a regular file, is empty, does not fit into memory, or the system reports an
 /// error.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
-    let refused = |cause: io::Error| match cause.kind() {
-        ErrorKind::NotFound => IoError::NotFound { path: path.to_owned() },
-        _ => IoError::System { path: path.to_owned(), action: "read", cause },
-    };
-    // The check comes before opening: opening a pipe waits for a writer.
-    let metadata = fs::metadata(path).map_err(refused)?;
-    check_regular(path, &metadata)?;
+    let refused = |cause| read_error(path, cause);
+    let (file, size) = open_regular(path)?;
     let mut bytes = Vec::new();
-    usize::try_from(metadata.len())
+    usize::try_from(size)
         .ok()
         .and_then(|len| bytes.try_reserve_exact(len).ok())
         .ok_or_else(|| refused(io::Error::from(ErrorKind::OutOfMemory)))?;
     // At most the size from above is read. If the file grows meanwhile, it is truncated there, and its parser fails.
-    File::open(path).map_err(refused)?.take(metadata.len()).read_to_end(&mut bytes).map_err(refused)?;
+    file.take(size).read_to_end(&mut bytes).map_err(refused)?;
     if bytes.is_empty() {
         return Err(FormatError::whole("the file is empty").of(path));
     }
     Ok(bytes)
+}
+
+/// Opens a regular file, and returns its size in bytes.
+///
+/// # Errors
+/// As [`read_whole`], but the file may be empty or too large for memory.
+pub(crate) fn open_regular(path: &Path) -> Result<(File, u64), IoError> {
+    // The check comes before opening: opening a pipe waits for a writer.
+    let metadata = fs::metadata(path).map_err(|cause| read_error(path, cause))?;
+    check_regular(path, &metadata)?;
+    let file = File::open(path).map_err(|cause| read_error(path, cause))?;
+    Ok((file, metadata.len()))
+}
+
+/// Returns the error for a file that cannot be read.
+pub(crate) fn read_error(path: &Path, cause: io::Error) -> IoError {
+    match cause.kind() {
+        ErrorKind::NotFound => IoError::NotFound { path: path.to_owned() },
+        _ => IoError::System { path: path.to_owned(), action: "read", cause },
+    }
 }
 
 /// Writes a whole file atomically: to a temporary file in the same folder, which is then renamed. An old file stays

@@ -37,6 +37,8 @@
 //! | meshes: OBJ, PLY, OFF, STL | [`read_mesh`], [`mesh`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
+//! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
+//! | the mesh of any file, without modes | [`load_mesh`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
@@ -63,6 +65,7 @@ mod load;
 pub mod mesh;
 mod mesh_modes;
 pub mod modes;
+mod natural_order;
 pub mod npy;
 pub mod npz;
 mod numbers;
@@ -76,10 +79,10 @@ pub use container::{ModelInfo, read_certificates, read_model, write_certificates
 pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};
 pub use forces::{parse_reduced_forces, read_reduced_forces};
-pub use load::{LoadOptions, LoadedModel, load_model, load_model_with, splits_vertices};
+pub use load::{LoadOptions, LoadedModel, load_mesh, load_model, load_model_with, splits_vertices};
 pub use mesh::read_mesh;
 pub use mesh_modes::read_modes_for;
-pub use modes::{Frames, NamedModes, read_frames, read_modes};
+pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
 pub use npy::write_npy;
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};

@@ -9,6 +9,10 @@ use crate::{
     IoError, ModelInfo, NamedModes, NpzModel, gltf, read_mesh, read_model, read_modes_for, read_npz_model,
 };
 
+/// Cause of the error for a mesh without modes.
+const NO_MODES: &str = "a mesh has no modes: add --modes FILE, or compute modes with sscc modes; sscc check without a \
+                        q checks the mesh as it is";
+
 /// Options for loading a model.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
@@ -65,7 +69,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
     let format = ending(path);
     let is_gltf = matches!(format.as_str(), "glb" | "gltf");
     if options.mesh_name.is_some() && !is_gltf {
-        return Err(refused("only a glTF file can have several meshes: leave out --mesh-name"));
+        return Err(named_mesh_error(path));
     }
     match (format.as_str(), options.modes) {
         ("safetensors", None) => {
@@ -89,7 +93,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         (_, None) => {
             // A missing or malformed mesh is reported before missing modes.
             read_mesh(path)?;
-            Err(refused("a mesh has no modes: add --modes FILE, or compute modes with sscc modes"))
+            Err(refused(NO_MODES))
         }
         (_, Some(modes_path)) => {
             let mesh = read_mesh(path)?;
@@ -98,6 +102,31 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             assemble(modes_path, mesh, modes, provenance, names)
         }
     }
+}
+
+/// Loads a mesh at rest from a file of any format: a mesh file, a `.glb` or `.gltf` file
+/// ([`gltf::read_base_mesh`]), or a model without its modes.
+///
+/// # Errors
+/// When a mesh is named for a file other than glTF, the file cannot be read or is malformed, or has no triangles.
+pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoError> {
+    let format = ending(path);
+    if mesh_name.is_some() && !matches!(format.as_str(), "glb" | "gltf") {
+        check_exists(path)?;
+        return Err(named_mesh_error(path));
+    }
+    match format.as_str() {
+        "glb" | "gltf" => gltf::read_base_mesh(path, mesh_name),
+        "safetensors" => Ok(read_model(path)?.0.mesh().clone()),
+        "npz" => Ok(read_npz_model(path)?.mesh),
+        _ => read_mesh(path),
+    }
+}
+
+/// Returns the error for a named mesh of a file that has only one.
+fn named_mesh_error(path: &Path) -> IoError {
+    let cause = "only a glTF file can have several meshes: leave out --mesh-name".into();
+    IoError::Request { path: path.to_owned(), cause }
 }
 
 /// Whether the format splits vertices along seams, so that adjacent triangles share no vertex: STL and glTF. For
@@ -149,7 +178,7 @@ mod tests {
         let message = |path: &Path, modes: Option<&Path>| load_model(path, modes).unwrap_err().to_string();
         assert!(
             message(&mesh, None)
-                .ends_with("a.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes")
+                .contains("a.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes")
         );
         assert!(message(&model, Some(&modes)).ends_with("has its own modes: leave out --modes"));
         assert!(message(&directory.path().join("b.obj"), None).ends_with("b.obj: not found"));
@@ -205,6 +234,11 @@ mod tests {
             std::fs::write(path(own), "x").unwrap();
             assert!(refused().ends_with("leave out --modes"));
         }
+        for mesh in ["a.obj", "a.STL"] {
+            assert_eq!(load_mesh(&path(mesh), None).unwrap(), *first.model.mesh());
+        }
+        let named = load_mesh(&path("a.obj"), Some("x")).unwrap_err().to_string();
+        assert!(named.ends_with("leave out --mesh-name"), "{named}");
         assert!(splits_vertices(Path::new("a.STL")) && splits_vertices(Path::new("a.glb")));
         assert!(!splits_vertices(Path::new("a.obj")));
     }

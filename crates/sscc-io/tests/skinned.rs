@@ -187,6 +187,7 @@ fn morph_targets_agree_with_the_reduced_model() {
         assert_eq!(morphed.faces(), model.mesh.faces(), "{file}");
         assert_eq!(morphed.rest_positions(), model.mesh.rest_positions(), "{file}");
         assert_eq!(morphed.morph_targets(), model.modes.rank(), "{file}");
+        assert_eq!(gltf::read_base_mesh(&path, Some(&model.mesh_name)).unwrap(), model.mesh, "{file}");
         let mut positions = Vec::new();
         for animation in 0..scene.animations().len() {
             let pose = scene.pose(Some(animation), 0.5 * scene.animations()[animation].last_time).unwrap();

@@ -1,4 +1,5 @@
-//! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files.
+//! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files;
+//! collisions of meshes, frames and animations from files ([`detect`]).
 //!
 //! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
 //! printed. One simulation:
@@ -14,6 +15,7 @@
 //! # Ok::<(), sscc_sim::SimError>(())
 //! ```
 
+mod detection;
 mod error;
 mod files;
 mod machine;
@@ -26,7 +28,9 @@ mod scenes;
 mod simulate;
 pub mod text;
 mod watch;
+mod zero_radius;
 
+pub use detection::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, check_rows, detect};
 pub use error::SimError;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
@@ -46,3 +50,4 @@ pub use run::{
 pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
 pub use watch::{Stage, Watch};
+pub use zero_radius::ZeroRadius;

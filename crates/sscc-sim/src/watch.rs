@@ -21,6 +21,10 @@ pub enum Stage {
     },
     /// Measures the traditional method on some of the states.
     Comparison,
+    /// Reads frames of a mesh.
+    Reading,
+    /// Searches for collisions in meshes.
+    Detection,
 }
 
 /// [`Progress`] of work that has several stages. Cancels all of them.
@@ -30,6 +34,11 @@ pub trait Watch: Progress {
 
     /// Receives a note: one line that is no error, for example that a damaged file of the cache was computed again.
     fn note(&self, note: &str);
+
+    /// Receives a warning: one line about input that breaks a rule, and how it was understood. By default a note.
+    fn warn(&self, warning: &str) {
+        self.note(warning);
+    }
 }
 
 /// Returns an error if `progress` cancels.

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::Context;
 use serde::Serialize;
-use sscc::{Certificates, CertifyOptions, Query, ReducedModel};
+use sscc::Certificates;
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
+use sscc_sim::ZeroRadius;
 use sscc_view::Picture;
 
 use crate::args::Certify;
@@ -15,9 +16,6 @@ use crate::interrupt::{self, Interrupt};
 use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
-
-/// Maximum number of triangles in a note.
-const MAX_LISTED: usize = 8;
 
 #[derive(Serialize)]
 struct Report {
@@ -77,7 +75,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
-    let zero_radius = ZeroRadius::find(&model, &certificates, &options)?;
+    let zero_radius = ZeroRadius::find(&model, &certificates, &options, &Interrupt)?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
@@ -95,95 +93,6 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     let notes = [zero_radius.map(|reason| reason.note()), picture.and_then(|drawn| drawn.note)];
     notes.into_iter().flatten().for_each(note);
     Ok(Outcome::Done)
-}
-
-/// The reason for a root's radius of 0, found by queries at the centre and at rest.
-enum ZeroRadius {
-    /// More pairs collide at the centre than may be exceptions.
-    Colliding {
-        max_exceptions: usize,
-        /// Whether `--ignore-rest` is absent, and would reduce the pairs to at most `max_exceptions`.
-        can_ignore_rest: bool,
-    },
-    /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
-    TooClose { triangles: Vec<u32> },
-}
-
-impl ZeroRadius {
-    /// Finds the reason; none if the root's radius is not 0. Costs up to two discrete queries.
-    fn find(
-        model: &ReducedModel,
-        certificates: &Certificates,
-        options: &CertifyOptions,
-    ) -> Result<Option<Self>> {
-        if certificates.root_radius() > 0.0 {
-            return Ok(None);
-        }
-        let mut query = Query::new(model, certificates)?.cancelled_by(&Interrupt);
-        let center = certificates.center();
-        let mut others = query.discrete(center)?.to_vec();
-        others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
-        if others.is_empty() {
-            return Ok(Some(Self::TooClose { triangles: smallest_zero_node(certificates) }));
-        }
-        let default = CertifyOptions::default_exceptions(model.mesh().faces().len());
-        let max_exceptions = options.max_exceptions.unwrap_or(default);
-        let at_rest = query.discrete(&vec![0.0; model.rank()])?;
-        let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
-        let can_ignore_rest = !options.ignore_rest && left <= max_exceptions;
-        Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
-    }
-
-    /// Returns a note with the remedy.
-    fn note(&self) -> String {
-        match self {
-            Self::Colliding { max_exceptions, can_ignore_rest } => {
-                let ignore = if *can_ignore_rest {
-                    ", or ignore the pairs that collide at rest with --ignore-rest"
-                } else {
-                    ""
-                };
-                format!(
-                    "more pairs collide at the centre than may be exceptions ({max_exceptions}): parts that contain \
-                     one have radius 0; raise --max-exceptions{ignore}"
-                )
-            }
-            Self::TooClose { triangles } => format!(
-                "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
-                 radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \
-                 another --center",
-                listed(triangles)
-            ),
-        }
-    }
-}
-
-/// Returns the triangles of the smallest node with radius 0. Nodes within a bucket are skipped, because they repeat the
-/// bucket's radius.
-fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
-    let hierarchy = certificates.hierarchy();
-    let nodes = hierarchy.nodes();
-    let mut is_own = vec![true; nodes.len()];
-    for (n, node) in nodes.iter().enumerate() {
-        let has_own_children = is_own[n] && (n == 0 || !node.fits_in_bucket());
-        node.children().for_each(|child| is_own[child as usize] = has_own_children);
-    }
-    let has_zero_radius = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
-    let smallest = (0..nodes.len()).filter(has_zero_radius).min_by_key(|n| nodes[*n].triangle_count);
-    let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
-    triangles.sort_unstable();
-    triangles
-}
-
-/// Returns the numbers of triangles as text, at most [`MAX_LISTED`] of them.
-fn listed(triangles: &[u32]) -> String {
-    let shown: Vec<String> = triangles.iter().take(MAX_LISTED).map(u32::to_string).collect();
-    let more = if triangles.len() > MAX_LISTED {
-        format!(", ... ({} in all)", triangles.len())
-    } else {
-        String::new()
-    };
-    shown.join(", ") + &more
 }
 
 /// Returns the meaning of the root's radius as text.

@@ -418,7 +418,6 @@ fn help_and_usage() {
     assert_eq!(sscc(folder.path(), &["--help"]).code, Some(0));
     for wrong in [
         &["certify", "x.obj"][..],
-        &["check", "x.obj"],
         &["check", "x.obj", "--q=1", "--trajectory", "q.npy"],
         &["check", "x.obj", "--q="],
         &["check", "x.obj", "--q=1,x"],

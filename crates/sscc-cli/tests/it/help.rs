@@ -118,6 +118,18 @@ fn write_head(folder: &Path) {
     fs::write(folder.join("head.glb"), gltf.to_string()).unwrap();
 }
 
+/// Writes frames of `mesh.obj`, and a glTF file with an animation.
+fn write_frames(folder: &Path) {
+    let positions: Vec<f64> = sscc_io::read_mesh(&folder.join("mesh.obj"))
+        .unwrap()
+        .rest_positions()
+        .iter()
+        .flat_map(|p| p.to_array())
+        .collect();
+    write_npy(&folder.join("frames.npy"), &[2, 2 * STRIP, 3], &positions.repeat(2)).unwrap();
+    fs::write(folder.join("character.glb"), crate::detector::flag()).unwrap();
+}
+
 /// Writes a bar of 2 x 2 x 6 cubes that begins at z = 0.
 fn write_bar(folder: &Path) {
     let [x, y, z] = [3, 3, 7];
@@ -137,7 +149,7 @@ fn write_bar(folder: &Path) {
     fs::write(folder.join("bar.veg"), text).unwrap();
 }
 
-/// Whether an example takes long or does not end. Such examples are only parsed, in the tests of `args.rs`.
+/// Whether an example takes long or does not end. Such examples are only parsed.
 fn takes_long(args: &[String]) -> bool {
     matches!(args[0].as_str(), "demo" | "simulate" | "view")
         || args[0] == "bench" && args[1] != "--list"
@@ -163,12 +175,16 @@ fn examples_run_as_they_are_shown() {
     write_meshes(folder, &(0..12).map(|n| format!("frames/{n:02}.obj")).collect::<Vec<_>>());
     write_head(folder);
     write_bar(folder);
+    write_frames(folder);
     let pages = COMMANDS.map(Some).into_iter().chain([None]);
     let all: Vec<String> = pages.flat_map(|name| examples(&page(name, 80))).collect();
     let (mut run, mut collided) = (0, 0);
     for example in &all {
         let args = words(example);
         if takes_long(&args) {
+            // Arguments are parsed in order, so that those of the example are valid if the last one is refused.
+            let parsed = crate::common::sscc(folder, &[&args[..], &["--no-such-flag".to_owned()]].concat());
+            assert!(parsed.refusal().contains("'--no-such-flag'"), "{example}: {parsed:?}");
             continue;
         }
         let done = crate::common::sscc(folder, &args);

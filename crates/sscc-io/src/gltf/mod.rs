@@ -1,4 +1,4 @@
-//! Reads morph targets ([`read`]) and animated scenes ([`read_scene`]) from glTF 2.0 files (`.gltf` and `.glb`), and
+//! Reads morph targets ([`read`]), meshes at rest ([`read_base_mesh`]) and animated scenes ([`read_scene`]) from glTF 2.0 files (`.gltf` and `.glb`), and
 //! writes animated bodies as `.glb` ([`write_animation`]).
 //!
 //! A mesh with morph targets is a reduced model: rest positions are the base mesh, and mode k is the displacement of
@@ -13,6 +13,7 @@
 
 mod accessors;
 mod animation;
+mod base_mesh;
 mod buffers;
 mod component;
 mod glb;
@@ -31,6 +32,7 @@ use self::json::Root;
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
+pub use base_mesh::read_base_mesh;
 pub use joined::PrimitiveRange;
 pub use morph::MorphModel;
 pub use scene::{AnimatedScene, AnimationInfo, MeshNode, ScenePose, SkinWeights, parse_scene, read_scene};

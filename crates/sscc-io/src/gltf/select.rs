@@ -1,6 +1,7 @@
 //! Selection of a mesh in a glTF file.
 
 use super::json::{Mesh, Root};
+use super::triangles::Topology;
 use crate::FormatError;
 use crate::error::{cut, quoted};
 
@@ -29,46 +30,75 @@ pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
 /// Returns the index of the mesh of that name, else of the only one with morph targets. `#3` is the fourth mesh, unless
 /// a mesh has this name.
 pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
-    let all = list(root);
-    let movable: Vec<usize> = (0..all.len()).filter(|i| all[*i].targets > 0).collect();
-    let names = || {
-        let names: Vec<_> = movable.iter().take(20).map(|i| quoted(&all[*i].name)).collect();
-        cut(&names.join(", "), 200)
+    let wanted = Wanted {
+        is_candidate: &|mesh| mesh.primitives.iter().any(|primitive| !primitive.targets.is_empty()),
+        content: "morph targets",
+        none: "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes",
     };
-    let Some(name) = name else {
-        return match movable[..] {
-            [one] => Ok(one),
-            [] => Err(FormatError::whole(
-                "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes",
-            )),
-            _ => {
-                let cause = format!(
-                    "{} meshes have morph targets: choose one with --mesh-name: {}",
-                    movable.len(),
+    wanted.choose(root, name)
+}
+
+/// As [`choose`], for meshes with triangles.
+pub(super) fn choose_base(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
+    let none = "no mesh of the file has triangles";
+    Wanted { is_candidate: &has_triangles, content: "triangles", none }.choose(root, name)
+}
+
+/// Whether a mesh has triangles. Players draw points and lines, but those cannot collide.
+pub(super) fn has_triangles(mesh: &Mesh) -> bool {
+    mesh.primitives.iter().any(|primitive| Topology::from_mode(primitive.mode).is_ok())
+}
+
+/// The meshes that can be chosen.
+struct Wanted<'a> {
+    is_candidate: &'a dyn Fn(&Mesh) -> bool,
+    /// What candidates have, in messages.
+    content: &'a str,
+    /// Message without a candidate.
+    none: &'a str,
+}
+
+impl Wanted<'_> {
+    fn choose(&self, root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
+        let (all, content) = (list(root), self.content);
+        let is_candidate = |index: usize| (self.is_candidate)(&root.meshes[index]);
+        let candidates: Vec<usize> = (0..all.len()).filter(|i| is_candidate(*i)).collect();
+        let names = || {
+            let names: Vec<_> = candidates.iter().take(20).map(|i| quoted(&all[*i].name)).collect();
+            cut(&names.join(", "), 200)
+        };
+        let Some(name) = name else {
+            return match candidates[..] {
+                [one] => Ok(one),
+                [] => Err(FormatError::whole(self.none)),
+                _ => Err(FormatError::whole(format!(
+                    "{} meshes have {content}: choose one with --mesh-name: {}",
+                    candidates.len(),
                     names()
-                );
-                Err(FormatError::whole(cause))
+                ))),
+            };
+        };
+        let by_number =
+            || -> Option<usize> { name.strip_prefix('#')?.parse().ok().filter(|index| *index < all.len()) };
+        let named: Vec<usize> = (0..all.len()).filter(|i| all[*i].name == name).collect();
+        let cause = match named[..] {
+            [one] if is_candidate(one) => return Ok(one),
+            [_] => format!("the mesh {} has no {content}", quoted(name)),
+            [] => match by_number() {
+                Some(index) if is_candidate(index) => return Ok(index),
+                Some(index) => format!("the mesh #{index} has no {content}"),
+                None => format!("there is no mesh {}", quoted(name)),
+            },
+            [one, ..] => {
+                let several = format!("{} meshes have the name {}", named.len(), quoted(name));
+                return Err(FormatError::whole(format!(
+                    "{several}: choose one by its number, such as #{one}"
+                )));
             }
         };
-    };
-    let by_number =
-        || -> Option<usize> { name.strip_prefix('#')?.parse().ok().filter(|index| *index < all.len()) };
-    let named: Vec<usize> = (0..all.len()).filter(|i| all[*i].name == name).collect();
-    let cause = match named[..] {
-        [one] if all[one].targets > 0 => return Ok(one),
-        [_] => format!("the mesh {} has no morph targets", quoted(name)),
-        [] => match by_number() {
-            Some(index) if all[index].targets > 0 => return Ok(index),
-            Some(index) => format!("the mesh #{index} has no morph targets"),
-            None => format!("there is no mesh {}", quoted(name)),
-        },
-        [one, ..] => {
-            let several = format!("{} meshes have the name {}", named.len(), quoted(name));
-            return Err(FormatError::whole(format!("{several}: choose one by its number, such as #{one}")));
-        }
-    };
-    let others = if movable.is_empty() { "none".into() } else { names() };
-    Err(FormatError::whole(format!("{cause}; meshes with morph targets: {others}")))
+        let others = if candidates.is_empty() { "none".into() } else { names() };
+        Err(FormatError::whole(format!("{cause}; meshes with {content}: {others}")))
+    }
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Reads modes from a folder of target meshes.
 
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sscc::{Modes, TriMesh, limits};
 
 use super::named_modes::NamedModes;
+use crate::file::read_error;
 use crate::mesh::{is_mesh_name, read_soup};
 use crate::{FormatError, IoError};
 
@@ -27,7 +27,8 @@ const MAX_MESHES: usize = 10_000;
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
     // The neutral mesh may have another path (links, `..`).
-    let paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
+    let mut paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
+    paths.sort_by(|a, b| a.as_os_str().as_encoded_bytes().cmp(b.as_os_str().as_encoded_bytes()));
     let rest = neutral.rest_positions();
     let displacements = |path: &PathBuf| {
         let mut positions = positions_like(path, neutral, "target", "the neutral mesh")?;
@@ -43,14 +44,11 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     Ok(NamedModes { modes, names: paths.iter().map(name).collect() })
 }
 
-/// Returns the mesh files of a folder without the neutral one (its canonical path), sorted; at least one. `what` names
-/// them in messages.
-pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
-    let refused = |cause: std::io::Error| match cause.kind() {
-        ErrorKind::NotFound => IoError::NotFound { path: folder.to_owned() },
-        _ => IoError::System { path: folder.to_owned(), action: "read", cause },
-    };
-    let mut names = Vec::new();
+/// Returns the mesh files of a folder without the neutral one (its canonical path), in any order; at least one. `what`
+/// names them in messages.
+pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
+    let refused = |cause| read_error(folder, cause);
+    let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(refused)? {
         let name = entry.map_err(refused)?.file_name();
         let path = folder.join(&name);
@@ -59,24 +57,21 @@ pub(super) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
             continue;
         }
         if neutral.is_none() || fs::canonicalize(&path).ok().as_deref() != neutral {
-            names.push(name);
+            paths.push(path);
         }
     }
     let request = |cause: String| Err(IoError::Request { path: folder.to_owned(), cause });
-    match names.len() {
-        0 => return request(format!("there is no {what} mesh in this folder")),
+    match paths.len() {
+        0 => request(format!("there is no {what} mesh in this folder")),
         count if count > MAX_MESHES => {
-            return request(format!(
-                "the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"
-            ));
+            request(format!("the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"))
         }
-        _ => names.sort_by(|a, b| a.as_encoded_bytes().cmp(b.as_encoded_bytes())),
+        _ => Ok(paths),
     }
-    Ok(names.iter().map(|name| folder.join(name)).collect())
 }
 
 /// Returns the positions of a mesh with the same number of vertices, and the same faces or none.
-pub(super) fn positions_like(
+pub(crate) fn positions_like(
     path: &Path,
     model: &TriMesh,
     what: &str,

@@ -3,6 +3,7 @@
 
 pub mod array;
 pub mod folder;
+mod frame_reader;
 mod frames;
 mod mesh_mismatch;
 mod named_modes;
@@ -15,6 +16,7 @@ use sscc::Modes;
 use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
 
+pub use frame_reader::FrameReader;
 pub use frames::{Frames, read_frames};
 pub use named_modes::NamedModes;
 

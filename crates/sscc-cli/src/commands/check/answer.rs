@@ -2,22 +2,55 @@
 
 use serde::Serialize;
 use sscc::Pair;
+use sscc_sim::DetectionAnswer;
 
-/// The answer to a discrete query at one q, or to a continuous query from one q to the next.
+/// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]
 pub struct Answer<'a> {
+    /// The mesh, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The node and the time, in an animation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
     pub index: usize,
-    pub norm: f64,
+    /// |z|; none without modes.
+    pub norm: Option<f64>,
     pub colliding: bool,
     pub count: usize,
     pub complete: bool,
     pub pairs: &'a [Pair],
     /// The time of impact of each pair, for continuous queries.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub times: Option<Vec<f64>>,
+    pub times: Option<&'a [f64]>,
     pub microseconds: f64,
-    pub root_certified: bool,
+    pub root_certified: Option<bool>,
     pub opened: u64,
     pub box_tests: u64,
     pub triangle_tests: u64,
+}
+
+impl<'a> Answer<'a> {
+    /// Takes the values of an answer. `has_files`: whether the run has several files.
+    pub fn new(found: &DetectionAnswer<'a>, has_files: bool) -> Self {
+        Self {
+            file: has_files.then(|| found.file.display().to_string()),
+            node: found.node,
+            time: found.time,
+            index: found.index,
+            norm: found.norm,
+            colliding: !found.pairs.is_empty(),
+            count: found.pairs.len(),
+            complete: found.is_complete,
+            pairs: found.pairs,
+            times: found.times,
+            microseconds: found.microseconds,
+            root_certified: found.root_certified,
+            opened: found.opened,
+            box_tests: found.box_tests,
+            triangle_tests: found.triangle_tests,
+        }
+    }
 }

@@ -1,10 +1,11 @@
-//! Writes the shape at q as a mesh file (`--pose`).
+//! Writes a shape as a mesh file (`--pose`).
 
 use std::ffi::OsStr;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
-use sscc::{Pair, ReducedModel};
+use anyhow::{Result, bail};
+use glam::DVec3;
+use sscc::{Pair, TriMesh};
 use sscc_io::{write_obj_pose, write_ply_pose};
 
 use crate::{args, load};
@@ -21,16 +22,15 @@ pub fn check(path: &Path, model: &args::Model) -> Result<()> {
     load::check_output(path, ending, &inputs)
 }
 
-/// Writes the shape at q with the triangles of these pairs marked.
-pub fn write(path: &Path, model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> Result<()> {
-    let positions = model.positions(q).with_context(|| path.display().to_string())?;
-    let mut colliding = vec![false; model.mesh().faces().len()];
+/// Writes a mesh at these positions with the triangles of these pairs marked.
+pub fn write(path: &Path, mesh: &TriMesh, positions: &[DVec3], pairs: &[Pair]) -> Result<()> {
+    let mut colliding = vec![false; mesh.faces().len()];
     for &(i, j) in pairs {
         colliding[i as usize] = true;
         colliding[j as usize] = true;
     }
     let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
-    Ok(write(path, model.mesh(), &positions, &colliding)?)
+    Ok(write(path, mesh, positions, &colliding)?)
 }
 
 fn ending(path: &Path) -> Option<&str> {

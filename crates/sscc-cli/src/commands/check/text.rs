@@ -15,49 +15,57 @@ impl Answer<'_> {
 
     /// Returns the first pair: the earliest one with its time, or the first of the list.
     fn first(&self) -> Option<String> {
-        let Some(times) = &self.times else { return self.pairs.first().map(|(i, j)| format!("{i} {j}")) };
+        let Some(times) = self.times else { return self.pairs.first().map(|(i, j)| format!("{i} {j}")) };
         let first = times.iter().zip(self.pairs).min_by(|a, b| a.0.total_cmp(b.0));
         first.map(|(time, (i, j))| format!("{i} {j} at t = {time:.4}"))
     }
 
-    /// Returns the line of one query of a trajectory.
+    /// Returns the place of the query: file, node, number, time and norm.
+    fn place(&self) -> String {
+        let file = self.file.as_ref().map(|file| format!("{file}  ")).unwrap_or_default();
+        let node = self.node.map(|node| format!("node {node:<4} ")).unwrap_or_default();
+        let time = self.time.map(|time| format!("  {time:.4} s")).unwrap_or_default();
+        let norm = self.norm.map(|norm| format!("  |z| {:<10}", length(norm))).unwrap_or_default();
+        format!("{file}{node}{:>6}{time}{norm}", self.index)
+    }
+
+    /// Returns the line of one of several queries.
     pub fn line(&self) -> String {
         let result = match self.first() {
             Some(first) => format!("COLLIDING  {}, first {first}", self.counted()),
-            None if self.root_certified => "free       by the root's certificate".to_owned(),
+            None if self.is_root_certified() => "free       by the root's certificate".to_owned(),
             None => "free".to_owned(),
         };
-        format!(
-            "{:>6}  |z| {:<10} {:>9}  {result}",
-            self.index,
-            length(self.norm),
-            duration(self.microseconds)
-        )
+        format!("{} {:>9}  {result}", self.place(), duration(self.microseconds))
+    }
+
+    fn is_root_certified(&self) -> bool {
+        self.root_certified == Some(true)
     }
 }
 
 /// Returns the lines of the only query of a run.
 pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
-    let norm = length(answer.norm);
     let root = root_radius.map(|r| format!(", root radius {}", length(r))).unwrap_or_default();
+    let norm = answer.norm.map(|norm| format!(" (|z| = {}{root})", length(norm))).unwrap_or_default();
     let cost = format!(
         "{}: {} AABB tests, {} tested exactly",
         duration(answer.microseconds),
         grouped(answer.box_tests),
         counted(answer.triangle_tests, "triangle pair")
     );
-    if answer.root_certified && !answer.colliding {
+    if answer.is_root_certified() && !answer.colliding {
         return vec![
-            format!("free: proven by the root's certificate alone (|z| = {norm}{root})"),
+            format!("free: proven by the root's certificate alone{norm}"),
             duration(answer.microseconds),
         ];
     }
     if !answer.colliding {
-        return vec![format!("free: proven (|z| = {norm}{root})"), cost];
+        return vec![format!("free: proven{norm}"), cost];
     }
     let pairs = answer.counted();
-    let mut lines = vec![format!("COLLIDING: {pairs} of triangles (|z| = {norm}{root})"), cost];
-    let time = |at: usize| answer.times.as_ref().map(|times| format!("  at t = {:.4}", times[at]));
+    let mut lines = vec![format!("COLLIDING: {pairs} of triangles{norm}"), cost];
+    let time = |at: usize| answer.times.map(|times| format!("  at t = {:.4}", times[at]));
     lines.extend(
         answer
             .pairs
@@ -75,22 +83,24 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     lines
 }
 
-/// Counts and times of all queries of a trajectory.
+/// Counts and times of all queries of a run.
 pub struct Summary {
-    /// The noun for a query: `step` or `configuration`.
+    /// The noun for a query: `step`, `configuration`, ...
     noun: &'static str,
-    root_certified: usize,
+    root_certified: Option<usize>,
     pub colliding: usize,
     microseconds: Vec<f64>,
 }
 
 impl Summary {
     pub fn new(noun: &'static str) -> Self {
-        Self { noun, root_certified: 0, colliding: 0, microseconds: Vec::new() }
+        Self { noun, root_certified: None, colliding: 0, microseconds: Vec::new() }
     }
 
     pub fn add(&mut self, answer: &Answer<'_>) {
-        self.root_certified += usize::from(answer.root_certified && !answer.colliding);
+        if let Some(is_certified) = answer.root_certified {
+            *self.root_certified.get_or_insert(0) += usize::from(is_certified && !answer.colliding);
+        }
         self.colliding += usize::from(answer.colliding);
         self.microseconds.push(answer.microseconds);
     }
@@ -98,11 +108,12 @@ impl Summary {
     pub fn line(&mut self) -> String {
         let all = self.microseconds.len();
         self.microseconds.sort_by(f64::total_cmp);
+        let certified = self.root_certified.map(|n| format!(" ({n} by the root's certificate alone)"));
         format!(
-            "{}: {} free ({} by the root's certificate alone), {} colliding; median {}",
+            "{}: {} free{}, {} colliding; median {}",
             counted(all as u64, self.noun),
             all - self.colliding,
-            self.root_certified,
+            certified.unwrap_or_default(),
             self.colliding,
             duration(self.microseconds[all / 2])
         )

@@ -6,6 +6,7 @@
 mod animated_scene;
 mod animation;
 mod animation_reader;
+mod find;
 mod influences;
 mod json;
 mod mesh_node;

@@ -9,13 +9,14 @@ use super::animation_reader::AnimationReader;
 use super::json::{self, SceneRoot};
 use super::mesh_node::MeshNode;
 use super::nodes::Nodes;
-use super::shape::{Shape, has_triangles, morph_targets};
+use super::shape::{Shape, morph_targets};
 use super::skin::Skin;
 use crate::gltf::accessors::Accessors;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::glb;
 use crate::gltf::json::{Mesh, Root, parse_parts};
 use crate::gltf::morph::default_weights;
+use crate::gltf::select::has_triangles;
 use crate::{FormatError, IoError, read_whole};
 
 /// Memory of a node for each 3 bytes of text (`{},`), in bytes.

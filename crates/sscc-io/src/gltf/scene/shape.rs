@@ -35,11 +35,6 @@ pub(super) struct Shape {
     pub weld_classes: Vec<u32>,
 }
 
-/// Whether a mesh has triangles. Players draw points and lines, but those cannot collide.
-pub(super) fn has_triangles(mesh: &Mesh) -> bool {
-    mesh.primitives.iter().any(|primitive| Topology::from_mode(primitive.mode).is_ok())
-}
-
 /// Number of morph targets of a mesh.
 pub(super) fn morph_targets(mesh: &Mesh) -> usize {
     let first = mesh.primitives.iter().find(|primitive| Topology::from_mode(primitive.mode).is_ok());

@@ -24,9 +24,24 @@ impl Detector<'_> {
         other: &mut Detector<'_>,
         other_positions: &[DVec3],
     ) -> Result<&[Pair], Error> {
+        self.against_at_most(positions, other, other_positions, usize::MAX)
+    }
+
+    /// At most `limit` pairs of [`Detector::against`], sorted; which ones is not fixed. Where the limit stopped the search,
+    /// [`DetectorStatistics::complete`](crate::DetectorStatistics::complete) is false.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for both.
+    pub fn against_at_most(
+        &mut self,
+        positions: &[DVec3],
+        other: &mut Detector<'_>,
+        other_positions: &[DVec3],
+        limit: usize,
+    ) -> Result<&[Pair], Error> {
         let motions = [self.check([positions])?, other.check([other_positions])?];
         let motions = in_common_frame(motions);
-        self.begin_discrete(&motions[0], positions, usize::MAX);
+        self.begin_discrete(&motions[0], positions, limit);
         other.begin_discrete(&motions[1], other_positions, 0);
         let contexts = [&self.context, &other.context];
         let result =

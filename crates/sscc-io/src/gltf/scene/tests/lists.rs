@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::file::{JSON, REST, binary, glb, positions, scene};
-use crate::gltf::{AnimationInfo, parse_scene};
+use crate::gltf::{AnimationInfo, parse_scene, read_base_mesh};
 
 #[test]
 fn nodes_and_animations_are_listed() {
@@ -48,4 +48,47 @@ fn unusual_files_are_read() {
     let json = JSON.replace(r#""node":3,"#, "").replace(r#""mesh":0,"#, "");
     let unused = parse_scene(&glb(&json, &binary())).unwrap();
     assert_eq!((unused.mesh_nodes().len(), unused.animations()[0].channels), (0, 5));
+}
+
+#[test]
+fn animations_and_nodes_are_found_by_name_or_number() {
+    let scene = scene(&[]);
+    assert_eq!((scene.find_animation("wave"), scene.find_animation("0")), (Ok(0), Ok(0)));
+    let message = scene.find_animation("1").unwrap_err().to_string();
+    assert_eq!(message, "there is no animation '1'; the file has 0 'wave'");
+    assert_eq!(scene.find_mesh_nodes(None).unwrap().len(), 2);
+    assert_eq!(scene.find_mesh_nodes(Some(4)).unwrap()[0].node(), 4);
+    let message = scene.find_mesh_nodes(Some(0)).unwrap_err().to_string();
+    assert_eq!(message, "node 0 shows no mesh with triangles; these do: 3 'skinned', 4");
+    let none = parse_scene(
+        br#"{"asset":{"version":"2.0"},"animations":[
+        {"name":"0","channels":[],"samplers":[]},{"name":"a","channels":[],"samplers":[]},
+        {"name":"a","channels":[],"samplers":[]}]}"#,
+    );
+    let none = none.unwrap();
+    let message = |name| none.find_animation(name).unwrap_err().to_string();
+    assert_eq!(message("a"), "2 animations have the name 'a': choose one by its number: 0 '0', 1 'a', 2 'a'");
+    // A name is preferred to a number. Animations without key frames cannot be evaluated.
+    assert_eq!(message("0"), "animations[0]: it has no key frames");
+    let message = none.find_mesh_nodes(None).unwrap_err().to_string();
+    assert_eq!(message, "no node of the file shows a mesh with triangles");
+    let empty = parse_scene(br#"{"asset":{"version":"2.0"}}"#).unwrap();
+    assert_eq!(empty.find_animation("0").unwrap_err().to_string(), "the file has no animations");
+}
+
+#[test]
+fn the_base_mesh_has_the_triangles_of_the_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("flag.glb");
+    std::fs::write(&path, glb(JSON, &binary())).unwrap();
+    for name in [None, Some("flag"), Some("#0")] {
+        let mesh = read_base_mesh(&path, name).unwrap();
+        assert_eq!(mesh.faces(), [[0, 1, 2], [1, 3, 2]]);
+        assert_eq!(mesh.rest_positions(), REST.map(|x| DVec3::from_array(x.map(f64::from))));
+    }
+    let message = read_base_mesh(&path, Some("pole")).unwrap_err().to_string();
+    assert!(message.ends_with("there is no mesh 'pole'; meshes with triangles: 'flag'"), "{message}");
+    std::fs::write(&path, glb(&JSON.replace(r#""mode":5"#, r#""mode":1"#), &binary())).unwrap();
+    let message = read_base_mesh(&path, None).unwrap_err().to_string();
+    assert!(message.ends_with("no mesh of the file has triangles"), "{message}");
 }

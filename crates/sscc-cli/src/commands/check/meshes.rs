@@ -1,0 +1,102 @@
+//! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
+
+use std::path::Path;
+
+use anyhow::{Result, bail, ensure};
+use sscc_io::gltf::SkinWeights;
+use sscc_sim::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, detect};
+
+use super::pose;
+use super::printer::Printer;
+use crate::args::{Check, Switch, Weights};
+use crate::load;
+use crate::stages::Stages;
+
+/// Answers every query. Returns whether any of them found a collision.
+pub fn check(args: &Check) -> Result<bool> {
+    check_flags(args)?;
+    if let Some(path) = &args.pose {
+        pose::check(path, &args.model)?;
+    }
+    let request = request(args);
+    let noun = match (&request.motion, args.continuous) {
+        (_, true) => "step",
+        (MeshMotion::Rest, _) if args.motion.against_frames.is_none() => "file",
+        _ => "frame",
+    };
+    let mut printer = Printer::new(noun, args.json.json, None);
+    printer.has_files = request.meshes.len() > 1;
+    detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
+        if let Some(path) = &args.pose {
+            pose::write(path, found.mesh, found.mesh.rest_positions(), found.pairs)?;
+        }
+        printer.answer(found)
+    })?;
+    printer.finish()
+}
+
+/// Refuses flags for models, and flags that have no effect together.
+fn check_flags(args: &Check) -> Result<()> {
+    let (options, motion) = (&args.options, &args.motion);
+    let path = args.model.path.display();
+    let is_model = args.model.path.extension().is_some_and(|e| e == "safetensors" || e == "npz");
+    if args.model.modes.is_some() || is_model && motion.frames.is_none() && motion.against.is_none() {
+        bail!("{path}: a model deforms by modes: add --q or --trajectory");
+    }
+    for (flag, is_given) in [
+        ("certificates", args.certificates.is_some()),
+        ("method", args.method.is_some()),
+        ("epsilon", options.epsilon.is_some()),
+        ("metric", options.metric.is_some()),
+        ("center", options.center.is_some()),
+        ("max-exceptions", options.max_exceptions.is_some()),
+        ("scheme", options.scheme.is_some()),
+        ("budget", options.budget.is_some()),
+    ] {
+        ensure!(!is_given, "--{flag} is for models with modes: add --q or --trajectory, or leave it out");
+    }
+    if motion.against.is_some() {
+        let is_filtered = options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest;
+        ensure!(
+            !is_filtered,
+            "--against: triangles of two meshes all count: leave out --neighbours, --weld, --ignore-rest"
+        );
+    }
+    let moves = motion.frames.is_some() || motion.animation.is_some() || motion.against_frames.is_some();
+    ensure!(moves || !options.ignore_rest, "--ignore-rest: the mesh is at rest: add --frames or --animation");
+    ensure!(
+        moves || !args.continuous,
+        "--continuous: a mesh at rest has no motion: add --frames, --animation or --trajectory"
+    );
+    Ok(())
+}
+
+fn request(args: &Check) -> Detection {
+    let (options, motion) = (&args.options, &args.motion);
+    let animated = motion.animation.as_ref().map(|animation| Animated {
+        animation: animation.clone(),
+        times: match &motion.times {
+            Some(times) => Times::List(times.clone()),
+            None => motion.fps.map_or_else(Times::default, Times::PerSecond),
+        },
+        node: motion.node,
+        weights: match motion.weights {
+            Some(Weights::AsStored) => SkinWeights::AsStored,
+            _ => SkinWeights::Normalized,
+        },
+    });
+    let frames = motion.frames.clone().map(MeshMotion::Frames);
+    let other = |mesh: &Path| OtherMesh { mesh: mesh.to_owned(), frames: motion.against_frames.clone() };
+    Detection {
+        meshes: [&args.model.path].into_iter().chain(&args.meshes).cloned().collect(),
+        mesh_name: args.model.mesh_name.clone(),
+        motion: frames.or(animated.map(MeshMotion::Animation)).unwrap_or(MeshMotion::Rest),
+        against: motion.against.as_deref().map(other),
+        neighbours: options.neighbours.map(load::neighbours).unwrap_or_default(),
+        weld: options.weld.map(|weld| weld == Switch::On),
+        ignore_rest: options.ignore_rest,
+        is_continuous: args.continuous,
+        limit: super::limit(args),
+        threads: Some(load::threads(&options.threads)),
+    }
+}

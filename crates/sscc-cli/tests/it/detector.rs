@@ -1,0 +1,202 @@
+//! `sscc check` of meshes without modes: at rest, in frames, in animations, and against other meshes.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use sscc_io::write_npy;
+use tempfile::TempDir;
+
+use crate::common::{Run, keys, sorted, sscc};
+
+const KEYS: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, opened, box_tests, \
+                    triangle_tests";
+
+/// Two triangles, the second at the given height.
+pub fn obj(z: f64) -> String {
+    format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nf 1 2 3\nf 4 5 6\n")
+}
+
+/// Positions of these frames.
+pub fn frames(heights: &[f64]) -> Vec<f64> {
+    let frame = |z: &f64| [0.0, *z].map(|z| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]].concat()).concat();
+    heights.iter().flat_map(frame).collect()
+}
+
+/// A folder with `mesh.obj`, two triangles 1 apart; `frames.npy` and `frames/` with four heights; `lower.obj`, one
+/// triangle below; `flag.gltf`, the two triangles with an animation that lowers one of its two nodes.
+pub fn folder() -> TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    fs::write(folder.join("mesh.obj"), obj(1.0)).unwrap();
+    fs::write(folder.join("lower.obj"), "v 0 0 -1\nv 1 0 -1\nv 0 1 1\nf 1 2 3\n").unwrap();
+    let heights = [1.0, 0.5, 0.0, -0.5];
+    write_npy(&folder.join("frames.npy"), &[4, 6, 3], &frames(&heights)).unwrap();
+    fs::create_dir(folder.join("frames")).unwrap();
+    for (name, z) in ["2.obj", "03.off", "10.obj", "11.obj"].iter().zip(heights) {
+        let text = obj(z);
+        let text = match name.strip_suffix(".off") {
+            None => text,
+            Some(_) => {
+                let vertices = text.lines().filter_map(|line| line.strip_prefix("v ")).collect::<Vec<_>>();
+                format!("OFF\n6 2 0\n{}\n3 0 1 2\n3 3 4 5\n", vertices.join("\n"))
+            }
+        };
+        fs::write(folder.join("frames").join(name), text).unwrap();
+    }
+    fs::write(folder.join("flag.gltf"), flag()).unwrap();
+    directory
+}
+
+/// Node 1 shows the two triangles, split along the diagonal of a square: they touch unless they are welded. Node 2 shows
+/// them as well, and is animated.
+pub fn flag() -> String {
+    let square = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0_f32]];
+    let floats = square.iter().flat_map(|[x, y]| [*x, *y, 0.0]).chain([0.0, 1.0]);
+    let moved = [0.0, 0.0, 0.0, 0.0, 0.0, 5.0_f32];
+    let bytes: Vec<u8> = floats.chain(moved).flat_map(f32::to_le_bytes).collect();
+    let hex = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, &bytes);
+    json!({
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": bytes.len(), "uri": format!("data:application/octet-stream;base64,{hex}")}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 80, "byteLength": 24}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
+            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "meshes": [{"name": "flag", "primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{}, {"mesh": 0}, {"mesh": 0, "name": "moved"}],
+        "animations": [
+            {"name": "wave", "channels": [{"sampler": 0, "target": {"node": 2, "path": "translation"}}],
+             "samplers": [{"input": 1, "output": 2}]},
+            {"name": "still", "channels": [], "samplers": []}],
+    })
+    .to_string()
+}
+
+fn check(folder: &Path, args: &[&str]) -> Run {
+    sscc(folder, &[&["check"], args].concat())
+}
+
+/// Runs with `--json`; asserts the keys, and returns the lines.
+fn lines(folder: &Path, args: &[&str], more_keys: &str) -> Vec<Value> {
+    let run = check(folder, &[args, &["--json"]].concat());
+    assert_eq!(run.stderr, "", "{run:?}");
+    let lines = run.json();
+    let collides = lines.iter().any(|line| line["colliding"] == true);
+    assert_eq!(run.code, Some(i32::from(collides)));
+    for line in &lines {
+        assert_eq!(keys(line), sorted(&format!("{KEYS},{more_keys}")));
+        assert_eq!(line["count"], json!(line["pairs"].as_array().unwrap().len()));
+        assert!(line["norm"].is_null() && line["root_certified"].is_null());
+    }
+    lines
+}
+
+fn counts(lines: &[Value]) -> Vec<u64> {
+    lines.iter().map(|line| line["count"].as_u64().unwrap()).collect()
+}
+
+#[test]
+fn meshes_at_rest() {
+    let directory = folder();
+    let folder = directory.path();
+    fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
+    assert_eq!(counts(&lines(folder, &["mesh.obj"], "")), [0]);
+    assert_eq!(lines(folder, &["touching.obj"], "")[0]["pairs"], json!([[0, 1]]));
+    assert_eq!(counts(&lines(folder, &["flag.gltf"], "")), [0]);
+    assert_eq!(counts(&lines(folder, &["flag.gltf", "--mesh-name", "#0", "--weld=off"], "")), [1]);
+    let text = check(folder, &["touching.obj"]);
+    assert!(text.stdout.starts_with("COLLIDING: 1 pair of triangles\n"), "{text:?}");
+    assert!(check(folder, &["mesh.obj"]).stdout.starts_with("free: proven\n"));
+
+    let all = ["mesh.obj", "touching.obj", "flag.gltf", "frames/10.obj"];
+    for threads in ["1", "2", "7"] {
+        let all_lines = lines(folder, &[&all[..], &["--threads", threads]].concat(), "file");
+        assert_eq!(counts(&all_lines), [0, 1, 0, 1]);
+        let files: Vec<&str> = all_lines.iter().map(|line| line["file"].as_str().unwrap()).collect();
+        assert_eq!(files, all);
+    }
+    let text = check(folder, &all);
+    assert!(text.stdout.lines().nth(1).unwrap().starts_with("touching.obj "), "{text:?}");
+    assert!(
+        text.stdout.lines().last().unwrap().starts_with("4 files: 2 free, 2 colliding; median "),
+        "{text:?}"
+    );
+
+    let pose = check(folder, &["touching.obj", "--pose", "pose.obj"]);
+    assert_eq!(pose.code, Some(1), "{pose:?}");
+    assert!(fs::read_to_string(folder.join("pose.obj")).unwrap().contains("g colliding\n"));
+}
+
+#[test]
+fn frames_from_arrays_and_folders() {
+    let directory = folder();
+    let folder = directory.path();
+    // The same frames in float32.
+    let text = "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 6, 3), }\n";
+    let mut single = [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+    single.extend(frames(&[1.0, 0.5, 0.0, -0.5]).iter().flat_map(|x| (*x as f32).to_le_bytes()));
+    fs::write(folder.join("single.npy"), single).unwrap();
+    for source in ["frames.npy", "frames", "single.npy"] {
+        let args = ["mesh.obj", "--frames", source];
+        assert_eq!(counts(&lines(folder, &args, "")), [0, 0, 1, 0], "{source}");
+        let continuous = lines(folder, &[&args[..], &["--continuous"]].concat(), "times");
+        assert_eq!(counts(&continuous), [0, 1, 1], "{source}");
+        assert_eq!(continuous.iter().map(|line| line["index"].clone()).collect::<Vec<_>>(), [0, 1, 2]);
+        assert!((continuous[1]["times"][0].as_f64().unwrap() - 1.0).abs() < 1e-9);
+        for limit in [&["--first"][..], &["--limit", "1", "--threads", "3"]] {
+            assert_eq!(counts(&lines(folder, &[&args[..], limit].concat(), "")), [0, 0, 1, 0]);
+        }
+    }
+    let text = check(folder, &["mesh.obj", "--frames", "frames"]);
+    let printed: Vec<&str> = text.stdout.lines().collect();
+    assert!(printed[2].ends_with("COLLIDING  1 pair, first 0 1"), "{text:?}");
+    assert!(printed[4].starts_with("4 frames: 3 free, 1 colliding; median "), "{text:?}");
+    // The mesh at rest only names faces; ignoring its own pairs leaves none here.
+    fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
+    let ignored = lines(folder, &["touching.obj", "--frames", "frames", "--ignore-rest"], "");
+    assert_eq!(counts(&ignored), [0; 4]);
+}
+
+#[test]
+fn animations() {
+    let directory = folder();
+    let folder = directory.path();
+    let of = |args: &[&str], more: &str| lines(folder, &[&["flag.gltf", "--animation"], args].concat(), more);
+    let list = of(&["wave", "--fps", "2"], "node,time");
+    let places: Vec<_> = list.iter().map(|line| (line["node"].clone(), line["time"].clone())).collect();
+    let expected = [1, 2].iter().flat_map(|node| [0.0, 0.5, 1.0].map(|time| (json!(node), json!(time))));
+    assert_eq!(places, expected.collect::<Vec<_>>());
+    assert_eq!(counts(&list), [0; 6]);
+    assert_eq!(of(&["0"], "node,time").len(), 2 * 31);
+    assert_eq!(counts(&of(&["0", "--node", "2", "--times=0.25,-1", "--weld=off"], "node,time")), [1, 1]);
+    let steps = of(&["0", "--node", "2", "--continuous", "--weld=off", "--fps=1"], "node,time,times");
+    assert_eq!((counts(&steps), &steps[0]["time"]), (vec![1], &json!(0.0)));
+    let several = lines(folder, &["flag.gltf", "flag.gltf", "--animation=0", "--times=0"], "file,node,time");
+    assert_eq!(several.len(), 4);
+    let text = check(folder, &["flag.gltf", "--animation", "wave", "--times=0.5"]);
+    assert!(text.stdout.starts_with("node 1         0  0.5000 s "), "{text:?}");
+}
+
+#[test]
+fn two_meshes() {
+    let directory = folder();
+    let folder = directory.path();
+    write_npy(&folder.join("up.npy"), &[4, 3, 3], &[0.0, 0.0, 3.0, 1.0, 0.0, 3.0, 0.0, 1.0, 3.0].repeat(4))
+        .unwrap();
+    let found = lines(folder, &["mesh.obj", "--against", "lower.obj"], "");
+    assert_eq!(found[0]["pairs"], json!([[0, 0], [1, 0]]));
+    let first = lines(folder, &["mesh.obj", "--against", "lower.obj", "--first"], "");
+    assert_eq!((counts(&first), &first[0]["complete"]), (vec![1], &json!(false)));
+    let turned = lines(folder, &["lower.obj", "--against", "mesh.obj"], "");
+    assert_eq!(turned[0]["pairs"], json!([[0, 0], [0, 1]]));
+    let moving = lines(folder, &["mesh.obj", "--frames", "frames", "--against", "lower.obj"], "");
+    assert_eq!(counts(&moving), [2; 4]);
+    let both = ["mesh.obj", "--frames", "frames.npy", "--against", "lower.obj", "--against-frames", "up.npy"];
+    assert_eq!(counts(&lines(folder, &both, "")), [0; 4]);
+    let alone = ["mesh.obj", "--against", "lower.obj", "--against-frames", "up.npy", "--continuous"];
+    assert_eq!(counts(&lines(folder, &alone, "times")), [0; 3]);
+}

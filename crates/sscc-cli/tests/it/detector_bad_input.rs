@@ -1,0 +1,132 @@
+//! `sscc check` of meshes without modes: invalid input, and flags that contradict each other.
+
+use std::fs;
+
+use sscc_io::write_npy;
+
+use crate::common::sscc;
+use crate::detector::{folder, frames, obj};
+
+#[test]
+fn invalid_frames_and_animations() {
+    let directory = folder();
+    let folder = directory.path();
+    let good = fs::read(folder.join("frames.npy")).unwrap();
+    fs::write(folder.join("cut.npy"), &good[..good.len() - 8]).unwrap();
+    for (name, bad) in [("nan.npy", f64::NAN), ("inf.npy", f64::INFINITY), ("far.npy", 1e70)] {
+        let mut numbers = frames(&[1.0, 0.5]);
+        numbers[25] = bad;
+        write_npy(&folder.join(name), &[2, 6, 3], &numbers).unwrap();
+    }
+    write_npy(&folder.join("short.npy"), &[2, 5, 3], &[0.0; 30]).unwrap();
+    write_npy(&folder.join("flat.npy"), &[2, 18], &[0.0; 36]).unwrap();
+    write_npy(&folder.join("none.npy"), &[0, 6, 3], &[]).unwrap();
+    write_npy(&folder.join("two.npy"), &[2, 6, 3], &frames(&[1.0, 0.5])).unwrap();
+    write_npy(&folder.join("one.npy"), &[6, 3], &frames(&[1.0])).unwrap();
+    for (name, text) in [
+        ("other", obj(0.0).replace("f 4 5 6", "f 5 4 6")),
+        ("longer", obj(0.0) + "v 1 1 1\n"),
+        ("broken", "v 0 0\n".into()),
+    ] {
+        fs::create_dir(folder.join(name)).unwrap();
+        fs::write(folder.join(name).join("1.obj"), obj(1.0)).unwrap();
+        fs::write(folder.join(name).join("2.obj"), text).unwrap();
+    }
+    fs::create_dir(folder.join("empty")).unwrap();
+    for (frames, named) in [
+        ("missing.npy", "missing.npy: not found"),
+        ("missing", "missing: not found"),
+        (
+            "mesh.obj",
+            "unknown kind of frame file; supported: .npy of shape (T, V, 3), and a folder of meshes",
+        ),
+        ("cut.npy", "568 bytes follow: is the file cut off?"),
+        ("nan.npy", "nan.npy: frame 1: vertex 2 (counted from 0) has the position [0.0, NaN, "),
+        ("inf.npy", "inf.npy: frame 1: vertex 2 "),
+        ("far.npy", "far.npy: frame 1: vertex 2 "),
+        ("short.npy", "short.npy: the frames have 5 vertices, the mesh has 6: are they of another mesh?"),
+        ("flat.npy", "flat.npy: shape [2, 18]: (T, 6, 3) was expected"),
+        ("none.npy", "none.npy: shape [0, 6, 3]: "),
+        ("other", "2.obj: triangle 1 (counted from 0) of this frame differs from the mesh (mesh.obj)"),
+        ("longer", "2.obj: this frame has 7 vertices, the mesh (mesh.obj) has 6"),
+        ("broken", "2.obj: line 1: "),
+        ("empty", "there is no frame mesh in this folder"),
+    ] {
+        let run = sscc(folder, &["check", "mesh.obj", "--frames", frames, "--json"]);
+        // The first frame has no answer: standard output stays empty.
+        assert!(run.refusal().contains(named), "{run:?}");
+    }
+    let refused = |args: &[&str], named: &str| {
+        let run = sscc(folder, &[&["check"], args].concat());
+        assert!(run.refusal().contains(named), "{run:?}");
+    };
+    refused(
+        &["mesh.obj", "--frames=one.npy", "--continuous"],
+        "there is one frame; a motion needs at least two",
+    );
+    let against = ["mesh.obj", "--frames=two.npy", "--against=lower.obj", "--against-frames=frames.npy"];
+    refused(&against, "frames.npy: the frames have 6 vertices, the mesh has 3");
+    let against = ["mesh.obj", "--frames=two.npy", "--against=frames/2.obj", "--against-frames=frames.npy"];
+    refused(&against, "there are 2 frames, but 4 of the other mesh: as many are needed, or one");
+    for (args, named) in [
+        (&["--animation=run"][..], "there is no animation 'run'; the file has 0 'wave', 1 'still'"),
+        (&["--animation=2"], "there is no animation '2'; the file has 0 'wave', 1 'still'"),
+        (&["--animation=still"], "animations[1]: it has no key frames"),
+        (&["--animation=0", "--node=0"], "node 0 shows no mesh with triangles; these do: 1, 2 'moved'"),
+        (&["--animation=0", "--fps=0"], "0 frames per second: a number above 0 was expected"),
+        (&["--animation=0", "--fps=1e9"], "1e9 frames in 1 s: at most 1e7 are allowed"),
+        (&["--animation=0", "--times=0,nan"], "the time NaN is not finite"),
+        (&["--animation=0", "--times=0", "--continuous"], "there is one frame; a motion needs at least two"),
+        (&["--mesh-name=other"], "there is no mesh 'other'; meshes with triangles: 'flag'"),
+    ] {
+        refused(&[&["flag.gltf"], args].concat(), named);
+    }
+    refused(
+        &["mesh.obj", "--animation=0"],
+        "mesh.obj: only .glb and .gltf files have animations: give --frames",
+    );
+    refused(&["mesh.obj", "--mesh-name=a"], "only a glTF file can have several meshes");
+    refused(&["mesh.obj", "missing.obj"], "missing.obj: not found");
+}
+
+#[test]
+fn flags_that_contradict_each_other() {
+    let directory = folder();
+    let folder = directory.path();
+    for (args, named) in [
+        (
+            &["--q=0"][..],
+            "a mesh has no modes: add --modes FILE, or compute modes with sscc modes; sscc check without",
+        ),
+        (&["--trajectory=frames.npy"], "a mesh has no modes: "),
+        (&["--modes=modes.npy"], "a model deforms by modes: add --q or --trajectory"),
+        (&["--method=bdtree"], "--method is for models with modes: add --q or --trajectory, or leave it out"),
+        (&["--certificates=x.sscc.safetensors"], "--certificates is for models with modes: "),
+        (&["--metric=mass"], "--metric is for models with modes: "),
+        (
+            &["--continuous"],
+            "--continuous: a mesh at rest has no motion: add --frames, --animation or --trajectory",
+        ),
+        (&["--ignore-rest"], "--ignore-rest: the mesh is at rest: add --frames or --animation"),
+        (
+            &["--against=lower.obj", "--weld"],
+            "triangles of two meshes all count: leave out --neighbours, --weld",
+        ),
+        (&["--frames=frames.npy", "--q=0"], "cannot be used with"),
+        (&["--frames=frames.npy", "--animation=0"], "cannot be used with"),
+        (&["--frames=frames.npy", "--pose=a.ply"], "cannot be used with"),
+        (&["--frames=frames.npy", "--fps=10"], "--animation"),
+        (&["--against-frames=frames.npy"], "--against"),
+        (&["lower.obj", "--against=lower.obj"], "cannot be used with"),
+        (&["lower.obj", "--pose=a.ply"], "cannot be used with"),
+        (&["lower.obj", "--frames=frames.npy"], "frames.npy: belongs to one mesh: leave out lower.obj"),
+        (&["lower.obj", "--q=0"], "lower.obj: --q and --trajectory take one model: leave it out"),
+    ] {
+        let run = sscc(folder, &[&["check", "mesh.obj"], args].concat());
+        assert_eq!((run.code, run.stdout.as_str(), run.stderr.lines().count()), (Some(2), "", 1), "{run:?}");
+        assert!(run.stderr.contains(named), "{run:?}");
+    }
+    fs::write(folder.join("m.npz"), "").unwrap();
+    let run = sscc(folder, &["check", "m.npz"]);
+    assert!(run.refusal().contains("m.npz: a model deforms by modes: add --q or --trajectory"), "{run:?}");
+}

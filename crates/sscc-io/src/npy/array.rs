@@ -1,0 +1,144 @@
+//! Arrays in memory, and the decoding of their numbers.
+
+use super::header::{Class, Header, Item, NumberKind};
+use crate::{FormatError, Place};
+
+/// An array of numbers: f64 or f32, widened to f64; or integers, widened to i64.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array<T = f64> {
+    shape: Vec<usize>,
+    /// Stride of each axis in `data`.
+    strides: Vec<usize>,
+    data: Vec<T>,
+}
+
+/// Parses a `.npy` file, versions 1 to 3, with numbers of type f8 or f4 in either byte order, in C or Fortran order.
+///
+/// # Errors
+/// When the header is malformed or has another type, or the length of the data differs from the header.
+pub fn parse(bytes: &[u8]) -> Result<Array, FormatError> {
+    array(bytes, NumberKind::Floats, floats)
+}
+
+/// Parses a `.npy` file of signed or unsigned integers of 1, 2, 4 or 8 bytes; else as [`parse`].
+///
+/// # Errors
+/// As [`parse`], and when a number is beyond i64.
+pub fn parse_integers(bytes: &[u8]) -> Result<Array<i64>, FormatError> {
+    array(bytes, NumberKind::Integers, integers)
+}
+
+fn array<T>(
+    bytes: &[u8],
+    wanted: NumberKind,
+    decode: impl Fn(Item, &[u8]) -> Result<Vec<T>, FormatError>,
+) -> Result<Array<T>, FormatError> {
+    let Header { item, fortran, shape, body } = Header::parse(bytes, wanted)?;
+    let body_bytes = &bytes[body..];
+    check_size(&shape, item, body, body_bytes.len() as u64)?;
+    Ok(Array { strides: strides(&shape, fortran), data: decode(item, body_bytes)?, shape })
+}
+
+/// Returns an error if `found` bytes from offset `body` are not an array of this shape.
+pub(super) fn check_size(shape: &[usize], item: Item, body: usize, found: u64) -> Result<(), FormatError> {
+    let size = shape.iter().try_fold(item.size as u64, |size, n| size.checked_mul(*n as u64));
+    if size == Some(found) {
+        return Ok(());
+    }
+    let cause = format!(
+        "the header declares shape {shape:?} of {}-byte numbers, but {found} bytes follow: is the file cut off?",
+        item.size
+    );
+    Err(FormatError::new(Place::Byte(body), cause))
+}
+
+impl<T: Copy> Array<T> {
+    /// Returns an array of that shape from its entries in C order (last axis fastest); None if their number differs.
+    pub fn from_c_order(shape: &[usize], data: Vec<T>) -> Option<Self> {
+        let size = shape.iter().try_fold(1_usize, |size, n| size.checked_mul(*n));
+        (size == Some(data.len())).then(|| Self {
+            shape: shape.to_vec(),
+            strides: strides(shape, false),
+            data,
+        })
+    }
+
+    /// Returns the length of each axis; the product is the number of entries.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Returns one entry; `index` has one number per axis.
+    ///
+    /// # Panics
+    /// When the index is beyond the shape.
+    pub fn at<const N: usize>(&self, index: [usize; N]) -> T {
+        self.data[index.iter().zip(&self.strides).map(|(i, stride)| i * stride).sum::<usize>()]
+    }
+
+    /// Returns all entries in C order (last axis fastest).
+    pub fn to_c_order(&self) -> Vec<T> {
+        if self.strides == strides(&self.shape, false) {
+            return self.data.clone();
+        }
+        let mut index = vec![0; self.shape.len()];
+        let mut at = 0;
+        (0..self.data.len())
+            .map(|_| {
+                let value = self.data[at];
+                for axis in (0..index.len()).rev() {
+                    index[axis] += 1;
+                    at += self.strides[axis];
+                    if index[axis] < self.shape[axis] {
+                        break;
+                    }
+                    at -= self.strides[axis] * self.shape[axis];
+                    index[axis] = 0;
+                }
+                value
+            })
+            .collect()
+    }
+}
+
+/// Returns the stride of each axis. Products saturate only for empty arrays, which have no entries.
+fn strides(shape: &[usize], fortran: bool) -> Vec<usize> {
+    let mut strides = vec![0; shape.len()];
+    let mut stride = 1_usize;
+    let mut set = |axis: usize| {
+        strides[axis] = stride;
+        stride = stride.saturating_mul(shape[axis]);
+    };
+    if fortran {
+        (0..shape.len()).for_each(&mut set)
+    } else {
+        (0..shape.len()).rev().for_each(&mut set)
+    }
+    strides
+}
+
+/// Decodes floats.
+pub(super) fn floats(item: Item, bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    let eights = || bytes.as_chunks::<8>().0.iter().copied();
+    let fours = || bytes.as_chunks::<4>().0.iter().copied();
+    Ok(match (item.size, item.big) {
+        (8, false) => eights().map(f64::from_le_bytes).collect(),
+        (8, true) => eights().map(f64::from_be_bytes).collect(),
+        (_, false) => fours().map(|b| f32::from_le_bytes(b).into()).collect(),
+        (_, true) => fours().map(|b| f32::from_be_bytes(b).into()).collect(),
+    })
+}
+
+fn integers(item: Item, bytes: &[u8]) -> Result<Vec<i64>, FormatError> {
+    let widened = |bytes: &[u8]| {
+        let big_endian = |at: usize| bytes[if item.big { at } else { bytes.len() - 1 - at }];
+        let magnitude = (0..bytes.len()).fold(0_u64, |value, at| value << 8 | u64::from(big_endian(at)));
+        match item.class {
+            // Two shifts extend the sign from the top bit of the item to 64 bits.
+            Class::Signed => Ok((magnitude << (64 - 8 * bytes.len())) as i64 >> (64 - 8 * bytes.len())),
+            _ => i64::try_from(magnitude)
+                .map_err(|_| FormatError::whole(format!("the integer {magnitude} is too large"))),
+        }
+    };
+    bytes.chunks_exact(item.size).map(widened).collect()
+}

@@ -1,0 +1,121 @@
+//! Reads an array of floats block by block, so that files larger than memory can be read.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use super::array::{check_size, floats, parse};
+use super::header::{Header, Item, NumberKind};
+use crate::IoError;
+use crate::file::{open_regular, read_error, read_whole};
+
+/// Headers are read in full up to this size; NumPy writes at most a few hundred bytes for arrays of numbers.
+const MAX_HEADER: u64 = 1 << 20;
+
+/// An open `.npy` file. A block has all entries with one index along the first axis.
+pub(crate) struct Blocks {
+    path: PathBuf,
+    shape: Vec<usize>,
+    body: Body,
+}
+
+enum Body {
+    /// In C order blocks are contiguous.
+    File { file: Mutex<File>, start: u64, item: Item },
+    /// Arrays in Fortran order are read as a whole, in C order.
+    Memory(Vec<f64>),
+}
+
+impl Blocks {
+    /// Opens a file and checks its size.
+    ///
+    /// # Errors
+    /// When the file cannot be read, its header is malformed or has another type, its length differs from the header, or
+    /// the array has no axis.
+    pub fn open(path: &Path) -> Result<Self, IoError> {
+        let (mut file, size) = open_regular(path)?;
+        let mut start = Vec::new();
+        let read = (&mut file).take(MAX_HEADER.min(size)).read_to_end(&mut start);
+        read.map_err(|cause| read_error(path, cause))?;
+        let header = Header::parse(&start, NumberKind::Floats).map_err(|error| error.of(path))?;
+        let Header { item, fortran, shape, body } = header;
+        check_size(&shape, item, body, size - body as u64).map_err(|error| error.of(path))?;
+        let body = if fortran {
+            let array = parse(&read_whole(path)?).map_err(|error| error.of(path))?;
+            Body::Memory(array.to_c_order())
+        } else {
+            Body::File { file: Mutex::new(file), start: body as u64, item }
+        };
+        Ok(Self { path: path.to_owned(), shape, body })
+    }
+
+    /// Returns the length of each axis.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Returns `length` numbers from the entry `start` in C order on.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is shorter than it was when it was opened.
+    ///
+    /// # Panics
+    /// When the block is beyond the array.
+    pub fn read(&self, start: usize, length: usize) -> Result<Vec<f64>, IoError> {
+        assert!(start + length <= self.shape.iter().product(), "block beyond the array");
+        match &self.body {
+            Body::Memory(data) => Ok(data[start..][..length].to_vec()),
+            Body::File { file, start: body, item } => {
+                let mut bytes = vec![0; length * item.size];
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                let read = file
+                    .seek(SeekFrom::Start(body + (start * item.size) as u64))
+                    .and_then(|_| file.read_exact(&mut bytes));
+                drop(file);
+                read.map_err(|cause| read_error(&self.path, cause))?;
+                floats(*item, &bytes).map_err(|error| error.of(&self.path))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::npy::write::to_bytes;
+
+    #[test]
+    fn blocks_are_parts_of_the_whole() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.npy");
+        let data: Vec<f64> = (0..24).map(f64::from).collect();
+        let bytes = to_bytes(&[4, 2, 3], &data).unwrap();
+        std::fs::write(&path, &bytes).unwrap();
+        let blocks = Blocks::open(&path).unwrap();
+        assert_eq!(blocks.shape(), [4, 2, 3]);
+        assert_eq!(blocks.read(18, 6).unwrap(), data[18..]);
+        assert_eq!(blocks.read(0, 6).unwrap(), data[..6]);
+
+        // The same array in Fortran order, in float32.
+        let text = "{'descr': '<f4', 'fortran_order': True, 'shape': (4, 2, 3), }\n";
+        let mut fortran =
+            [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+        for (k, j, i) in (0..3).flat_map(|k| (0..2).flat_map(move |j| (0..4).map(move |i| (k, j, i)))) {
+            fortran.extend((data[6 * i + 3 * j + k] as f32).to_le_bytes());
+        }
+        std::fs::write(&path, &fortran).unwrap();
+        assert_eq!(Blocks::open(&path).unwrap().read(6, 12).unwrap(), data[6..18]);
+
+        std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+        let message = Blocks::open(&path).err().unwrap().to_string();
+        assert!(
+            message.ends_with("of 8-byte numbers, but 191 bytes follow: is the file cut off?"),
+            "{message}"
+        );
+        std::fs::write(&path, &bytes).unwrap();
+        let blocks = Blocks::open(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+        assert!(blocks.read(18, 6).is_err() && blocks.read(0, 6).is_ok());
+    }
+}

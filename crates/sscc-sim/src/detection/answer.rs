@@ -1,0 +1,51 @@
+//! The answer to one query.
+
+use std::path::Path;
+
+use sscc::{Impact, Pair, TriMesh};
+
+/// The answer to one query of a [`Detection`](super::Detection), or at one q of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct DetectionAnswer<'a> {
+    /// File of the mesh; empty for a model.
+    pub file: &'a Path,
+    /// The mesh, at rest.
+    pub mesh: &'a TriMesh,
+    /// Number of the node, in an animation.
+    pub node: Option<usize>,
+    /// Number of the q, frame or time, counted from 0; of continuous queries that of the start.
+    pub index: usize,
+    /// Its time (s), in an animation.
+    pub time: Option<f64>,
+    /// Colliding pairs, sorted.
+    pub pairs: &'a [Pair],
+    /// Time of impact (0 to 1) of each pair, of continuous queries.
+    pub times: Option<&'a [f64]>,
+    /// Whether `pairs` are all.
+    pub is_complete: bool,
+    /// Duration of the query on its thread, without reading files and evaluating animations.
+    pub microseconds: f64,
+    /// |z|, of a model.
+    pub norm: Option<f64>,
+    /// Whether the root's certificate held, of a model.
+    pub root_certified: Option<bool>,
+    /// Nodes and node pairs that the query opened.
+    pub opened: u64,
+    /// Pairs of AABBs that it compared.
+    pub box_tests: u64,
+    /// Pairs of triangles that it tested exactly.
+    pub triangle_tests: u64,
+    /// Number of queries of the whole file.
+    pub queries: usize,
+}
+
+/// Returns the `limit` earliest impacts, sorted by pair.
+pub(super) fn earliest_impacts(impacts: &[Impact], limit: usize) -> Vec<Impact> {
+    let mut kept = impacts.to_vec();
+    if limit < kept.len() {
+        kept.sort_by(|a, b| a.time.total_cmp(&b.time));
+        kept.truncate(limit);
+        kept.sort_by_key(|impact| impact.pair);
+    }
+    kept
+}

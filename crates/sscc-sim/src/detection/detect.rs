@@ -1,0 +1,169 @@
+//! Answers all queries of a request.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::answer::DetectionAnswer;
+use super::in_order::in_order;
+use super::moving_mesh::MovingMesh;
+use super::request::{Detection, MeshMotion, OtherMesh};
+use super::worker::{Found, Worker};
+use crate::error::Result;
+use crate::{SimError, Stage, Watch, available_threads};
+
+/// Calls `take` with the answer to each query: mesh by mesh, node by node, frame by frame. `take` can end that early.
+///
+/// Frames from files are checked before the first answer. Memory is that of the meshes and a few frames for each thread;
+/// meshes of a folder of frames are kept up to 1 GiB.
+///
+/// # Errors
+/// When a file cannot be read or does not fit its mesh; when a request is contradictory; when positions are not finite;
+/// when `watch` cancels; when `take` fails.
+pub fn detect<E: From<SimError>>(
+    request: &Detection,
+    watch: &dyn Watch,
+    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
+) -> Result<(), E> {
+    check_request(request)?;
+    if let (MeshMotion::Rest, None, [_, _, ..]) = (&request.motion, &request.against, &request.meshes[..]) {
+        return at_rest(request, watch, take);
+    }
+    for file in &request.meshes {
+        let (meshes, other) = load(file, request, watch)?;
+        let frames = meshes.iter().chain(&other).map(MovingMesh::frames).max().unwrap_or(1);
+        let each = if request.is_continuous { frames - 1 } else { frames };
+        let queries = each * meshes.len();
+        watch.begin(Stage::Detection);
+        for (before, mesh) in meshes.iter().enumerate() {
+            let taken = in_order(
+                each,
+                request.threads.unwrap_or_else(available_threads),
+                || Worker::new(request, mesh, other.as_ref()),
+                Worker::answer,
+                |index, found| {
+                    let taken = take(&answer(mesh, index, &found?, queries))?;
+                    watch.report(before * each + index + 1, queries);
+                    Ok::<_, E>(taken)
+                },
+            )?;
+            if taken.is_break() {
+                return Ok(());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Answers several meshes at rest, each on one thread.
+fn at_rest<E: From<SimError>>(
+    request: &Detection,
+    watch: &dyn Watch,
+    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
+) -> Result<(), E> {
+    watch.begin(Stage::Detection);
+    let work = |(): &mut (), index: usize| {
+        let mesh = MovingMesh::at_rest(&request.meshes[index], request, watch)?;
+        let found = Worker::new(request, &mesh, None).answer(0)?;
+        Ok((mesh, found))
+    };
+    let threads = request.threads.unwrap_or_else(available_threads);
+    let count = request.meshes.len();
+    let taken = in_order(
+        count,
+        threads,
+        || (),
+        work,
+        |index, result: Result<_>| {
+            let (mesh, found) = result?;
+            watch.report(index + 1, count);
+            take(&answer(&mesh, 0, &found, 1))
+        },
+    );
+    taken.map(drop)
+}
+
+fn answer<'a>(
+    mesh: &'a MovingMesh<'_>,
+    index: usize,
+    found: &'a Found,
+    queries: usize,
+) -> DetectionAnswer<'a> {
+    DetectionAnswer {
+        file: &mesh.file,
+        mesh: &mesh.mesh,
+        node: mesh.node,
+        index,
+        time: mesh.time(index),
+        pairs: &found.pairs,
+        times: found.times.as_deref(),
+        is_complete: found.is_complete,
+        microseconds: found.microseconds,
+        norm: None,
+        root_certified: None,
+        opened: found.statistics.opened,
+        box_tests: found.statistics.box_tests,
+        triangle_tests: found.statistics.triangle_tests,
+        queries,
+    }
+}
+
+fn check_request(request: &Detection) -> Result<()> {
+    let needs_one = match (&request.motion, &request.against) {
+        (_, Some(other)) => Some(other.mesh.as_path()),
+        (MeshMotion::Frames(frames), None) => Some(frames.as_path()),
+        _ => None,
+    };
+    if let (Some(path), [_, second, ..]) = (needs_one, &request.meshes[..]) {
+        let cause = format!("belongs to one mesh: leave out {} and any others", second.display());
+        return Err(SimError::refused(path.display(), cause));
+    }
+    if let (Some(other), MeshMotion::Animation(_)) = (&request.against, &request.motion) {
+        let cause = "an animation cannot be compared with another mesh: write its positions as frames (.npy)";
+        return Err(SimError::refused(other.mesh.display(), cause));
+    }
+    Ok(())
+}
+
+/// Whether the file is glTF, or is missing, which its reader reports.
+fn can_be_animated(file: &Path) -> bool {
+    let ending = file.extension().map(|e| e.to_ascii_lowercase());
+    !file.exists() || ending.is_some_and(|ending| ending == "glb" || ending == "gltf")
+}
+
+/// Loads the meshes of a file, and the other mesh.
+fn load<'w>(
+    file: &Path,
+    request: &Detection,
+    watch: &'w dyn Watch,
+) -> Result<(Vec<MovingMesh<'w>>, Option<MovingMesh<'w>>)> {
+    let meshes = match &request.motion {
+        MeshMotion::Rest => vec![MovingMesh::at_rest(file, request, watch)?],
+        MeshMotion::Frames(frames) => vec![MovingMesh::with_frames(file, frames, request, watch)?],
+        MeshMotion::Animation(animated) if can_be_animated(file) => {
+            MovingMesh::animated(file, animated, request, watch)?
+        }
+        MeshMotion::Animation(_) => {
+            let cause = "only .glb and .gltf files have animations: give --frames";
+            return Err(SimError::refused(file.display(), cause));
+        }
+    };
+    let other = match &request.against {
+        None => None,
+        Some(OtherMesh { mesh, frames: None }) => Some(MovingMesh::at_rest(mesh, request, watch)?),
+        Some(OtherMesh { mesh, frames: Some(frames) }) => {
+            Some(MovingMesh::with_frames(mesh, frames, request, watch)?)
+        }
+    };
+    let counts = (meshes[0].frames(), other.as_ref().map_or(1, MovingMesh::frames));
+    match counts {
+        (1, 1) if request.is_continuous => {
+            Err(SimError::refused(file.display(), "there is one frame; a motion needs at least two"))
+        }
+        (n, m) if n != m && n > 1 && m > 1 => {
+            let cause =
+                format!("there are {n} frames, but {m} of the other mesh: as many are needed, or one");
+            Err(SimError::refused(file.display(), cause))
+        }
+        _ => Ok((meshes, other)),
+    }
+}

@@ -1,0 +1,19 @@
+//! Collisions of meshes without modes: at rest, in frames from files, or in an animation of a glTF file; with
+//! themselves or with another mesh.
+//!
+//! [`detect`] answers a [`Detection`] query by query, in a fixed order, on several threads. [`check_rows`] answers
+//! queries of a model with modes in the same form.
+
+mod answer;
+mod detect;
+mod in_order;
+mod moving_mesh;
+mod request;
+mod rows;
+mod times;
+mod worker;
+
+pub use answer::DetectionAnswer;
+pub use detect::detect;
+pub use request::{Animated, Detection, MeshMotion, OtherMesh, Times};
+pub use rows::check_rows;

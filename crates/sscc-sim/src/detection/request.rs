@@ -1,0 +1,99 @@
+//! What is asked of [`detect`](super::detect).
+
+use std::path::PathBuf;
+
+use sscc::Neighbours;
+use sscc_io::gltf::SkinWeights;
+
+/// Meshes, their motion, and which pairs of triangles count.
+#[derive(Clone, Debug)]
+pub struct Detection {
+    /// Files of meshes; each is answered by itself. Frames and another mesh need exactly one.
+    pub meshes: Vec<PathBuf>,
+    /// Name of the mesh in a glTF file with several meshes.
+    pub mesh_name: Option<String>,
+    /// Motion of the meshes.
+    pub motion: MeshMotion,
+    /// Another mesh: pairs are then (triangle of the mesh, triangle of the other), and every pair counts.
+    pub against: Option<OtherMesh>,
+    /// Which triangles that share a vertex count.
+    pub neighbours: Neighbours,
+    /// Whether equal vertices are one vertex for adjacency: those of equal rest position, in animations also of equal
+    /// morph displacements and influences. None: in formats that split vertices ([`sscc_io::splits_vertices`]).
+    pub weld: Option<bool>,
+    /// Whether pairs that collide at rest never count.
+    pub ignore_rest: bool,
+    /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
+    pub is_continuous: bool,
+    /// Maximum number of pairs for each query; of continuous queries the earliest.
+    pub limit: usize,
+    /// Number of threads; none: all cores. Answers do not depend on it.
+    pub threads: Option<usize>,
+}
+
+impl Default for Detection {
+    /// No mesh; everything else as for a mesh at rest, with all pairs.
+    fn default() -> Self {
+        Self {
+            meshes: Vec::new(),
+            mesh_name: None,
+            motion: MeshMotion::Rest,
+            against: None,
+            neighbours: Neighbours::default(),
+            weld: None,
+            ignore_rest: false,
+            is_continuous: false,
+            limit: usize::MAX,
+            threads: None,
+        }
+    }
+}
+
+/// Motion of a mesh.
+#[derive(Clone, Debug)]
+pub enum MeshMotion {
+    /// The mesh as it is in its file.
+    Rest,
+    /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
+    Frames(PathBuf),
+    /// An animation of the glTF file.
+    Animation(Animated),
+}
+
+/// An animation of a glTF file, and when it is answered.
+#[derive(Clone, Debug)]
+pub struct Animated {
+    /// Name of the animation, or its number.
+    pub animation: String,
+    /// Times of the queries.
+    pub times: Times,
+    /// Number of the node; none: every node that shows a mesh with triangles.
+    pub node: Option<usize>,
+    /// Reading of weights that do not sum to 1.
+    pub weights: SkinWeights,
+}
+
+/// Times of an animation.
+#[derive(Clone, Debug)]
+pub enum Times {
+    /// So many a second, from 0 to the last key frame, both included.
+    PerSecond(f64),
+    /// These (s).
+    List(Vec<f64>),
+}
+
+impl Default for Times {
+    /// 30 times a second.
+    fn default() -> Self {
+        Self::PerSecond(30.0)
+    }
+}
+
+/// A mesh to collide with.
+#[derive(Clone, Debug)]
+pub struct OtherMesh {
+    /// File of the mesh.
+    pub mesh: PathBuf,
+    /// Its frames, as many as those of the mesh; none: it does not move.
+    pub frames: Option<PathBuf>,
+}

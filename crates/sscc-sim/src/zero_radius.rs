@@ -1,0 +1,104 @@
+//! The reason why certificates have a root radius of 0.
+
+use sscc::{Certificates, CertifyOptions, Error, Progress, Query, ReducedModel};
+
+/// Maximum number of triangles in a note.
+const MAX_LISTED: usize = 8;
+
+/// The reason for a root's radius of 0, found by queries at the centre and at rest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ZeroRadius {
+    /// More pairs collide at the centre than may be exceptions.
+    Colliding {
+        /// The largest number of exceptions.
+        max_exceptions: usize,
+        /// Whether `--ignore-rest` is absent, and would reduce the pairs to at most `max_exceptions`.
+        can_ignore_rest: bool,
+    },
+    /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
+    TooClose {
+        /// Triangles of the smallest part with radius 0, sorted.
+        triangles: Vec<u32>,
+    },
+}
+
+impl ZeroRadius {
+    /// Finds the reason; none if the root's radius is not 0. Costs up to two discrete queries.
+    ///
+    /// # Errors
+    /// When the certificates are of another model, or `progress` cancels.
+    pub fn find(
+        model: &ReducedModel,
+        certificates: &Certificates,
+        options: &CertifyOptions,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self>, Error> {
+        if certificates.root_radius() > 0.0 {
+            return Ok(None);
+        }
+        let mut query = Query::new(model, certificates)?.cancelled_by(progress);
+        let center = certificates.center();
+        let mut others = query.discrete(center)?.to_vec();
+        others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
+        if others.is_empty() {
+            return Ok(Some(Self::TooClose { triangles: smallest_zero_node(certificates) }));
+        }
+        let default = CertifyOptions::default_exceptions(model.mesh().faces().len());
+        let max_exceptions = options.max_exceptions.unwrap_or(default);
+        let at_rest = query.discrete(&vec![0.0; model.rank()])?;
+        let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
+        let can_ignore_rest = !options.ignore_rest && left <= max_exceptions;
+        Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
+    }
+
+    /// Returns a note with the remedy.
+    pub fn note(&self) -> String {
+        match self {
+            Self::Colliding { max_exceptions, can_ignore_rest } => {
+                let ignore = if *can_ignore_rest {
+                    ", or ignore the pairs that collide at rest with --ignore-rest"
+                } else {
+                    ""
+                };
+                format!(
+                    "more pairs collide at the centre than may be exceptions ({max_exceptions}): parts that contain \
+                     one have radius 0; raise --max-exceptions{ignore}"
+                )
+            }
+            Self::TooClose { triangles } => format!(
+                "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
+                 radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \
+                 another --center",
+                listed(triangles)
+            ),
+        }
+    }
+}
+
+/// Returns the triangles of the smallest node with radius 0. Nodes within a bucket are skipped, because they repeat the
+/// bucket's radius.
+fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
+    let hierarchy = certificates.hierarchy();
+    let nodes = hierarchy.nodes();
+    let mut is_own = vec![true; nodes.len()];
+    for (n, node) in nodes.iter().enumerate() {
+        let has_own_children = is_own[n] && (n == 0 || !node.fits_in_bucket());
+        node.children().for_each(|child| is_own[child as usize] = has_own_children);
+    }
+    let has_zero_radius = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
+    let smallest = (0..nodes.len()).filter(has_zero_radius).min_by_key(|n| nodes[*n].triangle_count);
+    let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// Returns the numbers of triangles as text, at most [`MAX_LISTED`] of them.
+fn listed(triangles: &[u32]) -> String {
+    let shown: Vec<String> = triangles.iter().take(MAX_LISTED).map(u32::to_string).collect();
+    let more = if triangles.len() > MAX_LISTED {
+        format!(", ... ({} in all)", triangles.len())
+    } else {
+        String::new()
+    };
+    shown.join(", ") + &more
+}
