@@ -59,6 +59,12 @@ impl<const E: usize> ExactPositions<E> {
         }
     }
 
+    /// The position of a moved vertex, at the start of the motion.
+    #[inline]
+    pub(crate) fn position(&self, vertex: u32) -> DVec3 {
+        self.exact[vertex as usize][0]
+    }
+
     /// The positions of three moved vertices, at each end.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {

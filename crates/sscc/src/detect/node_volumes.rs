@@ -276,6 +276,12 @@ impl<const E: usize> NodeVolumes<E> {
         vertices.iter().for_each(|&v| self.positions.move_vertex(&self.layout, v, motion));
     }
 
+    /// The exact position of a moved vertex, at the start of the motion.
+    #[inline]
+    pub(crate) fn position(&self, vertex: u32) -> DVec3 {
+        self.positions.position(vertex)
+    }
+
     /// The exact positions of three moved vertices, at each end.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
