@@ -10,6 +10,7 @@ mod clusters;
 mod common;
 mod continuous;
 mod detector;
+mod groups;
 mod impact;
 mod impact_tolerance;
 mod intersect;
