@@ -29,7 +29,7 @@ pub fn run(args: &Check) -> Result<Outcome> {
         pose::check(pose, &args.model)?;
     }
     let certificates = match &args.certificates {
-        Some(path) => Some(load::certificates(path, &model, &args.options)?),
+        Some(path) => Some(load::certificates(path, &args.model, &model, &args.options)?),
         None if args.method == args::Method::Certified => {
             Some(load::certificates_now(&model, &args.model, &args.options)?)
         }
