@@ -8,6 +8,7 @@ mod certificates;
 mod certify;
 mod core_seconds;
 mod errors;
+mod groups;
 mod hierarchy;
 mod impacts;
 mod interrupt;
