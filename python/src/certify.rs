@@ -9,6 +9,7 @@ use crate::arguments::{choice, count, number, switch};
 use crate::arrays::vector;
 use crate::certificates::Certificates;
 use crate::errors::{refused, value};
+use crate::groups::with_groups;
 use crate::interrupt::run;
 use crate::metric::read_metric;
 use crate::model::{LoadedModel, Model};
@@ -25,6 +26,8 @@ pub struct CertifyArguments<'a, 'py> {
     pub weld: Option<&'a Bound<'py, PyAny>>,
     pub ignore_rest: Option<&'a Bound<'py, PyAny>>,
     pub max_exceptions: Option<&'a Bound<'py, PyAny>>,
+    pub groups: Option<&'a Bound<'py, PyAny>>,
+    pub ignore_groups: Option<&'a Bound<'py, PyAny>>,
     pub threads: Option<&'a Bound<'py, PyAny>>,
 }
 
@@ -60,11 +63,13 @@ impl CertifyArguments<'_, '_> {
         let rules = [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|rule| (rule.name(), rule));
         let neighbours = choice(self.neighbours, "neighbours", &rules)?.unwrap_or_default();
         let weld = switch(self.weld, "weld")?.unwrap_or(loaded.is_split);
+        let filter = ContactFilter::new(neighbours, weld);
+        let triangles = model.mesh().faces().len();
         Ok(CertifyOptions {
             epsilon,
             metric: read_metric(model, self.metric)?,
             center,
-            filter: ContactFilter::new(neighbours, weld),
+            filter: with_groups(filter, triangles, self.groups, self.ignore_groups)?,
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,

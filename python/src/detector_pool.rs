@@ -78,7 +78,9 @@ impl DetectorPool {
 pub fn detector<'a>(mesh: &TriMesh, options: &DetectorMesh, name: &str) -> PyResult<Detector<'a>> {
     let vertices = mesh.rest_positions().len();
     match &options.weld {
-        Weld::Off | Weld::ByPosition => Ok(Detector::with_filter(mesh, &options.filter)),
+        Weld::Off | Weld::ByPosition => {
+            Detector::with_filter(mesh, &options.filter).map_err(|error: Error| refused(&error, "faces"))
+        }
         Weld::Classes(classes) if classes.len() == vertices => {
             let detector = Detector::with_weld_classes(mesh, classes, &options.filter);
             detector.map_err(|error: Error| refused(&error, "weld"))

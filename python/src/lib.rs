@@ -12,6 +12,7 @@ mod detector_answer;
 mod detector_batch;
 mod detector_pool;
 mod errors;
+mod groups;
 mod hierarchy;
 mod impacts;
 mod interrupt;

@@ -69,7 +69,7 @@ impl Model {
 
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, neighbours=None, weld=None,
-        ignore_rest=None, max_exceptions=None, threads=None, progress=None))]
+        ignore_rest=None, max_exceptions=None, groups=None, ignore_groups=None, threads=None, progress=None))]
     fn certify(
         slf: &Bound<'_, Self>,
         epsilon: Option<&Bound<'_, PyAny>>,
@@ -81,6 +81,8 @@ impl Model {
         weld: Option<&Bound<'_, PyAny>>,
         ignore_rest: Option<&Bound<'_, PyAny>>,
         max_exceptions: Option<&Bound<'_, PyAny>>,
+        groups: Option<&Bound<'_, PyAny>>,
+        ignore_groups: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Certificates> {
@@ -94,6 +96,8 @@ impl Model {
             weld,
             ignore_rest,
             max_exceptions,
+            groups,
+            ignore_groups,
             threads,
         };
         certify::certify(slf, &arguments, progress)

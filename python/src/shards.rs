@@ -18,7 +18,7 @@ use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
 /// The keywords of `Model.certify`, except `progress`.
-const KEYWORDS: [&str; 10] = [
+const KEYWORDS: [&str; 12] = [
     "epsilon",
     "metric",
     "center",
@@ -28,6 +28,8 @@ const KEYWORDS: [&str; 10] = [
     "weld",
     "ignore_rest",
     "max_exceptions",
+    "groups",
+    "ignore_groups",
     "threads",
 ];
 
@@ -48,8 +50,20 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
     for name in KEYWORDS {
         found.push(keywords.get_item(name)?.filter(|any| !any.is_none()));
     }
-    let [epsilon, metric, center, scheme, budget, neighbours, weld, ignore_rest, max_exceptions, threads] =
-        &found[..]
+    let [
+        epsilon,
+        metric,
+        center,
+        scheme,
+        budget,
+        neighbours,
+        weld,
+        ignore_rest,
+        max_exceptions,
+        groups,
+        ignore_groups,
+        threads,
+    ] = &found[..]
     else {
         return Err(kind("options: unknown keyword; use those of Model.certify"));
     };
@@ -63,6 +77,8 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         weld: weld.as_ref(),
         ignore_rest: ignore_rest.as_ref(),
         max_exceptions: max_exceptions.as_ref(),
+        groups: groups.as_ref(),
+        ignore_groups: ignore_groups.as_ref(),
         threads: threads.as_ref(),
     };
     arguments.options(&model.get().loaded)

@@ -57,6 +57,8 @@ class Model:
         weld: bool | None = None,
         ignore_rest: bool | None = None,
         max_exceptions: int | None = None,
+        groups: ArrayLike | None = None,
+        ignore_groups: ArrayLike | None = None,
         threads: int | None = None,
         progress: _Progress = None,
     ) -> Certificates:
@@ -70,6 +72,8 @@ class Model:
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
         ignore_rest: whether pairs that collide at rest never count.
         max_exceptions: largest number of pairs that collide at the centre and are tested in every query; None: F / 2.
+        groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
+        ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.
         threads: None: all cores. The certificates are the same for any number.
         progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. True: a bar on
             standard error; False: nothing; None: a bar on a terminal or in a notebook.

@@ -188,6 +188,8 @@ pub struct Options {
     /// Ignore the pairs that collide at rest: they never count
     #[arg(long)]
     pub ignore_rest: bool,
+    #[command(flatten)]
+    pub groups: Groups,
     /// Whether to weld vertices of equal position and modes, for adjacency only [default: on for STL and glTF]
     #[arg(long, value_enum, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub weld: Option<Switch>,
@@ -203,6 +205,21 @@ pub struct Options {
     pub budget: Option<u32>,
     #[command(flatten)]
     pub threads: Threads,
+}
+
+/// Groups of triangles, and which pairs of them count.
+#[derive(Debug, Args)]
+pub struct Groups {
+    /// Pairs of triangles between groups A and B do not count (A,A: within A); can be repeated
+    #[arg(long, value_name = "A,B", conflicts_with = "only_groups")]
+    pub ignore_groups: Vec<String>,
+    /// Only pairs of triangles between groups A and B count (A,A: within A); can be repeated
+    #[arg(long, value_name = "A,B")]
+    pub only_groups: Vec<String>,
+    /// The groups: group (OBJ: g; glTF: primitives, named #0, #1, ...), object (OBJ: o), material (OBJ: usemtl; glTF:
+    /// materials), or a file with one number for each triangle (.npy or text) [default: group]
+    #[arg(long, value_name = "GROUPS")]
+    pub group_by: Option<PathBuf>,
 }
 
 /// On or off.

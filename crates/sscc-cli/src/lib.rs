@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod groups;
 mod interrupt;
 mod load;
 mod meter;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::{
@@ -10,6 +11,7 @@ use sscc::{
 use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
 use sscc_sim::{SimError, available_threads};
 
+use crate::groups::groups;
 use crate::output::note;
 use crate::progress::Bar;
 use crate::{args, interrupt};
@@ -102,14 +104,23 @@ pub fn options(model: &ReducedModel, files: &args::Model, typed: &args::Options)
         epsilon: typed.epsilon.unwrap_or(CertifyOptions::default().epsilon),
         metric: metric(model, typed.metric.as_deref())?,
         center: center(model, typed.center.as_deref())?,
-        filter: ContactFilter::new(
-            typed.neighbours.map_or(Neighbours::default(), neighbours),
-            typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
-        ),
+        filter: filter(files, model.mesh().faces().len(), typed)?,
         ignore_rest: typed.ignore_rest,
         max_exceptions: typed.max_exceptions,
         budget: budget(typed)?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
         threads: Some(threads(&typed.threads)),
+    })
+}
+
+/// Returns the contact filter of the flags, with defaults for absent ones; but `--ignore-rest` needs the model.
+fn filter(files: &args::Model, triangles: usize, typed: &args::Options) -> Result<ContactFilter> {
+    let filter = ContactFilter::new(
+        typed.neighbours.map_or(Neighbours::default(), neighbours),
+        typed.weld.map_or(welds_by_default(files), |weld| weld == args::Switch::On),
+    );
+    Ok(match groups(files, triangles, &typed.groups)? {
+        Some(groups) => filter.with_groups(groups),
+        None => filter,
     })
 }
 
@@ -166,7 +177,12 @@ pub fn in_file(error: Error, path: &Path) -> Error {
 }
 
 /// Reads certificates. Refuses those of another model, and flags that contradict them.
-pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) -> Result<Certificates> {
+pub fn certificates(
+    path: &Path,
+    files: &args::Model,
+    model: &ReducedModel,
+    options: &args::Options,
+) -> Result<Certificates> {
     let certificates = sscc_io::read_certificates(path)?;
     let name = || path.display().to_string();
     certificates.check_model(model).with_context(name)?;
@@ -199,7 +215,13 @@ pub fn certificates(path: &Path, model: &ReducedModel, options: &args::Options) 
         options.neighbours.map_or(known.neighbours, neighbours),
         options.weld.map_or(known.weld, |weld| weld == args::Switch::On),
     );
-    certificates.check_filter(&typed.ignoring(known.ignored().iter().copied())).with_context(name)?;
+    let typed = typed.ignoring(known.ignored().iter().copied());
+    let groups = groups(files, model.mesh().faces().len(), &options.groups)?.map(Arc::new);
+    let typed = match groups.as_ref().or(known.groups()) {
+        Some(groups) => typed.with_groups(Arc::clone(groups)),
+        None => typed,
+    };
+    certificates.check_filter(&typed).with_context(name)?;
     let tree = &certificates.parts().pair_tree;
     let (triangles, has_tree) = (certificates.hierarchy().order().len(), tree.limit() > 0.0);
     budget(options)?;

@@ -35,6 +35,7 @@
 //! | content | item |
 //! | --- | --- |
 //! | meshes: OBJ, PLY, OFF, STL | [`read_mesh`], [`mesh`] |
+//! | groups of triangles: OBJ groups, objects and materials, glTF primitives, nodes and materials | [`read_groups`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
@@ -61,10 +62,12 @@ mod error;
 mod file;
 mod forces;
 pub mod gltf;
+mod groups;
 mod load;
 pub mod mesh;
 mod mesh_modes;
 pub mod modes;
+mod named_groups;
 mod natural_order;
 pub mod npy;
 pub mod npz;
@@ -79,10 +82,12 @@ pub use container::{ModelInfo, read_certificates, read_model, write_certificates
 pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};
 pub use forces::{parse_reduced_forces, read_reduced_forces};
+pub use groups::{read_group_numbers, read_groups};
 pub use load::{LoadOptions, LoadedModel, load_mesh, load_model, load_model_with, splits_vertices};
 pub use mesh::read_mesh;
 pub use mesh_modes::read_modes_for;
 pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
+pub use named_groups::{GroupsBy, NamedGroups};
 pub use npy::write_npy;
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};

@@ -152,6 +152,12 @@ pub enum Error {
         /// What it must be.
         wanted: &'static str,
     },
+    /// Groups of triangles that cannot be used.
+    #[error("groups: {what}")]
+    Groups {
+        /// What is wrong with them.
+        what: String,
+    },
     /// Certificates of another model.
     #[error(
         "the certificates are of another model: their digest is {certificates}, this model's is {model}; certify this model anew"

@@ -80,6 +80,7 @@
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
 //!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide.
 //! - *Ignored* pairs never count.
+//! - *Groups* ([`TriangleGroups`]): pairs of triangles within or between groups count or not by a table.
 //!
 //! [`CertifyOptions`] sets the contact filter, certificates store it ([`Certificates::filter`]), and their queries use it.
 //!
@@ -279,7 +280,7 @@ pub use detect::contact_curves::{
 };
 pub use detect::{Detector, DetectorStatistics, FrameAnswer, Impact};
 pub use error::Error;
-pub use filter::{ContactFilter, Neighbours, Pair};
+pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
 pub use geometry::{
     Aabb, Feature, Intersection, IntersectionPoint, MovingTriangle, Penetration, impact_edge_edge,
     impact_triangle_triangle, impact_vertex_face, intersect_shared_vertex_pair, intersect_triangle_triangle,

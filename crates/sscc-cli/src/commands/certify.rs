@@ -98,7 +98,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
 /// Returns the meaning of the root's radius as text.
 fn promise(certificates: &Certificates, zero_radius: Option<&ZeroRadius>) -> String {
     let exceptions = !certificates.exceptions().is_empty();
-    let ignored = !certificates.filter().ignored().is_empty();
+    let filter = certificates.filter();
+    let ignored = !filter.ignored().is_empty() || filter.groups().is_some();
     match (zero_radius, exceptions, ignored) {
         (Some(ZeroRadius::Colliding { .. }), ..) => {
             "the shape collides with itself at the centre; the parts that do not are certified".into()

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use sscc_io::write_npy;
 
-use crate::common::{keys, sscc, strips};
+use crate::common::{STRIP, keys, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 const CERTIFICATES: &str = "strips.sscc.safetensors";
@@ -239,6 +239,74 @@ fn flags_must_not_contradict_certificates() {
     assert!(run("--ignore-rest").refusal().contains("certified without --ignore-rest"));
     assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions allows"));
     assert_eq!(run("--max-exceptions=1000").code, Some(1));
+}
+
+/// The two strips in groups of their own.
+#[test]
+fn groups_can_be_left_out() {
+    let directory = strips();
+    let folder = directory.path();
+    let obj = fs::read_to_string(folder.join("mesh.obj")).unwrap();
+    let (first, second) = (obj.find("f ").unwrap(), obj.find(&format!("f {} ", STRIP + 1)).unwrap());
+    let grouped =
+        [&obj[..first], "g low\no x\nusemtl red\n", &obj[first..second], "g high\n", &obj[second..]];
+    fs::write(folder.join("grouped.obj"), grouped.concat()).unwrap();
+    let faces = obj.matches("f ").count();
+    let numbers: Vec<f64> = (0..faces).map(|t| f64::from(u8::from(2 * t >= faces))).collect();
+    write_npy(&folder.join("numbers.npy"), &[faces], &numbers).unwrap();
+    let model = ["grouped.obj", "--modes", "modes.npy"];
+    let of_file = ["--group-by", "numbers.npy"];
+    let without = |certificates: &[&str]| {
+        let run = sscc(folder, &[&["check"], &model[..], &["--q=1,0"], certificates].concat());
+        run.code
+    };
+    assert_eq!(without(&[]), Some(1));
+    certify(folder, &model, &["--ignore-groups=low,high"], "g.sscc.safetensors");
+    certify(
+        folder,
+        &[MODEL],
+        &[&of_file[..], &["--only-groups=0,0", "--only-groups=1,1"]].concat(),
+        "n.sscc.safetensors",
+    );
+    let bytes = ["g", "n"].map(|name| fs::read(folder.join(format!("{name}.sscc.safetensors"))).unwrap());
+    assert_eq!(bytes[0], bytes[1]);
+    let info = sscc(folder, &["info", "g.sscc.safetensors"]);
+    assert!(info.stdout.contains("groups         2 groups of triangles"), "{info:?}");
+    let certificates = ["--certificates", "g.sscc.safetensors"];
+    for args in [
+        &[][..],
+        &["--ignore-groups=high,low"],
+        &["--only-groups=low,low", "--only-groups=high,high"],
+        &["--ignore-groups=0,1", of_file[0], of_file[1]],
+    ] {
+        assert_eq!(without(&[&certificates, args].concat()), Some(0), "{args:?}");
+    }
+    for method in ["bdtree", "traditional", "normal-cones", "brute-force"] {
+        assert_eq!(without(&["--ignore-groups=low,high", "--method", method]), Some(0));
+        assert_eq!(without(&["--ignore-groups=low,low", "--method", method]), Some(1));
+    }
+    assert_eq!(without(&["--only-groups=red,red", "--group-by=material"]), Some(1));
+    let refusals = [
+        (&["--ignore-groups=low,low"][..], "their groups of triangles, or which pairs of them count, differ"),
+        (
+            &["--ignore-groups=low,middle"],
+            "--ignore-groups low,middle: no triangle is in a group 'middle'; groups: 'low', 'high'",
+        ),
+        (&["--only-groups=low"], "--only-groups low: two groups A,B were expected"),
+        (&["--ignore-groups=low,low", "--only-groups=low,low"], "cannot be used with"),
+        (&["--group-by=material"], "--group-by changes nothing"),
+        (&["--ignore-groups=0,1", "--group-by=mass"], "must be a file"),
+    ];
+    for (args, named) in refusals {
+        let run = sscc(folder, &[&["check"], &model[..], &["--q=1,0"], &certificates, args].concat());
+        assert!(run.refusal().contains(named), "{args:?}: {run:?}");
+    }
+    let other = ["check", MODEL, "--certificates", CERTIFICATES, "--q=1,0", "--ignore-groups=0,1"];
+    let run = |args: &[&str]| sscc(folder, &[&other[..], args].concat()).refusal().to_owned();
+    assert!(run(&of_file).contains("they were computed without groups of triangles"));
+    assert!(run(&[]).contains("files of this kind have no groups of triangles"));
+    write_npy(&folder.join("short.npy"), &[2], &[0.0, 1.0]).unwrap();
+    assert!(run(&["--group-by=short.npy"]).contains("there are groups of 2 triangles, but the model has 20"));
 }
 
 #[test]

@@ -16,6 +16,8 @@
 //! | `center` | F64 | r | the q from which radii are measured: they are norms `\|S (q - center)\|` |
 //! | `exceptions` | U32 | e x 2 | triangle pairs that no radius covers; every query tests them; sorted |
 //! | `ignored` | U32 | i x 2 | ignored triangle pairs, sorted |
+//! | `groups` | U32 | N | the group of each triangle; absent where all pairs of groups count |
+//! | `group_pairs` | U32 | g x 2 | pairs of groups `a <= b`, sorted; with `groups` only |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
 //! | `pair_limit` | F64 | 1 | the pair tree holds all node pairs with a smaller radius: a missing node pair is certified up to here; 0: no tree |
 //! | `pair_starts` | U32 | n or 0 | for each node, the index of the first pair of its children; 2^32 - 1: no pair is below the limit, or the node is a bucket |
@@ -27,20 +29,25 @@
 //!
 //! Text: `metric` (the kind), `scheme` ("full" with a pair tree, else "paper"), `neighbours` ("exclude": triangles that
 //! share a vertex are no pair; "include-one-vertex": triangles that share exactly one vertex count if they meet at
-//! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). The
-//! name of the scheme implies nothing. A bucket has at most 64 triangles and is not the root; the tree holds no pairs
-//! within a bucket. Version 3 has a tree with such pairs, which is not read. Versions 1 and 2 have no tree, and a text
-//! `pairs` ("root-children").
+//! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). With
+//! `groups` also `group_pairs`: what the tensor of that name lists ("ignored": pairs that do not count, the others do;
+//! "counted": pairs that count, the others do not). The name of the scheme implies nothing. A bucket has at most 64
+//! triangles and is not the root; the tree holds no pairs within a bucket. Groups are new in version 5; files without
+//! are written in version 4. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
+//! tree, and a text `pairs` ("root-children").
 
 use std::path::Path;
 
 use sscc::hierarchy::{Hierarchy, Node};
 use sscc::{CertificateParts, Certificates, ContactFilter, Digest, Neighbours, Pair, PairTree, Scope};
 
-use super::{ANY, CERTIFICATES, Container, ContainerWriter, metric};
+use super::{ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_groups, metric};
 use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
+
+/// Files without groups are written in this version, which earlier builds read.
+const VERSION_WITHOUT_GROUPS: u32 = 4;
 
 /// Values of the text `weld`.
 const WELD: &str = "equal";
@@ -51,10 +58,12 @@ fn scheme(tree: &PairTree) -> &'static str {
     if tree.limit() > 0.0 { "full" } else { "paper" }
 }
 
-const TENSORS: [&str; 19] = [
+const TENSORS: [&str; 21] = [
     "center",
     "epsilon",
     "exceptions",
+    certificate_groups::PAIRS,
+    certificate_groups::GROUPS,
     "ignored",
     "limit",
     metric::FACTOR,
@@ -106,8 +115,10 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let tree = &parts.pair_tree;
     let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
-    let mut writer = ContainerWriter::new(CERTIFICATES);
+    let version = if scope.filter.groups().is_some() { CERTIFICATES.version } else { VERSION_WITHOUT_GROUPS };
+    let mut writer = ContainerWriter::new(Kind { version, ..CERTIFICATES });
     metric::write(&mut writer, &scope.metric);
+    certificate_groups::write(&mut writer, &scope.filter);
     writer
         .text("scheme", scheme(tree))
         .text("neighbours", scope.filter.neighbours.name())
@@ -171,7 +182,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let scope = Scope {
         metric,
         center: center.values,
-        filter: ContactFilter::new(neighbours, weld).ignoring(ignored),
+        filter: certificate_groups::read(&file, ContactFilter::new(neighbours, weld).ignoring(ignored))?,
         exceptions: read_pairs(&file, "exceptions")?,
     };
     let one = |name| file.f64(name)?.shaped(&[1]);

@@ -20,6 +20,7 @@ mod glb;
 mod joined;
 mod json;
 mod morph;
+mod part_names;
 mod role;
 mod scene;
 mod select;
@@ -29,6 +30,8 @@ use std::path::Path;
 
 use self::buffers::Buffers;
 use self::json::Root;
+use self::part_names::PartNames;
+use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
@@ -71,6 +74,42 @@ pub fn list_meshes(path: &Path) -> Result<Vec<MeshInfo>, IoError> {
     let bytes = read_whole(path)?;
     let root = glb::split(&bytes).and_then(|chunks| Root::parse(chunks.json));
     root.map(|root| select::list(&root)).map_err(|error| error.of(path))
+}
+
+/// Reads the groups of the triangles of a mesh, which is chosen as [`read`] chooses it.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, IoError> {
+    let bytes = read_whole(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    groups_in(&bytes, mesh_name, Some(folder), by).map_err(|error| error.of(path))
+}
+
+/// As [`read_groups`], from the bytes of a file without external buffers.
+///
+/// # Errors
+/// As [`read`], and when a buffer is in another file.
+pub fn parse_groups(bytes: &[u8], mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, FormatError> {
+    groups_in(bytes, mesh_name, None, by)
+}
+
+fn groups_in(
+    bytes: &[u8],
+    name: Option<&str>,
+    folder: Option<&Path>,
+    by: GroupsBy,
+) -> Result<NamedGroups, FormatError> {
+    let model = parse_in(bytes, name, folder)?;
+    let chunks = glb::split(bytes)?;
+    let mesh = select::choose(&Root::parse(chunks.json)?, name)?;
+    let names = PartNames::parse(chunks.json)?;
+    let node = names.node_of_mesh(mesh);
+    let mut groups = GroupCollector::default();
+    for (primitive, range) in model.primitives.iter().enumerate() {
+        groups.extend_to(range.triangles.end as usize, &names.group(by, node, mesh, primitive))?;
+    }
+    Ok(groups.finish())
 }
 
 fn parse_in(bytes: &[u8], name: Option<&str>, folder: Option<&Path>) -> Result<MorphModel, FormatError> {

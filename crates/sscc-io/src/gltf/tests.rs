@@ -327,3 +327,31 @@ fn agrees_with_obj_and_npy() {
     assert_eq!((ours.mesh(), ours.modes(), ours.metric()), (theirs.mesh(), theirs.modes(), theirs.metric()));
     assert_eq!(info.provenance, "mesh \"face\" of a.glb");
 }
+
+/// The square has two triangles, the other primitive one.
+#[test]
+fn groups_are_primitives_nodes_or_materials() {
+    let groups = |json: &str, by| {
+        let found = parse_groups(&glb(json, &binary()), None, by).unwrap();
+        (found.names.join("|"), found.of_triangle)
+    };
+    assert_eq!(groups(JSON, GroupsBy::Group), ("#0|#1".into(), vec![0, 0, 1]));
+    assert_eq!(groups(JSON, GroupsBy::Object), ("face".into(), vec![0; 3]));
+    assert_eq!(groups(JSON, GroupsBy::Material), ("default".into(), vec![0; 3]));
+    let named = JSON.replace(r#""mode":5"#, r#""mode":5,"material":1"#).replace(
+        r#""buffers""#,
+        r#""materials":[{},{"name":"skin"}],"nodes":[{"name":"x"},{"name":"head","mesh":0}],"buffers""#,
+    );
+    assert_eq!(groups(&named, GroupsBy::Object), ("head".into(), vec![0; 3]));
+    assert_eq!(groups(&named, GroupsBy::Material), ("skin|default".into(), vec![0, 0, 1]));
+    // Materials do not change the shape: one that does not exist has a number.
+    let missing = named.replace(r#""material":1"#, r#""material":7"#);
+    assert_eq!(groups(&missing, GroupsBy::Material), ("#7|default".into(), vec![0, 0, 1]));
+    let scene = parse_scene(&glb(&named, &binary())).unwrap();
+    let found = scene.mesh_nodes()[0].groups(GroupsBy::Material).unwrap();
+    assert_eq!((found.names.join("|"), found.of_triangle), ("skin|default".into(), vec![0, 0, 1]));
+    assert_eq!(scene.mesh_nodes()[0].groups(GroupsBy::Object).unwrap().names, ["head"]);
+    let malformed = named.replace(r#""material":1"#, r#""material":"red""#);
+    let error = parse_groups(&glb(&malformed, &binary()), None, GroupsBy::Group).unwrap_err();
+    assert!(error.to_string().starts_with("JSON: "), "{error}");
+}

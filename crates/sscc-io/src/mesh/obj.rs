@@ -11,6 +11,7 @@ use sscc::TriMesh;
 use super::Soup;
 use super::polygons::Polygons;
 use crate::error::quoted;
+use crate::named_groups::{DEFAULT, GroupCollector, GroupsBy, NamedGroups};
 use crate::text::{Lines, decoded, number, split_word, without_comment};
 use crate::{FormatError, Place};
 
@@ -28,14 +29,48 @@ pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
 
+/// Parses the groups of an OBJ file's triangles. Names are those of the lines, without spaces at their ends; bytes that
+/// are not UTF-8 are replaced.
+///
+/// # Errors
+/// As [`parse`]; when there are more than 65,536 groups.
+pub fn groups(bytes: &[u8], by: GroupsBy) -> Result<NamedGroups, FormatError> {
+    let keyword: &[u8] = match by {
+        GroupsBy::Group => b"g",
+        GroupsBy::Object => b"o",
+        GroupsBy::Material => b"usemtl",
+    };
+    let (mut collector, mut name) = (GroupCollector::default(), DEFAULT.to_owned());
+    let soup = read(bytes, |found, arguments, triangles| {
+        if found == keyword {
+            collector.extend_to(triangles, &name)?;
+            let next = String::from_utf8_lossy(arguments.trim_ascii());
+            name = if next.is_empty() { DEFAULT.to_owned() } else { next.into_owned() };
+        }
+        Ok(())
+    })?;
+    collector.extend_to(soup.faces.len(), &name)?;
+    soup.into_mesh()?;
+    Ok(collector.finish())
+}
+
 pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
+    read(bytes, |_, _, _| Ok(()))
+}
+
+/// Reads `v` and `f` lines. `on_other` receives the keyword of each other line, the text after it, and the number of
+/// triangles before it.
+fn read(
+    bytes: &[u8],
+    mut on_other: impl FnMut(&[u8], &[u8], usize) -> Result<(), FormatError>,
+) -> Result<Soup, FormatError> {
     let mut positions = Vec::new();
     let mut polygons = Polygons::new(1);
     let mut corners = Vec::new();
     let mut lines = Lines::new(bytes)?;
     while let Some((line, text)) = lines.next() {
         let text = without_comment(text).trim_ascii_end();
-        let (keyword, _) = split_word(text.strip_suffix(b"\\").unwrap_or(text));
+        let (keyword, other) = split_word(text.strip_suffix(b"\\").unwrap_or(text));
         match keyword {
             b"v" => {
                 let statement = joined(text, &mut lines);
@@ -49,7 +84,7 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
                 }
                 polygons.push(&corners, Place::Line(line))?;
             }
-            _ => {}
+            _ => on_other(keyword, other, polygons.triangle_count())?,
         }
     }
     polygons.finish(positions)
@@ -152,6 +187,29 @@ mod tests {
             g a\nv 0 1 0\ns off\nl 1 2\nf 1 2 3";
         let mesh = parse(text).unwrap();
         assert_eq!((mesh.rest_positions().len(), mesh.faces()), (3, &[[0, 1, 2]][..]));
+    }
+
+    #[test]
+    fn groups_follow_their_lines() {
+        let lines = b"f 1 2 3\ng a # first\nusemtl red\nf 1 2 3 4\ng b\ng  b c \no x\nf 1 2 3\ng a\nf 2 3 4\ng\nusemtl \xff\n\
+            f 1 3 4\no unused";
+        let text = [SQUARE.as_bytes(), lines].concat();
+        let of = |by| {
+            let found = groups(&text, by).unwrap();
+            (found.names.join("|"), found.of_triangle)
+        };
+        assert_eq!(of(GroupsBy::Group), ("default|a|b c".into(), vec![0, 1, 1, 2, 1, 0]));
+        assert_eq!(of(GroupsBy::Object), ("default|x".into(), vec![0, 0, 0, 1, 1, 1]));
+        assert_eq!(of(GroupsBy::Material), ("default|red|\u{fffd}".into(), vec![0, 1, 1, 1, 1, 2]));
+        assert_eq!(
+            groups(b"v 0 0 0\ng a\n", GroupsBy::Group).unwrap_err().to_string(),
+            "the mesh has no triangles"
+        );
+        for len in 0..text.len() {
+            let (cut, by) = (&text[..len], GroupsBy::Material);
+            let triangles = parse(cut).map(|mesh| mesh.faces().len());
+            assert_eq!(groups(cut, by).map(|found| found.of_triangle.len()), triangles);
+        }
     }
 
     #[test]

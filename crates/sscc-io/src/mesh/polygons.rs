@@ -19,6 +19,11 @@ impl Polygons {
         Self { triangles: Vec::new(), largest: None, first }
     }
 
+    /// The number of triangles so far.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// Adds one polygon (indices from 0), fanned from its first corner.
     pub fn push(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
         let (Some(&largest), [first, rest @ ..]) = (corners.iter().max(), corners) else {

@@ -66,7 +66,7 @@ impl<'w> MovingMesh<'w> {
         let motion = motion(&mesh)?;
         let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
         let filter = ContactFilter::new(request.neighbours, weld);
-        let make = |filter: &ContactFilter| Ok(Detector::with_filter(&mesh, filter));
+        let make = |filter: &ContactFilter| Detector::with_filter(&mesh, filter);
         let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
         Ok(Self { file: file.to_owned(), node: None, mesh, detector, motion })
     }
@@ -97,7 +97,7 @@ impl<'w> MovingMesh<'w> {
             let is_welded = request.weld.unwrap_or(true);
             let make = |filter: &ContactFilter| match is_welded {
                 true => Detector::with_weld_classes(&mesh, node.weld_classes(), filter),
-                false => Ok(Detector::with_filter(&mesh, filter)),
+                false => Detector::with_filter(&mesh, filter),
             };
             let filter = ContactFilter::new(request.neighbours, is_welded);
             let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;

@@ -8,7 +8,7 @@ use super::minimum_search::{Collision, Confirmed, MinimumSearch};
 use super::random::Random;
 use crate::bounds::NodePairBounds;
 use crate::certificates::{
-    BoundedNodePair, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
+    BoundedNodePair, NodeGroups, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
 };
 use crate::{Certificates, Pair, Progress};
 
@@ -48,11 +48,13 @@ pub(super) fn measure(
     let parts = certificates.parts();
     let nodes = parts.hierarchy.nodes();
     let bounds = NodePairBounds::new(minimum.scaled, &parts.hierarchy);
+    let groups = NodeGroups::new(minimum.filter, &parts.hierarchy);
     let context = RadiusSearchContext {
         model: minimum.scaled,
         filter: minimum.filter,
         hierarchy: &parts.hierarchy,
         nodes: &bounds,
+        groups: &groups,
     };
     let search = || RadiusSearch::new(context, parts.epsilon, progress);
     let limit = parts.pair_tree.limit();

@@ -26,13 +26,14 @@ impl Certificates {
         if scope.exceptions.iter().chain(scope.filter.ignored()).any(|(_, b)| *b as usize >= triangles) {
             return damaged("a pair names a triangle that does not exist");
         }
+        scope.filter.check_groups(triangles)?;
         model.check_coordinates(self.center()).map(|_| ())
     }
 
     /// Refuses a contact filter under which other pairs count than those that were certified.
     ///
     /// # Errors
-    /// When neighbours, weld or ignored pairs differ.
+    /// When neighbours, weld, ignored pairs or groups differ.
     pub fn check_filter(&self, filter: &ContactFilter) -> Result<(), Error> {
         let certified = self.filter();
         let what = if certified.neighbours != filter.neighbours {
@@ -43,6 +44,17 @@ impl Certificates {
         } else if certified.ignored() != filter.ignored() {
             let [certified, requested] = [certified, filter].map(|filter| filter.ignored().len());
             format!("their {certified} ignored pairs differ from the {requested} requested ones")
+        } else if certified.groups() != filter.groups() {
+            match (certified.groups(), filter.groups()) {
+                (None, _) => "they were computed without groups of triangles".to_owned(),
+                (_, None) => {
+                    "they leave out pairs of groups of triangles, which were not requested".to_owned()
+                }
+                _ => {
+                    "their groups of triangles, or which pairs of them count, differ from the requested ones"
+                        .to_owned()
+                }
+            }
         } else {
             return Ok(());
         };

@@ -45,6 +45,13 @@ impl Digest {
                 sections.numbers(name, pairs.len(), pairs.iter().flat_map(|&(i, j)| [i, j]));
             }
         }
+        if let Some(groups) = scope.filter.groups() {
+            let of_triangles = groups.of_triangles();
+            sections.numbers("groups", of_triangles.len(), of_triangles.iter().map(|g| u32::from(*g)));
+            let name = if groups.others_count() { "ignored-groups" } else { "only-groups" };
+            let listed = groups.listed().flat_map(|(g, h)| [u32::from(g), u32::from(h)]);
+            sections.numbers(name, groups.listed().count(), listed);
+        }
         Self(*sections.0.finalize().as_bytes())
     }
 

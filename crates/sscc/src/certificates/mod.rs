@@ -20,7 +20,7 @@ mod tests;
 mod validation;
 
 pub(crate) use build::{
-    BoundedNodePair, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
+    BoundedNodePair, NodeGroups, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
 };
 pub use certificates::{CertificateParts, Certificates};
 pub use digest::Digest;

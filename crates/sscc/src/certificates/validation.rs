@@ -39,6 +39,15 @@ fn check_scope(parts: &CertificateParts) -> Result<(), &'static str> {
     if exceptions.iter().any(|pair| ignored.binary_search(pair).is_ok()) {
         return Err("a pair is an exception and ignored");
     }
+    if let Some(groups) = scope.filter.groups() {
+        if groups.of_triangles().len() != parts.hierarchy.order().len() {
+            return Err("the number of group numbers is not the number of triangles");
+        }
+        let triangles = groups.of_triangles().len();
+        if exceptions.iter().any(|&(a, b)| (b as usize) < triangles && !groups.is_pair_counted(a, b)) {
+            return Err("a pair is an exception, but its groups do not count");
+        }
+    }
     Ok(())
 }
 

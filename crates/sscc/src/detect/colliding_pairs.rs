@@ -26,6 +26,7 @@ pub(crate) fn colliding_pairs(
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let reach = model.check_coordinates(q)?;
+    filter.check_groups(model.mesh().faces().len())?;
     let context = Context::new(model, Cow::Borrowed(hierarchy), filter, &[], Some(Needs::REFIT));
     let context = Context { progress, ..context };
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
@@ -47,7 +48,7 @@ impl ContactFilter {
     /// The same filter, which also ignores the pairs that collide at rest (q = 0).
     ///
     /// # Errors
-    /// When they are more than 2^24.
+    /// When they are more than 2^24, or when the filter's groups are of another mesh.
     pub fn ignoring_rest(self, model: &ReducedModel) -> Result<Self, Error> {
         let hierarchy = Hierarchy::build(model, model.metric());
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;

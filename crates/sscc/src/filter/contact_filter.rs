@@ -1,5 +1,10 @@
 //! The contact filter: decides which triangle pairs of any mesh count as collisions.
 
+use std::sync::Arc;
+
+use super::TriangleGroups;
+use crate::Error;
+
 /// Two triangles, the lower number first.
 pub type Pair = (u32, u32);
 
@@ -39,12 +44,14 @@ pub struct ContactFilter {
     /// positions stay the file's. For files that split vertices along seams (STL, glTF).
     pub weld: bool,
     ignored: Vec<Pair>,
+    /// None if all pairs of groups count.
+    groups: Option<Arc<TriangleGroups>>,
 }
 
 impl ContactFilter {
-    /// A filter that ignores no pair.
+    /// A filter that ignores no pair and has no groups.
     pub fn new(neighbours: Neighbours, weld: bool) -> Self {
-        Self { neighbours, weld, ignored: Vec::new() }
+        Self { neighbours, weld, ignored: Vec::new(), groups: None }
     }
 
     /// The same filter, which also ignores these pairs (in any order).
@@ -57,8 +64,33 @@ impl ContactFilter {
         self
     }
 
+    /// The same filter, under which two triangles count only if the pair of their groups does. Groups whose pairs all
+    /// count are no groups.
+    #[must_use]
+    pub fn with_groups(mut self, groups: impl Into<Arc<TriangleGroups>>) -> Self {
+        self.groups = Some(groups.into()).filter(|groups| !groups.is_all_counted());
+        self
+    }
+
     /// The pairs that never count, sorted.
     pub fn ignored(&self) -> &[Pair] {
         &self.ignored
+    }
+
+    /// The groups of triangles; none if all pairs of groups count.
+    pub fn groups(&self) -> Option<&Arc<TriangleGroups>> {
+        self.groups.as_ref()
+    }
+
+    /// Refuses groups of another mesh.
+    pub(crate) fn check_groups(&self, triangles: usize) -> Result<(), Error> {
+        match self.groups.as_ref().map(|groups| groups.of_triangles().len()) {
+            Some(found) if found != triangles => Err(Error::Groups {
+                what: format!(
+                    "there are {found} group numbers for {triangles} triangles: one for each is needed"
+                ),
+            }),
+            _ => Ok(()),
+        }
     }
 }

@@ -1,9 +1,12 @@
-//! Which pairs of triangles count as collisions: adjacency, welded vertices, shared-vertex pairs, ignored pairs.
+//! Which pairs of triangles count as collisions: adjacency, welded vertices, shared-vertex pairs, ignored pairs,
+//! groups.
 
 mod contact_filter;
 mod pair_filter;
+mod triangle_groups;
 mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair};
 pub(crate) use pair_filter::{Hulls, PairFilter, Relation};
+pub use triangle_groups::TriangleGroups;
 pub(crate) use weld::{weld_classes, weld_classes_of_positions};

@@ -1,7 +1,10 @@
 //! The contact filter applied to one mesh: the relation of any two triangles, and the exact test that follows from it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use super::TriangleGroups;
 use super::contact_filter::{ContactFilter, Neighbours, Pair};
 use super::weld::weld_classes;
 use crate::{ReducedModel, intersect_shared_vertex_pair, intersect_triangle_triangle};
@@ -13,7 +16,7 @@ pub(crate) enum Relation {
     NonAdjacent,
     /// They share the vertex of this class alone, and such pairs count when they have another point in common.
     SharedVertex(u32),
-    /// They never count.
+    /// They never count: they are adjacent, or of two groups that do not count.
     Adjacent,
 }
 
@@ -26,6 +29,8 @@ pub(crate) struct PairFilter {
     neighbours: Neighbours,
     /// Sorted.
     excluded: Vec<Pair>,
+    /// Group numbers, one for each face; none if all pairs of groups count.
+    groups: Option<Arc<TriangleGroups>>,
 }
 
 /// Two hulls of three vertices each, one of triangle a and one of triangle b. An edge has one vertex twice.
@@ -36,6 +41,8 @@ pub(crate) struct Hulls<T> {
 }
 
 impl PairFilter {
+    /// The filter on a model. Callers check that its groups, if any, are those of the model
+    /// ([`ContactFilter::check_groups`]).
     pub(crate) fn new(model: &ReducedModel, filter: &ContactFilter) -> Self {
         let classes = filter.weld.then(|| weld_classes(model));
         Self::with_classes(model.mesh().faces(), classes.as_deref(), filter)
@@ -49,6 +56,7 @@ impl PairFilter {
             classes: faces.iter().map(of_face).collect(),
             neighbours: filter.neighbours,
             excluded: filter.ignored().to_vec(),
+            groups: filter.groups().map(Arc::clone),
         }
     }
 
@@ -65,6 +73,11 @@ impl PairFilter {
         &self.faces
     }
 
+    /// The groups of triangles; none if all pairs of groups count.
+    pub(crate) fn groups(&self) -> Option<&TriangleGroups> {
+        self.groups.as_deref()
+    }
+
     /// Vertex classes are numbers below this.
     pub(crate) fn class_count(&self) -> usize {
         self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
@@ -79,6 +92,11 @@ impl PairFilter {
     /// The relation of two triangles, whether or not their pair is excluded.
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
+        if let Some(groups) = &self.groups
+            && right_or!(!groups.is_pair_counted(a, b), GroupsForgotten, false)
+        {
+            return Relation::Adjacent;
+        }
         let (classes_a, classes_b) = (self.classes[a as usize], self.classes[b as usize]);
         if classes_a.iter().any(|class| classes_b.contains(class)) {
             self.relation_of_neighbours(classes_a, classes_b)

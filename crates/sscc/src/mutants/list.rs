@@ -6,6 +6,10 @@
 // `Covered("REASON")`: no test can fail, because another term is large enough; the code has the proof.
 
 mutants! {
+    /// Groups of triangles are forgotten: all pairs count.
+    GroupsForgotten: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
+    /// A node has the group of its first part.
+    NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
     KineticBallAtCenter: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
     /// The rounding bound of positions about a centre omits the displacement of the centre.

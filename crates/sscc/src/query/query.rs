@@ -62,7 +62,7 @@ impl<'a> Query<'a> {
     /// [`Method::Certified`] becomes [`Method::BdTree`].
     ///
     /// # Errors
-    /// When the scope's metric or centre is of another rank than the model.
+    /// When the scope's metric or centre is of another rank than the model, or its groups are of another mesh.
     pub fn without_certificates(
         model: &'a ReducedModel,
         scope: Scope,
@@ -70,6 +70,7 @@ impl<'a> Query<'a> {
     ) -> Result<Self, Error> {
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         model.check_coordinates(&scope.center)?;
+        scope.filter.check_groups(model.mesh().faces().len())?;
         let hierarchy = Cow::Owned(Hierarchy::build(model, &scope.metric));
         let method = if method == Method::Certified { Method::BdTree } else { method };
         Ok(Self::build(model, None, Cow::Owned(scope), hierarchy, method))

@@ -113,7 +113,7 @@ fn answers_are_those_of_queries() {
         let filter = ContactFilter::new(neighbours, false).ignoring(ignored);
         let scope = Scope { filter: filter.clone(), ..Scope::of(&model) };
         let mut query = Query::without_certificates(&model, scope, Method::BruteForce).unwrap();
-        let mut detector = Detector::with_filter(model.mesh(), &filter);
+        let mut detector = Detector::with_filter(model.mesh(), &filter).unwrap();
         let mut q: Vec<f64> = vec![0.0; model.rank()];
         for _ in 0..5 {
             let next: Vec<f64> = q.iter().map(|q| q + random.signed()).collect();
@@ -230,7 +230,7 @@ fn welded_vertices_are_one_for_adjacency() {
     let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
     assert_eq!(Detector::new(&mesh).discrete(&rest).unwrap(), [(0, 1)]);
     let welded = ContactFilter::new(Neighbours::Exclude, true);
-    assert_eq!(Detector::with_filter(&mesh, &welded).discrete(&rest).unwrap(), []);
+    assert_eq!(Detector::with_filter(&mesh, &welded).unwrap().discrete(&rest).unwrap(), []);
     let classes = [0, 1, 2, 1, 4, 5];
     let mut detector = Detector::with_weld_classes(&mesh, &classes, &ContactFilter::default()).unwrap();
     assert_eq!(detector.discrete(&rest).unwrap(), []);

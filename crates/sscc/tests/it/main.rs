@@ -11,6 +11,7 @@ mod common;
 mod contact_curves;
 mod continuous;
 mod detector;
+mod groups;
 mod impact;
 mod impact_tolerance;
 mod intersect;

@@ -44,7 +44,7 @@ fn check_model(args: &Check) -> Result<bool> {
         pose::check(pose, &args.model)?;
     }
     let certificates = match &args.certificates {
-        Some(path) => Some(load::certificates(path, &model, &args.options)?),
+        Some(path) => Some(load::certificates(path, &args.model, &model, &args.options)?),
         None if typed_method == args::Method::Certified => {
             Some(load::certificates_now(&model, &args.model, &args.options)?)
         }

@@ -22,6 +22,8 @@ pub struct CertificatesInfo {
     rest_collisions: u64,
     exceptions: usize,
     ignored: usize,
+    /// 0 if all pairs of groups of triangles count.
+    groups: usize,
     center: Vec<f64>,
     nodes: usize,
     root_radius: f64,
@@ -66,6 +68,7 @@ impl CertificatesInfo {
             rest_collisions: parts.rest_collisions,
             exceptions: parts.scope.exceptions.len(),
             ignored: parts.scope.filter.ignored().len(),
+            groups: parts.scope.filter.groups().map_or(0, |groups| groups.group_count()),
             center: parts.scope.center.clone(),
             nodes: parts.node_radii.len(),
             root_radius: certificates.root_radius(),
@@ -121,6 +124,10 @@ impl CertificatesInfo {
                 "level", "nodes", "min", "median", "max", "capped"
             ),
         ];
+        if self.groups > 0 {
+            let groups = counted(self.groups as u64, "group");
+            lines.insert(4, format!("groups         {groups} of triangles, of which not all pairs count"));
+        }
         lines.extend(self.levels.iter().enumerate().map(|(i, level)| {
             let [min, median, max] = [level.min, level.median, level.max].map(length);
             let nodes = grouped(level.nodes as u64);

@@ -30,7 +30,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let certificates = match &args.certificates {
-        Some(path) => load::certificates(path, model, &args.options)?,
+        Some(path) => load::certificates(path, &args.model, model, &args.options)?,
         None => load::certificates_now(model, &args.model, &args.options)?,
     };
     let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
@@ -101,6 +101,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         center,
         neighbours,
         ignore_rest,
+        groups,
         weld,
         max_exceptions,
         scheme,
@@ -117,6 +118,9 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         (center.is_some(), "--center"),
         (neighbours.is_some(), "--neighbours"),
         (*ignore_rest, "--ignore-rest"),
+        (!groups.ignore_groups.is_empty(), "--ignore-groups"),
+        (!groups.only_groups.is_empty(), "--only-groups"),
+        (groups.group_by.is_some(), "--group-by"),
         (weld.is_some(), "--weld"),
         (max_exceptions.is_some(), "--max-exceptions"),
         (scheme.is_some(), "--scheme"),

@@ -3,7 +3,7 @@ use std::sync::LazyLock;
 use super::super::MODEL;
 use super::*;
 use glam::DVec3;
-use sscc::{CertifyOptions, Metric, MetricKind, Modes, ReducedModel, TriMesh};
+use sscc::{CertifyOptions, Metric, MetricKind, Modes, ReducedModel, TriMesh, TriangleGroups};
 
 /// A strip of triangles folded over itself, with three modes, one of which moves nothing.
 fn model() -> ReducedModel {
@@ -57,6 +57,75 @@ fn every_scope_round_trips() {
         assert_eq!(read, certificates);
         assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
     }
+}
+
+/// Certificates of the model with groups of triangles.
+fn grouped(table: impl Fn(TriangleGroups) -> TriangleGroups) -> Certificates {
+    let model = model();
+    let of_triangle: Vec<u32> = (0..model.mesh().faces().len() as u32).map(|t| t / 6).collect();
+    let filter = ContactFilter::default().with_groups(table(TriangleGroups::new(&of_triangle).unwrap()));
+    let options = CertifyOptions { filter, budget: 16, ..CertifyOptions::default() };
+    Certificates::compute(&model, &options, &()).unwrap()
+}
+
+#[test]
+fn groups_round_trip() {
+    let tables: [fn(TriangleGroups) -> TriangleGroups; 3] = [
+        TriangleGroups::between_only,
+        |groups| groups.ignoring([(0, 2), (3, 3)]).unwrap(),
+        |groups| groups.only([(1, 3)]).unwrap(),
+    ];
+    for table in tables {
+        let certificates = grouped(table);
+        let bytes = certificates_to_bytes(&certificates).unwrap();
+        assert_eq!(Container::parse(&bytes, CERTIFICATES).unwrap().version(), 5);
+        let read = certificates_from_bytes(&bytes).unwrap();
+        assert_eq!(read, certificates);
+        assert!(read.filter().groups().is_some());
+        read.check_model(&model()).unwrap();
+        assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
+    }
+    // Without groups the file is one of the version before.
+    assert_eq!(Container::parse(&sample(), CERTIFICATES).unwrap().version(), 4);
+    let plain = grouped(|groups| groups);
+    assert_eq!(certificates_to_bytes(&plain).unwrap(), sample());
+}
+
+#[test]
+fn damaged_groups_are_rejected() {
+    let bytes = certificates_to_bytes(&grouped(|groups| groups.only([(1, 3)]).unwrap())).unwrap();
+    let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+    let message = |version: u32, change: &dyn Fn(&mut ContainerWriter)| {
+        let mut writer = ContainerWriter::new(super::super::Kind { version, ..CERTIFICATES });
+        copy(&file, &mut writer, &["groups", "group_pairs"]);
+        change(&mut writer);
+        certificates_from_bytes(&writer.finish().unwrap()).map_err(|error| error.to_string())
+    };
+    let write = |groups: &'static [u32], rule: &'static str, pairs: &'static [u32]| {
+        move |w: &mut ContainerWriter| {
+            _ = w.text("group_pairs", rule);
+            _ = w.u32("groups", &[groups.len()], groups).u32("group_pairs", &[pairs.len() / 2, 2], pairs);
+        }
+    };
+    const GROUPS: &[u32] = &[0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3];
+    message(5, &write(GROUPS, "counted", &[1, 3])).unwrap().check_model(&model()).unwrap();
+    let refused = |version, groups, rule, pairs| message(version, &write(groups, rule, pairs)).unwrap_err();
+    assert!(refused(4, GROUPS, "counted", &[1, 3]).contains("not known in this version of the format"));
+    assert!(refused(5, GROUPS, "other", &[1, 3]).contains("'other' is not known in this version"));
+    assert!(refused(5, &GROUPS[1..], "counted", &[1, 3]).contains("not the number of triangles"));
+    assert!(refused(5, &[65_536], "counted", &[]).contains("at most 65536 groups"));
+    assert!(refused(5, GROUPS, "counted", &[1, 4]).contains("group 4 does not exist"));
+    for pairs in [&[3, 1][..], &[1, 3, 0, 1], &[1, 3, 1, 3]] {
+        assert!(refused(5, GROUPS, "counted", pairs).contains("pairs are not in order"));
+    }
+    assert!(
+        message(5, &|w| _ = w.u32("group_pairs", &[0, 2], &[])).unwrap_err().contains("groups': missing")
+    );
+    assert!(message(5, &|w| _ = w.u32("groups", &[22], &[0; 22])).unwrap_err().contains("missing"));
+    // Other groups, or another table, are no certificates of the model.
+    let other = message(5, &write(GROUPS, "ignored", &[1, 3])).unwrap();
+    assert!(other.check_model(&model()).is_err());
+    assert!(message(5, &|_| ()).unwrap().check_model(&model()).is_err());
 }
 
 fn certificates() -> Certificates {
@@ -200,8 +269,8 @@ fn other_kinds_and_newer_versions_are_rejected() {
     let model_file = ContainerWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = ContainerWriter::new(super::super::Kind { version: 5, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 5"));
+    let newer = ContainerWriter::new(super::super::Kind { version: 6, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 6"));
 }
 
 #[test]

@@ -6,6 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::shape::Shape;
+use crate::FormatError;
+use crate::gltf::part_names::PartNames;
+use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 
 /// A node of a glTF file that shows a mesh with triangles. Vertex and triangle numbers run through the mesh's primitives
 /// of triangles in file order; primitives of points and lines are left out.
@@ -18,6 +21,7 @@ pub struct MeshNode {
     /// Stored weights of the morph targets.
     pub(super) weights: Vec<f64>,
     pub(super) shape: Arc<Shape>,
+    pub(super) names: Arc<PartNames>,
 }
 
 impl MeshNode {
@@ -70,6 +74,18 @@ impl MeshNode {
     /// morph targets and influences (weights of 0 left out; none without a skin). 0 equals -0.
     pub fn weld_classes(&self) -> &[u32] {
         &self.shape.weld_classes
+    }
+
+    /// The group of each triangle.
+    ///
+    /// # Errors
+    /// When there are more than 65,536 groups.
+    pub fn groups(&self, by: GroupsBy) -> Result<NamedGroups, FormatError> {
+        let mut groups = GroupCollector::default();
+        for &(primitive, end) in &self.shape.primitives {
+            groups.extend_to(end as usize, &self.names.group(by, Some(self.node), self.mesh, primitive))?;
+        }
+        Ok(groups.finish())
     }
 
     /// The largest |sum of weights - 1| of a vertex as stored, 0 without a skin. Up to about 1e-2 it is rounding of

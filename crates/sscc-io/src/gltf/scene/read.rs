@@ -16,6 +16,7 @@ use crate::gltf::buffers::Buffers;
 use crate::gltf::glb;
 use crate::gltf::json::{Mesh, Root, parse_parts};
 use crate::gltf::morph::default_weights;
+use crate::gltf::part_names::PartNames;
 use crate::gltf::select::has_triangles;
 use crate::{FormatError, IoError, read_whole};
 
@@ -57,7 +58,8 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let skins = skins
         .map(|(number, skin)| Skin::read(&mut accessors, &nodes, number, skin))
         .collect::<Result<Vec<_>, _>>()?;
-    let mesh_nodes = mesh_nodes(&mut accessors, &root, &scene, &skins)?;
+    let names = Arc::new(PartNames::parse(chunks.json)?);
+    let mesh_nodes = mesh_nodes(&mut accessors, &root, &scene, &skins, &names)?;
     let of_meshes: Vec<usize> = root.meshes.iter().map(morph_targets).collect();
     let targets = |node: &json::Node| of_meshes.get(node.mesh? as usize).copied();
     let targets: Vec<usize> = scene.nodes.iter().map(|node| targets(node).unwrap_or(0)).collect();
@@ -99,6 +101,7 @@ fn mesh_nodes(
     root: &Root,
     scene: &SceneRoot,
     skins: &[Skin],
+    names: &Arc<PartNames>,
 ) -> Result<Vec<MeshNode>, FormatError> {
     let has_triangles: Vec<bool> = root.meshes.iter().map(has_triangles).collect();
     let mut shapes: BTreeMap<(usize, bool), Arc<Shape>> = BTreeMap::new();
@@ -149,6 +152,7 @@ fn mesh_nodes(
             skin,
             weights,
             shape,
+            names: Arc::clone(names),
         });
     }
     Ok(mesh_nodes)

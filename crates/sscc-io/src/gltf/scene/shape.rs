@@ -27,6 +27,8 @@ pub enum SkinWeights {
 pub(super) struct Shape {
     pub rest: Vec<DVec3>,
     pub faces: Vec<[u32; 3]>,
+    /// The end of each primitive's triangles, with its number in the mesh.
+    pub primitives: Vec<(usize, u32)>,
     pub rank: usize,
     /// `rank` displacements for each vertex.
     displacements: Vec<DVec3>,
@@ -52,12 +54,14 @@ impl Shape {
         let rank = morph_targets(mesh);
         let mut joined = JoinedPrimitives::new(rank);
         let mut influences = skin_attributes.map(|_| Influences::new());
+        let mut primitives = Vec::new();
         for (at, primitive) in mesh.primitives.iter().enumerate() {
             if Topology::from_mode(primitive.mode).is_err() {
                 continue;
             }
             let part = format!("meshes[{number}].primitives[{at}]");
             let range = joined.push(accessors, primitive, &part)?;
+            primitives.push((at, range.triangles.end));
             if let (Some(influences), Some(mesh)) = (&mut influences, skin_attributes) {
                 let attributes = &mesh.primitives[at].attributes;
                 influences.push(accessors, attributes, range.vertices.len(), &part)?;
@@ -78,7 +82,7 @@ impl Shape {
         }
         accessors.allowance.take(rest.len() as u64, 16).map_err(refused)?;
         let weld_classes = weld_classes(&rest, rank, &displacements, influences.as_ref());
-        Ok(Self { rest, faces, rank, displacements, influences, weld_classes })
+        Ok(Self { rest, faces, primitives, rank, displacements, influences, weld_classes })
     }
 
     /// Appends the position of each vertex after morphing with these weights (`rank` numbers) and the transform.

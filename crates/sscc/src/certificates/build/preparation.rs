@@ -2,6 +2,7 @@
 //! the options alone, so every process computes its own, and all are equal.
 
 use super::global_radius::global_radius;
+use super::node_groups::NodeGroups;
 use super::radius_search::RadiusSearch;
 use super::radius_search_context::RadiusSearchContext;
 use super::search_goal::coarse_cap;
@@ -24,13 +25,14 @@ pub(crate) struct Preparation {
     scaled: ScaledModel,
     filter: PairFilter,
     nodes: NodePairBounds,
+    groups: NodeGroups,
 }
 
 impl Preparation {
     /// Prepares a model on the threads of the current pool.
     ///
     /// # Errors
-    /// When an option is out of range, the metric does not fit the model, or `progress` cancels.
+    /// When an option is out of range, metric, centre or groups do not fit the model, or `progress` cancels.
     pub(crate) fn new(
         model: &ReducedModel,
         options: &CertifyOptions,
@@ -45,6 +47,7 @@ impl Preparation {
         let center = options.center.clone().unwrap_or_else(|| rest.clone());
         model.check_coordinates(&center)?;
         let mut filter = options.filter.clone();
+        filter.check_groups(model.mesh().faces().len())?;
         let collide_at_rest = || {
             let hierarchy = Hierarchy::build(model, &metric);
             let at_rest = colliding_pairs(model, &hierarchy, &filter, &rest, progress);
@@ -69,9 +72,11 @@ impl Preparation {
         let scope = Scope { metric, center, filter, exceptions };
         let (digest, nodes) =
             rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
+        let filter = PairFilter::new(model, &scope.filter).excluding(&scope.exceptions);
         Ok(Self {
             digest,
-            filter: PairFilter::new(model, &scope.filter).excluding(&scope.exceptions),
+            groups: NodeGroups::new(&filter, &hierarchy),
+            filter,
             nodes,
             global_radius: global_radius(model, &scope.metric, &scope.center),
             rest_collisions,
@@ -89,9 +94,9 @@ impl Preparation {
 
     /// A search for one thread.
     pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
-        let Self { scaled, filter, hierarchy, nodes, .. } = self;
+        let Self { scaled, filter, hierarchy, nodes, groups, .. } = self;
         RadiusSearch::new(
-            RadiusSearchContext { model: scaled, filter, hierarchy, nodes },
+            RadiusSearchContext { model: scaled, filter, hierarchy, nodes, groups },
             self.epsilon,
             progress,
         )

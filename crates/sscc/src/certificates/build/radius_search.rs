@@ -70,9 +70,12 @@ impl<'a> RadiusSearch<'a> {
         self.closest
     }
 
-    /// A certified lower bound for all triangle pairs between two nodes, by the nodes alone; a bound of at least
-    /// `refine_up_to` is not made better.
+    /// A certified lower bound for all triangle pairs between two nodes that count, by the nodes alone; a bound of at
+    /// least `refine_up_to` is not made better. Infinite if no pair counts by its groups.
     pub(crate) fn bound_nodes(&mut self, (n, m): NodePair, refine_up_to: f64) -> f64 {
+        if !self.context.groups.can_count(self.context.filter, (n, m)) {
+            return f64::INFINITY;
+        }
         self.context.nodes.bound(self.context.model, n, m, refine_up_to, &mut self.scratch)
     }
 

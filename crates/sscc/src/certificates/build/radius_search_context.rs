@@ -1,5 +1,6 @@
-//! The input shared by all radius searches: scaled model, contact filter, hierarchy and bounds of nodes.
+//! The input shared by all radius searches: scaled model, contact filter, hierarchy, bounds and groups of nodes.
 
+use super::node_groups::NodeGroups;
 use crate::bounds::NodePairBounds;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
@@ -13,4 +14,5 @@ pub(crate) struct RadiusSearchContext<'a> {
     pub(crate) filter: &'a PairFilter,
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) nodes: &'a NodePairBounds,
+    pub(crate) groups: &'a NodeGroups,
 }

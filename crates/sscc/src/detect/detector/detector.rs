@@ -59,22 +59,27 @@ impl<'a> Detector<'a> {
     /// A detector for a mesh, under the default contact filter: pairs count that share no vertex. The rest positions choose the
     /// hierarchy and nothing else. About as much work as 20 answers.
     pub fn new(mesh: &TriMesh) -> Self {
-        Self::with_filter(mesh, &ContactFilter::default())
+        Self::build(mesh, None, &ContactFilter::default())
     }
 
     /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position.
-    pub fn with_filter(mesh: &TriMesh, filter: &ContactFilter) -> Self {
+    ///
+    /// # Errors
+    /// When the filter's groups are of another mesh.
+    pub fn with_filter(mesh: &TriMesh, filter: &ContactFilter) -> Result<Self, Error> {
+        filter.check_groups(mesh.faces().len())?;
         let classes = filter.weld.then(|| weld_classes_of_positions(mesh.rest_positions()));
-        Self::build(mesh, classes.as_deref(), filter)
+        Ok(Self::build(mesh, classes.as_deref(), filter))
     }
 
     /// A detector whose vertices are welded by the given classes: vertices of the same class are one vertex for adjacency,
     /// as in skinned meshes, where equal rest positions may move apart.
     ///
     /// # Errors
-    /// When there are not as many classes as vertices.
+    /// When there are not as many classes as vertices, or the filter's groups are of another mesh.
     pub fn with_weld_classes(mesh: &TriMesh, classes: &[u32], filter: &ContactFilter) -> Result<Self, Error> {
         check_count(classes.len(), mesh.rest_positions().len())?;
+        filter.check_groups(mesh.faces().len())?;
         Ok(Self::build(mesh, Some(classes), filter))
     }
 

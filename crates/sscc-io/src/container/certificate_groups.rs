@@ -1,0 +1,57 @@
+//! Groups of triangles in certificate files: the optional tensors `groups` and `group_pairs`.
+
+use sscc::{ContactFilter, TriangleGroups};
+
+use super::{ANY, Container, ContainerWriter};
+use crate::error::quoted;
+use crate::{FormatError, Place};
+
+/// Tensor: the group of each triangle.
+pub(super) const GROUPS: &str = "groups";
+
+/// Tensor: the listed pairs of groups. Text: what it lists.
+pub(super) const PAIRS: &str = "group_pairs";
+
+/// Values of the text.
+const IGNORED: &str = "ignored";
+const COUNTED: &str = "counted";
+
+/// The first version with groups.
+const VERSION: u32 = 5;
+
+/// Writes the groups of a filter, if it has any.
+pub(super) fn write(writer: &mut ContainerWriter, filter: &ContactFilter) {
+    let Some(groups) = filter.groups() else { return };
+    let of_triangles: Vec<u32> = groups.of_triangles().iter().map(|group| u32::from(*group)).collect();
+    let pairs: Vec<u32> = groups.listed().flat_map(|(g, h)| [u32::from(g), u32::from(h)]).collect();
+    writer
+        .text(PAIRS, if groups.others_count() { IGNORED } else { COUNTED })
+        .u32(GROUPS, &[of_triangles.len()], &of_triangles)
+        .u32(PAIRS, &[pairs.len() / 2, 2], &pairs);
+}
+
+/// Adds the groups of a file, if it has any, to a filter.
+pub(super) fn read(file: &Container<'_>, filter: ContactFilter) -> Result<ContactFilter, FormatError> {
+    let Some(name) = file.names().into_iter().find(|name| name == GROUPS || name == PAIRS) else {
+        return Ok(filter);
+    };
+    if file.version() < VERSION {
+        return Err(FormatError::new(Place::Tensor(name), "not known in this version of the format"));
+    }
+    let (of_triangles, pairs) = (file.u32(GROUPS)?.shaped(&[ANY])?, file.u32(PAIRS)?.shaped(&[ANY, 2])?);
+    let groups = TriangleGroups::new(&of_triangles.values);
+    let groups = groups.map_err(|error| of_triangles.refused(error.to_string()))?;
+    let listed = || pairs.values.as_chunks().0.iter().map(|&[g, h]| (g, h));
+    if !listed().is_sorted_by(|a, b| a < b) || listed().any(|(g, h)| g > h) {
+        return Err(pairs.refused("pairs are not in order"));
+    }
+    let groups = match file.text(PAIRS)? {
+        IGNORED => groups.ignoring(listed()),
+        COUNTED => groups.only(listed()),
+        other => {
+            let cause = format!("{} is not known in this version of the format", quoted(other));
+            return Err(FormatError::new(Place::Key(PAIRS.into()), cause));
+        }
+    };
+    Ok(filter.with_groups(groups.map_err(|error| pairs.refused(error.to_string()))?))
+}

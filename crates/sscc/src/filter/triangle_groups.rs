@@ -1,0 +1,178 @@
+//! Groups of triangles, and a table of the pairs of groups that count.
+
+use crate::Error;
+
+/// The group of each triangle, and which pairs of groups count: two triangles count only if the pair of their groups
+/// does. The table is symmetric. Equal tables are equal values, however they were made.
+///
+/// ```
+/// use sscc::TriangleGroups;
+///
+/// # fn main() -> Result<(), sscc::Error> {
+/// // Two triangles of a body, one of a shirt, one of its buttons.
+/// let groups = TriangleGroups::new(&[0, 0, 1, 2])?.ignoring([(0, 0), (1, 2)])?;
+/// assert!(!groups.is_pair_counted(0, 1) && groups.is_pair_counted(0, 2) && !groups.is_pair_counted(2, 3));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TriangleGroups {
+    of_triangle: Vec<u16>,
+    /// Whether a pair of groups that is not listed counts. A listed one is the opposite.
+    others_count: bool,
+    /// The groups g, and for each those that it is listed with: `partners[starts[g]..starts[g + 1]]`, ascending. At
+    /// most half of all pairs are listed.
+    starts: Vec<usize>,
+    partners: Vec<u16>,
+}
+
+impl TriangleGroups {
+    /// The maximum number of groups: a triangle stores its group in 16 bits.
+    pub const MAX_GROUPS: usize = 1 << 16;
+
+    /// The groups of triangles, from 0. All pairs count.
+    ///
+    /// # Errors
+    /// When a number is 65,536 or larger.
+    pub fn new(of_triangle: &[u32]) -> Result<Self, Error> {
+        if let Some(triangle) = of_triangle.iter().position(|group| *group as usize >= Self::MAX_GROUPS) {
+            let group = of_triangle[triangle];
+            return Err(refused(format!(
+                "triangle {triangle} (counted from 0) is in group {group}: at most {} groups are supported, \
+                 numbered from 0",
+                Self::MAX_GROUPS
+            )));
+        }
+        let count = of_triangle.iter().max().map_or(0, |largest| *largest as usize + 1);
+        let of_triangle = of_triangle.iter().map(|group| *group as u16).collect();
+        Ok(Self { of_triangle, others_count: true, starts: vec![0; count + 1], partners: Vec::new() })
+    }
+
+    /// The same groups, whose pairs of triangles within one group do not count either.
+    #[must_use]
+    pub fn between_only(self) -> Self {
+        let within: Vec<(u16, u16)> = (0..self.group_count()).map(|g| (g as u16, g as u16)).collect();
+        self.without(&within)
+    }
+
+    /// The same groups, of which these pairs do not count either (in any order; `(a, a)`: triangles within group a).
+    ///
+    /// # Errors
+    /// When a group has a larger number than those of all triangles.
+    pub fn ignoring(self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Self, Error> {
+        let pairs = self.check(pairs)?;
+        Ok(self.without(&pairs))
+    }
+
+    /// The same groups, of which these pairs alone count.
+    ///
+    /// # Errors
+    /// As [`TriangleGroups::ignoring`].
+    pub fn only(self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Self, Error> {
+        let pairs = self.check(pairs)?;
+        Ok(self.with_table(false, pairs))
+    }
+
+    /// The group of each triangle.
+    pub fn of_triangles(&self) -> &[u16] {
+        &self.of_triangle
+    }
+
+    /// The number of groups: one more than the largest group of a triangle.
+    pub fn group_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Whether pairs of groups count that are not [listed](TriangleGroups::listed).
+    pub fn others_count(&self) -> bool {
+        self.others_count
+    }
+
+    /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
+    pub fn listed(&self) -> impl Iterator<Item = (u16, u16)> {
+        let row = |g: usize| &self.partners[self.starts[g]..self.starts[g + 1]];
+        (0..self.group_count())
+            .flat_map(move |g| row(g).iter().filter(move |h| **h as usize >= g).map(move |h| (g as u16, *h)))
+    }
+
+    /// Whether triangles of these two groups count.
+    #[inline]
+    pub fn is_counted(&self, g: u16, h: u16) -> bool {
+        let [start, end] = [0, 1].map(|next| self.starts[g as usize + next]);
+        self.partners[start..end].binary_search(&h).is_ok() != self.others_count
+    }
+
+    /// Whether two triangles count, by their groups.
+    #[inline]
+    pub fn is_pair_counted(&self, a: u32, b: u32) -> bool {
+        self.is_counted(self.of_triangle[a as usize], self.of_triangle[b as usize])
+    }
+
+    /// Whether every pair of groups counts.
+    pub(crate) fn is_all_counted(&self) -> bool {
+        self.others_count && self.partners.is_empty()
+    }
+
+    /// The pairs in 16 bits, the lower number first.
+    fn check(&self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Vec<(u16, u16)>, Error> {
+        let count = self.group_count();
+        let checked = pairs.into_iter().map(|(a, b)| match a.max(b) {
+            largest if largest as usize >= count => {
+                let known = match count {
+                    0 => "there are no triangles".to_owned(),
+                    _ => format!("those of the triangles are 0 to {}", count - 1),
+                };
+                Err(refused(format!("group {largest} does not exist: {known}")))
+            }
+            _ => Ok((a.min(b) as u16, a.max(b) as u16)),
+        });
+        checked.collect()
+    }
+
+    /// The same table without these pairs.
+    fn without(self, pairs: &[(u16, u16)]) -> Self {
+        let mut listed: Vec<(u16, u16)> = self.listed().collect();
+        if self.others_count {
+            listed.extend_from_slice(pairs);
+        } else {
+            let mut removed = pairs.to_vec();
+            removed.sort_unstable();
+            listed.retain(|pair| removed.binary_search(pair).is_err());
+        }
+        let others_count = self.others_count;
+        self.with_table(others_count, listed)
+    }
+
+    /// The same groups with the table of these listed pairs; where they are more than half of all, the others are
+    /// listed.
+    fn with_table(self, others_count: bool, mut listed: Vec<(u16, u16)>) -> Self {
+        let count = self.group_count();
+        listed.sort_unstable();
+        listed.dedup();
+        let (all, twice) = (count as u64 * (count as u64 + 1) / 2, 2 * listed.len() as u64);
+        let is_short = twice < all || (twice == all && others_count);
+        if !is_short {
+            let pairs = (0..count).flat_map(|g| (g..count).map(move |h| (g as u16, h as u16)));
+            listed = pairs.filter(|pair| listed.binary_search(pair).is_err()).collect();
+        }
+        let mut both: Vec<(u16, u16)> = listed.iter().flat_map(|&(g, h)| [(g, h), (h, g)]).collect();
+        both.sort_unstable();
+        both.dedup();
+        let mut starts = vec![0; count + 1];
+        both.iter().for_each(|(g, _)| starts[*g as usize + 1] += 1);
+        (0..count).for_each(|g| starts[g + 1] += starts[g]);
+        Self {
+            of_triangle: self.of_triangle,
+            others_count: others_count == is_short,
+            starts,
+            partners: both.into_iter().map(|(_, h)| h).collect(),
+        }
+    }
+}
+
+fn refused(what: String) -> Error {
+    Error::Groups { what }
+}
+
+#[cfg(test)]
+mod tests;
