@@ -46,7 +46,7 @@ pub(crate) struct DeformedMotion<'q, const E: usize> {
 }
 
 impl<'q, const E: usize> DeformedMotion<'q, E> {
-    /// `reach`: an upper bound of the magnitude of every term of every position, at each end.
+    /// `reach`: an upper bound of the magnitude of every term of every position, at each configuration.
     pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
         Self { q, rounding: rounding_bound(reach, q[0].len()) }
     }
