@@ -45,7 +45,7 @@ impl BallRates {
     }
 }
 
-/// A ball around the z of one q. Its two ends are the lowest and the highest coordinates of each vertex.
+/// A ball around the z of one q. Its two configurations have the lowest and the highest coordinates of each vertex.
 #[derive(Clone, Copy)]
 pub(crate) struct BallMotion<'q> {
     rates: &'q BallRates,

@@ -113,7 +113,7 @@ impl<const E: usize> BroadPhase<E> {
         if !self.is_cancelled {
             return Ok(());
         }
-        narrow.hits().hits.clear();
+        narrow.hits().list.clear();
         Err(Error::Cancelled)
     }
 
@@ -144,7 +144,7 @@ impl<const E: usize> BroadPhase<E> {
             && !context.is_exception(pair)
             && !narrow.hits().note_if_full()
         {
-            narrow.hits().hits.push(hit);
+            narrow.hits().list.push(hit);
         }
     }
 
@@ -174,7 +174,7 @@ impl<const E: usize> BroadPhase<E> {
             self.count_triangle_test(context, narrow);
             let relation = context.filter.relation(pair.0, pair.1);
             let hit = N::test(&context.filter, relation, pair, &a, &b);
-            narrow.hits().hits.extend(hit);
+            narrow.hits().list.extend(hit);
         }
     }
 

@@ -40,7 +40,7 @@ impl<const E: usize> BroadPhase<E> {
                 self.counters.triangle_tests += 1;
                 let relation = context.filter.relation(pair.0, pair.1);
                 let hit = N::test(&context.filter, relation, pair, &corners[a], &corners[b]);
-                narrow.hits().hits.extend(hit);
+                narrow.hits().list.extend(hit);
             }
         }
     }

@@ -39,7 +39,7 @@ pub(crate) fn colliding_pairs(
     if !narrow.0.is_complete() {
         return Err(Error::TooManyCollisions { most: MAX_PAIRS });
     }
-    let mut pairs = narrow.0.hits;
+    let mut pairs = narrow.0.list;
     pairs.sort_unstable();
     Ok(pairs)
 }

@@ -39,22 +39,25 @@ impl<const E: usize> ExactPositions<E> {
     }
 
     /// Moves all vertices.
-    pub(crate) fn move_all(&mut self, layout: &Layout, motion: &impl VertexMotion<E>) {
+    pub(crate) fn move_all<M: VertexMotion<E>>(&mut self, layout: &Layout, motion: &M) {
         self.searches.fill(self.search);
         // Four vertices side by side were no faster: this waits for memory.
         for (v, (x, mapped)) in self.exact.iter_mut().zip(&mut self.mapped).enumerate() {
             *x = motion.positions(layout, v as u32);
             *mapped = x.map(|x| self.frame.map(x));
+            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::may_contain(*x)));
         }
     }
 
     /// Moves a vertex that has not been moved in this search.
     #[inline]
-    pub(crate) fn move_vertex(&mut self, layout: &Layout, vertex: u32, motion: &impl VertexMotion<E>) {
+    pub(crate) fn move_vertex<M: VertexMotion<E>>(&mut self, layout: &Layout, vertex: u32, motion: &M) {
         let i = vertex as usize;
         if self.searches[i] != self.search {
             self.exact[i] = motion.positions(layout, vertex);
-            self.mapped[i] = self.exact[i].map(|x| self.frame.map(x));
+            let mapped = self.exact[i].map(|x| self.frame.map(x));
+            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::may_contain(*x)));
+            self.mapped[i] = mapped;
             self.searches[i] = self.search;
         }
     }
@@ -65,7 +68,7 @@ impl<const E: usize> ExactPositions<E> {
         self.exact[vertex as usize][0]
     }
 
-    /// The positions of three moved vertices, at each end.
+    /// The positions of three moved vertices, at each configuration.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         let corners = vertices.map(|v| &self.exact[v as usize]);

@@ -42,6 +42,11 @@ impl F32Frame {
         (x - self.center) * self.scale
     }
 
+    /// Whether a mapped point can be the image of a point of the frame's box: the assumption of [`Self::error_bound`].
+    pub(crate) fn may_contain(mapped: Vec4) -> bool {
+        (mapped.abs().cmple(Vec4::splat(1.001)).bitmask() & 0b111) == 0b111
+    }
+
     /// The mapped point; its fourth component is unused. All components are finite.
     #[inline]
     pub(crate) fn map(&self, x: DVec3) -> Vec4 {

@@ -282,7 +282,7 @@ impl<const E: usize> NodeVolumes<E> {
         self.positions.position(vertex)
     }
 
-    /// The exact positions of three moved vertices, at each end.
+    /// The exact positions of three moved vertices, at each configuration.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         self.positions.corners(vertices)

@@ -33,7 +33,7 @@ pub(crate) struct CoarseMotion<const E: usize> {
     pub(crate) shift: [Vec4; E],
     /// For each mode its factor, the same in all lanes.
     pub(crate) factors: Vec<[Vec4; E]>,
-    /// For each mode the larger magnitude of its factors at both ends.
+    /// For each mode the larger magnitude of its factors at both configurations.
     pub(crate) largest: Vec<Vec4>,
     /// An upper bound, along each axis, of the distance from coarse positions to the exact ones mapped to the frame.
     pub(crate) error: f32,

@@ -25,7 +25,7 @@ impl<const E: usize> BroadPhase<E> {
         while let Some((n, m)) = self.next_visit(context, narrow) {
             if n != m {
                 self.visit_node_pair(context, (n, m), motion, narrow);
-            } else if !self.is_free_by_normals(n) && self.visit_node(context, n, motion, narrow) {
+            } else if !self.is_culled_by_cones(n) && self.visit_node(context, n, motion, narrow) {
                 let node = context.hierarchy.nodes()[n as usize];
                 node.child_pairs().for_each(|pair| self.push_overlapping(n, node.first_child, pair));
             }
@@ -52,8 +52,8 @@ impl<const E: usize> BroadPhase<E> {
         self.continues(context, narrow).then_some(next)
     }
 
-    /// Whether the normals of a node prove that it is free, if the method uses them.
-    fn is_free_by_normals(&mut self, n: u32) -> bool {
+    /// Whether the normal cones of the method, if it has any, cull a node.
+    fn is_culled_by_cones(&mut self, n: u32) -> bool {
         self.cones.as_mut().is_some_and(|cones| cones.cull(n, &self.volumes))
     }
 

@@ -155,7 +155,7 @@ fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: Narro
                     let pair = (x_buckets.triangle(slots[0].slot), y_buckets.triangle(slots[1].slot));
                     let hit =
                         N::test(&x.context.filter, Relation::NonAdjacent, pair, &corners[0], &corners[1]);
-                    narrow.hits().hits.extend(hit);
+                    narrow.hits().list.extend(hit);
                 }
             }
         }

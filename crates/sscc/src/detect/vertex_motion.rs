@@ -13,14 +13,15 @@ use crate::geometry::Aabb;
 /// Positions and AABBs at the `E` configurations of a search.
 pub(crate) trait VertexMotion<const E: usize> {
     /// Whether mapped positions are within a known bound of the exact ones, so that triangles can be separated in single
-    /// precision.
+    /// precision. Then [`Self::overall_aabb`] must contain all positions.
     const HAS_ERROR_BOUND: bool;
 
     /// An upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
     fn rounding(&self) -> f64;
 
-    /// An AABB of approximately all positions. It chooses the [`F32Frame`](super::f32_frame::F32Frame); answers do not
-    /// depend on it.
+    /// The AABB that chooses the [`F32Frame`](super::f32_frame::F32Frame). It must contain the positions at
+    /// [`Self::coarse_coordinates`], and all positions where [`Self::HAS_ERROR_BOUND`]: the error bounds assume that. For
+    /// other sources any AABB is right, and affects speed only.
     fn overall_aabb(&self, layout: &Layout) -> Aabb;
 
     /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
@@ -45,7 +46,7 @@ pub(crate) struct DeformedMotion<'q, const E: usize> {
 }
 
 impl<'q, const E: usize> DeformedMotion<'q, E> {
-    /// `reach`: an upper bound of the magnitude of every term of every position, at each end.
+    /// `reach`: an upper bound of the magnitude of every term of every position, at each configuration.
     pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
         Self { q, rounding: rounding_bound(reach, q[0].len()) }
     }

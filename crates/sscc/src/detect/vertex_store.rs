@@ -90,7 +90,7 @@ impl VertexStore {
         let mut x = [self.rest(index); E];
         let modes = self.modes(index);
         let q = q.map(|q| &q[..modes.len()]);
-        // One pass over the modes serves both ends.
+        // One pass over the modes serves both configurations.
         for (k, u) in modes.iter().enumerate() {
             for end in 0..E {
                 x[end] += *u * q[end][k];

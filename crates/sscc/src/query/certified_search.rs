@@ -23,7 +23,7 @@ impl<const E: usize> CertifiedSearch<E> {
     }
 
     /// Finds all hits but exceptions. `norm`: the largest `|z|` of the motion. A certificate holds during a motion if it
-    /// holds at both ends, since its region is convex.
+    /// holds at start and end, since its region is convex.
     pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &QueryContext<'_>,

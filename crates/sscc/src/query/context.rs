@@ -17,6 +17,9 @@ pub(super) struct QueryContext<'a> {
     pub(super) certificates: Option<&'a Certificates>,
     pub(super) scope: Cow<'a, Scope>,
     pub(super) method: Method,
+    /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
+    /// no exceptions. 0 elsewhere.
+    proven_radius: f64,
 }
 
 impl<'a> QueryContext<'a> {
@@ -30,7 +33,9 @@ impl<'a> QueryContext<'a> {
         let used = certificates.filter(|_| method == Method::Certified);
         let exceptions = used.map_or(&[][..], Certificates::exceptions);
         let detect = Context::new(model, hierarchy, &scope.filter, exceptions, method.needs());
-        Self { model, detect, certificates, scope, method }
+        let proven = used.filter(|_| exceptions.is_empty());
+        let proven_radius = proven.map_or(0.0, Certificates::root_radius);
+        Self { model, detect, certificates, scope, method, proven_radius }
     }
 
     /// The normal cones of the method, if it uses any.
@@ -59,7 +64,7 @@ impl<'a> QueryContext<'a> {
     /// Whether the root's certificate proves the shape free at this norm, and there are no exceptions to test.
     #[inline]
     pub(super) fn is_proven_free(&self, norm: f64) -> bool {
-        self.is_root_certified(norm) && self.detect.exceptions.is_empty()
+        right_or!(norm < self.proven_radius, RootRadiusReached, norm <= self.proven_radius)
     }
 
     /// Whether the root's certificate holds at this norm (exceptions are not covered). A norm equal to the radius

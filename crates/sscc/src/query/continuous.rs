@@ -1,6 +1,7 @@
 //! Continuous queries: which pairs of triangles collide between two configurations, and when (paper, section 7).
 
 use super::query::Query;
+use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
 use crate::{Error, Impact};
 
@@ -9,26 +10,30 @@ impl Query<'_> {
     /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time of
     /// impact.
     ///
-    /// None is missed: every pair with a point in common at any time from 0 to 1, both ends included, is listed, with a
+    /// None is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with a
     /// time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times the
     /// size of the triangles. Only pairs that come that close without a contact can differ between methods. Triangles that
     /// share exactly one vertex, where the contact filter includes them, are listed when the edge opposite to it of one of
     /// them meets the other, which they must do to have another point in common.
     ///
-    /// A certificate holds during the motion if it holds at both ends: its region is convex, and a radius contains the
+    /// A certificate holds during the motion if it holds at start and end: its region is convex, and a radius contains the
     /// rounding bound at the radius itself, which covers positions between two rounded ones. So [`Query::norm`] is the
-    /// larger one of both ends.
+    /// larger one of start and end.
     ///
     /// # Errors
-    /// As [`Query::discrete`], for both ends.
+    /// As [`Query::discrete`], for start and end.
     pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
-        self.begin(usize::MAX);
+        self.forget();
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
         self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
+        if self.context.is_proven_free(self.norm) {
+            self.statistics = Statistics::PROVEN_FREE;
+            return Ok(&[]);
+        }
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
         swept.find(&self.context, [t0, t1], self.norm, &mut self.statistics)?;
-        let impacts = &swept.narrow.0.hits;
-        self.discrete.narrow.0.hits.extend(impacts.iter().map(|impact| impact.pair));
+        let impacts = &swept.narrow.0.list;
+        self.discrete.narrow.0.list.extend(impacts.iter().map(|impact| impact.pair));
         Ok(impacts)
     }
 

@@ -29,13 +29,13 @@ impl Query<'_> {
         let contains = |node: &Node, t| {
             node.triangle_count as usize > BUCKET_TRIANGLES || hierarchy.triangles(node).contains(&t)
         };
-        narrow.0.hits.retain(|pair| {
+        narrow.0.list.retain(|pair| {
             let (a, b) = *pair;
             let is_between = contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a);
             is_between && exceptions.binary_search(pair).is_err()
         });
-        narrow.0.hits.sort_unstable();
-        Ok(&narrow.0.hits)
+        narrow.0.list.sort_unstable();
+        Ok(&narrow.0.list)
     }
 }
 

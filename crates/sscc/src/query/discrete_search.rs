@@ -66,7 +66,7 @@ impl DiscreteSearch {
             }
         }
         certified.broad.end(narrow)?;
-        narrow.0.hits.sort_unstable();
+        narrow.0.list.sort_unstable();
         Ok(())
     }
 }

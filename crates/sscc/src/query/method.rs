@@ -13,7 +13,7 @@ pub enum Method {
     /// All boxes refitted, no certificates: the paper's "traditional" method.
     Traditional,
     /// The traditional method that does not open a node whose normals and boundary prove that it is free (normal cones with
-    /// the contour test, Volino and Magnenat-Thalmann 1994). Normals at both ends of a motion prove nothing in between, so
+    /// the contour test, Volino and Magnenat-Thalmann 1994). Normals at the start and the end of a motion prove nothing in between, so
     /// continuous queries are traditional.
     NormalCones,
     /// Every pair of triangles. The oracle: quadratic.

@@ -114,18 +114,17 @@ impl<'a> Query<'a> {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
-        self.statistics = Statistics::default();
-        self.discrete.narrow.0.hits.clear();
+        self.forget();
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
         // Most queries of a simulation end here, so nothing but the answer is reset before.
         if self.context.is_proven_free(configuration.norm) {
-            (self.statistics.root_certified, self.statistics.complete) = (true, true);
+            self.statistics = Statistics::PROVEN_FREE;
         } else {
             self.discrete.begin(limit);
             self.discrete.find(&self.context, configuration, &mut self.statistics)?;
         }
-        Ok(&self.discrete.narrow.0.hits)
+        Ok(&self.discrete.narrow.0.list)
     }
 
     /// One colliding pair at q, if there is any; which one is not fixed.
@@ -144,7 +143,14 @@ impl<'a> Query<'a> {
         Ok(self.discrete(q)?.len())
     }
 
-    /// Forgets the last answer.
+    /// Forgets the last answer and its cost.
+    #[inline]
+    pub(super) fn forget(&mut self) {
+        self.statistics = Statistics::default();
+        self.discrete.narrow.0.list.clear();
+    }
+
+    /// Forgets the last answer, and allows at most `limit` pairs in the next one.
     #[inline]
     pub(super) fn begin(&mut self, limit: usize) {
         self.statistics = Statistics::default();
@@ -170,7 +176,7 @@ impl<'a> Query<'a> {
 
     /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.
     pub fn pairs(&self) -> &[Pair] {
-        &self.discrete.narrow.0.hits
+        &self.discrete.narrow.0.list
     }
 
     /// The cost of the last query.
@@ -179,7 +185,7 @@ impl<'a> Query<'a> {
     }
 
     /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
-    /// continuous query the larger one of both ends.
+    /// continuous query the larger one of start and end.
     pub fn norm(&self) -> f64 {
         self.norm
     }

@@ -21,7 +21,7 @@ impl SweptSearch {
         Self { certified: CertifiedSearch::new(context), narrow: SweptHits::default() }
     }
 
-    /// Finds all impacts, sorted by pair. `norm`: the larger one of both ends.
+    /// Finds all impacts, sorted by pair. `norm`: the larger one of start and end.
     ///
     /// # Errors
     /// When it was cancelled.
@@ -50,7 +50,7 @@ impl SweptSearch {
             }
             statistics.set_counters(&certified.broad.counters);
             certified.broad.end(narrow)?;
-            narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
+            narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
         }
         statistics.complete = narrow.0.is_complete();
         Ok(())

@@ -48,8 +48,8 @@ impl Detector<'_> {
             find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
-        self.discrete.narrow.0.hits.sort_unstable();
-        Ok(&self.discrete.narrow.0.hits)
+        self.discrete.narrow.0.list.sort_unstable();
+        Ok(&self.discrete.narrow.0.list)
     }
 
     /// All pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a straight
@@ -71,8 +71,8 @@ impl Detector<'_> {
         let result = find_between(contexts, [&mut self.swept, &mut other.swept], &motions, &mut self.stack);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
-        self.swept.narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
-        Ok(&self.swept.narrow.0.hits)
+        self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.list)
     }
 }
 
@@ -102,7 +102,7 @@ fn find_between<const E: usize, N: NarrowPhase<E>>(
         _ => Ok(()),
     };
     if result.is_err() {
-        x.narrow.hits().hits.clear();
+        x.narrow.hits().list.clear();
     }
     x.counters = counters;
     result

@@ -134,8 +134,8 @@ impl<'a> Detector<'a> {
         let result = self.discrete.find(&self.context, &motion);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
-        self.discrete.narrow.0.hits.sort_unstable();
-        Ok(&self.discrete.narrow.0.hits)
+        self.discrete.narrow.0.list.sort_unstable();
+        Ok(&self.discrete.narrow.0.list)
     }
 
     /// One colliding pair, if there is any; which one is not fixed.
@@ -166,8 +166,8 @@ impl<'a> Detector<'a> {
         let result = self.swept.find(&self.context, &motion);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
-        self.swept.narrow.0.hits.sort_unstable_by_key(|impact| impact.pair);
-        Ok(&self.swept.narrow.0.hits)
+        self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
+        Ok(&self.swept.narrow.0.list)
     }
 
     /// The cost of the last answer.

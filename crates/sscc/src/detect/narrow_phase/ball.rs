@@ -8,7 +8,7 @@ use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 use crate::geometry::Aabb;
 
-/// The pairs whose boxes overlap; the two ends are the lowest and the highest coordinates of each corner in the ball.
+/// The pairs whose boxes overlap; the two configurations have the lowest and the highest coordinates of each corner in the ball.
 #[derive(Clone, Default)]
 pub(crate) struct BallHits(pub(crate) Hits<Pair>);
 

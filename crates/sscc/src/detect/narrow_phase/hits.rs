@@ -3,14 +3,14 @@
 /// Hits, and whether the limit stopped the search.
 #[derive(Clone)]
 pub(crate) struct Hits<T> {
-    pub(crate) hits: Vec<T>,
+    pub(crate) list: Vec<T>,
     limit: usize,
     is_full: bool,
 }
 
 impl<T> Default for Hits<T> {
     fn default() -> Self {
-        Self { hits: Vec::new(), limit: usize::MAX, is_full: false }
+        Self { list: Vec::new(), limit: usize::MAX, is_full: false }
     }
 }
 
@@ -18,7 +18,7 @@ impl<T> Hits<T> {
     /// Forgets all hits and starts a search for at most `limit` of them.
     #[inline]
     pub(crate) fn begin(&mut self, limit: usize) {
-        self.hits.clear();
+        self.list.clear();
         self.limit = limit;
         self.is_full = false;
     }
@@ -26,7 +26,7 @@ impl<T> Hits<T> {
     /// Whether the limit is reached. Call it only if a test is left: it records that the answer is incomplete.
     #[inline]
     pub(crate) fn note_if_full(&mut self) -> bool {
-        self.is_full |= self.hits.len() >= self.limit;
+        self.is_full |= self.list.len() >= self.limit;
         self.is_full
     }
 

@@ -12,7 +12,7 @@ pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;
 
-    /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each end.
+    /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each configuration.
     fn test(
         filter: &PairFilter,
         relation: Relation,

@@ -38,7 +38,7 @@ impl BallSearch {
         if narrow.0.note_if_full() {
             return Ok(false);
         }
-        narrow.0.hits.sort_unstable();
+        narrow.0.list.sort_unstable();
         Ok(true)
     }
 }

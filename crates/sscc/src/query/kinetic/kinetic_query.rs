@@ -187,7 +187,7 @@ impl<'a> KineticQuery<'a> {
         let limit = most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024);
         let motion = BallMotion::new(&self.rates, q, radius, reach);
         let is_complete = self.search.find(context, &motion, norm, limit)?;
-        let found = &self.search.narrow.0.hits;
+        let found = &self.search.narrow.0.list;
         let counters = &self.search.certified.broad.counters;
         let cost = counters.box_tests + OPEN_COST * counters.opened + FIND_COST * found.len() as u64;
         if !is_complete {
@@ -248,7 +248,7 @@ impl<'a> KineticQuery<'a> {
         let result = broad.end(narrow);
         self.query.statistics.set_counters(&broad.counters);
         result?;
-        narrow.0.hits.sort_unstable();
+        narrow.0.list.sort_unstable();
         self.query.statistics.complete = true;
         Ok(())
     }
