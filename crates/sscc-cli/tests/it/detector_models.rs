@@ -129,13 +129,14 @@ fn skinned_animations() {
             let answers = ["frames", "dropped"].map(|list| record[list].as_array().unwrap());
             let answers: Vec<&Value> = answers.into_iter().flatten().collect();
             let times: Vec<String> = answers.iter().map(|answer| answer["time"].to_string()).collect();
+            let times = times.join(",");
             let file = folder.join(record["file"].as_str().unwrap());
             let weights = if record["weights"] == "normalized" { "normalized" } else { "as-stored" };
             let [animation, node] = ["animation", "node"].map(|key| record[key].to_string());
             let animation = record["animation_name"].as_str().map_or(animation, str::to_owned);
             let args = [
                 &["check", file.to_str().unwrap(), "--animation", &animation, "--node", &node, "--json"],
-                &["--times", &times.join(","), "--weights", weights][..],
+                &["--times", &times, "--weights", weights][..],
             ];
             let run = sscc(&folder, &args.concat());
             assert!(matches!(run.code, Some(0 | 1)), "{run:?}");

@@ -89,7 +89,7 @@ impl<'a> PosedShape<'a> {
         // Nobody cancels: the contexts have no progress.
         let _ =
             traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
-        found.extend_from_slice(&self.hits.0.hits);
+        found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable();
     }
 
