@@ -142,6 +142,12 @@ pub enum Error {
         /// How many would be accepted.
         most: usize,
     },
+    /// More colliding pairs than fit in an answer.
+    #[error("more than {most} pairs of triangles collide: set a limit to get that many of them")]
+    TooManyPairs {
+        /// Maximum number of pairs of an answer without a limit.
+        most: usize,
+    },
     /// An option out of range.
     #[error("{name} is {value}: it must be {wanted}")]
     Option {

@@ -10,9 +10,9 @@ use super::aabb8::LANES;
 use super::adjacency_masks::AdjacencyMasks;
 use crate::filter::PairFilter;
 use crate::geometry::Aabb;
-use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy};
+use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy, Node, PACKET_TRIANGLES};
 
-const _: () = assert!(BUCKET_TRIANGLES == LANES * LANES);
+const _: () = assert!(PACKET_TRIANGLES == LANES && BUCKET_TRIANGLES == LANES * LANES);
 
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///
@@ -40,31 +40,32 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// `positions` of all vertices at some configuration choose the triangles of each packet.
-    pub(crate) fn new(positions: &[DVec3], hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
-        let (faces, p) = (filter.faces(), positions);
-        let centroid = |t: u32| {
-            let [a, b, c] = faces[t as usize].map(|v| p[v as usize] / 3.0);
-            (a + b + c, t)
-        };
-        let mut last_bucket = vec![u32::MAX; p.len()];
+    /// `order`: the triangles in the order of the hierarchy, those of each bucket packet by packet. `vertex_count`: that of
+    /// the mesh.
+    pub(crate) fn new(
+        order: &[u32],
+        hierarchy: &Hierarchy,
+        filter: &PairFilter,
+        vertex_count: usize,
+    ) -> Self {
+        let faces = filter.faces();
+        let mut last_bucket = vec![u32::MAX; vertex_count];
         let mut of_node = vec![None; hierarchy.nodes().len()];
-        let (mut nodes, mut packets, mut slots, mut triangles) = (vec![], vec![0], vec![0], vec![]);
+        let (mut nodes, mut packets, mut slots) = (vec![], vec![0], vec![0]);
+        let mut triangles = Vec::with_capacity(order.len());
         let (mut vertex_starts, mut vertices) = (vec![0], vec![]);
         for (n, node) in hierarchy.nodes().iter().enumerate() {
             if of_node[n].is_none() && node.triangle_count as usize <= BUCKET_TRIANGLES {
                 of_node[n] = Some(nodes.len() as u32);
                 nodes.push(n as u32);
-                let mut own: Vec<(DVec3, u32)> =
-                    hierarchy.triangles(node).iter().map(|&t| centroid(t)).collect();
-                cut(&mut own);
+                let own = &order[node.first_triangle as usize..][..node.triangle_count as usize];
                 slots.extend(
                     (1..=own.len().div_ceil(LANES))
                         .map(|b| triangles.len() as u32 + (b * LANES).min(own.len()) as u32),
                 );
                 packets.push(slots.len() as u32 - 1);
                 let first_vertex = vertices.len();
-                for (_, t) in own {
+                for &t in own {
                     triangles.push(t);
                     for v in faces[t as usize] {
                         if std::mem::replace(&mut last_bucket[v as usize], nodes.len() as u32)
@@ -166,6 +167,30 @@ impl Buckets {
         let [start, end] = [0, 1].map(|i| self.vertex_starts[bucket as usize + i] as usize);
         &self.vertices[start..end]
     }
+}
+
+/// The triangles in the order of the hierarchy, those of each bucket packet by packet, by `positions` of all vertices at some
+/// configuration.
+pub(crate) fn packet_order(positions: &[DVec3], hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Vec<u32> {
+    let centroid = |t: u32| {
+        let [a, b, c] = faces[t as usize].map(|v| positions[v as usize] / 3.0);
+        (a + b + c, t)
+    };
+    let mut order = hierarchy.order().to_vec();
+    let nodes = hierarchy.nodes();
+    let mut largest = vec![0];
+    while let Some(n) = largest.pop() {
+        let node: &Node = &nodes[n as usize];
+        if node.triangle_count as usize > BUCKET_TRIANGLES {
+            largest.extend(node.children());
+            continue;
+        }
+        let own = &mut order[node.first_triangle as usize..][..node.triangle_count as usize];
+        let mut triangles: Vec<(DVec3, u32)> = own.iter().map(|&t| centroid(t)).collect();
+        cut(&mut triangles);
+        own.iter_mut().zip(triangles).for_each(|(slot, (_, t))| *slot = t);
+    }
+    order
 }
 
 /// Sorts triangles so that each eight in a row are close together: by halves along the longest axis, in whole packets.

@@ -1,10 +1,8 @@
 //! All data of the detector that does not depend on q, in the order in which searches read it. Searches and their
 //! clones share it.
 
-use glam::DVec3;
-
 use super::bd_tree::BdTree;
-use super::buckets::Buckets;
+use super::buckets::{Buckets, packet_order};
 use super::coarse_vertices::CoarseVertices;
 use super::node_boundaries::NodeBoundaries;
 use super::quantization::Quantization;
@@ -53,7 +51,9 @@ impl Layout {
         filter: &PairFilter,
         needs: Needs,
     ) -> Self {
-        let mut buckets = Buckets::new(model.mesh().rest_positions(), hierarchy, filter);
+        let rest = model.mesh().rest_positions();
+        let order = packet_order(rest, hierarchy, filter.faces());
+        let mut buckets = Buckets::new(&order, hierarchy, filter, rest.len());
         buckets.mask_adjacent(filter);
         let vertices = VertexStore::new(model, buckets.all_vertices());
         buckets.renumber(|v| vertices.index_of(v));
@@ -73,10 +73,10 @@ impl Layout {
         Self { vertices, quantization, coarse, buckets, bd_tree, boundaries }
     }
 
-    /// The layout for positions that will be given, by positions at some configuration.
-    pub(crate) fn of_positions(positions: &[DVec3], hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
-        let mut buckets = Buckets::new(positions, hierarchy, filter);
-        let vertices = VertexStore::without_modes(positions.len(), buckets.all_vertices());
+    /// The layout for given positions. The order of the hierarchy has the triangles of each bucket packet by packet.
+    pub(crate) fn of_positions(vertex_count: usize, hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
+        let mut buckets = Buckets::new(hierarchy.order(), hierarchy, filter, vertex_count);
+        let vertices = VertexStore::without_modes(vertex_count, buckets.all_vertices());
         buckets.renumber(|v| vertices.index_of(v));
         Self { vertices, buckets, ..Self::default() }
     }

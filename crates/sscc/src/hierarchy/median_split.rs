@@ -1,13 +1,14 @@
 //! The fast build of the hierarchy, top down by median splits: for detectors, which are often used once.
 //!
 //! Each node is split in half along the longest axis of its triangles' centroids, twice, so that it has up to four
-//! children. Sizes are multiples of a bucket's, so that all buckets but the last are full. The k-means build gives stronger
+//! children. Sizes are multiples of a bucket's, so that all buckets but the last are full. Buckets are split the same way, and
+//! the triangles of each bucket are in the order of its packets. The k-means build gives stronger
 //! certificates and takes some twenty times as long (docs/notes/2026-11-23-one-shot.md).
 
 use glam::{DVec3, Vec3};
 
 use super::hierarchy::Hierarchy;
-use super::node::{BUCKET_TRIANGLES, Node};
+use super::node::{BUCKET_TRIANGLES, Node, PACKET_TRIANGLES};
 use crate::geometry::Aabb;
 
 impl Hierarchy {
@@ -21,9 +22,9 @@ impl Hierarchy {
             let Node { first_triangle, triangle_count, .. } = nodes[next];
             if triangle_count as usize > BUCKET_TRIANGLES {
                 let own = &mut triangles[first_triangle as usize..][..triangle_count as usize];
-                let middle = split_in_half(own);
+                let middle = split_in_half(own, BUCKET_TRIANGLES);
                 let (left, right) = own.split_at_mut(middle);
-                let quarters = [split_in_half(left), split_in_half(right)];
+                let quarters = [left, right].map(|half| split_in_half(half, BUCKET_TRIANGLES));
                 let ends = [quarters[0], middle, middle + quarters[1], triangle_count as usize];
                 nodes[next].first_child = nodes.len() as u32;
                 let mut start = 0;
@@ -34,6 +35,8 @@ impl Hierarchy {
                     }
                     start = end;
                 }
+            } else {
+                cut_into_packets(&mut triangles[first_triangle as usize..][..triangle_count as usize]);
             }
             next += 1;
         }
@@ -62,11 +65,20 @@ fn sort_keys(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<SortKey> {
     faces.iter().enumerate().map(key).collect()
 }
 
-/// Reorders triangles so that the first half, in whole buckets, lies before the second along the longest axis; returns the
-/// size of the first half, 0 for a single bucket.
-fn split_in_half(triangles: &mut [SortKey]) -> usize {
-    let buckets = triangles.len().div_ceil(BUCKET_TRIANGLES);
-    let middle = buckets / 2 * BUCKET_TRIANGLES;
+/// Orders the triangles of a bucket packet by packet, those of each packet close together.
+fn cut_into_packets(triangles: &mut [SortKey]) {
+    let middle = split_in_half(triangles, PACKET_TRIANGLES);
+    if middle > 0 {
+        let (left, right) = triangles.split_at_mut(middle);
+        cut_into_packets(left);
+        cut_into_packets(right);
+    }
+}
+
+/// Reorders triangles so that the first half, a multiple of `unit`, lies before the second along the longest axis; returns the
+/// size of the first half, 0 for a single unit.
+fn split_in_half(triangles: &mut [SortKey], unit: usize) -> usize {
+    let middle = triangles.len().div_ceil(unit) / 2 * unit;
     if middle > 0 {
         let (lower, upper) = triangles.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |all, key| {
             (all.0.min(key.centroid), all.1.max(key.centroid))

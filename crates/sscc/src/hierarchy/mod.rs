@@ -13,6 +13,6 @@ mod split;
 mod validation;
 
 pub use hierarchy::Hierarchy;
-pub(crate) use node::BUCKET_TRIANGLES;
 pub use node::Node;
+pub(crate) use node::{BUCKET_TRIANGLES, PACKET_TRIANGLES};
 pub(crate) use node_pair::NodePair;

@@ -10,6 +10,9 @@ pub(super) const BRANCHING: usize = 4;
 /// A bucket is a node of at most this many triangles that lies within no other such node. Traversals end at buckets.
 pub(crate) const BUCKET_TRIANGLES: usize = 64;
 
+/// A packet is a part of a bucket of at most this many triangles, whose AABBs are compared together.
+pub(crate) const PACKET_TRIANGLES: usize = 8;
+
 /// A node of the [`Hierarchy`](super::Hierarchy).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Node {

@@ -24,7 +24,9 @@ impl Detector<'_> {
         other: &mut Detector<'_>,
         other_positions: &[DVec3],
     ) -> Result<&[Pair], Error> {
-        self.against_at_most(positions, other, other_positions, usize::MAX)
+        self.against_at_most(positions, other, other_positions, Self::MAX_PAIRS)?;
+        self.check_complete()?;
+        Ok(&self.discrete.narrow.0.list)
     }
 
     /// At most `limit` pairs of [`Detector::against`], sorted; which ones is not fixed. Where the limit stopped the search,
@@ -71,6 +73,7 @@ impl Detector<'_> {
         let result = find_between(contexts, [&mut self.swept, &mut other.swept], &motions, &mut self.stack);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
+        self.check_complete()?;
         self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
         Ok(&self.swept.narrow.0.list)
     }

@@ -31,7 +31,7 @@ impl Detector<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<FrameAnswer>, Error> {
-        self.batch_at_most(frames, usize::MAX, threads, progress)
+        self.answer_all(frames, threads, progress, |detector, x| detector.discrete(x).map(<[Pair]>::to_vec))
     }
 
     /// As [`Detector::batch`], at most `limit` pairs of each frame: see [`Detector::discrete_at_most`].
@@ -45,13 +45,27 @@ impl Detector<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<FrameAnswer>, Error> {
+        let at_most = |detector: &mut Detector<'_>, x: &[DVec3]| {
+            detector.discrete_at_most(x, limit).map(<[Pair]>::to_vec)
+        };
+        self.answer_all(frames, threads, progress, at_most)
+    }
+
+    /// Answers every frame by `find`.
+    fn answer_all<X: AsRef<[DVec3]> + Sync>(
+        &self,
+        frames: &[X],
+        threads: Option<usize>,
+        progress: &dyn Progress,
+        find: impl Fn(&mut Detector<'_>, &[DVec3]) -> Result<Vec<Pair>, Error> + Sync,
+    ) -> Result<Vec<FrameAnswer>, Error> {
         let done = AtomicUsize::new(0);
         let detector = || self.clone().cancelled_by(progress);
         let answer = |detector: &mut Detector<'_>, positions: &X| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            let pairs = detector.discrete_at_most(positions.as_ref(), limit)?.to_vec();
+            let pairs = find(detector, positions.as_ref())?;
             progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, frames.len());
             Ok(FrameAnswer { pairs, statistics: detector.statistics() })
         };

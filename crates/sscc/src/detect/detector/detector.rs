@@ -87,7 +87,7 @@ impl<'a> Detector<'a> {
         let positions = mesh.rest_positions();
         let filter = PairFilter::with_classes(mesh.faces(), classes, filter);
         let hierarchy = Hierarchy::build_by_median(mesh.faces(), positions);
-        let layout = Arc::new(Layout::of_positions(positions, &hierarchy, &filter));
+        let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, &filter));
         let context = Context {
             hierarchy: Cow::Owned(hierarchy),
             filter: Arc::new(filter),
@@ -113,13 +113,19 @@ impl<'a> Detector<'a> {
         self
     }
 
+    /// The maximum number of pairs of an answer without a limit: 2^27, which bounds its memory to 1 GiB (2 GiB of impacts).
+    pub const MAX_PAIRS: usize = 1 << 27;
+
     /// All colliding pairs at these positions (one for each vertex of the mesh, model unit): triangle indices `i < j`, sorted.
     ///
     /// # Errors
     /// When there are not as many positions as vertices, or one is not finite or beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when it was cancelled.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when there are more than [`Detector::MAX_PAIRS`] pairs; when it was
+    /// cancelled.
     pub fn discrete(&mut self, positions: &[DVec3]) -> Result<&[Pair], Error> {
-        self.discrete_at_most(positions, usize::MAX)
+        self.discrete_at_most(positions, Self::MAX_PAIRS)?;
+        self.check_complete()?;
+        Ok(&self.discrete.narrow.0.list)
     }
 
     /// At most `limit` colliding pairs, sorted; which ones is not fixed. Where the limit stopped the search,
@@ -166,6 +172,7 @@ impl<'a> Detector<'a> {
         let result = self.swept.find(&self.context, &motion);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
+        self.check_complete()?;
         self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
         Ok(&self.swept.narrow.0.list)
     }
@@ -208,10 +215,16 @@ impl<'a> Detector<'a> {
 
     /// The same for a swept search.
     pub(super) fn begin_swept(&mut self, motion: &GivenMotion<'_, 2>, x_t0: &[DVec3]) {
-        if !self.swept.begin(&self.context, motion, usize::MAX) {
+        if !self.swept.begin(&self.context, motion, Self::MAX_PAIRS) {
             self.rebuild(x_t0);
-            self.swept.begin(&self.context, motion, usize::MAX);
+            self.swept.begin(&self.context, motion, Self::MAX_PAIRS);
         }
+    }
+
+    /// # Errors
+    /// When the maximum number of pairs stopped the last search.
+    pub(super) fn check_complete(&self) -> Result<(), Error> {
+        if self.statistics.complete { Ok(()) } else { Err(Error::TooManyPairs { most: Self::MAX_PAIRS }) }
     }
 
     /// Computes the masks of adjacent triangles at the second search with a hierarchy: a detector that is used once does not
@@ -227,7 +240,7 @@ impl<'a> Detector<'a> {
     fn rebuild(&mut self, positions: &[DVec3]) {
         let filter = &self.context.filter;
         let hierarchy = Hierarchy::build_by_median(filter.faces(), positions);
-        let layout = Arc::new(Layout::of_positions(positions, &hierarchy, filter));
+        let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, filter));
         self.context.layout = layout;
         self.context.hierarchy = Cow::Owned(hierarchy);
         self.discrete = Search::default();
