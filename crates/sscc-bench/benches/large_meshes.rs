@@ -17,7 +17,9 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 const REPETITIONS: usize = 5;
 
 fn main() -> Result<()> {
-    println!("| mesh | triangles | pairs | build (ms) | first (ms) | repeated (ms) | mesh (MiB) | memory (MiB) |");
+    println!(
+        "| mesh | triangles | pairs | build (ms) | first (ms) | repeated (ms) | mesh (MiB) | memory (MiB) |"
+    );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     row("sheet", || sheet(707))?;
     row("soup, edges of 0.001", || soup(1_000_000, 0.001))?;
@@ -44,7 +46,9 @@ fn row(name: &str, mesh: impl FnOnce() -> Result<TriMesh>) -> Result<()> {
     let (triangles, repeated) = (mesh.faces().len(), times[times.len() / 2]);
     let own = (mesh.rest_positions().len() * 24 + triangles * 12) >> 20;
     let memory = peak_memory().map_or("unknown".to_owned(), |mebibytes| mebibytes.to_string());
-    println!("| {name} | {triangles} | {pairs} | {build:.0} | {first:.0} | {repeated:.0} | {own} | {memory} |");
+    println!(
+        "| {name} | {triangles} | {pairs} | {build:.0} | {first:.0} | {repeated:.0} | {own} | {memory} |"
+    );
     Ok(())
 }
 

@@ -86,8 +86,8 @@ impl Buckets {
         Self { of_node, nodes, packets, slots, triangles, corners, vertex_starts, vertices, adjacency }
     }
 
-    /// Computes the masks of adjacent triangles, unless they are known. They take longer than one search and save about a
-    /// third of each later one (docs/notes/2026-11-23-one-shot.md).
+    /// Computes the masks of adjacent triangles, unless they are known. They take longer than one search and save about
+    /// two thirds of each later one (docs/notes/2026-11-23-one-shot.md).
     pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
         self.adjacency.get_or_init(|| AdjacencyMasks::new(&self.slots, &self.triangles, filter));
     }

@@ -255,3 +255,20 @@ impl<'a> Detector<'a> {
 fn check_count(found: usize, vertices: usize) -> Result<(), Error> {
     if found == vertices { Ok(()) } else { Err(Error::PositionCount { found, vertices }) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_without_a_limit_is_complete_or_an_error() {
+        let corners = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::new(0.2, 0.7, z)];
+        let mesh = TriMesh::new([corners(0.0), corners(0.1)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let mut detector = Detector::new(&mesh);
+        assert_eq!(detector.discrete(mesh.rest_positions()).unwrap(), [(0, 1)]);
+        detector.check_complete().unwrap();
+        detector.discrete_at_most(mesh.rest_positions(), 0).unwrap();
+        let most = Detector::MAX_PAIRS;
+        assert!(matches!(detector.check_complete(), Err(Error::TooManyPairs { most: m }) if m == most));
+    }
+}
