@@ -7,6 +7,7 @@
 //!
 //! A [`sscc_sim::Watch`] follows and cancels long work. The crate prints nothing.
 
+pub mod demo;
 mod error;
 mod measure;
 mod methods;

@@ -299,7 +299,8 @@ pub struct Certify {
         "sscc check mesh.obj --frames frames/ --continuous"
         "sscc check mesh.obj --frames frames.npy --ignore-rest"
         "sscc check character.glb --animation wave --fps 60"
-        "sscc check face.obj --against bunny.obj"
+        "sscc check face.obj --against bunny.obj --curves cut.obj"
+        "sscc check bunny.obj --depths --json"
     ),
     after_help = "\
 With --q or --trajectory, the certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a \
@@ -339,6 +340,12 @@ pub struct Check {
     #[arg(long, value_name = "FILE", conflicts_with_all =
         ["trajectory", "first", "limit", "frames", "animation", "against", "meshes"])]
     pub pose: Option<PathBuf>,
+    /// Also write the curves in which the last answer's surfaces intersect, as polylines: .obj or .ply
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["continuous", "first", "limit"])]
+    pub curves: Option<PathBuf>,
+    /// Add the penetration depth of each pair, and the direction in which its second triangle leaves the first
+    #[arg(long, conflicts_with = "continuous")]
+    pub depths: bool,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

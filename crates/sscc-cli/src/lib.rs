@@ -4,7 +4,6 @@
 
 mod args;
 mod commands;
-mod groups;
 mod interrupt;
 mod load;
 mod meter;

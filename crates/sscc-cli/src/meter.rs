@@ -31,6 +31,14 @@ impl Meter {
         Self { bar, step, start: Cell::new(None), shown: Cell::new((0, Instant::now())) }
     }
 
+    /// Writes text while the bar is hidden.
+    pub fn suspend(&self, write: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
+    }
+
     /// Shows that `done` of `total` steps are done. The first report has the steps done before this run.
     pub fn report(&self, done: usize, total: usize) {
         let Some(bar) = &self.bar else { return };

@@ -26,11 +26,6 @@ impl Output {
         Self { is_terminal: stdout.is_terminal(), stdout: BufWriter::new(stdout), is_closed: false }
     }
 
-    /// Whether standard output is a terminal.
-    pub fn is_terminal(&self) -> bool {
-        self.is_terminal
-    }
-
     /// Whether a write has failed because the reader of standard output has closed the pipe.
     pub fn is_closed(&self) -> bool {
         self.is_closed

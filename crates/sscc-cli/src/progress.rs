@@ -32,6 +32,14 @@ impl Bar {
         self
     }
 
+    /// Writes text while the bar is hidden.
+    pub fn suspend(&self, write: impl FnOnce()) {
+        match self.bar.get() {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
+    }
+
     fn draw(&self, done: usize, total: usize) {
         let bar = self.bar.get_or_init(|| {
             let bar =

@@ -28,6 +28,15 @@ impl Stages {
         *current = None;
         *current = indicator;
     }
+
+    /// Writes text beside the indicator.
+    fn write(&self, write: impl FnOnce()) {
+        match &*self.indicator.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(Indicator::Bar(bar)) => bar.suspend(write),
+            Some(Indicator::Meter(meter)) => meter.suspend(write),
+            None => write(),
+        }
+    }
 }
 
 impl Progress for Stages {
@@ -59,12 +68,10 @@ impl Watch for Stages {
     }
 
     fn note(&self, note: &str) {
-        self.show(None);
-        output::note(note);
+        self.write(|| output::note(note));
     }
 
     fn warn(&self, warning: &str) {
-        self.show(None);
-        output::write_stderr(format_args!("warning: {warning}"));
+        self.write(|| output::write_stderr(format_args!("warning: {warning}")));
     }
 }

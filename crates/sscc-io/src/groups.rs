@@ -24,6 +24,17 @@ pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result
     }
 }
 
+/// As [`read_groups`], of the mesh that [`load_mesh`](crate::load_mesh) reads: that of a glTF file needs no morph targets.
+///
+/// # Errors
+/// As [`read_groups`].
+pub fn read_base_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, IoError> {
+    match ending(path).as_str() {
+        "glb" | "gltf" => gltf::read_base_groups(path, mesh_name, by),
+        _ => read_groups(path, mesh_name, by),
+    }
+}
+
 /// Reads the group of each triangle as numbers from 0 (`.npy` or text). Their names are the numbers.
 ///
 /// # Errors

@@ -47,6 +47,7 @@
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
 //! | animation: mesh, modes and q(t) as glTF | [`gltf::write_animation`] |
 //! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
+//! | contact curves as polylines | [`write_ply_curves`], [`write_obj_curves`] |
 //!
 //! STL and glTF split vertices along seams ([`splits_vertices`]): compute the certificates of such models with `weld`.
 //!
@@ -58,6 +59,7 @@
 
 mod allowance;
 pub mod container;
+mod curves;
 mod error;
 mod file;
 mod forces;
@@ -79,10 +81,11 @@ mod text;
 mod wav;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
+pub use curves::{write_obj_curves, write_ply_curves};
 pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};
 pub use forces::{parse_reduced_forces, read_reduced_forces};
-pub use groups::{read_group_numbers, read_groups};
+pub use groups::{read_base_groups, read_group_numbers, read_groups};
 pub use load::{LoadOptions, LoadedModel, load_mesh, load_model, load_model_with, splits_vertices};
 pub use mesh::read_mesh;
 pub use mesh_modes::read_modes_for;

@@ -1,5 +1,6 @@
 //! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files;
-//! collisions of meshes, frames and animations from files ([`detect`]).
+//! collisions of meshes, frames and animations from files ([`detect`]); certificates by options in part
+//! ([`CertificateRequest`]).
 //!
 //! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
 //! printed. One simulation:
@@ -15,9 +16,11 @@
 //! # Ok::<(), sscc_sim::SimError>(())
 //! ```
 
+mod certification;
 mod detection;
 mod error;
 mod files;
+mod groups;
 mod machine;
 mod models;
 mod nearest;
@@ -30,8 +33,13 @@ pub mod text;
 mod watch;
 mod zero_radius;
 
-pub use detection::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, check_rows, detect};
+pub use certification::{CertificateRequest, Scheme};
+pub use detection::{
+    Animated, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries, Times,
+    check_rows, detect,
+};
 pub use error::SimError;
+pub use groups::GroupRules;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
     Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,

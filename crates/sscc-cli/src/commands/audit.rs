@@ -21,7 +21,7 @@ struct Report {
 
 pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     let model = load::model(&args.model)?.model;
-    let certificates = load::certificates(&args.certificates, &args.model, &model, &args.options)?;
+    let certificates = load::request(&args.model, &args.options).read(&args.certificates, &model)?;
     let options = AuditOptions {
         samples: args.samples as usize,
         seed: args.seed,

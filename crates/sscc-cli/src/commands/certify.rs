@@ -44,7 +44,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         load::check_output(path, ".png", &inputs)?;
     }
     let model = load::model(&args.model)?.model;
-    let options = load::options(&model, &args.model, &args.options)?;
+    let options = load::request(&args.model, &args.options).options(&model)?;
     let start = Instant::now();
     let certificates = load::certify(&model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();

@@ -200,3 +200,137 @@ fn two_meshes() {
     let alone = ["mesh.obj", "--against", "lower.obj", "--against-frames", "up.npy", "--continuous"];
     assert_eq!(counts(&lines(folder, &alone, "times")), [0; 3]);
 }
+
+/// Groups leave out pairs at rest, in frames, in animations and between frames.
+#[test]
+fn groups_of_meshes() {
+    let directory = folder();
+    let folder = directory.path();
+    fs::write(
+        folder.join("grouped.obj"),
+        obj(0.0).replace("f 1", "g low\nf 1").replace("f 4", "g high\nf 4"),
+    )
+    .unwrap();
+    write_npy(&folder.join("numbers.npy"), &[2], &[0.0, 7.0]).unwrap();
+    let none = &["--ignore-groups=low,high"][..];
+    let all = &["--only-groups=high,low"][..];
+    let (by_number, within) =
+        (&["--ignore-groups=7,0", "--group-by=numbers.npy"][..], &["--ignore-groups=low,low"][..]);
+    for (groups, count) in [(none, 0), (all, 1), (by_number, 0), (within, 1)] {
+        let run = |args: &[&str], more: &str| counts(&lines(folder, &[args, groups].concat(), more));
+        assert_eq!(run(&["grouped.obj"], ""), [count], "{groups:?}");
+        assert_eq!(run(&["grouped.obj", "grouped.obj"], "file"), [count; 2], "{groups:?}");
+        assert_eq!(run(&["grouped.obj", "--frames=frames"], ""), [0, 0, count, 0], "{groups:?}");
+        let continuous = run(&["grouped.obj", "--frames=frames.npy", "--continuous"], "times");
+        assert_eq!(continuous, [0, count, count], "{groups:?}");
+    }
+
+    // One primitive at two nodes, of which one has a name.
+    let primitive = ["flag.gltf", "--weld=off", "--ignore-groups=#0,#0"];
+    assert_eq!(counts(&lines(folder, &primitive, "")), [0]);
+    let animated = |args: &[&str]| {
+        let flags = ["flag.gltf", "--weld=off", "--animation=0", "--times=0.5"];
+        counts(&lines(folder, &[&flags, args].concat(), "node,time"))
+    };
+    assert_eq!(animated(&[]), [1, 1]);
+    assert_eq!(animated(&["--ignore-groups=#0,#0"]), [0, 0]);
+    assert_eq!(animated(&["--ignore-groups=moved,moved", "--group-by=object"]), [1, 0]);
+    assert_eq!(animated(&["--only-groups=moved,moved", "--group-by=object"]), [0, 1]);
+    assert_eq!(animated(&["--only-groups=0,0", "--group-by=numbers.npy"]), [0, 0]);
+}
+
+/// A triangle in the plane z = 0, and one of which a corner is 0.25 below it.
+const CROSSING: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -0.25\nv 1 1 2\nv 2 1 2\nf 1 2 3\nf 4 5 6\n";
+
+#[test]
+fn depths_of_pairs() {
+    let directory = folder();
+    let folder = directory.path();
+    fs::write(folder.join("crossing.obj"), CROSSING).unwrap();
+    fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
+    let all = ["crossing.obj", "touching.obj", "mesh.obj", "--depths"];
+    let found = lines(folder, &all, "file,depths,directions");
+    assert_eq!(found[0]["depths"], json!([0.25]));
+    assert_eq!(found[0]["directions"], json!([[0.0, 0.0, 1.0]]));
+    assert_eq!((&found[1]["depths"], &found[2]["depths"]), (&json!([0.0]), &json!([])));
+    let frames = lines(folder, &["mesh.obj", "--frames=frames", "--depths"], "depths,directions");
+    assert_eq!(frames[2]["depths"], json!([0.0]));
+    let against = lines(folder, &["mesh.obj", "--against=lower.obj", "--depths"], "depths,directions");
+    assert_eq!(against[0]["depths"].as_array().unwrap().len(), 2);
+    assert_eq!(against[0]["depths"][1], json!(0.0));
+    assert!(against[0]["depths"][0].as_f64().unwrap() > 0.3, "{against:?}");
+    let text = check(folder, &["crossing.obj", "--depths"]);
+    assert!(text.stdout.ends_with("       0        1  depth 0.2500\n"), "{text:?}");
+    let text = check(folder, &["crossing.obj", "mesh.obj", "--depths"]);
+    assert!(text.stdout.contains("COLLIDING  1 pair, first 0 1, deepest 0.2500\n"), "{text:?}");
+}
+
+/// Comments and points of a file of curves.
+fn curves(path: &Path) -> (Vec<String>, Vec<[f64; 3]>) {
+    let text = fs::read_to_string(path).unwrap();
+    let comments = text.lines().filter_map(|line| line.strip_prefix("# ")).map(str::to_owned).collect();
+    let point = |line: &str| -> [f64; 3] {
+        let numbers: Vec<f64> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+        numbers.try_into().unwrap()
+    };
+    (comments, text.lines().filter_map(|line| line.strip_prefix("v ")).map(point).collect())
+}
+
+#[test]
+fn curves_of_the_last_answer() {
+    let directory = folder();
+    let folder = directory.path();
+    fs::write(folder.join("crossing.obj"), CROSSING).unwrap();
+    let run = |args: &[&str], code: i32| {
+        let run = check(folder, &[args, &["--curves=c.obj"]].concat());
+        assert_eq!((run.code, run.stderr.as_str()), (Some(code), ""), "{run:?}");
+        let found = curves(&folder.join("c.obj"));
+        fs::remove_file(folder.join("c.obj")).unwrap();
+        found
+    };
+    let (comments, points) = run(&["crossing.obj"], 1);
+    assert_eq!(comments[1], "curve 0: open, 1 segment, deepest pair 0 1 (0.25)");
+    let mut x: Vec<f64> = points.iter().map(|p| p[0]).collect();
+    x.sort_by(f64::total_cmp);
+    assert_eq!(x, [1.0, 1.0 + 1.0 / 9.0]);
+    assert!(points.iter().all(|p| p[1..] == [1.0, 0.0]));
+    // One triangle crosses, a corner of it touches the other.
+    let (comments, points) = run(&["mesh.obj", "--against=lower.obj"], 1);
+    assert_eq!(
+        comments[0],
+        "contact curves: 1; not among them: 1 pair with one common point, 0 pairs in one plane"
+    );
+    assert_eq!(points.len(), 2);
+    // The last file, frame and node.
+    assert_eq!(run(&["mesh.obj", "crossing.obj"], 1).1.len(), 2);
+    assert_eq!(run(&["crossing.obj", "mesh.obj", "--threads=3"], 1).1.len(), 0);
+    let mesh = sscc_io::read_mesh(&folder.join("crossing.obj")).unwrap();
+    let positions: Vec<f64> = mesh.rest_positions().iter().flat_map(|p| p.to_array()).collect();
+    let apart = positions.iter().enumerate().map(|(i, x)| if i >= 9 && i % 3 == 2 { x + 9.0 } else { *x });
+    let both: Vec<f64> = apart.chain(positions.iter().copied()).collect();
+    write_npy(&folder.join("last.npy"), &[2, 6, 3], &both).unwrap();
+    for threads in ["--threads=1", "--threads=2"] {
+        assert_eq!(run(&["mesh.obj", "--frames=last.npy", threads], 1).1, run(&["crossing.obj"], 1).1);
+    }
+    let (comments, _) = run(&["flag.gltf", "--weld=off", "--animation=0", "--times=0"], 1);
+    assert!(comments[0].starts_with("contact curves: 1;"), "{comments:?}");
+    // PLY: the points are read back.
+    assert_eq!(check(folder, &["crossing.obj", "--curves=c.ply"]).code, Some(1));
+    let header = String::from_utf8_lossy(&fs::read(folder.join("c.ply")).unwrap()).into_owned();
+    assert!(header.contains("element vertex 2\n") && header.contains("element edge 1\n"), "{header}");
+}
+
+/// The file of curves is written even if no one reads the answers.
+#[test]
+fn curves_without_a_reader() {
+    let directory = folder();
+    let folder = directory.path();
+    fs::write(folder.join("crossing.obj"), CROSSING).unwrap();
+    let many: Vec<&str> = [&["mesh.obj"; 200][..], &["crossing.obj"]].concat();
+    let args = [&["check", "--json", "--curves=c.obj"], &many[..]].concat();
+    let mut child =
+        crate::common::command(folder, &args).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert_eq!(curves(&folder.join("c.obj")).1.len(), 2);
+}

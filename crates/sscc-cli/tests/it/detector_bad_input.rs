@@ -90,6 +90,81 @@ fn invalid_frames_and_animations() {
 }
 
 #[test]
+fn invalid_groups() {
+    let directory = folder();
+    let folder = directory.path();
+    write_npy(&folder.join("three.npy"), &[3], &[0.0, 0.0, 1.0]).unwrap();
+    fs::write(folder.join("mesh.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+    for (args, named) in [
+        (
+            &["mesh.obj", "--ignore-groups=a,b"][..],
+            "--ignore-groups a,b: no triangle is in a group 'a'; groups: 'default'",
+        ),
+        (&["mesh.obj", "--only-groups=default"], "--only-groups default: two groups A,B were expected"),
+        (&["mesh.obj", "--group-by=material"], "--group-by: it changes nothing without --ignore-groups"),
+        (&["mesh.off", "--only-groups=a,b"], "mesh.off: files of this kind have no groups of triangles"),
+        (
+            &["mesh.obj", "--only-groups=0,1", "--group-by=three.npy", "--frames=frames"],
+            "three.npy: there are groups of 3 triangles, but the mesh has 2",
+        ),
+        (
+            &["flag.gltf", "--animation=0", "--only-groups=0,1", "--group-by=three.npy"],
+            "three.npy: there are groups of 3 triangles, but node 1 has 2",
+        ),
+        (
+            &["flag.gltf", "--animation=0", "--only-groups=moved,a", "--group-by=object"],
+            "--only-groups moved,a: no triangle is in a group 'a'; groups: '#1', 'moved'",
+        ),
+        (&["mesh.obj", "--against=lower.obj", "--ignore-groups=a,b"], "--ignore-rest and groups"),
+    ] {
+        let run = sscc(folder, &[&["check"], args].concat());
+        assert!(run.refusal().contains(named), "{run:?}");
+    }
+}
+
+#[test]
+fn files_of_curves_that_cannot_be_written() {
+    let directory = folder();
+    let folder = directory.path();
+    let before = fs::read(folder.join("lower.obj")).unwrap();
+    for (args, named) in [
+        (&["--curves=c.stl"][..], "c.stl: the name of contact curves must end in .ply or .obj"),
+        (&["--curves=no/c.obj"], "no/c.obj: cannot be written"),
+        (&["--curves=mesh.obj"], "mesh.obj: the output is an input"),
+        (&["--against=lower.obj", "--curves=lower.obj"], "lower.obj: the output is an input"),
+        (&["lower.obj", "--curves=lower.obj"], "lower.obj: the output is an input"),
+        (&["--pose=c.obj", "--curves=c.obj"], "--pose and --curves name the same file"),
+        (&["--frames=frames", "--continuous", "--curves=c.obj"], "cannot be used with"),
+        (&["--frames=frames", "--continuous", "--depths"], "cannot be used with"),
+        (&["--first", "--curves=c.obj"], "cannot be used with"),
+        (&["missing.obj", "--curves=c.obj"], "missing.obj: not found"),
+    ] {
+        let run = sscc(folder, &[&["check", "mesh.obj"], args].concat());
+        assert_eq!((run.code, run.stderr.lines().count()), (Some(2), 1), "{run:?}");
+        assert!(run.stderr.contains(named), "{run:?}");
+    }
+    assert_eq!(fs::read(folder.join("lower.obj")).unwrap(), before);
+    assert!(!folder.join("c.obj").exists());
+}
+
+/// Where players go on, so does the check, with one warning.
+#[test]
+fn scales_of_zero_are_warned_about() {
+    let directory = folder();
+    let folder = directory.path();
+    let flat = crate::detector::flag().replace("\"name\":\"moved\"", "\"name\":\"moved\",\"scale\":[1,1,0]");
+    fs::write(folder.join("flat.gltf"), flat).unwrap();
+    for threads in ["--threads=1", "--threads=3"] {
+        let run = sscc(folder, &["check", "flat.gltf", "--animation=0", "--json", threads]);
+        assert_eq!((run.code, run.json().len()), (Some(0), 62), "{run:?}");
+        assert_eq!(
+            run.stderr,
+            "warning: flat.gltf: node 2: a scale of 0 flattens the mesh at some time, so that its triangles touch\n"
+        );
+    }
+}
+
+#[test]
 fn flags_that_contradict_each_other() {
     let directory = folder();
     let folder = directory.path();

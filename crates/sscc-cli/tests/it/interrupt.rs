@@ -34,7 +34,7 @@ fn wait_for_handlers(child: &Child) {
 fn interrupted(folder: &Path, all: &[(&[&str], &str)]) -> Vec<(Option<i32>, String)> {
     let begin = |(args, _): &(&[&str], &str)| {
         let mut command = command(folder, args);
-        command.env_remove("SSCC_MODELS").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+        command.env_remove("SSCC_MODELS").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     };
     let mut children: Vec<Child> = all.iter().map(begin).collect();
     children.iter().for_each(wait_for_handlers);
@@ -69,14 +69,16 @@ fn every_command_prints_the_same_message() {
     let folder = directory.path();
     write_spring(folder);
     sscc_io::write_npy(&folder.join("q.npy"), &[200, 24], &vec![0.0; 4800]).unwrap();
+    fs::write(folder.join("flag.gltf"), crate::detector::flag()).unwrap();
     let before = files(folder);
     const SPRING: &str = "spring.model.safetensors";
-    let all: [(&[&str], &str); 8] = [
+    let all: [(&[&str], &str); 9] = [
         (&["certify", SPRING, "-o", "spring.sscc.safetensors", "--threads", "1", "--epsilon=0.001"], "-INT"),
         (&["certify", SPRING, "-o", "again.sscc.safetensors", "--threads", "1", "--epsilon=0.001"], "-TERM"),
         (&["modes", "spring.obj", "-o", "m.model.safetensors", "--kind=linear", "--rank=200"], "-TERM"),
         (&["demo", "--out", "demo"], "-INT"),
         (&["check", SPRING, "--trajectory", "q.npy", "--method=brute-force"], "-TERM"),
+        (&["check", "flag.gltf", "--animation=0", "--fps=9e6", "--curves=c.obj"], "-INT"),
         (
             &[
                 "audit",

@@ -294,7 +294,7 @@ fn groups_can_be_left_out() {
         ),
         (&["--only-groups=low"], "--only-groups low: two groups A,B were expected"),
         (&["--ignore-groups=low,low", "--only-groups=low,low"], "cannot be used with"),
-        (&["--group-by=material"], "--group-by changes nothing"),
+        (&["--group-by=material"], "--group-by: it changes nothing"),
         (&["--ignore-groups=0,1", "--group-by=mass"], "must be a file"),
     ];
     for (args, named) in refusals {

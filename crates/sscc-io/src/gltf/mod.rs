@@ -35,7 +35,7 @@ use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
-pub use base_mesh::read_base_mesh;
+pub use base_mesh::{read_base_groups, read_base_mesh};
 pub use joined::PrimitiveRange;
 pub use morph::MorphModel;
 pub use scene::{AnimatedScene, AnimationInfo, MeshNode, ScenePose, SkinWeights, parse_scene, read_scene};

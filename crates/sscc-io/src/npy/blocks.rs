@@ -7,11 +7,14 @@ use std::sync::{Mutex, PoisonError};
 
 use super::array::{check_size, floats, parse};
 use super::header::{Header, Item, NumberKind};
-use crate::IoError;
 use crate::file::{open_regular, read_error, read_whole};
+use crate::{FormatError, IoError};
 
 /// Headers are read in full up to this size; NumPy writes at most a few hundred bytes for arrays of numbers.
 const MAX_HEADER: u64 = 1 << 20;
+
+/// Arrays in Fortran order are read as a whole up to this size of the file, in bytes.
+const MAX_FORTRAN: u64 = 1 << 30;
 
 /// An open `.npy` file. A block has all entries with one index along the first axis.
 pub(crate) struct Blocks {
@@ -32,7 +35,7 @@ impl Blocks {
     ///
     /// # Errors
     /// When the file cannot be read, its header is malformed or has another type, its length differs from the header, or
-    /// the array has no axis.
+    /// the array has no axis; when it is in Fortran order and larger than 1 GiB.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         let (mut file, size) = open_regular(path)?;
         let mut start = Vec::new();
@@ -41,6 +44,15 @@ impl Blocks {
         let header = Header::parse(&start, NumberKind::Floats).map_err(|error| error.of(path))?;
         let Header { item, fortran, shape, body } = header;
         check_size(&shape, item, body, size - body as u64).map_err(|error| error.of(path))?;
+        if fortran && size > MAX_FORTRAN {
+            let cause = format!(
+                "the array is in Fortran order and has {} MiB, more than the {} MiB that are read as a whole: save it in C \
+                 order (numpy.ascontiguousarray)",
+                size >> 20,
+                MAX_FORTRAN >> 20
+            );
+            return Err(FormatError::whole(cause).of(path));
+        }
         let body = if fortran {
             let array = parse(&read_whole(path)?).map_err(|error| error.of(path))?;
             Body::Memory(array.to_c_order())
@@ -106,6 +118,19 @@ mod tests {
         }
         std::fs::write(&path, &fortran).unwrap();
         assert_eq!(Blocks::open(&path).unwrap().read(6, 12).unwrap(), data[6..18]);
+
+        // A file with a hole of 2 GiB.
+        let text = "{'descr': '<f8', 'fortran_order': True, 'shape': (268435456, 1, 1), }\n";
+        let start = [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+        std::fs::write(&path, &start).unwrap();
+        std::fs::OpenOptions::new()
+            .write(true)
+            .open(&path)
+            .unwrap()
+            .set_len((2 << 30) + start.len() as u64)
+            .unwrap();
+        let message = Blocks::open(&path).err().unwrap().to_string();
+        assert!(message.contains("in Fortran order and has 2048 MiB, more than the 1024 MiB"), "{message}");
 
         std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
         let message = Blocks::open(&path).err().unwrap().to_string();

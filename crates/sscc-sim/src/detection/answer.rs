@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sscc::{Impact, Pair, TriMesh};
+use sscc::{ContactCurves, Impact, Pair, Penetration, TriMesh};
 
 /// The answer to one query of a [`Detection`](super::Detection), or at one q of a model.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +21,10 @@ pub struct DetectionAnswer<'a> {
     pub pairs: &'a [Pair],
     /// Time of impact (0 to 1) of each pair, of continuous queries.
     pub times: Option<&'a [f64]>,
+    /// Depth and direction of the smallest translation that parts each pair, on request: that of its second triangle.
+    pub penetrations: Option<&'a [Penetration]>,
+    /// Contact curves, on request of the last answer.
+    pub curves: Option<&'a ContactCurves>,
     /// Whether `pairs` are all.
     pub is_complete: bool,
     /// Duration of the query on its thread, without reading files and evaluating animations.

@@ -3,45 +3,54 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use sscc::TriMesh;
+
 use super::answer::DetectionAnswer;
 use super::in_order::in_order;
 use super::moving_mesh::MovingMesh;
 use super::request::{Detection, MeshMotion, OtherMesh};
 use super::worker::{Found, Worker};
 use crate::error::Result;
+use crate::watch::check_cancelled;
 use crate::{SimError, Stage, Watch, available_threads};
 
 /// Calls `take` with the answer to each query: mesh by mesh, node by node, frame by frame. `take` can end that early.
 ///
-/// Frames from files are checked before the first answer. Memory is that of the meshes and a few frames for each thread;
+/// Frames from files are checked before the first answer. Memory is that of one mesh and a few frames for each thread;
 /// meshes of a folder of frames are kept up to 1 GiB.
 ///
 /// # Errors
 /// When a file cannot be read or does not fit its mesh; when a request is contradictory; when positions are not finite;
-/// when `watch` cancels; when `take` fails.
+/// when a discrete query without a limit has more than 67,108,864 pairs; when `watch` cancels; when `take` fails.
 pub fn detect<E: From<SimError>>(
     request: &Detection,
     watch: &dyn Watch,
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
     check_request(request)?;
-    if let (MeshMotion::Rest, None, [_, _, ..]) = (&request.motion, &request.against, &request.meshes[..]) {
+    let is_at_rest = matches!(request.motion, MeshMotion::Rest) && request.against.is_none();
+    if is_at_rest && request.meshes.len() > 1 && !request.is_continuous {
         return at_rest(request, watch, take);
     }
-    for file in &request.meshes {
+    for (number, file) in request.meshes.iter().enumerate() {
         let (meshes, other) = load(file, request, watch)?;
         let frames = meshes.iter().chain(&other).map(MovingMesh::frames).max().unwrap_or(1);
         let each = if request.is_continuous { frames - 1 } else { frames };
         let queries = each * meshes.len();
         watch.begin(Stage::Detection);
         for (before, mesh) in meshes.iter().enumerate() {
+            let is_last = number + 1 == request.meshes.len() && before + 1 == meshes.len();
+            let last = is_last.then_some(each - 1);
             let taken = in_order(
                 each,
                 request.threads.unwrap_or_else(available_threads),
-                || Worker::new(request, mesh, other.as_ref()),
+                || Worker::new(request, mesh, other.as_ref(), last),
                 Worker::answer,
                 |index, found| {
-                    let taken = take(&answer(mesh, index, &found?, queries))?;
+                    check_cancelled(watch)?;
+                    let place =
+                        Place { file, mesh: &mesh.mesh, node: mesh.node, index, time: mesh.time(index) };
+                    let taken = take(&place.answer(&found?, queries))?;
                     watch.report(before * each + index + 1, queries);
                     Ok::<_, E>(taken)
                 },
@@ -61,49 +70,62 @@ fn at_rest<E: From<SimError>>(
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
     watch.begin(Stage::Detection);
+    let count = request.meshes.len();
     let work = |(): &mut (), index: usize| {
         let mesh = MovingMesh::at_rest(&request.meshes[index], request, watch)?;
-        let found = Worker::new(request, &mesh, None).answer(0)?;
-        Ok((mesh, found))
+        let last = (index + 1 == count).then_some(0);
+        let found = Worker::new(request, &mesh, None, last).answer(0)?;
+        // Its detector is no longer needed: it is far larger than the mesh.
+        Ok((mesh.mesh, found))
     };
-    let threads = request.threads.unwrap_or_else(available_threads);
-    let count = request.meshes.len();
     let taken = in_order(
         count,
-        threads,
+        request.threads.unwrap_or_else(available_threads),
         || (),
         work,
         |index, result: Result<_>| {
+            check_cancelled(watch)?;
             let (mesh, found) = result?;
+            let place = Place { file: &request.meshes[index], mesh: &mesh, node: None, index: 0, time: None };
+            let taken = take(&place.answer(&found, 1))?;
             watch.report(index + 1, count);
-            take(&answer(&mesh, 0, &found, 1))
+            Ok(taken)
         },
     );
     taken.map(drop)
 }
 
-fn answer<'a>(
-    mesh: &'a MovingMesh<'_>,
+/// The mesh and the frame of an answer.
+struct Place<'a> {
+    file: &'a Path,
+    mesh: &'a TriMesh,
+    node: Option<usize>,
     index: usize,
-    found: &'a Found,
-    queries: usize,
-) -> DetectionAnswer<'a> {
-    DetectionAnswer {
-        file: &mesh.file,
-        mesh: &mesh.mesh,
-        node: mesh.node,
-        index,
-        time: mesh.time(index),
-        pairs: &found.pairs,
-        times: found.times.as_deref(),
-        is_complete: found.is_complete,
-        microseconds: found.microseconds,
-        norm: None,
-        root_certified: None,
-        opened: found.statistics.opened,
-        box_tests: found.statistics.box_tests,
-        triangle_tests: found.statistics.triangle_tests,
-        queries,
+    time: Option<f64>,
+}
+
+impl<'a> Place<'a> {
+    fn answer(self, found: &'a Found, queries: usize) -> DetectionAnswer<'a> {
+        let Self { file, mesh, node, index, time } = self;
+        DetectionAnswer {
+            file,
+            mesh,
+            node,
+            index,
+            time,
+            pairs: &found.pairs,
+            times: found.times.as_deref(),
+            penetrations: found.contacts.penetrations.as_deref(),
+            curves: found.contacts.curves.as_ref(),
+            is_complete: found.is_complete,
+            microseconds: found.microseconds,
+            norm: None,
+            root_certified: None,
+            opened: found.statistics.opened,
+            box_tests: found.statistics.box_tests,
+            triangle_tests: found.statistics.triangle_tests,
+            queries,
+        }
     }
 }
 

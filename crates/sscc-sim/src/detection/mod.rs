@@ -5,6 +5,7 @@
 //! queries of a model with modes in the same form.
 
 mod answer;
+mod contacts;
 mod detect;
 mod in_order;
 mod moving_mesh;
@@ -14,6 +15,7 @@ mod times;
 mod worker;
 
 pub use answer::DetectionAnswer;
+pub use contacts::ContactOptions;
 pub use detect::detect;
 pub use request::{Animated, Detection, MeshMotion, OtherMesh, Times};
-pub use rows::check_rows;
+pub use rows::{RowQueries, check_rows};

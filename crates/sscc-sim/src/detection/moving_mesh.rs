@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use sscc::{ContactFilter, Detector, TriMesh};
+use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError, load_mesh, splits_vertices};
 
@@ -22,12 +23,24 @@ pub(super) struct MovingMesh<'w> {
     pub mesh: TriMesh,
     pub detector: Detector<'w>,
     motion: Motion,
+    watch: &'w dyn Watch,
 }
 
 enum Motion {
     Rest,
     Frames(FrameReader),
-    Animation { scene: Arc<AnimatedScene>, animation: usize, weights: SkinWeights, times: Arc<[f64]> },
+    Animation(Evaluation),
+}
+
+/// An animation of a node at given times.
+struct Evaluation {
+    scene: Arc<AnimatedScene>,
+    animation: usize,
+    node: usize,
+    weights: SkinWeights,
+    times: Arc<[f64]>,
+    /// Whether the caller was warned that the node is flattened.
+    is_warned: AtomicBool,
 }
 
 impl<'w> MovingMesh<'w> {
@@ -65,10 +78,15 @@ impl<'w> MovingMesh<'w> {
         let mesh = load_mesh(file, name)?;
         let motion = motion(&mesh)?;
         let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
-        let filter = ContactFilter::new(request.neighbours, weld);
+        // Every pair between two meshes counts.
+        let groups = match request.against {
+            Some(_) => None,
+            None => request.groups.of_mesh(file, name, mesh.faces().len())?,
+        };
+        let filter = filter(request, weld, groups);
         let make = |filter: &ContactFilter| Detector::with_filter(&mesh, filter);
         let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
-        Ok(Self { file: file.to_owned(), node: None, mesh, detector, motion })
+        Ok(Self { file: file.to_owned(), node: None, mesh, detector, motion, watch })
     }
 
     /// Loads the nodes of an animation.
@@ -84,7 +102,8 @@ impl<'w> MovingMesh<'w> {
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::SimError::refused(file.display(), cause))?.into();
         let nodes = scene.find_mesh_nodes(animated.node).map_err(|error| in_file(error, file))?;
-        let mesh = |node: &MeshNode| {
+        let groups = request.groups.of_nodes(file, nodes)?;
+        let mesh = |(node, groups): (&MeshNode, Option<TriangleGroups>)| {
             let weights = animated.weights;
             if weights == SkinWeights::Normalized && node.largest_weight_error() > MAX_WEIGHT_ERROR {
                 let place = format!("{}: node {}", file.display(), node.node());
@@ -99,13 +118,19 @@ impl<'w> MovingMesh<'w> {
                 true => Detector::with_weld_classes(&mesh, node.weld_classes(), filter),
                 false => Detector::with_filter(&mesh, filter),
             };
-            let filter = ContactFilter::new(request.neighbours, is_welded);
+            let filter = filter(request, is_welded, groups);
             let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
-            let (scene, times) = (Arc::clone(&scene), Arc::clone(&times));
-            let motion = Motion::Animation { scene, animation, weights, times };
-            Ok(Self { file: file.to_owned(), node: Some(node.node()), mesh, detector, motion })
+            let motion = Motion::Animation(Evaluation {
+                scene: Arc::clone(&scene),
+                animation,
+                node: node.node(),
+                weights,
+                times: Arc::clone(&times),
+                is_warned: AtomicBool::new(false),
+            });
+            Ok(Self { file: file.to_owned(), node: Some(node.node()), mesh, detector, motion, watch })
         };
-        nodes.iter().map(mesh).collect()
+        nodes.iter().zip(groups).map(mesh).collect()
     }
 
     /// Returns the number of frames, at least 1.
@@ -113,15 +138,25 @@ impl<'w> MovingMesh<'w> {
         match &self.motion {
             Motion::Rest => 1,
             Motion::Frames(reader) => reader.len(),
-            Motion::Animation { times, .. } => times.len(),
+            Motion::Animation(evaluation) => evaluation.times.len(),
         }
     }
 
     /// Returns the time of a frame, in an animation.
     pub fn time(&self, frame: usize) -> Option<f64> {
         match &self.motion {
-            Motion::Animation { times, .. } => Some(times[frame]),
+            Motion::Animation(evaluation) => Some(evaluation.times[frame]),
             _ => None,
+        }
+    }
+
+    /// Returns the name of a frame in messages.
+    pub fn place(&self, frame: usize) -> String {
+        let file = self.file.display();
+        match (self.node, self.time(frame)) {
+            (Some(node), Some(time)) => format!("{file}: node {node} at {time} s"),
+            _ if self.frames() > 1 => format!("{file}: frame {frame}"),
+            _ => file.to_string(),
         }
     }
 
@@ -134,11 +169,37 @@ impl<'w> MovingMesh<'w> {
                 positions.extend(self.mesh.rest_positions());
             }
             Motion::Frames(reader) => reader.read(frame, positions)?,
-            Motion::Animation { scene, animation, weights, times } => scene
-                .positions(self.node.unwrap_or_default(), Some(*animation), times[frame], *weights, positions)
-                .map_err(|error| in_file(error, &self.file))?,
+            Motion::Animation(evaluation) => {
+                let is_flat =
+                    evaluation.positions(frame, positions).map_err(|error| in_file(error, &self.file))?;
+                // Which frame is first depends on the threads, so the warning names none.
+                if is_flat && !evaluation.is_warned.swap(true, Ordering::Relaxed) {
+                    self.watch.warn(&format!(
+                        "{}: node {}: a scale of 0 flattens the mesh at some time, so that its triangles touch",
+                        self.file.display(),
+                        evaluation.node
+                    ));
+                }
+            }
         }
         Ok(())
+    }
+}
+
+impl Evaluation {
+    /// Replaces `positions` by those at a frame. Returns whether a scale of 0 flattens triangles.
+    fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<bool, FormatError> {
+        let pose = self.scene.pose(Some(self.animation), self.times[frame])?;
+        pose.positions(self.node, self.weights, positions)?;
+        Ok(pose.is_flattened(self.node))
+    }
+}
+
+fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {
+    let filter = ContactFilter::new(request.neighbours, weld);
+    match groups {
+        Some(groups) => filter.with_groups(groups),
+        None => filter,
     }
 }
 

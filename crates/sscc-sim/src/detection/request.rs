@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use sscc::Neighbours;
 use sscc_io::gltf::SkinWeights;
 
+use super::contacts::ContactOptions;
+use crate::GroupRules;
+
 /// Meshes, their motion, and which pairs of triangles count.
 #[derive(Clone, Debug)]
 pub struct Detection {
@@ -23,10 +26,15 @@ pub struct Detection {
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: bool,
+    /// Which pairs of groups of triangles count; without another mesh.
+    pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
     pub is_continuous: bool,
-    /// Maximum number of pairs for each query; of continuous queries the earliest.
+    /// Maximum number of pairs for each query; of continuous queries the earliest. `usize::MAX`: a discrete query with more
+    /// than 67,108,864 pairs is an error.
     pub limit: usize,
+    /// What discrete queries compute of the contacts of their pairs.
+    pub contacts: ContactOptions,
     /// Number of threads; none: all cores. Answers do not depend on it.
     pub threads: Option<usize>,
 }
@@ -42,8 +50,10 @@ impl Default for Detection {
             neighbours: Neighbours::default(),
             weld: None,
             ignore_rest: false,
+            groups: GroupRules::default(),
             is_continuous: false,
             limit: usize::MAX,
+            contacts: ContactOptions::default(),
             threads: None,
         }
     }

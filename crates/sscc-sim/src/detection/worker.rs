@@ -3,18 +3,27 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use sscc::{Detector, DetectorStatistics, Impact, Pair};
+use sscc::{Detector, DetectorStatistics, Impact, Pair, Surface};
 
 use super::answer::earliest_impacts;
+use super::contacts::{ContactOptions, Contacts};
 use super::moving_mesh::MovingMesh;
 use super::request::Detection;
+use crate::SimError;
 use crate::error::{At, Result};
+use crate::text::grouped;
+
+/// Maximum number of pairs of a query without a limit: 512 MiB. A mesh of n triangles that collapses to a point has about
+/// n^2 / 2 pairs.
+const MAX_PAIRS: usize = 1 << 26;
 
 /// A detector for each mesh, and buffers.
 pub(super) struct Worker<'m, 'w> {
     request: &'m Detection,
     side: Side<'m, 'w>,
     other: Option<Side<'m, 'w>>,
+    /// The frame of the last answer of the run, if this mesh has it.
+    last: Option<usize>,
 }
 
 /// A mesh of a worker, and its positions at the start and the end of a motion.
@@ -29,14 +38,21 @@ struct Side<'m, 'w> {
 pub(super) struct Found {
     pub pairs: Vec<Pair>,
     pub times: Option<Vec<f64>>,
+    pub contacts: Contacts,
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: DetectorStatistics,
 }
 
 impl<'m, 'w> Worker<'m, 'w> {
-    pub fn new(request: &'m Detection, mesh: &'m MovingMesh<'w>, other: Option<&'m MovingMesh<'w>>) -> Self {
-        Self { request, side: Side::new(mesh), other: other.map(Side::new) }
+    /// `last`: the frame of the last answer of the run, if this mesh has it.
+    pub fn new(
+        request: &'m Detection,
+        mesh: &'m MovingMesh<'w>,
+        other: Option<&'m MovingMesh<'w>>,
+        last: Option<usize>,
+    ) -> Self {
+        Self { request, side: Side::new(mesh), other: other.map(Side::new), last }
     }
 
     /// Answers the query at a frame, or from it to the next one.
@@ -47,11 +63,19 @@ impl<'m, 'w> Worker<'m, 'w> {
             other.read(frame, is_continuous)?;
         }
         let file = &self.side.mesh.file;
-        if is_continuous { self.continuous() } else { self.discrete() }.in_file(file)
+        if is_continuous {
+            return self.continuous().in_file(file);
+        }
+        let found = self.discrete(self.last == Some(frame)).in_file(file)?;
+        match check_count(found.pairs.len(), self.request.limit) {
+            Ok(()) => Ok(found),
+            Err(cause) => Err(SimError::refused(self.side.mesh.place(frame), cause)),
+        }
     }
 
-    fn discrete(&mut self) -> Result<Found, sscc::Error> {
-        let (limit, x) = (self.request.limit, &mut self.side);
+    fn discrete(&mut self, is_last: bool) -> Result<Found, sscc::Error> {
+        let x = &mut self.side;
+        let limit = if self.request.limit == usize::MAX { MAX_PAIRS + 1 } else { self.request.limit };
         let start = Instant::now();
         let pairs = match &mut self.other {
             Some(y) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
@@ -60,7 +84,12 @@ impl<'m, 'w> Worker<'m, 'w> {
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let pairs = pairs?.to_vec();
         let statistics = x.detector.statistics();
-        Ok(Found { pairs, times: None, is_complete: statistics.complete, microseconds, statistics })
+        let ContactOptions { depths, curves } = self.request.contacts;
+        let options = ContactOptions { depths, curves: curves && is_last };
+        let contacts =
+            Contacts::of(self.side.surface(), self.other.as_ref().map(Side::surface), &pairs, options)?;
+        let is_complete = statistics.complete;
+        Ok(Found { pairs, times: None, contacts, is_complete, microseconds, statistics })
     }
 
     fn continuous(&mut self) -> Result<Found, sscc::Error> {
@@ -77,6 +106,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         Ok(Found {
             pairs: kept.iter().map(|impact| impact.pair).collect(),
             times: Some(kept.iter().map(|impact| impact.time).collect()),
+            contacts: Contacts::default(),
             is_complete,
             microseconds,
             statistics: x.detector.statistics(),
@@ -84,9 +114,25 @@ impl<'m, 'w> Worker<'m, 'w> {
     }
 }
 
+/// Refuses more pairs than fit into memory, unless the caller has set the limit. The error is the cause.
+fn check_count(pairs: usize, limit: usize) -> Result<(), String> {
+    if limit < usize::MAX || pairs <= MAX_PAIRS {
+        return Ok(());
+    }
+    let most = grouped(MAX_PAIRS as u64);
+    Err(format!(
+        "more than {most} pairs collide: is the mesh flat or a point there? --limit N lists at most N"
+    ))
+}
+
 impl<'m, 'w> Side<'m, 'w> {
     fn new(mesh: &'m MovingMesh<'w>) -> Self {
         Self { mesh, detector: mesh.detector.clone(), x_t0: Vec::new(), x_t1: Vec::new() }
+    }
+
+    /// The mesh at the start of the motion.
+    fn surface(&self) -> Surface<'_> {
+        Surface { faces: self.mesh.mesh.faces(), positions: &self.x_t0 }
     }
 
     fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
@@ -95,5 +141,18 @@ impl<'m, 'w> Side<'m, 'w> {
             self.mesh.positions(frame + 1, &mut self.x_t1)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_many_pairs_are_refused() {
+        assert_eq!(check_count(MAX_PAIRS, usize::MAX), Ok(()));
+        assert_eq!(check_count(MAX_PAIRS + 1, MAX_PAIRS + 1), Ok(()));
+        let cause = check_count(MAX_PAIRS + 1, usize::MAX).unwrap_err();
+        assert!(cause.starts_with("more than 67,108,864 pairs collide: "), "{cause}");
     }
 }

@@ -1,11 +1,16 @@
 //! Continuous tests against published queries with exact answers, and how many of the answers are "yes" too often.
 #![allow(clippy::print_stdout)]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
-use sscc_testing::models;
+use num_traits::ToPrimitive;
+use sscc::{
+    Detector, Impact, MovingTriangle, Pair, TriMesh, impact_edge_edge, impact_triangle_triangle,
+    impact_vertex_face,
+};
+use sscc_testing::{distance, first_contact, models};
 
 /// Shares of the size of the two.
 const TOLERANCES: [f64; 5] = [1e-3, 1e-6, 1e-9, 1e-12, 0.0];
@@ -165,6 +170,31 @@ impl Frames {
         };
         std::array::from_fn(|i| self.vertices[i / 4][four[i % 4]])
     }
+
+    /// The triangle of that number.
+    fn triangle(&self, number: u32) -> MovingTriangle {
+        let corners = |end: usize| self.faces[number as usize].map(|v| self.vertices[end][v]);
+        MovingTriangle { t0: corners(0), t1: corners(1) }
+    }
+
+    /// All pairs of triangles without a common vertex of which one has the first element and the other the second.
+    fn triangles_around(&self, [a, b]: [usize; 2]) -> Vec<Pair> {
+        let edges = self.vertices[0].len();
+        let faces = edges + self.edges.len();
+        let with = |element: usize| -> Vec<usize> {
+            let corners = match element {
+                vertex if vertex < edges => vec![vertex],
+                edge if edge < faces => self.edges[edge - edges].to_vec(),
+                face => return vec![face - faces],
+            };
+            let has = |face: &usize| corners.iter().all(|corner| self.faces[*face].contains(corner));
+            (0..self.faces.len()).filter(has).collect()
+        };
+        let (around_a, around_b) = (with(a), with(b));
+        let all = around_a.iter().flat_map(|f| around_b.iter().map(move |g| (*f, *g)));
+        let is_adjacent = |(f, g): &(usize, usize)| self.faces[*f].iter().any(|v| self.faces[*g].contains(v));
+        all.filter(|pair| !is_adjacent(pair)).map(|(f, g)| (f.min(g) as u32, f.max(g) as u32)).collect()
+    }
 }
 
 /// Binary little-endian, double positions, triangles, nothing else: the format of these two files.
@@ -214,6 +244,67 @@ fn no_pair_of_the_cloth_is_missed() {
         assert_eq!((counts.queries, counts.colliding, counts.missed), (expected.0, expected.1, 0), "{name}");
         assert_eq!(counts.false_positives[3], 0, "{name} at {}", TOLERANCES[3]);
     }
+}
+
+/// Every colliding query has its triangles in the detector's list, and all times of the list are right: never late, and
+/// within the tolerance.
+#[test]
+fn the_detector_lists_every_contact_of_the_cloth() {
+    let Some(folder) = models("the_detector_lists_every_contact_of_the_cloth") else { return };
+    let folder = folder.join("ccd_frames/cloth-funnel");
+    let frames = Frames::read(&folder);
+    let faces = frames.faces.iter().map(|face| face.map(|v| v as u32)).collect();
+    let mesh = TriMesh::new(frames.vertices[0].clone(), faces).unwrap();
+    let mut detector = Detector::new(&mesh);
+    let impacts = detector.continuous(&frames.vertices[0], &frames.vertices[1]).unwrap();
+    let times: BTreeMap<Pair, f64> = impacts.iter().map(|impact| (impact.pair, impact.time)).collect();
+
+    let (mut queries, mut known) = (0, BTreeSet::new());
+    for (name, kind) in [("ee", Kind::EdgeEdge), ("vf", Kind::VertexFace)] {
+        for (elements, _) in read_pairs(&folder, name).into_iter().filter(|(_, collides)| *collides) {
+            queries += 1;
+            let corners = frames.corners(kind, elements);
+            for pair in frames.triangles_around(elements) {
+                let Some(time) = times.get(&pair) else { panic!("{name} {elements:?}: {pair:?} is missing") };
+                // The triangles meet when their features meet, or before.
+                let of_features = kind.impact(&corners, Impact::TOLERANCE).unwrap();
+                assert!(
+                    *time <= of_features + 1e-9,
+                    "{name} {elements:?}: {pair:?} at {time}, not {of_features}"
+                );
+                known.insert(pair);
+            }
+        }
+    }
+    assert_eq!(queries, 107 + 27);
+    assert!(known.len() > 134, "{}", known.len());
+
+    let mut moving = 0;
+    for (&(i, j), &time) in &times {
+        let (x, y) = (frames.triangle(i), frames.triangle(j));
+        let apart = distance(&x, &y, time);
+        assert!(apart <= size(&x, &y) * (Impact::TOLERANCE + 1e-15), "{i} {j}: {apart} at {time}");
+        if time > 0.0 {
+            moving += 1;
+            // Slow in exact arithmetic: every eighth pair, and those of the queries.
+            if moving % 8 == 0 || known.contains(&(i, j)) {
+                let contact = first_contact(&x, &y).map(|contact| contact.upper().to_f64().unwrap());
+                assert!(
+                    contact.is_none_or(|contact| time <= contact),
+                    "{i} {j}: {time} is after {contact:?}"
+                );
+            }
+        }
+    }
+    println!("{} impacts, {moving} of them not from the start; {} of the queries", times.len(), known.len());
+    assert!(times.len() > 261 && moving > 50, "{} {moving}", times.len());
+}
+
+/// The unit of tolerances: the largest difference of a corner from the first one of x, in any coordinate.
+fn size(x: &MovingTriangle, y: &MovingTriangle) -> f64 {
+    let ends = [[x.t0, y.t0], [x.t1, y.t1]];
+    let differences = ends.iter().flat_map(|end| end.as_flattened().iter().map(|p| *p - end[0][0]));
+    differences.map(|d| d.abs().max_element()).fold(0.0, f64::max)
 }
 
 #[test]

@@ -25,6 +25,11 @@ pub struct Answer<'a> {
     /// The time of impact of each pair, for continuous queries.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times: Option<&'a [f64]>,
+    /// The penetration depth of each pair, and the direction in which its second triangle leaves the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depths: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub directions: Option<Vec<[f64; 3]>>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
     pub opened: u64,
@@ -46,6 +51,10 @@ impl<'a> Answer<'a> {
             complete: found.is_complete,
             pairs: found.pairs,
             times: found.times,
+            depths: found.penetrations.map(|all| all.iter().map(|pair| pair.depth).collect()),
+            directions: found
+                .penetrations
+                .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
             opened: found.opened,

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use sscc_io::gltf::SkinWeights;
-use sscc_sim::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, detect};
+use sscc_sim::{Animated, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect};
 
-use super::pose;
 use super::printer::Printer;
+use super::shapes;
 use crate::args::{Check, Switch, Weights};
 use crate::load;
 use crate::stages::Stages;
@@ -15,9 +15,7 @@ use crate::stages::Stages;
 /// Answers every query. Returns whether any of them found a collision.
 pub fn check(args: &Check) -> Result<bool> {
     check_flags(args)?;
-    if let Some(path) = &args.pose {
-        pose::check(path, &args.model)?;
-    }
+    shapes::check(args)?;
     let request = request(args);
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",
@@ -26,10 +24,12 @@ pub fn check(args: &Check) -> Result<bool> {
     };
     let mut printer = Printer::new(noun, args.json.json, None);
     printer.has_files = request.meshes.len() > 1;
+    printer.needs_last = args.curves.is_some();
     detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
         if let Some(path) = &args.pose {
-            pose::write(path, found.mesh, found.mesh.rest_positions(), found.pairs)?;
+            shapes::write_pose(path, found.mesh, found.mesh.rest_positions(), found.pairs)?;
         }
+        shapes::write_curves(args.curves.as_deref(), found)?;
         printer.answer(found)
     })?;
     printer.finish()
@@ -58,8 +58,8 @@ fn check_flags(args: &Check) -> Result<()> {
     if motion.against.is_some() {
         let is_filtered = options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest;
         ensure!(
-            !is_filtered,
-            "--against: triangles of two meshes all count: leave out --neighbours, --weld, --ignore-rest"
+            !is_filtered && load::groups(&options.groups) == GroupRules::default(),
+            "--against: triangles of two meshes all count: leave out --neighbours, --weld, --ignore-rest and groups"
         );
     }
     let moves = motion.frames.is_some() || motion.animation.is_some() || motion.against_frames.is_some();
@@ -95,8 +95,10 @@ fn request(args: &Check) -> Detection {
         neighbours: options.neighbours.map(load::neighbours).unwrap_or_default(),
         weld: options.weld.map(|weld| weld == Switch::On),
         ignore_rest: options.ignore_rest,
+        groups: load::groups(&options.groups),
         is_continuous: args.continuous,
         limit: super::limit(args),
+        contacts: shapes::contacts(args),
         threads: Some(load::threads(&options.threads)),
     }
 }

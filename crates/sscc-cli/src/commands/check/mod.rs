@@ -2,14 +2,14 @@
 
 mod answer;
 mod meshes;
-mod pose;
 mod printer;
+mod shapes;
 mod text;
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc::{Certificates, Method, Query, ReducedModel};
 use sscc_io::{Rows, read_rows};
-use sscc_sim::{DetectionAnswer, check_rows};
+use sscc_sim::{DetectionAnswer, RowQueries, check_rows};
 
 use crate::args::{self, At, Check};
 use crate::outcome::Outcome;
@@ -40,11 +40,10 @@ fn check_model(args: &Check) -> Result<bool> {
         !args.continuous || rows.rows > 1,
         "--continuous: the trajectory has one row; a motion needs at least two"
     );
-    if let Some(pose) = &args.pose {
-        pose::check(pose, &args.model)?;
-    }
+    shapes::check(args)?;
+    let request = load::request(&args.model, &args.options);
     let certificates = match &args.certificates {
-        Some(path) => Some(load::certificates(path, &args.model, &model, &args.options)?),
+        Some(path) => Some(request.read(path, &model)?),
         None if typed_method == args::Method::Certified => {
             Some(load::certificates_now(&model, &args.model, &args.options)?)
         }
@@ -53,22 +52,30 @@ fn check_model(args: &Check) -> Result<bool> {
     let method = method(typed_method);
     let query = match &certificates {
         Some(certificates) => Query::with_method(&model, certificates, method)?,
-        None => {
-            let scope = load::scope(&model, &args.model, &args.options)?;
-            Query::without_certificates(&model, scope, method)?
-        }
+        None => Query::without_certificates(&model, request.scope(&model)?, method)?,
     };
     let noun = if args.continuous { "step" } else { "configuration" };
     let root_radius = certificates.as_ref().map(Certificates::root_radius);
     let mut printer = Printer::new(noun, args.json.json, root_radius);
     let mut query = query.cancelled_by(&interrupt::Interrupt);
     let bar = Bar::new("checking").beside_output();
-    let take = |found: &DetectionAnswer<'_>| printer.answer(found);
-    check_rows(&mut query, model.mesh(), &rows, args.continuous, limit(args), &bar, take)?;
+    printer.needs_last = args.curves.is_some();
+    let take = |found: &DetectionAnswer<'_>| {
+        shapes::write_curves(args.curves.as_deref(), found)?;
+        printer.answer(found)
+    };
+    let requests = RowQueries {
+        model: &model,
+        rows: &rows,
+        is_continuous: args.continuous,
+        limit: limit(args),
+        contacts: shapes::contacts(args),
+    };
+    check_rows(&mut query, &requests, &bar, take)?;
     drop(bar);
     if let Some(path) = &args.pose {
         let positions = model.positions(&rows.data).with_context(|| path.display().to_string())?;
-        pose::write(path, model.mesh(), &positions, query.pairs())?;
+        shapes::write_pose(path, model.mesh(), &positions, query.pairs())?;
     }
     printer.finish()
 }

@@ -18,6 +18,8 @@ pub struct Printer {
     answers: usize,
     /// Whether the run has several files.
     pub has_files: bool,
+    /// Whether the last answer is needed even if no one reads the output.
+    pub needs_last: bool,
 }
 
 impl Printer {
@@ -30,6 +32,7 @@ impl Printer {
             root_radius,
             answers: 0,
             has_files: false,
+            needs_last: false,
         }
     }
 
@@ -46,7 +49,8 @@ impl Printer {
         } else {
             self.out.line(answer.line())?;
         }
-        Ok(if self.out.is_closed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        let is_over = self.out.is_closed() && !self.needs_last;
+        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     /// Prints the summary of several answers. Returns whether any of them has a collision: the exit code is that of the

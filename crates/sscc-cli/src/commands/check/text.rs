@@ -13,9 +13,13 @@ impl Answer<'_> {
         if self.complete { pairs } else { format!("at least {pairs}") }
     }
 
-    /// Returns the first pair: the earliest one with its time, or the first of the list.
+    /// Returns the first pair: the earliest one with its time, or the first of the list, and the largest depth.
     fn first(&self) -> Option<String> {
-        let Some(times) = self.times else { return self.pairs.first().map(|(i, j)| format!("{i} {j}")) };
+        let Some(times) = self.times else {
+            let deepest = self.depths.iter().flatten().copied().reduce(f64::max);
+            let deepest = deepest.map(|depth| format!(", deepest {}", length(depth))).unwrap_or_default();
+            return self.pairs.first().map(|(i, j)| format!("{i} {j}{deepest}"));
+        };
         let first = times.iter().zip(self.pairs).min_by(|a, b| a.0.total_cmp(b.0));
         first.map(|(time, (i, j))| format!("{i} {j} at t = {time:.4}"))
     }
@@ -37,6 +41,15 @@ impl Answer<'_> {
             None => "free".to_owned(),
         };
         format!("{} {:>9}  {result}", self.place(), duration(self.microseconds))
+    }
+
+    /// Returns the time or the depth of a pair; empty without both.
+    fn of_pair(&self, at: usize) -> String {
+        match (self.times, &self.depths) {
+            (Some(times), _) => format!("  at t = {:.4}", times[at]),
+            (None, Some(depths)) => format!("  depth {}", length(depths[at])),
+            (None, None) => String::new(),
+        }
     }
 
     fn is_root_certified(&self) -> bool {
@@ -65,15 +78,8 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     }
     let pairs = answer.counted();
     let mut lines = vec![format!("COLLIDING: {pairs} of triangles{norm}"), cost];
-    let time = |at: usize| answer.times.map(|times| format!("  at t = {:.4}", times[at]));
-    lines.extend(
-        answer
-            .pairs
-            .iter()
-            .take(MAX_LISTED)
-            .enumerate()
-            .map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", time(at).unwrap_or_default())),
-    );
+    let listed = answer.pairs.iter().take(MAX_LISTED).enumerate();
+    lines.extend(listed.map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", answer.of_pair(at))));
     if answer.count > MAX_LISTED {
         lines.push(format!(
             "     ... and {} more; --json lists all",

@@ -1,7 +1,5 @@
 //! `sscc demo`: certifies and checks the embedded spring, in a few seconds and without input files.
 
-mod animation;
-mod frames;
 mod report;
 mod save;
 
@@ -10,6 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use sscc::CertifyOptions;
+use sscc_bench::demo::{Frames, demo_animation};
 use sscc_modes::mode_frequencies;
 use sscc_modes::shapes::elastic_spring;
 use sscc_sim::make_folder;
@@ -20,7 +19,6 @@ use crate::load;
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::progress::Bar;
-use frames::Frames;
 use report::Report;
 
 /// Frames per second.
@@ -41,8 +39,8 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
     let certificates = load::certify(model, Path::new("the embedded spring"), &options)?;
     let seconds = [modes_seconds, start.elapsed().as_secs_f64()];
 
-    let animation = animation::animate(model, certificates.root_radius());
-    let frames = Frames::check(model, &certificates, &animation)?;
+    let animation = demo_animation(model, certificates.root_radius());
+    let frames = Frames::check(model, &certificates, &animation, &Bar::new("checking"))?;
     let report = Report::new(model, &certificates, &frames, seconds, threads);
     let mut out = Output::new();
     if args.json.json {

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
+use sscc_bench::demo::Frames;
 
-use super::frames::Frames;
 use crate::output::{counted, duration, grouped, length};
 
 #[derive(Serialize)]

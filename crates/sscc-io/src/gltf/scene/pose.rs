@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use sscc::limits;
 
 use super::animated_scene::AnimatedScene;
@@ -65,6 +65,21 @@ impl AnimatedScene {
 }
 
 impl ScenePose<'_> {
+    /// Whether a scale of 0 flattens triangles of the mesh at a node to segments or points: its own, one of its ancestors',
+    /// or one of a joint of its skin.
+    pub fn is_flattened(&self, node: usize) -> bool {
+        let mesh_nodes = &self.scene.mesh_nodes;
+        let Ok(at) = mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node) else { return false };
+        let mesh_node = &mesh_nodes[at];
+        match (&mesh_node.shape.influences, mesh_node.skin) {
+            (Some(influences), Some(skin)) => {
+                let skin = &self.scene.skins[skin];
+                influences.joints.iter().any(|joint| is_flat(&skin.joint_transform(*joint, &self.world)))
+            }
+            _ => is_flat(&self.world[node]),
+        }
+    }
+
     /// Replaces `positions` by the world positions (V, double precision) of the mesh at a node, by its index in the
     /// file. Each vertex is moved by the morph targets first, with the weights of the animation, else of the node, else
     /// of the mesh; then
@@ -103,6 +118,31 @@ impl ScenePose<'_> {
                 refused(format!("the position of vertex {vertex} (counted from 0) is not finite"))
             }
             None => Ok(()),
+        }
+    }
+}
+
+/// Whether a transform maps space to a plane, a line or a point, up to rounding.
+fn is_flat(transform: &DMat4) -> bool {
+    let axes = DMat3::from_mat4(*transform);
+    let lengths = axes.x_axis.length() * axes.y_axis.length() * axes.z_axis.length();
+    axes.determinant().abs() <= 1e-14 * lengths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn scales_of_zero_are_flat() {
+        let turn = DMat4::from_quat(DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(1.1));
+        let scaled = |x: f64, y: f64, z: f64| turn * DMat4::from_scale(DVec3::new(x, y, z)) * turn;
+        for (x, y, z) in [(0.0, 1.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1e-9, 1e-9, 0.0)] {
+            assert!(is_flat(&scaled(x, y, z)), "{x} {y} {z}");
+        }
+        for (x, y, z) in [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1e-9, 1e-9, 1e-9), (1e-3, 1.0, 1e3)] {
+            assert!(!is_flat(&scaled(x, y, z)), "{x} {y} {z}");
         }
     }
 }

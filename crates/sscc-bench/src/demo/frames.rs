@@ -6,32 +6,43 @@ use std::time::Instant;
 use sscc::{Certificates, Error, Method, Progress, Query, ReducedModel};
 use sscc_io::Rows;
 
-use crate::progress::Bar;
-
 /// Repetitions of a root-certified query, which is shorter than a reading of the clock.
 const REPETITIONS: u32 = 1000;
 
 /// The answers of one method, frame by frame.
 pub struct Answers {
+    /// Colliding pairs.
     pub pairs: Vec<Vec<(u32, u32)>>,
+    /// Whether the root's certificate held.
     pub root_certified: Vec<bool>,
+    /// Time of a query.
     pub microseconds: Vec<f64>,
 }
 
 /// The answers of all methods.
 pub struct Frames {
+    /// With certificates.
     pub certified: Answers,
+    /// Without certificates, with BD-tree AABBs.
     pub bd_tree: Answers,
+    /// With a refit of all AABBs.
     pub traditional: Answers,
 }
 
 impl Frames {
     /// Checks every frame by each method, one method after the other, on one thread.
-    pub fn check(model: &ReducedModel, certificates: &Certificates, frames: &Rows) -> Result<Self, Error> {
-        let bar = Bar::new("checking");
+    ///
+    /// # Errors
+    /// When the certificates or a frame do not fit the model, or `progress` cancels.
+    pub fn check(
+        model: &ReducedModel,
+        certificates: &Certificates,
+        frames: &Rows,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
         let answers = |method| {
             let query = Query::with_method(model, certificates, method)?;
-            Answers::of(query, frames, &bar)
+            Answers::of(query, frames, progress)
         };
         Ok(Self {
             certified: answers(Method::Certified)?,
@@ -48,10 +59,10 @@ impl Frames {
 }
 
 impl Answers {
-    fn of(mut query: Query<'_>, frames: &Rows, bar: &Bar) -> Result<Self, Error> {
+    fn of(mut query: Query<'_>, frames: &Rows, progress: &dyn Progress) -> Result<Self, Error> {
         let mut answers = Self { pairs: Vec::new(), root_certified: Vec::new(), microseconds: Vec::new() };
         for (index, q) in frames.iter().enumerate() {
-            if bar.is_cancelled() {
+            if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             let start = Instant::now();
@@ -68,7 +79,7 @@ impl Answers {
             answers.pairs.push(pairs);
             answers.root_certified.push(root_certified);
             answers.microseconds.push(seconds * 1e6);
-            bar.report(index + 1, frames.rows);
+            progress.report(index + 1, frames.rows);
         }
         Ok(answers)
     }

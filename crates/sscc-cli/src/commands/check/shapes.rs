@@ -1,0 +1,60 @@
+//! Writes shapes (`--pose`) and contact curves (`--curves`).
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use anyhow::{Result, bail, ensure};
+use glam::DVec3;
+use sscc::{Pair, TriMesh};
+use sscc_io::{write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
+use sscc_sim::{ContactOptions, DetectionAnswer};
+
+use crate::args::Check;
+use crate::load;
+
+/// Refuses files that cannot be written, before the first query.
+pub fn check(args: &Check) -> Result<()> {
+    let Check { model, certificates, at, motion, options, .. } = args;
+    let files = [&model.modes, certificates, &at.trajectory, &motion.frames, &motion.against];
+    let more = [&motion.against_frames, &options.metric, &options.groups.group_by];
+    let files = files.into_iter().chain(more).flatten().chain(&args.meshes).chain([&model.path]);
+    let inputs: Vec<&Path> = files.map(|file| file.as_path()).collect();
+    for (path, what) in [(&args.pose, "a pose"), (&args.curves, "contact curves")] {
+        let Some(path) = path else { continue };
+        let ending = match ending(path) {
+            Some("ply") => ".ply",
+            Some("obj") => ".obj",
+            _ => bail!("{}: the name of {what} must end in .ply or .obj", path.display()),
+        };
+        load::check_output(path, ending, &inputs)?;
+    }
+    ensure!(args.pose.is_none() || args.pose != args.curves, "--pose and --curves name the same file");
+    Ok(())
+}
+
+/// Returns what the queries compute beside pairs.
+pub fn contacts(args: &Check) -> ContactOptions {
+    ContactOptions { depths: args.depths, curves: args.curves.is_some() }
+}
+
+/// Writes a mesh at these positions with the triangles of these pairs marked.
+pub fn write_pose(path: &Path, mesh: &TriMesh, positions: &[DVec3], pairs: &[Pair]) -> Result<()> {
+    let mut colliding = vec![false; mesh.faces().len()];
+    for &(i, j) in pairs {
+        colliding[i as usize] = true;
+        colliding[j as usize] = true;
+    }
+    let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
+    Ok(write(path, mesh, positions, &colliding)?)
+}
+
+/// Writes the contact curves of an answer that has them.
+pub fn write_curves(path: Option<&Path>, found: &DetectionAnswer<'_>) -> Result<()> {
+    let (Some(path), Some(curves)) = (path, found.curves) else { return Ok(()) };
+    let write = if ending(path) == Some("ply") { write_ply_curves } else { write_obj_curves };
+    Ok(write(path, curves)?)
+}
+
+fn ending(path: &Path) -> Option<&str> {
+    path.extension().and_then(OsStr::to_str)
+}

@@ -1,0 +1,111 @@
+//! Options of certificates, each of which may be absent.
+
+use std::path::PathBuf;
+
+use sscc::{CertifyOptions, ContactFilter, Neighbours, ReducedModel, Scope};
+use sscc_io::splits_vertices;
+
+use super::metric::{center, metric};
+use crate::error::{At, Result};
+use crate::{GroupRules, SimError, available_threads};
+
+/// Options of certificates. Absent ones have their defaults in new certificates, and may be anything in certificates from
+/// a file.
+#[derive(Clone, Debug, Default)]
+pub struct CertificateRequest {
+    /// File of the model.
+    pub model: PathBuf,
+    /// Name of the mesh of a glTF file.
+    pub mesh_name: Option<String>,
+    /// Largest relative error of the root's radius (`--epsilon`).
+    pub epsilon: Option<f64>,
+    /// The metric (`--metric`): `energy`, `displacement`, `mass`, `identity` or a file.
+    pub metric: Option<PathBuf>,
+    /// The centre (`--center`): numbers or a file.
+    pub center: Option<String>,
+    /// Which triangles that share a vertex count (`--neighbours`).
+    pub neighbours: Option<Neighbours>,
+    /// Whether to weld equal vertices (`--weld`); by default where the format splits vertices.
+    pub weld: Option<bool>,
+    /// Whether pairs that collide at rest never count (`--ignore-rest`).
+    pub ignore_rest: bool,
+    /// Which pairs of groups of triangles count.
+    pub groups: GroupRules,
+    /// Maximum number of exceptions (`--max-exceptions`).
+    pub max_exceptions: Option<usize>,
+    /// Which certificates to store (`--scheme`).
+    pub scheme: Option<Scheme>,
+    /// Memory for the pair tree (`--budget`), in bytes for each triangle.
+    pub budget: Option<usize>,
+    /// Number of threads; none: all cores.
+    pub threads: Option<usize>,
+}
+
+/// Which certificates are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Those of the nodes and of the pairs of the root's children.
+    Paper,
+    /// Also the pair tree.
+    Full,
+}
+
+impl CertificateRequest {
+    /// Returns the options to compute certificates with.
+    ///
+    /// # Errors
+    /// When a file cannot be read or does not fit the model, or two options contradict each other.
+    pub fn options(&self, model: &ReducedModel) -> Result<CertifyOptions> {
+        Ok(CertifyOptions {
+            epsilon: self.epsilon.unwrap_or(CertifyOptions::default().epsilon),
+            metric: self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?,
+            center: self.center.as_deref().map(|typed| center(model, typed)).transpose()?,
+            filter: self.filter(model)?,
+            ignore_rest: self.ignore_rest,
+            max_exceptions: self.max_exceptions,
+            budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
+            threads: Some(self.threads.unwrap_or_else(available_threads)),
+        })
+    }
+
+    /// Returns the scope of a query without certificates.
+    ///
+    /// # Errors
+    /// As [`CertificateRequest::options`].
+    pub fn scope(&self, model: &ReducedModel) -> Result<Scope> {
+        let CertifyOptions { metric, center, mut filter, .. } = self.options(model)?;
+        if self.ignore_rest {
+            filter = filter.ignoring_rest(model).in_file(&self.model)?;
+        }
+        let default = Scope::of(model);
+        Ok(Scope {
+            metric: metric.unwrap_or(default.metric),
+            center: center.unwrap_or(default.center),
+            filter,
+            exceptions: Vec::new(),
+        })
+    }
+
+    /// Returns the contact filter; but `ignore_rest` is not part of it.
+    fn filter(&self, model: &ReducedModel) -> Result<ContactFilter> {
+        let weld = self.weld.unwrap_or_else(|| splits_vertices(&self.model));
+        let filter = ContactFilter::new(self.neighbours.unwrap_or_default(), weld);
+        let triangles = model.mesh().faces().len();
+        Ok(match self.groups.of_model(&self.model, self.mesh_name.as_deref(), triangles)? {
+            Some(groups) => filter.with_groups(groups),
+            None => filter,
+        })
+    }
+
+    /// Returns the budget of the pair tree; none without a scheme and a budget.
+    pub(super) fn budget(&self) -> Result<Option<usize>> {
+        match (self.scheme, self.budget) {
+            (Some(Scheme::Paper), None) => Ok(Some(0)),
+            (Some(Scheme::Paper), Some(_)) => {
+                Err(SimError::refused("--scheme paper", "it stores no pair tree: leave --budget out"))
+            }
+            (Some(Scheme::Full), None) => Ok(Some(CertifyOptions::DEFAULT_BUDGET)),
+            (_, budget) => Ok(budget),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Certificates from a file, which must be those of a model and agree with the options that a user states.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use sscc::{Certificates, ContactFilter, ReducedModel};
+use sscc_io::read_certificates;
+
+use super::certificate_request::{CertificateRequest, Scheme};
+use super::metric::{center, metric};
+use crate::SimError;
+use crate::error::{At, Result};
+
+impl CertificateRequest {
+    /// Reads certificates. Refuses those of another model, and those that contradict an option.
+    ///
+    /// # Errors
+    /// When they are refused, or a file cannot be read.
+    pub fn read(&self, path: &Path, model: &ReducedModel) -> Result<Certificates> {
+        let certificates = read_certificates(path)?;
+        certificates.check_model(model).in_file(path)?;
+        self.check_filter(&certificates, model, path)?;
+        match self.contradiction(&certificates, model)? {
+            Some(cause) => Err(SimError::refused(path.display(), cause)),
+            None => Ok(certificates),
+        }
+    }
+
+    fn check_filter(&self, certificates: &Certificates, model: &ReducedModel, path: &Path) -> Result<()> {
+        let known = certificates.filter();
+        let typed =
+            ContactFilter::new(self.neighbours.unwrap_or(known.neighbours), self.weld.unwrap_or(known.weld));
+        let typed = typed.ignoring(known.ignored().iter().copied());
+        let triangles = model.mesh().faces().len();
+        let groups = self.groups.of_model(&self.model, self.mesh_name.as_deref(), triangles)?.map(Arc::new);
+        let typed = match groups.as_ref().or(known.groups()) {
+            Some(groups) => typed.with_groups(Arc::clone(groups)),
+            None => typed,
+        };
+        certificates.check_filter(&typed).in_file(path)
+    }
+
+    /// Returns the first other contradiction: the cause of the refusal.
+    fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<String>> {
+        let epsilon = certificates.parts().epsilon;
+        if let Some(typed) = self.epsilon.filter(|typed| *typed != epsilon) {
+            return Ok(Some(format!("certified with --epsilon {epsilon}, not {typed}; leave the flag out")));
+        }
+        let known = certificates.metric();
+        let form = (known.scales(), known.dense_factor());
+        let metric = self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?;
+        if metric.is_some_and(|typed| (typed.scales(), typed.dense_factor()) != form) {
+            return Ok(Some(format!(
+                "certified with another metric ({}) than --metric; leave the flag out, or certify anew",
+                known.kind().name()
+            )));
+        }
+        let center = self.center.as_deref().map(|typed| center(model, typed)).transpose()?;
+        if center.is_some_and(|typed| typed != certificates.center()) {
+            let cause = "certified about another centre than --center; leave the flag out, or certify anew";
+            return Ok(Some(cause.into()));
+        }
+        let (tree, triangles) = (&certificates.parts().pair_tree, certificates.hierarchy().order().len());
+        self.budget()?;
+        let has_tree = tree.limit() > 0.0;
+        let is_of_scheme = self.scheme.is_none_or(|scheme| has_tree == (scheme == Scheme::Full));
+        let is_in_budget = |bytes: usize| has_tree && tree.bytes() <= bytes.saturating_mul(triangles);
+        if !is_of_scheme || !self.budget.is_none_or(is_in_budget) {
+            return Ok(Some(format!(
+                "its pair tree of {} bytes for {triangles} triangles contradicts --scheme or --budget; leave the flag out, \
+                 or certify anew",
+                tree.bytes()
+            )));
+        }
+        let ignored = certificates.filter().ignored().len() as u64;
+        if self.ignore_rest && ignored != certificates.rest_collisions() {
+            return Ok(Some("certified without --ignore-rest; leave the flag out, or certify anew".into()));
+        }
+        let exceptions = certificates.exceptions().len();
+        Ok(self.max_exceptions.filter(|max| exceptions > *max).map(|_| {
+            format!(
+                "certified with {exceptions} exceptions, more than --max-exceptions allows; leave the flag out, or certify \
+                 anew"
+            )
+        }))
+    }
+}

@@ -1,0 +1,61 @@
+//! Metrics and centres by name, by their numbers, or from files.
+
+use std::path::Path;
+
+use sscc::{Metric, MetricKind, ReducedModel};
+use sscc_io::{read_matrix, read_vector};
+
+use crate::SimError;
+use crate::error::{At, Result};
+
+/// Returns the metric of a model by its name (`displacement`, `mass`, `identity`, `energy`), or from a file of weights
+/// or a dense matrix.
+pub(super) fn metric(model: &ReducedModel, typed: &Path) -> Result<Metric> {
+    let metric = match typed.to_str() {
+        Some("displacement") => Metric::displacement(model.mesh(), model.modes()),
+        Some("mass") => Metric::mass(model.mesh(), model.modes()),
+        Some("identity") => Metric::identity(model.rank()),
+        Some("energy") if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
+        Some("energy") => {
+            let own = model.metric().kind().name();
+            let cause = format!(
+                "the model's own metric is {own}, not energy; make a model with its stiffness by sscc modes --kind linear \
+                 or nonlinear, or give a file"
+            );
+            return Err(SimError::refused("--metric energy", cause));
+        }
+        _ => from_file(model, typed)?,
+    };
+    // Checked here, because later errors cannot name the flag.
+    metric.check(model.mesh(), model.modes()).at(|| format!("--metric {}", typed.display()))?;
+    Ok(metric)
+}
+
+fn from_file(model: &ReducedModel, file: &Path) -> Result<Metric> {
+    let numbers = read_matrix(file)
+        .at(|| "--metric is none of energy, displacement, mass and identity, so it must be a file".into())?;
+    let rank = model.rank();
+    let refused = |cause: String| Err(SimError::refused(file.display(), cause));
+    let made = match (numbers.rows, numbers.columns) {
+        (1, n) | (n, 1) if n == rank => Metric::from_weights(MetricKind::Given, &numbers.data),
+        (n, m) if (n, m) == (rank, rank) => Metric::from_matrix(MetricKind::Given, rank, &numbers.data),
+        (1, n) | (n, 1) => {
+            let matrix = if n == rank * rank { " (a dense matrix must be a .npy)" } else { "" };
+            return refused(format!("the metric has {n} weights, the model has {rank} modes{matrix}"));
+        }
+        (n, m) => return refused(format!("the metric is {n} x {m}, the model has {rank} modes")),
+    };
+    made.in_file(file)
+}
+
+/// Returns the centre: numbers with commas, or a file of numbers.
+pub(super) fn center(model: &ReducedModel, typed: &str) -> Result<Vec<f64>> {
+    let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
+    let center = match numbers {
+        Ok(numbers) => numbers,
+        Err(_) => read_vector(Path::new(typed))
+            .at(|| "--center is not a list of numbers, so it must be a file".into())?,
+    };
+    model.check_coordinates(&center).at(|| format!("--center {typed}"))?;
+    Ok(center)
+}

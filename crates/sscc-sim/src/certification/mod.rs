@@ -1,0 +1,8 @@
+//! Options of certificates as users state them: in part, with names of files. Certificates are computed by them, or read
+//! from a file that must agree with them.
+
+mod certificate_request;
+mod matching;
+mod metric;
+
+pub use certificate_request::{CertificateRequest, Scheme};
