@@ -86,7 +86,10 @@ fn invalid_frames_and_animations() {
         "mesh.obj: only .glb and .gltf files have animations: give --frames",
     );
     refused(&["mesh.obj", "--mesh-name=a"], "only a glTF file can have several meshes");
-    refused(&["mesh.obj", "missing.obj"], "missing.obj: not found");
+    // The answers before the error are printed.
+    let run = sscc(folder, &["check", "mesh.obj", "missing.obj"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(2), "error: missing.obj: not found\n"), "{run:?}");
+    assert!(run.stdout.starts_with("mesh.obj ") && run.stdout.lines().count() == 1, "{run:?}");
 }
 
 #[test]
@@ -190,7 +193,11 @@ fn flags_that_contradict_each_other() {
         (&["--frames=frames.npy", "--q=0"], "cannot be used with"),
         (&["--frames=frames.npy", "--animation=0"], "cannot be used with"),
         (&["--frames=frames.npy", "--pose=a.ply"], "cannot be used with"),
-        (&["--frames=frames.npy", "--fps=10"], "--animation"),
+        (&["--frames=frames.npy", "--fps=10"], "--fps is for animations: add --animation"),
+        (&["--frames=frames.npy", "--times=0"], "--times is for animations: add --animation"),
+        (&["--frames=frames.npy", "--node=1"], "--node is for animations: add --animation"),
+        (&["--frames=frames.npy", "--weights=as-stored"], "--weights is for animations: add --animation"),
+        (&["--fps=10"], "--animation"),
         (&["--against-frames=frames.npy"], "--against"),
         (&["lower.obj", "--against=lower.obj"], "cannot be used with"),
         (&["lower.obj", "--pose=a.ply"], "cannot be used with"),

@@ -9,7 +9,7 @@ pub struct Array<T = f64> {
     shape: Vec<usize>,
     /// Stride of each axis in `data`.
     strides: Vec<usize>,
-    data: Vec<T>,
+    pub(super) data: Vec<T>,
 }
 
 /// Parses a `.npy` file, versions 1 to 3, with numbers of type f8 or f4 in either byte order, in C or Fortran order.

@@ -55,6 +55,16 @@ fn check_flags(args: &Check) -> Result<()> {
     ] {
         ensure!(!is_given, "--{flag} is for models with modes: add --q or --trajectory, or leave it out");
     }
+    // clap does not require --animation where a flag that excludes it is given.
+    for (flag, is_given) in [
+        ("fps", motion.fps.is_some()),
+        ("times", motion.times.is_some()),
+        ("node", motion.node.is_some()),
+        ("weights", motion.weights.is_some()),
+    ] {
+        let has_effect = !is_given || motion.animation.is_some();
+        ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");
+    }
     if motion.against.is_some() {
         let is_filtered = options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest;
         ensure!(
