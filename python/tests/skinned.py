@@ -31,13 +31,13 @@ class Character:
     node: int
 
     @classmethod
-    def load(cls, path: Path) -> Character:
-        """Reads a GLB file; its first node with a skin."""
+    def load(cls, path: Path, place: int = 0) -> Character:
+        """Reads a GLB file; the node at that place among those with a skin."""
         content = path.read_bytes()
         size = struct.unpack_from("<I", content, 12)[0]
         gltf = json.loads(content[20 : 20 + size])
-        node = next(i for i, node in enumerate(gltf["nodes"]) if "skin" in node)
-        return cls(gltf, content[20 + size + 8 :], node)
+        skinned = [i for i, node in enumerate(gltf["nodes"]) if "skin" in node]
+        return cls(gltf, content[20 + size + 8 :], skinned[place])
 
     def array(self, accessor: int) -> NDArray[Any]:
         """The rows of an accessor."""
