@@ -181,9 +181,11 @@ def test_pickled_answers_keep_their_contacts() -> None:
 def test_damaged_pickles_are_refused() -> None:
     make: Any = sscc._sscc._detector_answer  # type: ignore[attr-defined]
     answer = sscc.Detector([[0, 1, 2], [3, 4, 5]]).check(np.concatenate([FACE, SPIKE]))
-    (((pairs, cost), (triangles, _)),) = answer.__reduce__()[1]
+    reduced: Any = answer.__reduce__()
+    (((pairs, cost), (triangles, _)),) = reduced[1]
     assert make(((pairs, cost), (triangles, None))) == answer
     nan = triangles[:16] + np.float64(np.nan).tobytes() + triangles[24:]
+    contacts: Any
     for contacts in (None, (triangles[:-1], None), (triangles[88:] + triangles[:88], None), (nan, None)):
         with pytest.raises(ValueError, match="the pickled answer is damaged"):
             make(((pairs, cost), contacts))

@@ -66,6 +66,8 @@ def test_one_line_finds_self_intersections() -> None:
     assert pairs.tolist() == [[0, 1]] and pairs.dtype == np.uint32 and pairs.shape == (1, 2)
     assert sscc.self_intersections(touching.tolist(), FACES.tolist()).tolist() == [[0, 1]]
     assert sscc.self_intersections(touching.astype("f4"), np.asfortranarray(FACES, "u1")).tolist() == [[0, 1]]
+    vertices: Any
+    faces: Any
     for vertices, faces in [(X, FACES[:0]), (X, []), ([], []), (X[:0], np.zeros((0, 3), int))]:
         none = sscc.self_intersections(vertices, faces)
         assert none.shape == (0, 2) and none.dtype == np.uint32
@@ -300,8 +302,9 @@ def test_attributes_and_representations() -> None:
 
 def test_pickles() -> None:
     x, f = soup(100, np.random.default_rng(3))
+    options: Any
     for options in ({}, {"rest": x}, {"rest": x, "weld": True}, {"weld": np.arange(300) // 2, "ignored": [[0, 1]]}):
-        detector = sscc.Detector(f, **options)  # type: ignore[arg-type]
+        detector = sscc.Detector(f, **options)
         for again in (pickle.loads(pickle.dumps(detector)), copy.deepcopy(detector)):
             assert type(again) is sscc.Detector
             assert again.check(x) == detector.check(x)

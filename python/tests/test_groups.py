@@ -40,6 +40,7 @@ def test_pairs_of_groups_do_not_count(whole: sscc.Model) -> None:
 
 def test_without_ignored_pairs_groups_change_nothing(whole: sscc.Model) -> None:
     groups = [0] * len(whole.faces)
+    ignored: Any
     for ignored in (None, [], np.zeros((0, 2), dtype=int)):
         assert whole.certify(groups=groups, ignore_groups=ignored).digest == whole.certify().digest
         detector = sscc.Detector(whole.faces, groups=groups, ignore_groups=ignored)
