@@ -10,18 +10,27 @@ use sscc::{Error, FrameAnswer, TriMesh};
 use crate::answer::Reduction;
 use crate::arguments::{count, switch};
 use crate::arrays::{floats, line, pairs, table};
-use crate::detector_answer::{DetectorAnswer, DetectorImpacts};
+use crate::contacts::Contacts;
+use crate::detector_answer::{DetectorAnswer, DetectorImpacts, FoundFrame};
 use crate::detector_batch::DetectorBatch;
 use crate::detector_pool::{Built, DetectorMesh, DetectorPool, detector};
 use crate::errors::{kind, refused, value};
+use crate::groups::{ignored_pairs, with_groups};
 use crate::interrupt::{Signals, answer, run_borrowing};
 use crate::model::{face_corners, points};
 use crate::pool;
 use crate::positions::{Frames, NamedPositions, Weld, contact_filter, fault};
 
-/// The arguments of a pickled detector: faces, rest, weld, neighbours, ignored.
-type PickledDetector<'py> =
-    (Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, Bound<'py, PyAny>, &'static str, Bound<'py, PyAny>);
+/// The arguments of a pickled detector: faces, rest, weld, neighbours, ignored, groups, ignore_groups.
+type PickledDetector<'py> = (
+    Bound<'py, PyAny>,
+    Option<Bound<'py, PyAny>>,
+    Bound<'py, PyAny>,
+    &'static str,
+    Bound<'py, PyAny>,
+    Option<Bound<'py, PyAny>>,
+    Option<Bound<'py, PyAny>>,
+);
 
 #[pyclass(frozen, module = "sscc", name = "Detector")]
 pub struct Detector {
@@ -34,6 +43,11 @@ impl Detector {
     /// Returns the hierarchy, from these positions if they are the first.
     fn built(&self, positions: &NamedPositions) -> PyResult<Arc<Built>> {
         self.pool.built(&positions.points, positions.name)
+    }
+
+    /// Adds the triangles of the pairs at these positions.
+    fn found(&self, frame: FrameAnswer, positions: &[DVec3]) -> FoundFrame {
+        FoundFrame::of(frame, |pairs| Contacts::within((&self.pool.mesh.faces, positions), pairs))
     }
 
     /// Answers a query. `work` runs without the GIL, after the hierarchy exists.
@@ -89,7 +103,9 @@ fn as_detector<'a>(other: &'a Bound<'_, PyAny>) -> PyResult<&'a Detector> {
 #[pymethods]
 impl Detector {
     #[new]
-    #[pyo3(signature = (faces, rest=None, *, weld=None, neighbours=None, ignored=None))]
+    #[pyo3(signature = (faces, rest=None, *, weld=None, neighbours=None, ignored=None, groups=None,
+        ignore_groups=None))]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         faces: &Bound<'_, PyAny>,
@@ -97,6 +113,8 @@ impl Detector {
         weld: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         ignored: Option<&Bound<'_, PyAny>>,
+        groups: Option<&Bound<'_, PyAny>>,
+        ignore_groups: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let rest = rest.map(|rest| NamedPositions::of(rest, "rest")).transpose()?;
         let faces = face_corners(faces, rest.as_ref().map(|rest| (rest.points.len(), rest.name)))?;
@@ -108,6 +126,7 @@ impl Detector {
             return Err(value("weld is True, but rest is missing: it says which vertices are equal"));
         }
         let filter = contact_filter(neighbours, &weld, ignored, faces.len())?;
+        let filter = with_groups(filter, faces.len(), groups, ignore_groups)?;
         let detector =
             Self { pool: DetectorPool::of(DetectorMesh { faces, weld, filter }), has_rest: rest.is_some() };
         if let Some(rest) = rest {
@@ -134,7 +153,8 @@ impl Detector {
         };
         self.ask(py, &[&positions], |detector| {
             let pairs = detector.discrete_at_most(&positions.points, limit)?.to_vec();
-            Ok(DetectorAnswer::of(FrameAnswer { pairs, statistics: detector.statistics() }))
+            let frame = FrameAnswer { pairs, statistics: detector.statistics() };
+            Ok(DetectorAnswer::of(self.found(frame, &positions.points)))
         })
     }
 
@@ -156,6 +176,8 @@ impl Detector {
             let built = self.pool.built(first, "frames[0]")?;
             let answers =
                 built.with_first(|detector| detector.batch_at_most(&slices, limit, threads, progress));
+            let found = |(frame, x): (FrameAnswer, &&[DVec3])| self.found(frame, x);
+            let answers = answers.map(|answers| answers.into_iter().zip(&slices).map(found).collect());
             answers.map_err(|error| {
                 let fault = |(frame, x): (usize, &&[DVec3])| Some((frame, fault(x, built.rest.len())?));
                 match slices.iter().enumerate().find_map(fault) {
@@ -190,9 +212,12 @@ impl Detector {
         let other = as_detector(other)?;
         let x = NamedPositions::of(positions, "positions")?;
         let y = NamedPositions::of(other_positions, "other_positions")?;
+        let faces = [self, other].map(|detector| detector.pool.mesh.faces.as_slice());
         self.ask_both(py, &[&x], other, &[&y], |detector, other| {
             let pairs = detector.against(&x.points, other, &y.points)?.to_vec();
-            Ok(DetectorAnswer::of(FrameAnswer { pairs, statistics: detector.statistics() }))
+            let frame = FrameAnswer { pairs, statistics: detector.statistics() };
+            let [x, y] = [(faces[0], x.points.as_slice()), (faces[1], y.points.as_slice())];
+            Ok(DetectorAnswer::of(FoundFrame::of(frame, |pairs| Contacts::between(x, y, pairs))))
         })
     }
 
@@ -244,10 +269,24 @@ impl Detector {
         pairs(py, self.pool.mesh.filter.ignored())
     }
 
+    #[getter]
+    fn groups<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
+        let groups = self.pool.mesh.filter.groups()?;
+        Some(line::<u32>(py, groups.of_triangles().iter().map(|group| u32::from(*group)).collect()))
+    }
+
+    #[getter]
+    fn ignored_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let groups = self.pool.mesh.filter.groups();
+        pairs(py, &groups.map_or_else(Vec::new, |groups| ignored_pairs(groups)))
+    }
+
     /// The copy builds its own hierarchy, from `rest` or the first positions that it checks.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, PickledDetector<'py>>> {
-        let arguments =
-            (self.faces(py)?, self.rest(py)?, self.weld(py)?, self.neighbours(), self.ignored(py)?);
+        let groups = self.groups(py);
+        let ignore_groups = groups.as_ref().map(|_| self.ignored_groups(py)).transpose()?;
+        let (faces, rest, ignored) = (self.faces(py)?, self.rest(py)?, self.ignored(py)?);
+        let arguments = (faces, rest, self.weld(py)?, self.neighbours(), ignored, groups, ignore_groups);
         Ok((py.import("sscc._sscc")?.getattr("_detector")?, arguments))
     }
 
@@ -262,6 +301,7 @@ impl Detector {
 
 /// Constructor for pickled detectors.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn _detector(
     py: Python<'_>,
     faces: &Bound<'_, PyAny>,
@@ -269,8 +309,10 @@ pub fn _detector(
     weld: &Bound<'_, PyAny>,
     neighbours: &Bound<'_, PyAny>,
     ignored: &Bound<'_, PyAny>,
+    groups: Option<&Bound<'_, PyAny>>,
+    ignore_groups: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Detector> {
-    Detector::new(py, faces, rest, Some(weld), Some(neighbours), Some(ignored))
+    Detector::new(py, faces, rest, Some(weld), Some(neighbours), Some(ignored), groups, ignore_groups)
 }
 
 /// Exact self-intersections of a mesh, as an array (n, 2).

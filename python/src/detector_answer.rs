@@ -3,27 +3,76 @@
 //! The cost of an answer depends on earlier calls, because the detector rebuilds its BVH. So equality compares pairs,
 //! times and completeness alone.
 
+use std::sync::Arc;
+
+use glam::DVec3;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
-use sscc::{DetectorStatistics, FrameAnswer, Impact, Pair};
+use pyo3::types::{PyBool, PyBytes, PyList};
+use sscc::{DetectorStatistics, FrameAnswer, Impact, Pair, Penetration};
 
 use crate::answer::{Reduction, pair_bytes, pairs_of_bytes};
-use crate::arrays::{CachedArray, cached, line, pairs};
+use crate::arrays::{CachedArray, cached, frozen, line, pairs, table};
+use crate::contacts::{Contacts, Curve, PickledContacts};
 use crate::errors::{kind, value};
+use crate::interrupt::{answer, run};
 
-/// The pickled form of an answer: pairs, and `complete`, `opened`, `box_tests`, `triangle_tests`, `tree_cost`,
+/// The pickled form of pairs: their bytes, and `complete`, `opened`, `box_tests`, `triangle_tests`, `tree_cost`,
 /// `rebuilds`.
 pub type PickledFrame<'py> = (Bound<'py, PyBytes>, (bool, u64, u64, u64, f64, u64));
 
+/// The pickled form of an answer: pairs, and their triangles if there are any.
+pub type PickledAnswer<'py> = (PickledFrame<'py>, Option<PickledContacts<'py>>);
+
+/// An answer of the core, and the triangles of its pairs.
+#[derive(Clone)]
+pub struct FoundFrame {
+    pub frame: FrameAnswer,
+    /// `None` if there are no pairs.
+    contacts: Option<Arc<Contacts>>,
+}
+
+impl FoundFrame {
+    /// `contacts` copies the triangles of pairs.
+    pub fn of(frame: FrameAnswer, contacts: impl FnOnce(&[Pair]) -> Contacts) -> Self {
+        let contacts = (!frame.pairs.is_empty()).then(|| Arc::new(contacts(&frame.pairs)));
+        Self { frame, contacts }
+    }
+
+    /// Returns the pickled form.
+    pub fn pickled<'py>(&self, py: Python<'py>) -> PickledAnswer<'py> {
+        (pickled(py, &self.frame), self.contacts.as_ref().map(|contacts| contacts.pickled(py)))
+    }
+
+    /// Returns the answer of a pickled form.
+    ///
+    /// # Errors
+    /// If it is damaged.
+    pub fn unpickled((frame, contacts): &PickledAnswer<'_>) -> PyResult<Self> {
+        let contacts = contacts.as_ref().map(Contacts::unpickled).transpose()?.map(Arc::new);
+        let frame = unpickled(frame)?;
+        if frame.pairs.is_empty() == contacts.is_some() {
+            return Err(value(
+                "the pickled answer is damaged: it has pairs without triangles, or the reverse",
+            ));
+        }
+        Ok(Self { frame, contacts })
+    }
+}
+
 #[pyclass(frozen, module = "sscc", name = "DetectorAnswer")]
 pub struct DetectorAnswer {
-    frame: FrameAnswer,
+    found: FoundFrame,
     pairs_array: CachedArray,
 }
 
 impl DetectorAnswer {
-    pub fn of(frame: FrameAnswer) -> Self {
-        Self { frame, pairs_array: CachedArray::new() }
+    pub fn of(found: FoundFrame) -> Self {
+        Self { found, pairs_array: CachedArray::new() }
+    }
+
+    fn penetrations(&self, py: Python<'_>) -> PyResult<Vec<Penetration>> {
+        let Some(contacts) = &self.found.contacts else { return Ok(Vec::new()) };
+        answer(py, || contacts.penetrations(&self.found.frame.pairs))?
     }
 }
 
@@ -31,47 +80,71 @@ impl DetectorAnswer {
 impl DetectorAnswer {
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        cached(py, &self.pairs_array, || pairs(py, &self.frame.pairs))
+        cached(py, &self.pairs_array, || pairs(py, &self.found.frame.pairs))
     }
 
     #[getter]
     fn colliding(&self) -> bool {
-        !self.frame.pairs.is_empty()
+        !self.found.frame.pairs.is_empty()
     }
 
     #[getter]
     fn count(&self) -> usize {
-        self.frame.pairs.len()
+        self.found.frame.pairs.len()
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        self.frame.statistics.complete
+        self.found.frame.statistics.complete
     }
 
     #[getter]
     fn opened(&self) -> u64 {
-        self.frame.statistics.opened
+        self.found.frame.statistics.opened
     }
 
     #[getter]
     fn box_tests(&self) -> u64 {
-        self.frame.statistics.box_tests
+        self.found.frame.statistics.box_tests
     }
 
     #[getter]
     fn triangle_tests(&self) -> u64 {
-        self.frame.statistics.triangle_tests
+        self.found.frame.statistics.triangle_tests
     }
 
     #[getter]
     fn tree_cost(&self) -> f64 {
-        self.frame.statistics.tree_cost
+        self.found.frame.statistics.tree_cost
     }
 
     #[getter]
     fn rebuilds(&self) -> u64 {
-        self.frame.statistics.rebuilds
+        self.found.frame.statistics.rebuilds
+    }
+
+    fn curves<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let curves = match &self.found.contacts {
+            Some(contacts) => {
+                let (contacts, pairs) = (Arc::clone(contacts), self.found.frame.pairs.clone());
+                // On another thread, because nothing cancels the core's work.
+                let silent = PyBool::new(py, false).to_owned().into_any();
+                run(py, Some(&silent), "", move |_| contacts.curves(&pairs))??
+            }
+            None => Vec::new(),
+        };
+        Curve::to_list(py, curves)
+    }
+
+    fn depths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let depths = self.penetrations(py)?.iter().map(|penetration| penetration.depth).collect();
+        frozen(line::<f64>(py, depths))
+    }
+
+    fn directions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let directions = self.penetrations(py)?;
+        let directions = directions.iter().flat_map(|penetration| DVec3::to_array(&penetration.direction));
+        frozen(table::<f64>(py, 3, directions.collect())?)
     }
 
     fn __bool__(&self) -> PyResult<bool> {
@@ -79,15 +152,15 @@ impl DetectorAnswer {
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        is_same(&self.frame, &other.frame)
+        is_same(&self.found.frame, &other.found.frame)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (PickledFrame<'py>,)>> {
-        Ok((py.import("sscc._sscc")?.getattr("_detector_answer")?, (pickled(py, &self.frame),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (PickledAnswer<'py>,)>> {
+        Ok((py.import("sscc._sscc")?.getattr("_detector_answer")?, (self.found.pickled(py),)))
     }
 
     fn __repr__(&self) -> String {
-        match (self.frame.pairs.len(), self.frame.statistics.complete) {
+        match (self.found.frame.pairs.len(), self.found.frame.statistics.complete) {
             (0, _) => "<sscc.DetectorAnswer: free>".into(),
             (count, true) => format!("<sscc.DetectorAnswer: colliding, {count} pairs>"),
             (count, false) => format!("<sscc.DetectorAnswer: colliding, at least {count} pairs>"),
@@ -202,18 +275,18 @@ pub fn is_same(a: &FrameAnswer, b: &FrameAnswer) -> bool {
     a.pairs == b.pairs && a.statistics.complete == b.statistics.complete
 }
 
-/// Returns the pickled form of an answer.
-pub fn pickled<'py>(py: Python<'py>, frame: &FrameAnswer) -> PickledFrame<'py> {
+/// Returns the pickled form of pairs.
+fn pickled<'py>(py: Python<'py>, frame: &FrameAnswer) -> PickledFrame<'py> {
     let s = &frame.statistics;
     let cost = (s.complete, s.opened, s.box_tests, s.triangle_tests, s.tree_cost, s.rebuilds);
     (pair_bytes(py, &frame.pairs), cost)
 }
 
-/// Returns the answer of a pickled form.
+/// Returns the pairs of a pickled form.
 ///
 /// # Errors
 /// If the bytes are not a whole number of pairs.
-pub fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<FrameAnswer> {
+fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<FrameAnswer> {
     let (complete, opened, box_tests, triangle_tests, tree_cost, rebuilds) = *cost;
     let statistics = DetectorStatistics { complete, opened, box_tests, triangle_tests, tree_cost, rebuilds };
     Ok(FrameAnswer { pairs: pairs_of_bytes(bytes)?, statistics })
@@ -221,8 +294,8 @@ pub fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<FrameAnswer> {
 
 /// Constructor for pickled answers.
 #[pyfunction]
-pub fn _detector_answer(frame: PickledFrame<'_>) -> PyResult<DetectorAnswer> {
-    Ok(DetectorAnswer::of(unpickled(&frame)?))
+pub fn _detector_answer(answer: PickledAnswer<'_>) -> PyResult<DetectorAnswer> {
+    Ok(DetectorAnswer::of(FoundFrame::unpickled(&answer)?))
 }
 
 /// Constructor for pickled impacts.

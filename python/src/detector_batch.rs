@@ -7,18 +7,18 @@ use sscc::FrameAnswer;
 
 use crate::answer::Reduction;
 use crate::arrays::{CachedArray, cached, line, table};
-use crate::detector_answer::{DetectorAnswer, PickledFrame, is_same, pickled, unpickled};
+use crate::detector_answer::{DetectorAnswer, FoundFrame, PickledAnswer, is_same};
 use crate::errors::room;
 
 #[pyclass(frozen, module = "sscc", name = "DetectorBatch")]
 pub struct DetectorBatch {
-    frames: Vec<FrameAnswer>,
+    frames: Vec<FoundFrame>,
     /// The arrays of the getters, in their order below.
     arrays: [CachedArray; 9],
 }
 
 impl DetectorBatch {
-    pub fn of(frames: Vec<FrameAnswer>) -> Self {
+    pub fn of(frames: Vec<FoundFrame>) -> Self {
         Self { frames, arrays: std::array::from_fn(|_| CachedArray::new()) }
     }
 
@@ -30,7 +30,7 @@ impl DetectorBatch {
     ) -> PyResult<Bound<'py, PyAny>> {
         cached(py, &self.arrays[column], || {
             let mut items = room(self.frames.len(), "DetectorBatch")?;
-            items.extend(self.frames.iter().map(of));
+            items.extend(self.frames.iter().map(|found| of(&found.frame)));
             Ok(line(py, items))
         })
     }
@@ -76,9 +76,10 @@ impl DetectorBatch {
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         cached(py, &self.arrays[7], || {
-            let total: usize = self.frames.iter().map(|frame| frame.pairs.len()).sum();
+            let total: usize = self.frames.iter().map(|found| found.frame.pairs.len()).sum();
             let mut entries = room(2 * total, "pairs")?;
-            entries.extend(self.frames.iter().flat_map(|frame| &frame.pairs).flat_map(|(i, j)| [*i, *j]));
+            let pairs = self.frames.iter().flat_map(|found| &found.frame.pairs);
+            entries.extend(pairs.flat_map(|(i, j)| [*i, *j]));
             table::<u32>(py, 2, entries)
         })
     }
@@ -89,8 +90,8 @@ impl DetectorBatch {
             let mut offsets = room(self.frames.len() + 1, "offsets")?;
             offsets.push(0_i64);
             let mut end = 0;
-            offsets.extend(self.frames.iter().map(|frame| {
-                end += frame.pairs.len() as i64;
+            offsets.extend(self.frames.iter().map(|found| {
+                end += found.frame.pairs.len() as i64;
                 end
             }));
             Ok(line(py, offsets))
@@ -110,29 +111,29 @@ impl DetectorBatch {
     fn __getitem__(&self, index: isize) -> PyResult<DetectorAnswer> {
         let from_start = if index < 0 { index + self.frames.len() as isize } else { index };
         match usize::try_from(from_start).ok().and_then(|index| self.frames.get(index)) {
-            Some(frame) => Ok(DetectorAnswer::of(frame.clone())),
+            Some(found) => Ok(DetectorAnswer::of(found.clone())),
             None => Err(PyIndexError::new_err(format!("the batch has {} answers", self.frames.len()))),
         }
     }
 
     fn __eq__(&self, other: &Self) -> bool {
         self.frames.len() == other.frames.len()
-            && self.frames.iter().zip(&other.frames).all(|(a, b)| is_same(a, b))
+            && self.frames.iter().zip(&other.frames).all(|(a, b)| is_same(&a.frame, &b.frame))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (Bound<'py, PyList>,)>> {
-        let frames: Vec<PickledFrame<'py>> = self.frames.iter().map(|frame| pickled(py, frame)).collect();
+        let frames: Vec<PickledAnswer<'py>> = self.frames.iter().map(|found| found.pickled(py)).collect();
         Ok((py.import("sscc._sscc")?.getattr("_detector_batch")?, (PyList::new(py, frames)?,)))
     }
 
     fn __repr__(&self) -> String {
-        let colliding = self.frames.iter().filter(|frame| !frame.pairs.is_empty()).count();
+        let colliding = self.frames.iter().filter(|found| !found.frame.pairs.is_empty()).count();
         format!("<sscc.DetectorBatch: {} answers, {colliding} colliding>", self.frames.len())
     }
 }
 
 /// Constructor for pickled batches.
 #[pyfunction]
-pub fn _detector_batch(frames: Vec<PickledFrame<'_>>) -> PyResult<DetectorBatch> {
-    Ok(DetectorBatch::of(frames.iter().map(unpickled).collect::<PyResult<_>>()?))
+pub fn _detector_batch(frames: Vec<PickledAnswer<'_>>) -> PyResult<DetectorBatch> {
+    Ok(DetectorBatch::of(frames.iter().map(FoundFrame::unpickled).collect::<PyResult<_>>()?))
 }

@@ -2,7 +2,7 @@
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
-use sscc::{ContactFilter, TriangleGroups};
+use sscc::{ContactFilter, Pair, TriangleGroups};
 
 use crate::arrays::integers;
 use crate::errors::{refused, value};
@@ -45,6 +45,17 @@ pub fn with_groups(
     };
     let table = table.ignoring(pairs.as_chunks().0.iter().map(|&[a, b]| (a, b)));
     Ok(filter.with_groups(table.map_err(|error| refused(&error, ""))?))
+}
+
+/// Returns the pairs of groups that do not count, sorted.
+pub fn ignored_pairs(groups: &TriangleGroups) -> Vec<Pair> {
+    if groups.others_count() {
+        return groups.listed().map(|(g, h)| (g.into(), h.into())).collect();
+    }
+    // At least half of all pairs do not count, so the list is not much shorter than the search.
+    let all = (0..groups.group_count() as u32).map(|g| g as u16);
+    let pairs = all.clone().flat_map(|g| all.clone().filter(move |h| *h >= g).map(move |h| (g, h)));
+    pairs.filter(|(g, h)| !groups.is_counted(*g, *h)).map(|(g, h)| (g.into(), h.into())).collect()
 }
 
 /// Group numbers; the core refuses those that are too large.

@@ -6,6 +6,8 @@ mod arrays;
 mod batch;
 mod certificates;
 mod certify;
+mod colliding_triangles;
+mod contacts;
 mod core_seconds;
 mod detector;
 mod detector_answer;

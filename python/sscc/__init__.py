@@ -12,6 +12,7 @@ A mesh that deforms by modes, ``x = p + U q``:
 """
 
 from sscc import modes
+from sscc._curve import Curve
 from sscc._sscc import (
     Answer,
     Batch,
@@ -33,6 +34,7 @@ __all__ = [
     "Answer",
     "Batch",
     "Certificates",
+    "Curve",
     "Detector",
     "DetectorAnswer",
     "DetectorBatch",

@@ -5,6 +5,8 @@ from typing import Any, Literal, SupportsIndex, final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sscc._curve import Curve
+
 __version__: str
 
 _Path = str | PathLike[str]
@@ -344,6 +346,8 @@ class Detector:
     neighbours: "exclude" (default): triangles that share a vertex do not count; "include-one-vertex": triangles that
         share one vertex count where they have another common point.
     ignored: (n, 2), pairs of triangles that never count.
+    groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
+    ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.
 
     Raises TypeError or ValueError; the message names the argument and the row.
     """
@@ -356,6 +360,8 @@ class Detector:
         weld: bool | ArrayLike | None = None,
         neighbours: Literal["exclude", "include-one-vertex"] | None = None,
         ignored: ArrayLike | None = None,
+        groups: ArrayLike | None = None,
+        ignore_groups: ArrayLike | None = None,
     ) -> Detector: ...
     def check(
         self, positions: ArrayLike, limit: SupportsIndex | None = None, *, first: bool | None = None
@@ -380,7 +386,7 @@ class Detector:
     ) -> DetectorAnswer:
         """The pairs (triangle of this mesh, triangle of the other) that have a point in common, exactly.
 
-        All such pairs count: neither mesh's ``neighbours``, ``weld`` and ``ignored`` apply.
+        All such pairs count: ``neighbours``, ``weld``, ``ignored`` and groups apply within one mesh.
         """
     def against_continuous(
         self, x0: ArrayLike, x1: ArrayLike, other: Detector, y0: ArrayLike, y1: ArrayLike
@@ -400,6 +406,12 @@ class Detector:
     @property
     def ignored(self) -> _U32:
         """Pairs that never count, (n, 2)."""
+    @property
+    def groups(self) -> _U32 | None:
+        """The group of each triangle, (F,); None if all pairs of groups count."""
+    @property
+    def ignored_groups(self) -> _U32:
+        """Pairs of groups that do not count, (n, 2)."""
 
 @final
 class DetectorAnswer:
@@ -433,6 +445,18 @@ class DetectorAnswer:
     @property
     def rebuilds(self) -> int:
         """How often this copy of the BVH has been rebuilt."""
+    def curves(self) -> list[Curve]:
+        """The curves in which the surfaces intersect: the intersection segments of all pairs, joined.
+
+        They are joined by the vertices, edges and faces on which their ends lie, without a tolerance. Pairs that meet
+        in one point or in a polygon (coplanar triangles) add no segment. A curve ends at a border of the mesh, at a
+        polygon, where more than two segments meet, and where a pair is not listed.
+        """
+    def depths(self) -> _F64:
+        """The penetration depth of each pair, (n,): the length of the smallest translation after which its triangles
+        only touch. 0 where they already only touch, and for coplanar ones."""
+    def directions(self) -> _F64:
+        """The direction of this translation for the second triangle of each pair, (n, 3): unit vectors."""
 
 @final
 class DetectorImpacts:

@@ -31,13 +31,13 @@ class Character:
     node: int
 
     @classmethod
-    def load(cls, path: Path) -> Character:
-        """Reads a GLB file; its first node with a skin."""
+    def load(cls, path: Path, place: int = 0) -> Character:
+        """Reads a GLB file; the node at that place among those with a skin."""
         content = path.read_bytes()
         size = struct.unpack_from("<I", content, 12)[0]
         gltf = json.loads(content[20 : 20 + size])
-        node = next(i for i, node in enumerate(gltf["nodes"]) if "skin" in node)
-        return cls(gltf, content[20 + size + 8 :], node)
+        skinned = [i for i, node in enumerate(gltf["nodes"]) if "skin" in node]
+        return cls(gltf, content[20 + size + 8 :], skinned[place])
 
     def array(self, accessor: int) -> NDArray[Any]:
         """The rows of an accessor."""
@@ -100,7 +100,8 @@ class Character:
 
         skin = self.gltf["skins"][self.gltf["nodes"][self.node]["skin"]]
         inverse = self.array(skin["inverseBindMatrices"]).astype(float).reshape(-1, 4, 4).transpose(0, 2, 1)
-        return np.stack([world(joint) for joint in skin["joints"]]) @ inverse
+        found: F64 = np.stack([world(joint) for joint in skin["joints"]]) @ inverse
+        return found
 
     def positions(self, bones: F64) -> F64:
         """The skinned vertices (V, 3), bone by bone."""
@@ -113,21 +114,24 @@ class Character:
 
 def interpolated(times: F64, values: F64, time: float, is_rotation: bool) -> F64:
     """The value of a track at a time: linear, for rotations by the shorter arc."""
+    found: F64
     after = int(np.clip(np.searchsorted(times, time, side="right"), 1, max(len(times) - 1, 1)))
     if len(times) == 1 or time <= times[0]:
-        found: F64 = values[0]
+        found = values[0]
     elif time >= times[-1]:
         found = values[-1]
     else:
         share = (time - times[after - 1]) / (times[after] - times[after - 1])
         a, b = values[after - 1], values[after]
         if not is_rotation:
-            return a * (1 - share) + b * share
+            found = a * (1 - share) + b * share
+            return found
         a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
         b = b if a @ b >= 0 else -b
         angle = np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)) * 2
         if angle < 1e-9:
-            return a
+            found = a
+            return found
         found = (np.sin((1 - share) * angle) * a + np.sin(share * angle) * b) / np.sin(angle)
     return found / np.linalg.norm(found) if is_rotation else found
 

@@ -66,6 +66,8 @@ def test_one_line_finds_self_intersections() -> None:
     assert pairs.tolist() == [[0, 1]] and pairs.dtype == np.uint32 and pairs.shape == (1, 2)
     assert sscc.self_intersections(touching.tolist(), FACES.tolist()).tolist() == [[0, 1]]
     assert sscc.self_intersections(touching.astype("f4"), np.asfortranarray(FACES, "u1")).tolist() == [[0, 1]]
+    vertices: Any
+    faces: Any
     for vertices, faces in [(X, FACES[:0]), (X, []), ([], []), (X[:0], np.zeros((0, 3), int))]:
         none = sscc.self_intersections(vertices, faces)
         assert none.shape == (0, 2) and none.dtype == np.uint32
@@ -107,20 +109,11 @@ def test_pairs_equal_brute_force(seed: int) -> None:
     assert sscc.self_intersections(unique, joined).tolist() == apart
 
 
-def coincident(positions: F64, faces: I64, pair: tuple[int, int]) -> bool:
-    """Whether two triangles have different vertices at the same position."""
-    i, j = pair
-    return bool((positions[faces[i]][:, None] == positions[faces[j]][None, :]).all(axis=2).any())
-
-
 def check_against_libigl(positions: F64, faces: I64, found: U32) -> int:
     """Checks that the pairs are those of libigl and contacts at coincident vertices. Returns the number of these."""
-    libigl = {(i, j) for i, j in exact.libigl_pairs(positions, faces).tolist()}
-    pairs = {(i, j) for i, j in found.tolist()}
-    assert libigl <= pairs
-    extra = sorted(pairs - libigl)
-    assert all(coincident(positions, faces, pair) for pair in extra), extra[:5]
-    return len(extra)
+    wrong, at_coincident = exact.unexplained(positions, faces, found, exact.libigl_pairs(positions, faces))
+    assert not wrong, "\n".join(wrong)
+    return at_coincident
 
 
 @pytest.mark.usefixtures("libigl")
@@ -146,28 +139,6 @@ def test_libigl_omits_contacts_at_coincident_vertices() -> None:
         welded = sscc.self_intersections(split, faces, weld=True)
         assert np.array_equal(welded, sscc.self_intersections(x + modes @ q, f))
         assert {tuple(pair) for pair in welded.tolist()} <= {tuple(pair) for pair in pairs.tolist()}
-
-
-#: Every mesh of models/ as it is, and the number of its contacts at coincident vertices alone.
-MESHES = {
-    "bunny_6966_closed.off": 0,
-    "bunny_14964_closed.obj": 0,
-    "bunny_69451_open.obj": 0,
-    "bunny_69664_closed.ply": 0,
-    "dragon_77202_closed.ply": 0,
-    "vega_A/A.obj": 0,
-    "ict_face/ict_face_neutral.obj": 0,
-    "selfintersecting/doubleLoopWithCube.obj": 0,
-}
-
-
-@pytest.mark.usefixtures("libigl")
-@pytest.mark.parametrize("name", MESHES)
-def test_real_meshes_equal_libigl(name: str, models: Path) -> None:
-    mesh = sscc.modes.polynomial(models / name)  # a reader of meshes
-    faces = mesh.faces.astype(np.int64)
-    pairs = sscc.self_intersections(mesh.vertices, faces)
-    assert check_against_libigl(mesh.vertices, faces, pairs) == MESHES[name]
 
 
 @pytest.mark.usefixtures("libigl")
@@ -331,8 +302,9 @@ def test_attributes_and_representations() -> None:
 
 def test_pickles() -> None:
     x, f = soup(100, np.random.default_rng(3))
+    options: Any
     for options in ({}, {"rest": x}, {"rest": x, "weld": True}, {"weld": np.arange(300) // 2, "ignored": [[0, 1]]}):
-        detector = sscc.Detector(f, **options)  # type: ignore[arg-type]
+        detector = sscc.Detector(f, **options)
         for again in (pickle.loads(pickle.dumps(detector)), copy.deepcopy(detector)):
             assert type(again) is sscc.Detector
             assert again.check(x) == detector.check(x)
@@ -348,7 +320,7 @@ def test_pickles() -> None:
             getattr(sscc._sscc, name)(b"x")
     with pytest.raises(ValueError, match="damaged"):
         make: Any = sscc._sscc._detector_answer  # type: ignore[attr-defined]
-        make((b"xyz", (True, 0, 0, 0, 0.0, 0)))
+        make(((b"xyz", (True, 0, 0, 0, 0.0, 0)), None))
 
 
 def pairs_of(detector: sscc.Detector, frames: F64) -> list[Any]:
@@ -436,7 +408,7 @@ def test_long_calls_stop_on_ctrl_c() -> None:
     for call in calls:
         assert seconds_until_stopped(call) < MAX_SECONDS
     with pytest.raises(ZeroDivisionError):
-        detector.check_many(np.stack([point] * 4), progress=lambda share: 1 / 0)
+        detector.check_many(np.stack([vertices] * 50 + [point]), progress=lambda share: 1 / 0)
     assert not detector.check(vertices).colliding and not other.check(vertices).colliding
 
 

@@ -1,0 +1,19 @@
+"""Curves in which surfaces intersect."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Curve(NamedTuple):
+    """A polyline in which a mesh intersects itself or another one. Its arrays are read-only."""
+
+    points: NDArray[np.float64]
+    """(n, 3). Each is within rounding of the exact point. A closed curve does not repeat its first point."""
+    pairs: NDArray[np.uint32]
+    """The pair of triangles of each segment, from a point to the next: (n - 1, 2); of a closed curve (n, 2)."""
+    closed: bool
+    """Whether the last point is joined to the first."""
