@@ -30,7 +30,9 @@ pub mod text;
 mod watch;
 mod zero_radius;
 
-pub use detection::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, check_rows, detect};
+pub use detection::{
+    Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, ShapeInMotion, Times, check_rows, detect,
+};
 pub use error::SimError;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::answer::DetectionAnswer;
+use glam::DVec3;
+
+use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
 use super::moving_mesh::MovingMesh;
 use super::request::{Detection, MeshMotion, OtherMesh};
@@ -41,7 +43,7 @@ pub fn detect<E: From<SimError>>(
                 || Worker::new(request, mesh, other.as_ref()),
                 Worker::answer,
                 |index, found| {
-                    let taken = take(&answer(mesh, index, &found?, queries))?;
+                    let taken = take(&answer(mesh, other.as_ref(), index, &found?, [queries, frames]))?;
                     watch.report(before * each + index + 1, queries);
                     Ok::<_, E>(taken)
                 },
@@ -76,18 +78,27 @@ fn at_rest<E: From<SimError>>(
         |index, result: Result<_>| {
             let (mesh, found) = result?;
             watch.report(index + 1, count);
-            take(&answer(&mesh, 0, &found, 1))
+            take(&answer(&mesh, None, 0, &found, [1, 1]))
         },
     );
     taken.map(drop)
 }
 
-fn answer<'a>(
-    mesh: &'a MovingMesh<'_>,
+fn answer<'a, 'w>(
+    mesh: &'a MovingMesh<'w>,
+    other: Option<&'a MovingMesh<'w>>,
     index: usize,
     found: &'a Found,
-    queries: usize,
+    [queries, frames]: [usize; 2],
 ) -> DetectionAnswer<'a> {
+    let shape = |mesh: &'a MovingMesh<'w>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| ShapeInMotion {
+        file: &mesh.file,
+        mesh: &mesh.mesh,
+        x_t0,
+        x_t1,
+    };
+    let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
+    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));
     DetectionAnswer {
         file: &mesh.file,
         mesh: &mesh.mesh,
@@ -104,6 +115,10 @@ fn answer<'a>(
         box_tests: found.statistics.box_tests,
         triangle_tests: found.statistics.triangle_tests,
         queries,
+        frames,
+        frame_times: mesh.times(),
+        shape: next(),
+        other: next(),
     }
 }
 

@@ -13,7 +13,7 @@ mod rows;
 mod times;
 mod worker;
 
-pub use answer::DetectionAnswer;
+pub use answer::{DetectionAnswer, ShapeInMotion};
 pub use detect::detect;
 pub use request::{Animated, Detection, MeshMotion, OtherMesh, Times};
 pub use rows::check_rows;

@@ -117,12 +117,17 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
-    /// Returns the time of a frame, in an animation.
-    pub fn time(&self, frame: usize) -> Option<f64> {
+    /// Returns the times of all frames, in an animation.
+    pub fn times(&self) -> Option<&[f64]> {
         match &self.motion {
-            Motion::Animation { times, .. } => Some(times[frame]),
+            Motion::Animation { times, .. } => Some(times),
             _ => None,
         }
+    }
+
+    /// Returns the time of a frame, in an animation.
+    pub fn time(&self, frame: usize) -> Option<f64> {
+        self.times().map(|times| times[frame])
     }
 
     /// Replaces `positions` by those at a frame. A mesh with one frame has it at all times.

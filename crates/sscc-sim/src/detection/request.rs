@@ -27,6 +27,8 @@ pub struct Detection {
     pub is_continuous: bool,
     /// Maximum number of pairs for each query; of continuous queries the earliest.
     pub limit: usize,
+    /// Whether answers have the positions of each frame, as reports need them.
+    pub has_positions: bool,
     /// Number of threads; none: all cores. Answers do not depend on it.
     pub threads: Option<usize>,
 }
@@ -44,6 +46,7 @@ impl Default for Detection {
             ignore_rest: false,
             is_continuous: false,
             limit: usize::MAX,
+            has_positions: false,
             threads: None,
         }
     }

@@ -32,6 +32,8 @@ pub(super) struct Found {
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: DetectorStatistics,
+    /// Positions of the mesh and of the other one, at the start and the end; empty unless the request asks for them.
+    pub positions: Vec<[Vec<DVec3>; 2]>,
 }
 
 impl<'m, 'w> Worker<'m, 'w> {
@@ -47,7 +49,12 @@ impl<'m, 'w> Worker<'m, 'w> {
             other.read(frame, is_continuous)?;
         }
         let file = &self.side.mesh.file;
-        if is_continuous { self.continuous() } else { self.discrete() }.in_file(file)
+        let mut found = if is_continuous { self.continuous() } else { self.discrete() }.in_file(file)?;
+        if self.request.has_positions {
+            let sides = [&self.side].into_iter().chain(&self.other);
+            found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
+        }
+        Ok(found)
     }
 
     fn discrete(&mut self) -> Result<Found, sscc::Error> {
@@ -60,7 +67,14 @@ impl<'m, 'w> Worker<'m, 'w> {
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let pairs = pairs?.to_vec();
         let statistics = x.detector.statistics();
-        Ok(Found { pairs, times: None, is_complete: statistics.complete, microseconds, statistics })
+        Ok(Found {
+            pairs,
+            times: None,
+            is_complete: statistics.complete,
+            microseconds,
+            statistics,
+            positions: Vec::new(),
+        })
     }
 
     fn continuous(&mut self) -> Result<Found, sscc::Error> {
@@ -80,6 +94,7 @@ impl<'m, 'w> Worker<'m, 'w> {
             is_complete,
             microseconds,
             statistics: x.detector.statistics(),
+            positions: Vec::new(),
         })
     }
 }
