@@ -298,7 +298,7 @@ pub struct Certify {
         "sscc check bunny.obj face.obj --json"
         "sscc check mesh.obj --frames frames/ --continuous"
         "sscc check mesh.obj --frames frames.npy --ignore-rest"
-        "sscc check character.glb --animation wave --fps 60"
+        "sscc check character.glb --animation wave --fps 60 --report wave.html"
         "sscc check face.obj --against bunny.obj"
     ),
     after_help = "\
@@ -339,6 +339,9 @@ pub struct Check {
     #[arg(long, value_name = "FILE", conflicts_with_all =
         ["trajectory", "first", "limit", "frames", "animation", "against", "meshes"])]
     pub pose: Option<PathBuf>,
+    /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

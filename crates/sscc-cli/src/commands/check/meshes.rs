@@ -1,10 +1,13 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use sscc_io::gltf::SkinWeights;
+use sscc_io::write_whole;
 use sscc_sim::{Animated, Detection, DetectionAnswer, MeshMotion, OtherMesh, Times, detect};
+use sscc_view::MeshReport;
 
 use super::pose;
 use super::printer::Printer;
@@ -18,6 +21,9 @@ pub fn check(args: &Check) -> Result<bool> {
     if let Some(path) = &args.pose {
         pose::check(path, &args.model)?;
     }
+    if let Some(path) = &args.report {
+        load::check_output(path, ".html", &[&args.model.path])?;
+    }
     let request = request(args);
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",
@@ -26,12 +32,21 @@ pub fn check(args: &Check) -> Result<bool> {
     };
     let mut printer = Printer::new(noun, args.json.json, None);
     printer.has_files = request.meshes.len() > 1;
+    let mut report = MeshReport::default();
     detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
         if let Some(path) = &args.pose {
             pose::write(path, found.mesh, found.mesh.rest_positions(), found.pairs)?;
         }
-        printer.answer(found)
+        if let Some(path) = &args.report {
+            report.add(found).with_context(|| path.display().to_string())?;
+        }
+        // A report has all frames, also where nobody reads the output.
+        let go_on = args.report.is_some();
+        printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
     })?;
+    if let Some(path) = &args.report {
+        write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
+    }
     printer.finish()
 }
 
@@ -97,6 +112,7 @@ fn request(args: &Check) -> Detection {
         ignore_rest: options.ignore_rest,
         is_continuous: args.continuous,
         limit: super::limit(args),
+        has_positions: args.report.is_some(),
         threads: Some(load::threads(&options.threads)),
     }
 }
