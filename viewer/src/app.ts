@@ -9,6 +9,20 @@ import type { Shape } from "./shape";
 import type { Source } from "./source";
 import type { Stage } from "./stage";
 
+export interface RecordedFrame {
+    /** Number of colliding pairs; null if unknown. */
+    pairs: number | null;
+    /** The largest number in one step since the previous frame. */
+    since: number;
+    /**
+     * Of a continuous check, whose pairs are those of the step to the next frame: the earliest time of impact (0 to 1),
+     * null without pairs.
+     */
+    impact?: number | null | undefined;
+    /** Whether it is the last frame of a continuous check: no step follows. */
+    isEnd?: boolean;
+}
+
 export interface App {
     readonly source: Source;
     readonly scene: Scene;
@@ -24,11 +38,8 @@ export interface App {
     body: Body | null;
     /** The pair chosen in the list of collisions. */
     chosen: [number, number] | null;
-    /**
-     * The displayed frame of a recording: its number of colliding pairs, null if unknown; and the largest number in one
-     * step since the previous frame.
-     */
-    recorded: { pairs: number | null; since: number } | null;
+    /** The displayed frame of a recording. */
+    recorded: RecordedFrame | null;
     /** Updates the marks of colliding triangles. */
     refreshMarks(): void;
     /** Plays q row by row. */

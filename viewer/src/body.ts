@@ -238,7 +238,8 @@ export class Body {
         this.hidden.dispose();
     }
 
-    private place(positions: Float32Array): void {
+    /** Places every vertex of the only instance. */
+    place(positions: Float32Array): void {
         const attribute = this.geometry.getAttribute("position") as THREE.BufferAttribute;
         const { source } = this;
         for (let i = 0; i < source.length; i++) {

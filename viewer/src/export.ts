@@ -3,6 +3,9 @@ import type { App } from "./app";
 import { save } from "./dom";
 import { type MovingBody, writeGlb } from "./glb";
 
+/** Maximum number of frames of meshes in a GLB. */
+const MAX_FRAMES = 1000;
+
 function fileName(app: App, ending: string): string {
     return `${app.shape.model.name.replace(/[^\w.-]+/g, "_") || "shape"}.${ending}`;
 }
@@ -27,6 +30,13 @@ export function track(app: App): { q: number[][]; times: number[] } {
 /** Saves the recording if it is displayed, else the last motion. A report writes the file itself. */
 export async function exportGlb(app: App, recorded: { bodies: MovingBody[]; times: number[] } | null): Promise<void> {
     const { q, times } = track(app);
+    const given = recorded?.bodies.some((body) => body.positions !== null) ?? false;
+    // The weights of n frames are n x n numbers.
+    if (recorded && given && recorded.times.length > MAX_FRAMES)
+        throw new Error(
+            `GLB holds at most ${MAX_FRAMES.toLocaleString("en")} frames, this recording has ` +
+                `${recorded.times.length.toLocaleString("en")}: check fewer`,
+        );
     let file: Blob;
     if (recorded) file = writeGlb(recorded.bodies, recorded.times);
     else if (app.source.live) {
@@ -34,8 +44,11 @@ export async function exportGlb(app: App, recorded: { bodies: MovingBody[]; time
     } else {
         const rows = Float32Array.from(q.flat());
         const { shape } = app;
-        file = writeGlb([{ name: shape.model.name, shape, q: rows, rigid: null, center: [0, 0, 0] }], times);
+        file = writeGlb(
+            [{ name: shape.model.name, shape, q: rows, positions: null, rigid: null, center: [0, 0, 0] }],
+            times,
+        );
     }
     save(fileName(app, "glb"), file);
-    app.say(`saved ${fileName(app, "glb")}: a morph target for each mode that moves`);
+    app.say(`saved ${fileName(app, "glb")}: a morph target for each ${given ? "frame" : "mode that moves"}`);
 }

@@ -14,9 +14,14 @@ export function verdict(app: App): Verdict {
     const { checker, pose, recorded } = app;
     if (recorded) {
         const { pairs } = recorded;
+        if (recorded.isEnd) return { kind: "unknown", text: "the last frame: no step follows" };
         if (pairs === null) return { kind: "unknown", text: "unknown: collisions of this frame were not recorded" };
-        if (pairs > 0) return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")} (as recorded)` };
-        return { kind: "free", text: "free (as recorded)" };
+        const { impact } = recorded;
+        const step = impact === undefined ? "" : " until the next frame";
+        const first = typeof impact === "number" ? `, first at ${impact.toFixed(4)} of the step` : "";
+        if (pairs > 0)
+            return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")}${step}${first} (as recorded)` };
+        return { kind: "free", text: `free${step} (as recorded)` };
     }
     // Decided in the frame that draws the shape. The answer agrees, and adds the cost of the query.
     if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: "free, proven by the root's certificate" };

@@ -1,5 +1,5 @@
 /**
- * Writes a motion as GLB, with rigid motions on the nodes. The morph targets are the modes that move, scaled to their
+ * Writes a motion as GLB, with rigid motions on the nodes. Of meshes, each frame but the first is a morph target. Else the morph targets are the modes that move, scaled to their
  * range; a first target with the weight 1 has the lower ends of all ranges. So all weights are in [0, 1], and programs
  * that clamp weights there, as Blender does, show every vertex at its position.
  */
@@ -10,6 +10,8 @@ export interface MovingBody {
     shape: Shape;
     /** q of all frames (frames x r), row by row. */
     q: Float32Array;
+    /** Positions of all frames, relative to the centre; null if q deforms the shape. */
+    positions: Float32Array | null;
     /** x y z and a quaternion x y z w for each frame. */
     rigid: Float32Array | null;
     center: number[];
@@ -60,8 +62,47 @@ function extent(array: Float32Array | Uint32Array, size: number): { min: number[
     return { min, max };
 }
 
+/** How a mesh moves by morph targets. */
+interface Morphs {
+    base: Float32Array;
+    targets(): { name: string; moves: Float32Array }[];
+    /** Weights of the targets at rest. */
+    rest: number[];
+    /** Weights of all frames, for a body. */
+    weights(body: MovingBody): Float32Array;
+}
+
+/** Given positions: the first frame, and a target for each further one. */
+class GivenFrames implements Morphs {
+    readonly base: Float32Array;
+    readonly rest: number[];
+    private readonly further: Float32Array[];
+
+    constructor(positions: Float32Array, frames: number) {
+        const size = positions.length / frames;
+        const all = Array.from({ length: frames }, (_, f) => positions.subarray(f * size, (f + 1) * size));
+        [this.base] = all;
+        this.further = all.slice(1);
+        this.rest = this.further.map(() => 0);
+    }
+
+    targets(): { name: string; moves: Float32Array }[] {
+        const { base } = this;
+        return this.further.map((x, i) => ({ name: `frame ${i + 1}`, moves: x.map((v, k) => v - base[k]) }));
+    }
+
+    weights(): Float32Array {
+        const width = this.further.length;
+        const weights = new Float32Array((width + 1) * width);
+        for (let f = 1; f <= width; f++) weights[f * width + f - 1] = 1;
+        return weights;
+    }
+}
+
 /** The range of each mode of a shape over several tracks. */
-class Range {
+class Range implements Morphs {
+    readonly base: Float32Array;
+    readonly rest: number[];
     private readonly low: number[];
     private readonly high: number[];
     private readonly moving: number[];
@@ -81,6 +122,8 @@ class Range {
             }
         }
         this.moving = this.low.flatMap((low, k) => (low < this.high[k] ? [k] : []));
+        this.base = shape.positions;
+        this.rest = [1, ...this.moving.map(() => 0)];
     }
 
     targets(): { name: string; moves: Float32Array }[] {
@@ -96,7 +139,7 @@ class Range {
         ];
     }
 
-    weights(q: Float32Array): Float32Array {
+    weights({ q }: MovingBody): Float32Array {
         const { low, high, moving } = this;
         const { rank } = this.shape.model;
         const width = moving.length + 1;
@@ -112,7 +155,7 @@ class Range {
 export function writeGlb(bodies: MovingBody[], times: number[]): Blob {
     const buffer = new Buffer();
     const meshes: object[] = [];
-    const known = new Map<Shape, { at: number; range: Range }>();
+    const known = new Map<Shape, { at: number; morphs: Morphs }>();
     const nodes: object[] = [];
     const roots: number[] = [];
     const samplers: object[] = [];
@@ -124,17 +167,18 @@ export function writeGlb(bodies: MovingBody[], times: number[]): Blob {
             target: { node, path },
         });
     };
-    for (const { name, shape, q, rigid, center } of bodies) {
+    for (const body of bodies) {
+        const { name, shape, positions, rigid, center } = body;
         let moved = known.get(shape);
         if (!moved) {
-            const tracks = bodies.filter((body) => body.shape === shape).map((body) => body.q);
-            const range = new Range(shape, tracks);
-            moved = { at: meshes.push(mesh(shape, range, buffer)) - 1, range };
+            const tracks = bodies.filter((other) => other.shape === shape).map((other) => other.q);
+            const morphs = positions ? new GivenFrames(positions, times.length) : new Range(shape, tracks);
+            moved = { at: meshes.push(mesh(shape, morphs, buffer)) - 1, morphs };
             known.set(shape, moved);
         }
-        const inner = { name, mesh: moved.at, ...(rigid && { translation: center.map((c) => -c) }) };
-        const at = nodes.push(inner) - 1;
-        animate(at, "weights", buffer.add(moved.range.weights(q), "SCALAR"));
+        const moves = positions ? center : rigid && center.map((c) => -c);
+        const at = nodes.push({ name, mesh: moved.at, ...(moves && { translation: moves }) }) - 1;
+        if (moved.morphs.rest.length > 0) animate(at, "weights", buffer.add(moved.morphs.weights(body), "SCALAR"));
         if (!rigid) {
             roots.push(at);
             continue;
@@ -155,29 +199,26 @@ export function writeGlb(bodies: MovingBody[], times: number[]): Blob {
         scenes: [{ nodes: roots }],
         nodes,
         meshes,
-        animations: [{ name: "motion", samplers, channels }],
+        ...(channels.length > 0 && { animations: [{ name: "motion", samplers, channels }] }),
         accessors: buffer.accessors,
         bufferViews: buffer.views,
         buffers: [{ byteLength: buffer.length }],
     });
 }
 
-function mesh(shape: Shape, range: Range, buffer: Buffer): object {
-    const { model, positions, faces } = shape;
+function mesh({ model, faces }: Shape, morphs: Morphs, buffer: Buffer): object {
     const points = (array: Float32Array): number =>
         buffer.add(array, "VEC3", { target: VERTEX_BUFFER, bounds: true });
-    const targets = range.targets();
+    const targets = morphs.targets();
     const primitive = {
-        attributes: { POSITION: points(positions) },
+        attributes: { POSITION: points(morphs.base) },
         indices: buffer.add(faces, "SCALAR", { target: INDEX_BUFFER }),
-        targets: targets.map(({ moves }) => ({ POSITION: points(moves) })),
+        ...(targets.length > 0 && { targets: targets.map(({ moves }) => ({ POSITION: points(moves) })) }),
     };
-    const weights = targets.map((_, i) => (i === 0 ? 1 : 0));
     return {
         name: model.name,
         primitives: [primitive],
-        weights,
-        extras: { targetNames: targets.map((t) => t.name) },
+        ...(targets.length > 0 && { weights: morphs.rest, extras: { targetNames: targets.map((t) => t.name) } }),
     };
 }
 

@@ -1,28 +1,30 @@
 /** The help dialog: keys and answers. */
 import { dismiss, h } from "./dom";
 
-export const KEYS: [string, string][] = [
+/** Keys and what they do; "modes": only of models with modes. */
+export const KEYS: [string, string, "modes"?][] = [
     ["drag, wheel, right drag", "rotate, zoom, pan (touch: one, two fingers)"],
     ["arrows, + −", "rotate and zoom, when the picture has the focus"],
     ["Space", "play or pause; without a recording vibrate the focused mode"],
     [", .", "previous, next frame"],
-    ["[ ]", "focus the slider of the previous, next mode"],
-    ["V", "vibrate the focused mode"],
-    ["C", "move along a random direction to the first self-collision"],
-    ["X", "show a random q"],
-    ["R", "reset q to the centre"],
-    ["L", "load q"],
+    ["[ ]", "focus the slider of the previous, next mode", "modes"],
+    ["V", "vibrate the focused mode", "modes"],
+    ["C", "move along a random direction to the first self-collision", "modes"],
+    ["X", "show a random q", "modes"],
+    ["R", "reset q to the centre", "modes"],
+    ["L", "load q", "modes"],
     ["N, Shift+N", "fly to the next, previous colliding pair"],
     ["F", "show the whole shape"],
     ["U", "switch between z up and y up"],
-    ["K", "switch colours: plain, by radius, opened and culled"],
-    ["B", "show the AABBs of a level"],
+    ["K", "switch colours: plain, by radius, opened and culled", "modes"],
+    ["B", "show the AABBs of a level", "modes"],
     ["P, G", "save a picture, the motion as GLB"],
     ["T", "switch between light and dark"],
     ["?", "show this help"],
 ];
 
-export function help(): void {
+export function help(hasModes: boolean): void {
+    const keys = KEYS.filter(([, , needs]) => hasModes || needs === undefined);
     const dialog = h(
         "dialog",
         { class: "dialog", "aria-label": "help" },
@@ -30,7 +32,7 @@ export function help(): void {
         h(
             "table",
             { class: "keys" },
-            ...KEYS.map(([key, what]) =>
+            ...keys.map(([key, what]) =>
                 h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, key)), h("td", {}, what)),
             ),
         ),

@@ -4,6 +4,7 @@ import { attempt } from "./app";
 import { CertificatesPanel } from "./certificates-panel";
 import { Checker } from "./checker";
 import { CollisionsPanel } from "./collisions-panel";
+import { ContactsPanel } from "./contacts-panel";
 import { h } from "./dom";
 import { exportGlb, exportPng } from "./export";
 import { Frames } from "./frames";
@@ -12,6 +13,7 @@ import { help } from "./help";
 import { keyboard } from "./keyboard";
 import type { Layout, Tab } from "./layout";
 import { loadQ } from "./load-q";
+import { isMesh } from "./mesh";
 import { ModesPanel } from "./modes-panel";
 import { Motion } from "./motion";
 import { Player } from "./player";
@@ -86,15 +88,18 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         frames.invalidate();
     });
 
-    const modes = new ModesPanel(shared);
+    // A mesh of a recording has no modes and no certificates.
+    const modes = isMesh(shape.model) ? null : new ModesPanel(shared);
+    const certificates = isMesh(shape.model) ? null : new CertificatesPanel(shared);
     const collisions = checker ? new CollisionsPanel(shared) : null;
-    const certificates = new CertificatesPanel(shared);
+    const contacts = scene.playback?.contacts ? new ContactsPanel(player) : null;
     const plots = new PlotsPanel(shared);
     player.onFrame((time) => plots.setTime(time));
     const tabs: Tab[] = [
-        { name: "Modes", content: modes.element },
+        ...(modes ? [{ name: "Modes", content: modes.element }] : []),
         ...(collisions ? [{ name: "Collisions", content: collisions.element }] : []),
-        { name: "Certificates", content: certificates.element },
+        ...(contacts ? [{ name: "Collisions", content: contacts.element }] : []),
+        ...(certificates ? [{ name: "Certificates", content: certificates.element }] : []),
         { name: "Plots", content: plots.element },
         ...summary(source),
     ];
@@ -109,31 +114,33 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     layout.button("PNG", "save a picture of the view (P)", actions.png);
     layout.button("GLB", "save the motion as GLB (G)", actions.glb);
     layout.button("◐", "light or dark (T)", actions.theme);
-    layout.button("?", "help (?)", help);
-    const focused = (): number => modes.focused() ?? 0;
+    const keys = (): void => help(modes !== null);
+    layout.button("?", "help (?)", keys);
     keyboard({
-        " ": () => (player.timeline ? player.timeline.toggle() : modes.vibrate(focused())),
+        " ": () => (player.timeline ? player.timeline.toggle() : modes?.vibrate(modes.focused() ?? 0)),
         ",": () => player.step(-1),
         ".": () => player.step(1),
-        "[": () => modes.focus(Math.max(0, (modes.focused() ?? 1) - 1)),
-        "]": () => modes.focus(Math.min(shape.model.rank - 1, (modes.focused() ?? -1) + 1)),
-        v: () => modes.vibrate(focused()),
-        c: checker ? () => modes.randomCollision() : undefined,
-        x: () => modes.random(),
-        r: () => modes.reset(),
-        l: () => loadQ(shared),
-        n: () => collisions?.next(1),
-        N: () => collisions?.next(-1),
+        n: () => (collisions ?? contacts)?.next(1),
+        N: () => (collisions ?? contacts)?.next(-1),
         f: () => stage?.flyHome(),
         u: () => player.turnUp(),
-        k: () => certificates.cycle(),
-        b: () => certificates.toggleBoxes(),
         p: actions.png,
         g: actions.glb,
         t: actions.theme,
-        "?": help,
+        "?": keys,
+        ...(modes && {
+            "[": () => modes.focus(Math.max(0, (modes.focused() ?? 1) - 1)),
+            "]": () => modes.focus(Math.min(shape.model.rank - 1, (modes.focused() ?? -1) + 1)),
+            v: () => modes.vibrate(modes.focused() ?? 0),
+            c: checker ? () => modes.randomCollision() : undefined,
+            x: () => modes.random(),
+            r: () => modes.reset(),
+            l: () => loadQ(shared),
+        }),
+        ...(certificates && { k: () => certificates.cycle(), b: () => certificates.toggleBoxes() }),
     });
     await player.begin();
+    contacts?.changed();
     // For tests and debugging.
     Object.assign(globalThis, { sscc: shared, player });
 }

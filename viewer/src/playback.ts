@@ -1,18 +1,28 @@
-/** Recorded motions: several bodies with q and rigid motion, or one body whose q moves the shape of the sliders. */
+/**
+ * Recorded motions: several bodies with q and rigid motion, one body whose q moves the shape of the sliders, or meshes
+ * with the positions of each frame.
+ */
 import * as THREE from "three";
 import type { App } from "./app";
 import type { Body } from "./body";
+import { type Contact, Contacts } from "./contacts";
 import type { MovingBody } from "./glb";
 import type { PlaybackData } from "./protocol";
 import type { Shape } from "./shape";
 import type { Source } from "./source";
 
-interface StagedBody {
+interface Track {
+    /** Empty for positions. */
+    q: Float32Array;
+    /** Positions of all frames, relative to the centre. */
+    positions: Float32Array | null;
+    rigid: Float32Array | null;
+}
+
+interface StagedBody extends Track {
     body: Body | null;
     instance: number;
     shape: Shape;
-    q: Float32Array;
-    rigid: Float32Array | null;
     center: number[];
     pairs: number[] | null;
 }
@@ -30,8 +40,9 @@ export class Playback {
         private readonly app: App,
         readonly data: PlaybackData,
         private readonly shapes: Map<number, Shape>,
-        private readonly tracks: { q: Float32Array; rigid: Float32Array | null }[],
+        private readonly tracks: Track[],
         private readonly colliding: Colliding | null,
+        readonly contacts: Contacts | null,
     ) {}
 
     static async load(
@@ -46,7 +57,8 @@ export class Playback {
             if (!shapes.has(body.model)) shapes.set(body.model, await shapeOf(body.model));
         const tracks = await Promise.all(
             data.bodies.map(async (b) => ({
-                q: await floats(b.q),
+                q: b.q === undefined ? new Float32Array(0) : await floats(b.q),
+                positions: b.positions === undefined ? null : await floats(b.positions),
                 rigid: b.rigid === null ? null : await floats(b.rigid),
             })),
         );
@@ -58,12 +70,23 @@ export class Playback {
             ]);
             colliding = { offsets: new Uint32Array(offsets), triangles: new Uint32Array(triangles) };
         }
-        return new Playback(app, data, shapes, tracks, colliding);
+        tracks.forEach(({ positions }, i) => {
+            const { name, model } = data.bodies[i];
+            if (positions && positions.length !== data.times.length * shapes.get(model)!.positions.length)
+                throw new Error(`the positions of ${name} have a wrong size: write the report anew`);
+        });
+        return new Playback(app, data, shapes, tracks, colliding, await Contacts.load(source, data));
+    }
+
+    /** Whether the recording has the positions of meshes without modes. */
+    get given(): boolean {
+        return this.tracks.some((track) => track.positions !== null);
     }
 
     /** Whether the recording is one body that only deforms: it moves the shape of the sliders. */
     get posed(): boolean {
-        return this.data.bodies.length === 1 && this.data.bodies[0].rigid === null && this.data.ground === null;
+        const { bodies, ground } = this.data;
+        return !this.given && bodies.length === 1 && bodies[0].rigid === null && ground === null;
     }
 
     get frames(): number {
@@ -99,8 +122,8 @@ export class Playback {
         return q.subarray(frame * rank, (frame + 1) * rank);
     }
 
-    /** Adds all bodies to the stage. */
-    enter(): void {
+    /** Adds all bodies to the stage. `up`: the upper side of meshes; that of simulations is z. */
+    enter(up: "y" | "z"): void {
         const { stage } = this.app;
         if (this.posed || !stage) return;
         stage.removeBodies();
@@ -119,9 +142,14 @@ export class Playback {
             center: b.center,
             pairs: b.pairs,
         }));
+        stage.setGround(this.data.ground, this.extent().radius * 4);
+        this.look(this.given ? up : "z");
+    }
+
+    /** Points the camera at all bodies. */
+    look(up: "y" | "z"): void {
         const { middle, radius } = this.extent();
-        stage.setGround(this.data.ground, radius * 4);
-        stage.frame(middle, radius, "z");
+        this.app.stage?.frame(middle, radius, up);
     }
 
     /** Displays one frame as recorded. */
@@ -139,29 +167,63 @@ export class Playback {
             }
             return;
         }
-        app.recorded = recorded;
+        app.recorded = { ...recorded, impact: this.contacts?.impact(frame), isEnd: this.isEnd(frame) };
         this.bodies.forEach((b, i) => {
-            b.body?.setQ(b.instance, this.row(i, frame));
+            if (b.positions) b.body?.place(this.positions(i, frame)!);
+            else b.body?.setQ(b.instance, this.row(i, frame));
             b.body?.setMatrix(b.instance, this.matrix(b, frame));
         });
         this.mark(frame);
+        if (this.contacts) app.stage?.curves.show(this.contacts.curves(frame));
         app.frames.invalidate();
+    }
+
+    /** Whether a frame is the last one of a continuous check: no step follows. */
+    isEnd(frame: number): boolean {
+        return (this.contacts?.isContinuous ?? false) && frame === this.frames - 1;
+    }
+
+    /** The positions of a body in a frame; null if it deforms by q. */
+    positions(body: number, frame: number): Float32Array | null {
+        const { positions } = this.tracks[body];
+        if (!positions) return null;
+        const size = positions.length / this.frames;
+        return positions.subarray(frame * size, (frame + 1) * size);
+    }
+
+    /** Marks the pair of a frame, and flies to it. */
+    choose(contact: Contact, frame: number): void {
+        const corners = contact.bodies.flatMap((body, side) => {
+            const x = this.positions(body, frame)!;
+            const { faces } = this.shapes.get(this.data.bodies[body].model)!;
+            return [0, 1, 2].map((c) => {
+                const v = 3 * faces[3 * contact.pair[side] + c];
+                return new THREE.Vector3(x[v], x[v + 1], x[v + 2]);
+            });
+        });
+        const middle = corners.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(corners.length);
+        const reach = Math.max(...corners.map((p) => p.distanceTo(middle)));
+        this.mark(frame, contact);
+        this.app.stage?.flyTo(middle.toArray(), reach);
+        this.app.frames.invalidate();
     }
 
     /** The colliding triangles of a body in a frame; null if they were not recorded. */
     triangles(body: number, frame: number): Uint32Array | null {
+        if (this.contacts) return this.contacts.triangles(frame, body);
         if (!this.colliding) return null;
         const at = frame * this.data.bodies.length + body;
         return this.colliding.triangles.subarray(this.colliding.offsets[at], this.colliding.offsets[at + 1]);
     }
 
-    private mark(frame: number): void {
-        if (!this.colliding) return;
+    private mark(frame: number, chosen: Contact | null = null): void {
+        if (!this.colliding && !this.contacts) return;
         const any = this.bodies.some((_, i) => (this.triangles(i, frame)?.length ?? 0) > 0);
         if (!any && !this.marked) return;
         this.marked = any;
         this.bodies.forEach((b, i) => {
-            b.body?.setMarks(b.instance, this.triangles(i, frame) ?? []);
+            const own = chosen?.pair.filter((_, side) => chosen.bodies[side] === i) ?? [];
+            b.body?.setMarks(b.instance, this.triangles(i, frame) ?? [], own);
         });
     }
 
@@ -180,6 +242,11 @@ export class Playback {
     private extent(): { middle: [number, number, number]; radius: number } {
         const box = new THREE.Box3();
         for (const b of this.bodies) {
+            if (b.positions) {
+                const { min, max } = b.shape.model.box;
+                box.union(new THREE.Box3(new THREE.Vector3(...min), new THREE.Vector3(...max)));
+                continue;
+            }
             for (let f = 0; f < this.frames; f += Math.max(1, Math.floor(this.frames / 12))) {
                 const at = new THREE.Vector3(...b.shape.middle).applyMatrix4(this.matrix(b, f));
                 const size = b.shape.radius * 0.8;

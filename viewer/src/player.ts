@@ -48,7 +48,9 @@ export class Player {
         const sound =
             data.sound === null ? null : new Blob([await app.source.array(data.sound)], { type: "audio/wav" });
         const { pairs, since } = this.recorded;
-        this.open({ times: data.times, pairs, since, sound, show: (frame) => this.show(frame) });
+        const { clock, contacts } = data;
+        const contact = contacts?.is_between ? "contact" : "self-contact";
+        this.open({ times: data.times, pairs, since, sound, clock, contact, show: (frame) => this.show(frame) });
         this.enterPlayback();
     }
 
@@ -66,6 +68,11 @@ export class Player {
         this.open({ times, pairs: null, since: null, sound: null, show });
         this.timeline?.seek(0);
         this.timeline?.start();
+    }
+
+    /** The recording, if it is displayed and has the positions of meshes. */
+    get meshes(): Playback | null {
+        return !this.exploring && this.recorded?.given ? this.recorded : null;
     }
 
     /** The recording while it is displayed; else null. */
@@ -99,6 +106,7 @@ export class Player {
         this.up = this.up === "y" ? "z" : "y";
         const { stage, shape } = this.app;
         if (this.exploring) stage?.frame(shape.middle, shape.radius, this.up);
+        else this.meshes?.look(this.up);
     }
 
     private open(track: Track): void {
@@ -108,6 +116,7 @@ export class Player {
             for (const listener of this.listeners) listener(time);
         });
         this.timeline.element.append(this.modeButton);
+        this.timeline.element.hidden = track.times.length < 2;
         this.layout.below.append(this.timeline.element);
     }
 
@@ -129,7 +138,7 @@ export class Player {
         this.app.motion.stop();
         if (!this.recorded.posed) {
             this.app.body = null;
-            this.recorded.enter();
+            this.recorded.enter(this.up);
         }
         this.show(this.timeline.frame);
     }

@@ -47,6 +47,7 @@ export class PlotsPanel {
         const { scene } = app;
         const pairs = scene.playback?.bodies.flatMap((b) => (b.pairs ? [b.pairs] : [])) ?? [];
         const spans = contactSpans(scene.playback?.times ?? [], pairs, scene.playback?.pairs_since ?? null);
+        const noun = scene.playback?.contacts?.is_between ? "contact" : "self-contact";
         const overTime = scene.playback?.costs ?? null;
         const all = [
             ...(overTime ? [overTime] : []),
@@ -62,7 +63,7 @@ export class PlotsPanel {
         if (all.length === 0) this.element.append(h("p", { class: "hint" }, "There is nothing to plot."));
         if (spans.length > 0)
             this.element.prepend(
-                h("p", { class: "hint" }, h("span", { class: "span-key", "aria-hidden": "true" }), "self-contact"),
+                h("p", { class: "hint" }, h("span", { class: "span-key", "aria-hidden": "true" }), noun),
             );
     }
 

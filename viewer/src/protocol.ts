@@ -10,12 +10,15 @@ export interface Level {
     capped: number;
 }
 
+/** A model with modes and certificates. A mesh of a recording has neither: see mesh.ts. */
 export interface Model {
     name: string;
     triangles: number;
     vertices: number;
     rank: number;
-    arrays: { positions: string; faces: string; modes: string };
+    /** A mesh has no modes. */
+    arrays: { positions: string; faces: string; modes?: string };
+    /** The AABB at rest; of a mesh, that of all frames. */
     box: { min: number[]; max: number[] };
     frequencies: (number | null)[] | null;
     mode_names: string[] | null;
@@ -55,11 +58,25 @@ export interface PlotData {
 export interface PlaybackBody {
     name: string;
     model: number;
-    q: string;
+    /** q of each frame; of a mesh its positions, relative to the centre. */
+    q?: string;
+    positions?: string;
     rigid: string | null;
+    /** The point about which the body turns. Of meshes the origin of the page's coordinates, the same for all. */
     center: number[];
-    /** Colliding pairs of triangles in each frame. */
+    /** Colliding pairs of triangles in each frame, or of a continuous check in the step after it. */
     pairs: number[] | null;
+}
+
+/** Colliding pairs of each frame and body; of a continuous check those of the step after each frame. */
+export interface ContactsData {
+    /** One for each list, ordered by frame, then by body, and the end. */
+    offsets: string;
+    pairs: string;
+    /** Times of impact from 0 to 1, of a continuous check. */
+    times: string | null;
+    /** Whether the second triangles belong to the second body, else to the body of the list. */
+    is_between: boolean;
 }
 
 export interface PlaybackData {
@@ -71,6 +88,12 @@ export interface PlaybackData {
      */
     pairs_since?: number[] | null;
     colliding: { offsets: string; triangles: string } | null;
+    /** Pairs and curves of meshes; reports of earlier versions have none. */
+    contacts?: ContactsData | null;
+    /** Segments of two points; offsets by frame. */
+    curves?: { offsets: string; segments: string } | null;
+    /** How a frame is named; by its time in reports of earlier versions. */
+    clock?: "time" | "frame" | "frame_and_time";
     ground: number | null;
     sound: string | null;
     costs: PlotData | null;

@@ -94,3 +94,42 @@ void main() {
     if (fract((gl_FragCoord.x + gl_FragCoord.y) / stripe) < 0.33) discard;
     colour = vec4(hit, 0.42);
 }`;
+
+/**
+ * A segment as a rectangle in the picture. Its points are moved toward the eye by a small share of their distance, which
+ * leaves their place in the picture: otherwise the surface that contains them would hide half of them.
+ */
+export const curveVertexShader = /* glsl */ `
+precision highp float;
+in vec3 begin;
+in vec3 end;
+uniform vec2 size;
+uniform float width;
+out float across;
+
+void main() {
+    vec4 a = projectionMatrix * vec4((modelViewMatrix * vec4(begin, 1.0)).xyz * 0.9985, 1.0);
+    vec4 b = projectionMatrix * vec4((modelViewMatrix * vec4(end, 1.0)).xyz * 0.9985, 1.0);
+    if (a.w <= 0.0 || b.w <= 0.0) {
+        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+        return;
+    }
+    vec2 line = (b.xy / b.w - a.xy / a.w) * size;
+    float far = length(line);
+    vec2 along = far > 1e-6 ? line / far : vec2(1.0, 0.0);
+    vec2 side = vec2(-along.y, along.x) * position.y + along * (2.0 * position.x - 1.0) * 0.4;
+    vec4 at = position.x < 0.5 ? a : b;
+    across = position.y;
+    gl_Position = vec4(at.xy + side * width / size * at.w, at.zw);
+}`;
+
+export const curveFragmentShader = /* glsl */ `
+precision highp float;
+in float across;
+uniform vec3 core;
+uniform vec3 edge;
+uniform float opacity;
+out vec4 colour;
+void main() {
+    colour = vec4(abs(across) < 0.5 ? core : edge, opacity);
+}`;

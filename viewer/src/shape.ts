@@ -15,7 +15,11 @@ export class Shape {
 
     static async load(source: Source, model: Model): Promise<Shape> {
         const { positions, faces, modes } = model.arrays;
-        const [p, f, u] = await Promise.all([source.array(positions), source.array(faces), source.array(modes)]);
+        const [p, f, u] = await Promise.all([
+            source.array(positions),
+            source.array(faces),
+            modes === undefined ? new ArrayBuffer(0) : source.array(modes),
+        ]);
         const shape = new Shape(model, new Float32Array(p), new Uint32Array(f), new Float32Array(u));
         const { vertices, triangles, rank } = model;
         const sizes = [shape.positions.length, shape.faces.length, shape.modes.length];

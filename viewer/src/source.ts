@@ -1,4 +1,5 @@
 /** The two sources of the page's data: the local server, or the report within the page. */
+import { completeScene } from "./mesh";
 import type { Report, Scene } from "./protocol";
 
 /** The source has no such data, or the server refuses a request. */
@@ -26,12 +27,15 @@ class ReportSource implements Source {
     readonly live = false;
     readonly scene: Scene;
     constructor(private readonly report: Report) {
-        this.scene = report.scene;
+        this.scene = completeScene(report.scene);
     }
     async array(name: string): Promise<ArrayBuffer> {
         const text = this.report.arrays[name];
         if (text === undefined) throw new RequestError(`the report has no array '${name}'`);
-        return Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+        const letters = atob(text);
+        const bytes = new Uint8Array(letters.length);
+        for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
+        return bytes.buffer;
     }
     ask<T>(): Promise<T> {
         return Promise.reject(new RequestError("a report has no server for this request"));

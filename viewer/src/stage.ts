@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Body } from "./body";
+import { Curves } from "./curves";
 import type { Frames } from "./frames";
 import type { Shape } from "./shape";
 import { colours } from "./theme";
@@ -13,6 +14,7 @@ export class Stage {
     readonly scene = new THREE.Scene();
     readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
     readonly bodies: Body[] = [];
+    readonly curves = new Curves();
     private readonly renderer: THREE.WebGLRenderer;
     private controls: OrbitControls;
     private home = { middle: new THREE.Vector3(), radius: 1 };
@@ -32,6 +34,7 @@ export class Stage {
         if (!context) throw new Error("no WebGL 2");
         this.renderer = new THREE.WebGLRenderer({ canvas, context });
         this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+        this.scene.add(this.curves.group);
         this.controls = this.newControls();
         new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
         canvas.addEventListener("keydown", (event) => this.key(event));
@@ -56,12 +59,14 @@ export class Stage {
             this.scene.remove(body.group);
             body.dispose();
         }
+        this.curves.clear();
     }
 
     recolour(): void {
         const now = colours();
         this.scene.background = new THREE.Color(...now.background);
         for (const body of this.bodies) body.setColours(now, this.renderer.getPixelRatio());
+        this.curves.setColours(now);
         if (this.ground) (this.ground.material as THREE.LineBasicMaterial).color.setRGB(...now.ground);
         if (this.boxes) (this.boxes.material as THREE.LineBasicMaterial).color.setRGB(...now.line);
         this.frames.invalidate();
@@ -155,6 +160,7 @@ export class Stage {
     }
 
     draw(): void {
+        this.curves.fit(this.renderer);
         this.renderer.render(this.scene, this.camera);
     }
 

@@ -7,10 +7,14 @@ export interface Colours {
     hitDark: [number, number, number];
     chosen: [number, number, number];
     line: [number, number, number];
+    curve: [number, number, number];
+    curveEdge: [number, number, number];
 }
 
 function parse(text: string): [number, number, number] {
-    const hex = text.trim().replace("#", "");
+    const typed = text.trim().replace("#", "");
+    // The build shortens #ffffff to #fff.
+    const hex = typed.length === 3 ? typed.replace(/./g, "$&$&") : typed;
     return [0, 2, 4].map((i) => Number.parseInt(hex.slice(i, i + 2), 16) / 255) as [number, number, number];
 }
 
@@ -25,6 +29,8 @@ export function colours(): Colours {
         hitDark: get("hit-dark"),
         chosen: get("chosen"),
         line: get("box-line"),
+        curve: get("curve"),
+        curveEdge: get("curve-edge"),
     };
 }
 

@@ -13,6 +13,10 @@ export interface Track {
     pairs: number[] | null;
     /** The largest number of pairs in one step between the previous frame and each frame; null without such steps. */
     since: number[] | null;
+    /** How a frame is named: by its time, if undefined. */
+    clock?: "time" | "frame" | "frame_and_time" | undefined;
+    /** The word for contacts; "self-contact" if undefined. */
+    contact?: string;
     show(frame: number): void;
     sound: Blob | null;
 }
@@ -57,14 +61,15 @@ export class Timeline {
             ),
         );
         const contact = times.some((_, frame) => this.touches(frame));
+        const noun = track.contact ?? "self-contact";
         const jump = (step: number): HTMLButtonElement =>
             h(
                 "button",
                 {
                     type: "button",
                     class: "small",
-                    "aria-label": `${step > 0 ? "next" : "previous"} self-contact`,
-                    title: `${step > 0 ? "next" : "previous"} self-contact`,
+                    "aria-label": `${step > 0 ? "next" : "previous"} ${noun}`,
+                    title: `${step > 0 ? "next" : "previous"} ${noun}`,
                     onclick: () => this.jump(step),
                 },
                 step > 0 ? "▲›" : "‹▲",
@@ -180,8 +185,13 @@ export class Timeline {
         this.slider.value = String(this.frame);
         const touching = pairs && pairs[this.frame] > 0 ? `, ${count(pairs[this.frame], "colliding pair")}` : "";
         const touched = since && since[this.frame] > 0 ? ", collided between frames" : "";
-        this.slider.setAttribute("aria-valuetext", `${digits(times[this.frame], 3)} seconds${touching}${touched}`);
-        this.clock.textContent = `${times[this.frame].toFixed(3)} s`;
+        const clock = this.track.clock ?? "time";
+        const [number, seconds] = [clock !== "time", clock !== "frame"];
+        const name = number ? `frame ${this.frame}` : "";
+        const between = number && seconds ? ", " : "";
+        const spoken = `${name}${between}${seconds ? `${digits(times[this.frame], 3)} seconds` : ""}`;
+        this.slider.setAttribute("aria-valuetext", `${spoken}${touching}${touched}`);
+        this.clock.textContent = `${name}${between}${seconds ? `${times[this.frame].toFixed(3)} s` : ""}`;
     }
 
     private respeed(): void {

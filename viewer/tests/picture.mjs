@@ -70,6 +70,9 @@ function count(picture, wanted) {
 /** Number of pixels in the orange of colliding triangles, which nothing else has. */
 export const orange = (picture) => count(picture, (r, g, b) => r > 150 && r > 1.6 * g && g > b);
 
+/** Number of pixels in the white of curves. */
+export const white = (picture) => count(picture, (r, g, b) => Math.min(r, g, b) > 248);
+
 /** Number of pixels in the yellow of deep nodes. */
 export const yellow = (picture) => count(picture, (r, g, b) => r > 1.3 * b && r < 1.5 * g);
 

@@ -298,7 +298,7 @@ pub struct Certify {
         "sscc check bunny.obj face.obj --json"
         "sscc check mesh.obj --frames frames/ --continuous"
         "sscc check mesh.obj --frames frames.npy --ignore-rest"
-        "sscc check character.glb --animation wave --fps 60"
+        "sscc check character.glb --animation wave --fps 60 --report wave.html"
         "sscc check face.obj --against bunny.obj --curves cut.obj"
         "sscc check bunny.obj --depths --json"
     ),
@@ -336,9 +336,8 @@ pub struct Check {
     /// limit stops the search, the count is a lower bound
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
-    /// Also write the shape at --q, or the only mesh, with its colliding triangles marked: .ply (red) or .obj (in groups)
-    #[arg(long, value_name = "FILE", conflicts_with_all =
-        ["trajectory", "first", "limit", "frames", "animation", "against", "meshes"])]
+    /// Also write the shape of the last answer with its colliding triangles marked: .ply (red) or .obj (in groups)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "first", "limit", "against", "meshes"])]
     pub pose: Option<PathBuf>,
     /// Also write the curves in which the last answer's surfaces intersect, as polylines: .obj or .ply
     #[arg(long, value_name = "FILE", conflicts_with_all = ["continuous", "first", "limit"])]
@@ -346,6 +345,9 @@ pub struct Check {
     /// Add the penetration depth of each pair, and the direction in which its second triangle leaves the first
     #[arg(long, conflicts_with = "continuous")]
     pub depths: bool,
+    /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

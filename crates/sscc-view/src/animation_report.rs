@@ -3,7 +3,8 @@
 use sscc::{Certificates, ReducedModel};
 
 use crate::{
-    Arrays, Axis, Body, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series, ViewError,
+    Arrays, Axis, Body, Clock, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series,
+    Track, ViewError,
 };
 
 /// An animation of one shape, and the answers of the queries in its frames.
@@ -65,7 +66,7 @@ impl Animation<'_> {
             bodies: vec![Body {
                 name: self.name.into(),
                 model: 0,
-                q: arrays.add_f32("q-0", self.q.iter().map(|x| *x as f32)),
+                track: Track::Q(arrays.add_f32("q-0", self.q.iter().map(|x| *x as f32))),
                 rigid: None,
                 center: [0.0; 3],
                 pairs: Some(self.pairs.iter().map(|pairs| pairs.len() as u64).collect()),
@@ -75,6 +76,9 @@ impl Animation<'_> {
                 offsets: arrays.add_u32("colliding-offsets", offsets),
                 triangles: arrays.add_u32("colliding-triangles", triangles),
             }),
+            contacts: None,
+            curves: None,
+            clock: Clock::Time,
             times,
             ground: None,
             sound: None,

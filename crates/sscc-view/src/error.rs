@@ -10,6 +10,13 @@ pub enum ViewError {
     /// The page computes in single precision.
     #[error("the model has numbers beyond 1e30, the range of the page: choose another unit")]
     Range,
+    /// A report has too much data.
+    #[error(
+        "the report would be larger than {} MiB, the most that sscc view reads: give fewer frames (of an animation by --fps or \
+         --times)",
+        crate::MAX_REPORT_BYTES >> 20
+    )]
+    TooLarge,
     /// A request names data that do not exist, or has invalid values.
     #[error("{0}")]
     Request(String),

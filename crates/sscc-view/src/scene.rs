@@ -4,8 +4,7 @@ use glam::DVec3;
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
 
-use crate::extremal::{Extremal, extremal};
-use crate::levels::{Level, levels};
+use crate::reduced_facts::{ModelDetails, ReducedFacts};
 use crate::{Arrays, Playback, Plot, ViewError};
 
 /// A scene: models, plots, a motion and a table. Numbers that are not finite become `null`.
@@ -15,7 +14,7 @@ pub struct Scene {
     pub title: String,
     /// Version of this program.
     pub version: &'static str,
-    /// The models.
+    /// The models and meshes.
     pub models: Vec<ModelScene>,
     /// Plots beside those of models and motions.
     pub plots: Vec<Plot>,
@@ -39,34 +38,19 @@ impl Scene {
     }
 }
 
-/// A model and the facts of its certificates.
+/// A shape: a model with modes and certificates, or a mesh whose positions a recording gives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelScene {
     name: String,
     triangles: usize,
     vertices: usize,
-    rank: usize,
     arrays: ModelArrays,
-    /// The AABB of the rest pose.
+    /// The AABB of the rest pose; of a mesh, that of all recorded positions.
     #[serde(rename = "box")]
     bounds: Bounds,
-    frequencies: Option<Vec<f64>>,
-    mode_names: Option<Vec<String>>,
-    /// `z_k = scales[k] (q_k - center_k)`, where the metric is diagonal.
-    scales: Option<Vec<f64>>,
-    center: Vec<f64>,
-    default_q: Vec<f64>,
-    limits: Vec<f64>,
-    root_radius: f64,
-    global_radius: f64,
-    /// The limit of the pair tree: below it the pair tree contains every node pair that can collide. `None` if the pair
-    /// tree is empty.
-    resolved_up_to: Option<f64>,
-    metric: &'static str,
-    exceptions: usize,
-    nodes: usize,
-    levels: Vec<Level>,
-    extremal: Vec<Extremal>,
+    /// Absent in a mesh.
+    #[serde(flatten)]
+    reduced: Option<ReducedFacts>,
 }
 
 /// Names of a model's arrays.
@@ -74,24 +58,15 @@ pub struct ModelScene {
 struct ModelArrays {
     positions: String,
     faces: String,
-    modes: String,
+    /// Absent in a mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Bounds {
     min: [f64; 3],
     max: [f64; 3],
-}
-
-/// Facts about a model that its file may state.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ModelDetails {
-    /// Frequency of each mode (Hz); `None` where unknown.
-    pub frequencies: Option<Vec<f64>>,
-    /// Name of each mode; empty where unknown.
-    pub mode_names: Vec<String>,
-    /// The initial q of the page; `None`: the centre.
-    pub default_q: Option<Vec<f64>>,
 }
 
 impl ModelScene {
@@ -115,43 +90,54 @@ impl ModelScene {
         certificates.check_model(model)?;
         let rest = model.mesh().rest_positions();
         let (min, max) = bounds(rest);
-        let (limits, rank) = (limits(model, (max - min).length()), model.rank());
-        let farthest = limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * MAX_SLIDER_SCALE;
+        let reduced = ReducedFacts::new(model, certificates, details, (max - min).length());
         let modes = model.modes().displacements();
-        if !rest.iter().chain(modes).all(|v| fits(*v)) || farthest > f64::from(f32::MAX) {
+        if !rest.iter().chain(modes).all(|v| fits(*v)) || !reduced.fits() {
             return Err(ViewError::Range);
         }
+        let rank = model.rank();
         let singles = |v: &DVec3| v.as_vec3().to_array();
         let of_mode = |k: usize| modes.iter().skip(k).step_by(rank).flat_map(singles);
         let names = ModelArrays {
             positions: arrays.add_f32(format!("positions-{index}"), rest.iter().flat_map(singles)),
             faces: arrays
                 .add_u32(format!("faces-{index}"), model.mesh().faces().as_flattened().iter().copied()),
-            modes: arrays.add_f32(format!("modes-{index}"), (0..rank).flat_map(of_mode)),
+            modes: Some(arrays.add_f32(format!("modes-{index}"), (0..rank).flat_map(of_mode))),
         };
-        let metric = certificates.metric();
         Ok(Self {
             name: name.into(),
             triangles: model.mesh().faces().len(),
             vertices: rest.len(),
-            rank,
             arrays: names,
             bounds: Bounds { min: min.to_array(), max: max.to_array() },
-            frequencies: details.frequencies,
-            mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
-            scales: metric.dense_factor().is_none().then(|| metric.scales()),
-            center: certificates.center().to_vec(),
-            default_q: details.default_q.unwrap_or_else(|| certificates.center().to_vec()),
-            limits,
-            root_radius: certificates.root_radius(),
-            global_radius: certificates.global_radius(),
-            resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
-            metric: metric.kind().name(),
-            exceptions: certificates.exceptions().len(),
-            nodes: certificates.hierarchy().nodes().len(),
-            levels: levels(certificates),
-            extremal: extremal(certificates),
+            reduced: Some(reduced),
         })
+    }
+
+    /// Returns the description of a mesh without modes, and adds its arrays, whose names end in `-INDEX`.
+    ///
+    /// `faces`: three vertex numbers for each triangle. `positions`: three coordinates for each vertex, at the first frame.
+    /// `bounds`: the AABB of all frames, as minimum and maximum. All are in the coordinates of the page.
+    pub(crate) fn of_mesh(
+        index: usize,
+        name: impl Into<String>,
+        faces: &[u32],
+        positions: &[f32],
+        (min, max): (DVec3, DVec3),
+        arrays: &mut Arrays,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            triangles: faces.len() / 3,
+            vertices: positions.len() / 3,
+            arrays: ModelArrays {
+                positions: arrays.add_f32(format!("positions-{index}"), positions.iter().copied()),
+                faces: arrays.add_u32(format!("faces-{index}"), faces.iter().copied()),
+                modes: None,
+            },
+            bounds: Bounds { min: min.to_array(), max: max.to_array() },
+            reduced: None,
+        }
     }
 }
 
@@ -161,24 +147,10 @@ fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((*first, *first), |(min, max), p| (min.min(*p), max.max(*p)))
 }
 
-/// For each mode the range of its slider. At its end the vertex that moves farthest has moved by half the diagonal of
-/// the AABB. It is 1 for a mode without displacement.
-fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
-    let mut fastest = vec![0.0_f64; model.rank()];
-    for (i, u) in model.modes().displacements().iter().enumerate() {
-        let fastest = &mut fastest[i % model.rank()];
-        *fastest = fastest.max(u.length());
-    }
-    let limit = |fastest: f64| 0.5 * diagonal / fastest;
-    fastest.into_iter().map(limit).map(|x| if x.is_finite() && x > 0.0 { x } else { 1.0 }).collect()
-}
-
-/// The page may show displacements up to this multiple of its sliders' range.
-const MAX_SLIDER_SCALE: f64 = 1e6;
-
 /// Largest coordinate and displacement on the page. Sums over modes then stay finite in single precision.
 const MAX_COORDINATE: f64 = 1e30;
 
-fn fits(v: DVec3) -> bool {
+/// Whether the page can show a position or a displacement.
+pub(crate) fn fits(v: DVec3) -> bool {
     v.abs().max_element() <= MAX_COORDINATE
 }

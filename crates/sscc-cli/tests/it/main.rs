@@ -8,6 +8,7 @@ mod contract;
 mod detector;
 mod detector_bad_input;
 mod detector_models;
+mod detector_report;
 mod formats;
 mod help;
 mod interrupt;

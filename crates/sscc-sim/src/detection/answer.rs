@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use sscc::{ContactCurves, Impact, Pair, Penetration, TriMesh};
 
 /// The answer to one query of a [`Detection`](super::Detection), or at one q of a model.
@@ -41,6 +42,27 @@ pub struct DetectionAnswer<'a> {
     pub triangle_tests: u64,
     /// Number of queries of the whole file.
     pub queries: usize,
+    /// Number of frames of the motion; 1 at rest.
+    pub frames: usize,
+    /// Times of all frames (s), in an animation.
+    pub frame_times: Option<&'a [f64]>,
+    /// The mesh at the frame; none without [`has_positions`](super::Detection::has_positions).
+    pub shape: Option<ShapeInMotion<'a>>,
+    /// The other mesh at the frame, likewise.
+    pub other: Option<ShapeInMotion<'a>>,
+}
+
+/// A mesh at a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeInMotion<'a> {
+    /// File of the mesh.
+    pub file: &'a Path,
+    /// The mesh, at rest.
+    pub mesh: &'a TriMesh,
+    /// Positions of its vertices at the frame.
+    pub x_t0: &'a [DVec3],
+    /// Positions at the next frame, of continuous queries; else empty.
+    pub x_t1: &'a [DVec3],
 }
 
 /// Returns the `limit` earliest impacts, sorted by pair.

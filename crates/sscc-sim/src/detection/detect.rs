@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sscc::TriMesh;
+use glam::DVec3;
 
-use super::answer::DetectionAnswer;
+use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
 use super::moving_mesh::MovingMesh;
 use super::request::{Detection, MeshMotion, OtherMesh};
@@ -48,9 +48,7 @@ pub fn detect<E: From<SimError>>(
                 Worker::answer,
                 |index, found| {
                     check_cancelled(watch)?;
-                    let place =
-                        Place { file, mesh: &mesh.mesh, node: mesh.node, index, time: mesh.time(index) };
-                    let taken = take(&place.answer(&found?, queries))?;
+                    let taken = take(&answer(mesh, other.as_ref(), index, &found?, [queries, frames]))?;
                     watch.report(before * each + index + 1, queries);
                     Ok::<_, E>(taken)
                 },
@@ -86,8 +84,7 @@ fn at_rest<E: From<SimError>>(
         |index, result: Result<_>| {
             check_cancelled(watch)?;
             let (mesh, found) = result?;
-            let place = Place { file: &request.meshes[index], mesh: &mesh, node: None, index: 0, time: None };
-            let taken = take(&place.answer(&found, 1))?;
+            let taken = take(&answer(&mesh, None, 0, &found, [1, 1]))?;
             watch.report(index + 1, count);
             Ok(taken)
         },
@@ -95,37 +92,43 @@ fn at_rest<E: From<SimError>>(
     taken.map(drop)
 }
 
-/// The mesh and the frame of an answer.
-struct Place<'a> {
-    file: &'a Path,
-    mesh: &'a TriMesh,
-    node: Option<usize>,
+fn answer<'a, 'w>(
+    mesh: &'a MovingMesh<'w>,
+    other: Option<&'a MovingMesh<'w>>,
     index: usize,
-    time: Option<f64>,
-}
-
-impl<'a> Place<'a> {
-    fn answer(self, found: &'a Found, queries: usize) -> DetectionAnswer<'a> {
-        let Self { file, mesh, node, index, time } = self;
-        DetectionAnswer {
-            file,
-            mesh,
-            node,
-            index,
-            time,
-            pairs: &found.pairs,
-            times: found.times.as_deref(),
-            penetrations: found.contacts.penetrations.as_deref(),
-            curves: found.contacts.curves.as_ref(),
-            is_complete: found.is_complete,
-            microseconds: found.microseconds,
-            norm: None,
-            root_certified: None,
-            opened: found.statistics.opened,
-            box_tests: found.statistics.box_tests,
-            triangle_tests: found.statistics.triangle_tests,
-            queries,
-        }
+    found: &'a Found,
+    [queries, frames]: [usize; 2],
+) -> DetectionAnswer<'a> {
+    let shape = |mesh: &'a MovingMesh<'w>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| ShapeInMotion {
+        file: &mesh.file,
+        mesh: &mesh.mesh,
+        x_t0,
+        x_t1,
+    };
+    let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
+    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));
+    DetectionAnswer {
+        file: &mesh.file,
+        mesh: &mesh.mesh,
+        node: mesh.node,
+        index,
+        time: mesh.time(index),
+        pairs: &found.pairs,
+        times: found.times.as_deref(),
+        penetrations: found.contacts.penetrations.as_deref(),
+        curves: found.contacts.curves.as_ref(),
+        is_complete: found.is_complete,
+        microseconds: found.microseconds,
+        norm: None,
+        root_certified: None,
+        opened: found.statistics.opened,
+        box_tests: found.statistics.box_tests,
+        triangle_tests: found.statistics.triangle_tests,
+        queries,
+        frames,
+        frame_times: mesh.times(),
+        shape: next(),
+        other: next(),
     }
 }
 

@@ -14,7 +14,7 @@ mod rows;
 mod times;
 mod worker;
 
-pub use answer::DetectionAnswer;
+pub use answer::{DetectionAnswer, ShapeInMotion};
 pub use contacts::ContactOptions;
 pub use detect::detect;
 pub use request::{Animated, Detection, MeshMotion, OtherMesh, Times};

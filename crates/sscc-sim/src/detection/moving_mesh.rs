@@ -142,12 +142,17 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
-    /// Returns the time of a frame, in an animation.
-    pub fn time(&self, frame: usize) -> Option<f64> {
+    /// Returns the times of all frames, in an animation.
+    pub fn times(&self) -> Option<&[f64]> {
         match &self.motion {
-            Motion::Animation(evaluation) => Some(evaluation.times[frame]),
+            Motion::Animation(evaluation) => Some(&evaluation.times),
             _ => None,
         }
+    }
+
+    /// Returns the time of a frame, in an animation.
+    pub fn time(&self, frame: usize) -> Option<f64> {
+        self.times().map(|times| times[frame])
     }
 
     /// Returns the name of a frame in messages.

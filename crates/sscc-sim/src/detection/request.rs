@@ -35,6 +35,8 @@ pub struct Detection {
     pub limit: usize,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
+    /// Whether answers have the positions of each frame, as reports need them.
+    pub has_positions: bool,
     /// Number of threads; none: all cores. Answers do not depend on it.
     pub threads: Option<usize>,
 }
@@ -54,6 +56,7 @@ impl Default for Detection {
             is_continuous: false,
             limit: usize::MAX,
             contacts: ContactOptions::default(),
+            has_positions: false,
             threads: None,
         }
     }

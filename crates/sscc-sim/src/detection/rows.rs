@@ -78,6 +78,10 @@ pub fn check_rows<E: From<SimError>>(
             box_tests: statistics.box_tests,
             triangle_tests: statistics.triangle_tests,
             queries,
+            frames: rows.len(),
+            frame_times: None,
+            shape: None,
+            other: None,
         })?;
         progress.report(index + 1, queries);
         if next.is_break() {

@@ -42,6 +42,8 @@ pub(super) struct Found {
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: DetectorStatistics,
+    /// Positions of the mesh and of the other one, at the start and the end; empty unless the request asks for them.
+    pub positions: Vec<[Vec<DVec3>; 2]>,
 }
 
 impl<'m, 'w> Worker<'m, 'w> {
@@ -63,14 +65,19 @@ impl<'m, 'w> Worker<'m, 'w> {
             other.read(frame, is_continuous)?;
         }
         let file = &self.side.mesh.file;
-        if is_continuous {
-            return self.continuous().in_file(file);
+        let mut found = if is_continuous {
+            self.continuous().in_file(file)?
+        } else {
+            let found = self.discrete(self.last == Some(frame)).in_file(file)?;
+            check_count(found.pairs.len(), self.request.limit)
+                .map_err(|cause| SimError::refused(self.side.mesh.place(frame), cause))?;
+            found
+        };
+        if self.request.has_positions {
+            let sides = [&self.side].into_iter().chain(&self.other);
+            found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
         }
-        let found = self.discrete(self.last == Some(frame)).in_file(file)?;
-        match check_count(found.pairs.len(), self.request.limit) {
-            Ok(()) => Ok(found),
-            Err(cause) => Err(SimError::refused(self.side.mesh.place(frame), cause)),
-        }
+        Ok(found)
     }
 
     fn discrete(&mut self, is_last: bool) -> Result<Found, sscc::Error> {
@@ -89,7 +96,8 @@ impl<'m, 'w> Worker<'m, 'w> {
         let contacts =
             Contacts::of(self.side.surface(), self.other.as_ref().map(Side::surface), &pairs, options)?;
         let is_complete = statistics.complete;
-        Ok(Found { pairs, times: None, contacts, is_complete, microseconds, statistics })
+        let positions = Vec::new();
+        Ok(Found { pairs, times: None, contacts, is_complete, microseconds, statistics, positions })
     }
 
     fn continuous(&mut self) -> Result<Found, sscc::Error> {
@@ -110,6 +118,7 @@ impl<'m, 'w> Worker<'m, 'w> {
             is_complete,
             microseconds,
             statistics: x.detector.statistics(),
+            positions: Vec::new(),
         })
     }
 }

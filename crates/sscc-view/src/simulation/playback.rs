@@ -8,7 +8,7 @@ use sscc_io::{WavFormat, wav_to_bytes};
 use sscc_sim::{FinishedRun, History, SoundTrack};
 
 use super::plots::costs;
-use crate::{Arrays, Body, Colliding, Playback};
+use crate::{Arrays, Body, Clock, Colliding, Playback, Track};
 
 /// Largest size of all frames (bytes). Longer motions have fewer frames per second.
 const MAX_MOTION_BYTES: usize = 24 << 20;
@@ -65,7 +65,7 @@ pub fn playback(
         Body {
             name: format!("{} {body}", prepared.models[spec.model].certified.name),
             model: spec.model,
-            q: arrays.add_f32(format!("q-{body}"), q),
+            track: Track::Q(arrays.add_f32(format!("q-{body}"), q)),
             rigid: Some(arrays.add_f32(format!("rigid-{body}"), rigid)),
             center: prepared.models[spec.model].center().to_array(),
             pairs: Some(at().map(|facts| facts.pairs as u64).collect()),
@@ -80,7 +80,10 @@ pub fn playback(
         times: frames.iter().map(|state| run.time(*state)).collect(),
         bodies: tracks,
         pairs_since: Some(pairs_since(history, &frames)),
+        clock: Clock::Time,
         colliding,
+        contacts: None,
+        curves: None,
         ground: scene.ground.map(|ground| ground.height),
         sound,
         costs: Some(costs(run)),

@@ -4,5 +4,6 @@
 
 mod answers;
 mod common;
+mod mesh_report;
 mod report;
 mod server;

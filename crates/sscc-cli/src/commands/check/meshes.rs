@@ -1,10 +1,13 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use sscc_io::gltf::SkinWeights;
+use sscc_io::write_whole;
 use sscc_sim::{Animated, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect};
+use sscc_view::MeshReport;
 
 use super::printer::Printer;
 use super::shapes;
@@ -24,14 +27,27 @@ pub fn check(args: &Check) -> Result<bool> {
     };
     let mut printer = Printer::new(noun, args.json.json, None);
     printer.has_files = request.meshes.len() > 1;
-    printer.needs_last = args.curves.is_some();
+    printer.needs_last = args.curves.is_some() || args.pose.is_some();
+    let mut report = MeshReport::default();
+    let mut answers = 0;
     detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
-        if let Some(path) = &args.pose {
-            shapes::write_pose(path, found.mesh, found.mesh.rest_positions(), found.pairs)?;
+        answers += 1;
+        if let (Some(path), Some(shape)) = (&args.pose, found.shape)
+            && answers == found.queries
+        {
+            shapes::write_pose(path, found.mesh, shape.x_t0, found.pairs)?;
+        }
+        if let Some(path) = &args.report {
+            report.add(found).with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
-        printer.answer(found)
+        // A report has all frames, also where nobody reads the output.
+        let go_on = args.report.is_some();
+        printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
     })?;
+    if let Some(path) = &args.report {
+        write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
+    }
     printer.finish()
 }
 
@@ -109,6 +125,7 @@ fn request(args: &Check) -> Detection {
         is_continuous: args.continuous,
         limit: super::limit(args),
         contacts: shapes::contacts(args),
+        has_positions: args.report.is_some() || args.pose.is_some(),
         threads: Some(load::threads(&options.threads)),
     }
 }

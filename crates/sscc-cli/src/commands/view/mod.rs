@@ -7,7 +7,9 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc::MetricKind;
 use sscc_io::LoadedModel;
 use sscc_modes::mode_frequencies;
-use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Plot, Report, Scene, Server, metric_comparison};
+use sscc_view::{
+    Arrays, Live, MAX_REPORT_BYTES, ModelDetails, ModelScene, Plot, Report, Scene, Server, metric_comparison,
+};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt::{self, Interrupt};
@@ -18,9 +20,6 @@ use crate::progress::Bar;
 
 /// The file name of the report that `simulate` and `demo` write.
 const REPORT: &str = "report.html";
-
-/// Maximum size of a report in bytes; those of `simulate` are far smaller.
-const MAX_REPORT_BYTES: u64 = 256 << 20;
 
 pub fn run(args: &View) -> Result<Outcome> {
     let path = &args.model.path;

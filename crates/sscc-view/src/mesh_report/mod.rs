@@ -1,0 +1,8 @@
+//! Reports of meshes without modes: the positions of each frame, with their colliding pairs and contact curves.
+
+mod contact_segments;
+mod recorded_body;
+mod recording;
+mod report;
+
+pub use report::MeshReport;
