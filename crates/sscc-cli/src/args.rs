@@ -51,7 +51,7 @@ pub enum Command {
     Certify(Certify),
     /// Check whether a model collides with itself at q, or a mesh as it is, in frames, in an animation or against another
     /// mesh, and list the colliding triangle pairs
-    Check(Check),
+    Check(Box<Check>),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
     /// Show the contents of a model, certificate, mesh or solid file
@@ -364,6 +364,13 @@ pub struct At {
     /// One configuration: r numbers
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', allow_hyphen_values = true)]
     pub q: Option<Vec<f64>>,
+}
+
+impl Check {
+    /// Returns the maximum number of pairs for each query.
+    pub fn max_pairs(&self) -> usize {
+        self.limit.map_or(if self.first { 1 } else { usize::MAX }, |limit| limit as usize)
+    }
 }
 
 /// The motion of a mesh without modes.

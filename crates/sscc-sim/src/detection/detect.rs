@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec3;
+use sscc::TriMesh;
 
 use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
@@ -48,7 +49,13 @@ pub fn detect<E: From<SimError>>(
                 Worker::answer,
                 |index, found| {
                     check_cancelled(watch)?;
-                    let taken = take(&answer(mesh, other.as_ref(), index, &found?, [queries, frames]))?;
+                    let taken = take(&answer(
+                        mesh.into(),
+                        other.as_ref().map(Moved::from),
+                        index,
+                        &found?,
+                        [queries, frames],
+                    ))?;
                     watch.report(before * each + index + 1, queries);
                     Ok::<_, E>(taken)
                 },
@@ -84,7 +91,8 @@ fn at_rest<E: From<SimError>>(
         |index, result: Result<_>| {
             check_cancelled(watch)?;
             let (mesh, found) = result?;
-            let taken = take(&answer(&mesh, None, 0, &found, [1, 1]))?;
+            let mesh = Moved { file: &request.meshes[index], mesh: &mesh, node: None, times: None };
+            let taken = take(&answer(mesh, None, 0, &found, [1, 1]))?;
             watch.report(index + 1, count);
             Ok(taken)
         },
@@ -92,27 +100,42 @@ fn at_rest<E: From<SimError>>(
     taken.map(drop)
 }
 
-fn answer<'a, 'w>(
-    mesh: &'a MovingMesh<'w>,
-    other: Option<&'a MovingMesh<'w>>,
+/// The parts of a [`MovingMesh`] that answers show.
+#[derive(Clone, Copy)]
+struct Moved<'a> {
+    file: &'a Path,
+    mesh: &'a TriMesh,
+    node: Option<usize>,
+    times: Option<&'a [f64]>,
+}
+
+impl<'a> From<&'a MovingMesh<'_>> for Moved<'a> {
+    fn from(mesh: &'a MovingMesh<'_>) -> Self {
+        Self { file: &mesh.file, mesh: &mesh.mesh, node: mesh.node, times: mesh.times() }
+    }
+}
+
+fn answer<'a>(
+    mesh: Moved<'a>,
+    other: Option<Moved<'a>>,
     index: usize,
     found: &'a Found,
     [queries, frames]: [usize; 2],
 ) -> DetectionAnswer<'a> {
-    let shape = |mesh: &'a MovingMesh<'w>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| ShapeInMotion {
-        file: &mesh.file,
-        mesh: &mesh.mesh,
+    let shape = |Moved { file, mesh, .. }: Moved<'a>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| ShapeInMotion {
+        file,
+        mesh,
         x_t0,
         x_t1,
     };
     let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
     let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));
     DetectionAnswer {
-        file: &mesh.file,
-        mesh: &mesh.mesh,
+        file: mesh.file,
+        mesh: mesh.mesh,
         node: mesh.node,
         index,
-        time: mesh.time(index),
+        time: mesh.times.map(|times| times[index]),
         pairs: &found.pairs,
         times: found.times.as_deref(),
         penetrations: found.contacts.penetrations.as_deref(),
@@ -126,7 +149,7 @@ fn answer<'a, 'w>(
         triangle_tests: found.statistics.triangle_tests,
         queries,
         frames,
-        frame_times: mesh.times(),
+        frame_times: mesh.times,
         shape: next(),
         other: next(),
     }

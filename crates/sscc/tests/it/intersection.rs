@@ -140,7 +140,7 @@ fn nearly_parallel() {
     let mut random = Random::new(51);
     let (mut crossings, mut worst) = (0, BigRational::zero());
     for i in 0..sscc_testing::cases(1_000) {
-        let tilt = 2.0_f64.powi(-((i % 60) as i32));
+        let tilt = 2.0_f64.powi(-(i % 60));
         let offset = random.vector() * 10.0;
         // Corners in a plane with rounding errors, the others as close to it on both sides.
         let (e, f) = (random.vector(), random.vector());

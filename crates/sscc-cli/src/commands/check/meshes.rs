@@ -123,7 +123,7 @@ fn request(args: &Check) -> Detection {
         ignore_rest: options.ignore_rest,
         groups: load::groups(&options.groups),
         is_continuous: args.continuous,
-        limit: super::limit(args),
+        limit: args.max_pairs(),
         contacts: shapes::contacts(args),
         has_positions: args.report.is_some() || args.pose.is_some(),
         threads: Some(load::threads(&options.threads)),

@@ -23,11 +23,6 @@ pub fn run(args: &Check) -> Result<Outcome> {
     Ok(if colliding { Outcome::Finding } else { Outcome::Done })
 }
 
-/// Returns the maximum number of pairs for each query.
-fn limit(args: &Check) -> usize {
-    args.limit.map_or(if args.first { 1 } else { usize::MAX }, |limit| limit as usize)
-}
-
 /// Answers a query for every q. Returns whether any of them found a collision.
 fn check_model(args: &Check) -> Result<bool> {
     if let Some(second) = args.meshes.first() {
@@ -68,7 +63,7 @@ fn check_model(args: &Check) -> Result<bool> {
         model: &model,
         rows: &rows,
         is_continuous: args.continuous,
-        limit: limit(args),
+        limit: args.max_pairs(),
         contacts: shapes::contacts(args),
     };
     check_rows(&mut query, &requests, &bar, take)?;
