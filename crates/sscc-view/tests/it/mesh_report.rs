@@ -123,7 +123,8 @@ fn frames_have_positions_pairs_and_curves() {
     // From (1, 0, 0) to (1, 1, 0) in the mesh's coordinates, in either order.
     let mut segment = floats(&data, &playback["curves"]["segments"]);
     segment.iter_mut().enumerate().for_each(|(i, x)| *x += center[i % 3] - FAR);
-    segment.rotate_left(if segment[1] > segment[4] { 3 } else { 0 });
+    let is_reversed = segment[1] > segment[4];
+    segment.rotate_left(if is_reversed { 3 } else { 0 });
     assert_eq!(segment, [1.0, 0.0, 0.0, 1.0, 1.0, 0.0]);
     let rows = scene["summary"].as_array().unwrap();
     assert!(rows.contains(&json!(["colliding", "1 of 3 frames"])), "{rows:?}");
