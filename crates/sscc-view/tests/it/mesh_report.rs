@@ -47,6 +47,8 @@ fn answer<'a>(
         time: None,
         pairs,
         times: None,
+        penetrations: None,
+        curves: None,
         is_complete: true,
         microseconds: 2000.0,
         norm: None,
