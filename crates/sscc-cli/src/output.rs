@@ -11,8 +11,8 @@ pub use sscc_sim::text::{counted, duration, grouped, length, one_line};
 /// Standard output: line by line to a terminal, else in blocks.
 ///
 /// When its reader closes the pipe (`sscc ... | head`), later lines are dropped without an error, because the command
-/// may still have files to write, and its exit code does not depend on readers. A command that only prints stops when
-/// [`Output::is_closed`].
+/// may still have files to write. A command that only prints stops when [`Output::is_closed`]; its exit code is that of
+/// the answers so far.
 pub struct Output {
     stdout: BufWriter<StdoutLock<'static>>,
     is_terminal: bool,

@@ -1,4 +1,4 @@
-//! What is asked of [`detect`](super::detect).
+//! A request to [`detect`](super::detect).
 
 use std::path::PathBuf;
 

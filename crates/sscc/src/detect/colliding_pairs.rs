@@ -11,7 +11,7 @@ use super::vertex_motion::DeformedMotion;
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
-/// A mesh with more colliding pairs than this at rest (128 MiB of them) is no surface that anybody would deform.
+/// A mesh with more colliding pairs than this at rest (128 MiB of them) is refused.
 const MAX_PAIRS: usize = 1 << 24;
 
 /// All colliding pairs at q, sorted.

@@ -42,9 +42,10 @@ impl F32Frame {
         (x - self.center) * self.scale
     }
 
-    /// Whether a mapped point can be the image of a point of the frame's box: the assumption of [`Self::error_bound`].
+    /// Whether a mapped point can be the image of a point of the frame's box: the assumption of [`Self::error_bound`]. Images
+    /// are in [-1, 1] up to rounding; where the box is only a few units in the last place wide, in [-2, 2].
     pub(crate) fn may_contain(mapped: Vec4) -> bool {
-        (mapped.abs().cmple(Vec4::splat(1.001)).bitmask() & 0b111) == 0b111
+        (mapped.abs().cmple(Vec4::splat(2.001)).bitmask() & 0b111) == 0b111
     }
 
     /// The mapped point; its fourth component is unused. All components are finite.
@@ -90,7 +91,7 @@ mod tests {
 
     /// It uses the precision that there is.
     #[test]
-    fn its_own_box_is_told_apart_finely() {
+    fn positions_in_its_box_keep_their_precision() {
         for (center, half) in [(0.0, 1.0), (1e-200, 1e-210), (-1e50, 1e45), (0.0, 1e-300)] {
             let frame = F32Frame::around(Aabb {
                 lower: DVec3::splat(center - half),

@@ -2,8 +2,8 @@
 //!
 //! A search has `E` configurations: one, or the start and the end of a motion. Sources are dispatched statically:
 //! positions deformed by modes ([`DeformedMotion`]), all positions in a ball of configurations
-//! ([`BallMotion`](super::ball_motion::BallMotion)), and deformed positions in the world
-//! ([`PosedMotion`](crate::posed)).
+//! ([`BallMotion`](super::ball_motion::BallMotion)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
+//! given positions ([`Detector`](crate::Detector)).
 
 use glam::DVec3;
 

@@ -40,8 +40,9 @@ impl Neighbours {
 pub struct ContactFilter {
     /// Whether triangles that share a vertex count.
     pub neighbours: Neighbours,
-    /// Whether vertices of exactly equal rest position and modes are welded, for adjacency only: vertex numbers and
-    /// positions stay the file's. For files that split vertices along seams (STL, glTF).
+    /// Whether vertices of exactly equal rest position and modes (of a [`Detector`](crate::Detector): rest position) are
+    /// welded, for adjacency only: vertex numbers and positions stay the file's. For files that split vertices along seams
+    /// (STL, glTF).
     pub weld: bool,
     ignored: Vec<Pair>,
     /// None if all pairs of groups count.

@@ -48,7 +48,7 @@ impl PairFilter {
         Self::with_classes(model.mesh().faces(), classes.as_deref(), filter)
     }
 
-    /// The filter on a mesh whose vertices are welded by these classes (none: by none), whatever the filter says of welds.
+    /// The filter on a mesh whose vertices are welded by these classes (none: by none), whether or not the filter welds vertices.
     pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
         let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
         Self {
@@ -139,10 +139,27 @@ impl PairFilter {
         match relation {
             Relation::Adjacent => false,
             Relation::NonAdjacent => intersect_triangle_triangle(corners_a, corners_b),
-            Relation::SharedVertex(class) => {
+            Relation::SharedVertex(class) if self.is_vertex_shared(class, pair, corners_a, corners_b) => {
                 self.collide_as_shared_vertex_pair(class, pair, corners_a, corners_b)
             }
+            Relation::SharedVertex(_) => intersect_triangle_triangle(corners_a, corners_b),
         }
+    }
+
+    /// Whether all corners of that class of two triangles are at one position. Vertices that are welded by rest positions
+    /// can move apart where positions are given.
+    pub(crate) fn is_vertex_shared(
+        &self,
+        class: u32,
+        (a, b): Pair,
+        corners_a: &[DVec3; 3],
+        corners_b: &[DVec3; 3],
+    ) -> bool {
+        let (classes_a, classes_b) = (self.classes[a as usize], self.classes[b as usize]);
+        let corners = classes_a.iter().zip(corners_a).chain(classes_b.iter().zip(corners_b));
+        let mut shared = corners.filter(|(other, _)| **other == class).map(|(_, corner)| corner);
+        let first = shared.next();
+        shared.all(|corner| Some(corner) == first)
     }
 
     fn collide_as_shared_vertex_pair(

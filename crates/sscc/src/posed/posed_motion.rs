@@ -1,4 +1,4 @@
-//! DeformedMotion positions in the world: the vertex motion of posed shapes.
+//! Deformed positions in the world: the vertex motion of posed shapes.
 
 use glam::DVec3;
 

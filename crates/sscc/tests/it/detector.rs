@@ -238,6 +238,57 @@ fn welded_vertices_are_one_for_adjacency() {
     assert!(matches!(wrong, Err(Error::PositionCount { found: 5, vertices: 6 })));
 }
 
+/// Vertices that are welded at rest move apart: shared-vertex pairs have no common vertex then.
+#[test]
+fn welded_vertices_can_move_apart() {
+    let at = DVec3::new;
+    let filter = ContactFilter::new(Neighbours::IncludeOneVertex, false);
+    let faces = vec![[0, 1, 2], [3, 4, 5]];
+    let detector = |x: &[DVec3]| {
+        let mesh = TriMesh::new(x.to_vec(), faces.clone()).unwrap();
+        Detector::with_weld_classes(&mesh, &[u32::MAX, 1, 2, u32::MAX, 4, 5], &filter).unwrap()
+    };
+    let a = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0)];
+    // The second triangle goes through the first; the edge opposite to its welded corner does not.
+    let b = [at(0.2, 0.25, -1.0), at(0.2, 0.25, 1.0), at(5.0, 5.5, 1.0)];
+    let x = [a, b].concat();
+    assert_eq!(detector(&x).discrete(&x).unwrap(), [(0, 1)]);
+    assert_eq!(detector(&x).continuous(&x, &x).unwrap().len(), 1);
+    // They are free; the first corner of a is in no common point of the two.
+    let a_free = [at(-0.75, -0.375, -1.75), at(-1.875, -0.6875, -3.6875), at(-1.4375, 3.75, 1.75)];
+    let b_free = [at(-1.0625, -3.25, 1.75), at(-2.6875, -0.25, -0.625), at(-2.625, 3.0, -0.875)];
+    let x = [a_free, b_free].concat();
+    assert!(!intersect_triangle_triangle(&a_free, &b_free));
+    assert_eq!(detector(&x).discrete(&x).unwrap(), []);
+    // The welded corner alone goes through the first triangle.
+    let still = [at(0.2, 0.25, 5.0), at(0.3, 0.2, 5.0)];
+    let [above, below] = [2.0, -1.0].map(|z| [&a[..], &[at(0.2, 0.25, z)], &still].concat());
+    let impacts = detector(&above).continuous(&above, &below).unwrap().to_vec();
+    assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), [(0, 1)]);
+    assert!((impacts[0].time - 2.0 / 3.0).abs() < 1e-9, "{impacts:?}");
+    // Where the corners stay together, only other common points count.
+    let together = [&a[..], &a[..1], &[at(-1.0, 0.0, 0.0), at(0.0, -1.0, 0.0)]].concat();
+    assert_eq!(detector(&together).discrete(&together).unwrap(), []);
+    assert_eq!(detector(&together).continuous(&together, &together).unwrap(), []);
+}
+
+/// A mesh a few units in the last place wide, far from the origin.
+#[test]
+fn tiny_meshes_far_away() {
+    let random = &mut Random::new(33);
+    let faces: Vec<[u32; 3]> = (0..40).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    for steps in [1.0, 2.0, 5.0, 300.0] {
+        let x: Vec<DVec3> = (0..120)
+            .map(|_| {
+                let unit = random.vector();
+                DVec3::new(1e16 + (unit.x * steps).round() * 2.0, unit.y * steps, unit.z * steps)
+            })
+            .collect();
+        let mesh = TriMesh::new(x.clone(), faces.clone()).unwrap();
+        assert_eq!(Detector::new(&mesh).discrete(&x).unwrap(), brute_force(&x, &faces), "{steps}");
+    }
+}
+
 #[test]
 fn wrong_positions_are_refused() {
     let (rest, faces) = soup(&mut Random::new(1), 10, 1.0);

@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use crate::output::{counted, duration, grouped, length};
 
-/// Maximum number of pairs in the text; `--json` lists all.
+/// Maximum number of pairs in the text; `--json` lists more.
 const MAX_LISTED: usize = 10;
 
 impl Answer<'_> {
@@ -82,7 +82,7 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     lines.extend(listed.map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", answer.of_pair(at))));
     if answer.count > MAX_LISTED {
         lines.push(format!(
-            "     ... and {} more; --json lists all",
+            "     ... and {} more; --json lists them",
             grouped((answer.count - MAX_LISTED) as u64)
         ));
     }

@@ -14,7 +14,7 @@ use crate::{Error, Impact, Pair};
 
 impl Detector<'_> {
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
-    /// common, sorted. Every pair counts: the contact filters say nothing of triangles of two meshes.
+    /// common, sorted. Every pair counts: contact filters do not apply between meshes.
     ///
     /// # Errors
     /// As [`Detector::discrete`], for both.

@@ -1,6 +1,7 @@
 //! The detector for given positions: exact collisions of any deforming triangle mesh, with itself or with another one.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -62,7 +63,8 @@ impl<'a> Detector<'a> {
         Self::build(mesh, None, &ContactFilter::default())
     }
 
-    /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position.
+    /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position,
+    /// also where they move apart later: then triangles that meet there at rest are adjacent and never count.
     ///
     /// # Errors
     /// When the filter's groups are of another mesh.
@@ -72,7 +74,7 @@ impl<'a> Detector<'a> {
         Ok(Self::build(mesh, classes.as_deref(), filter))
     }
 
-    /// A detector whose vertices are welded by the given classes: vertices of the same class are one vertex for adjacency,
+    /// A detector whose vertices are welded by the given classes: vertices with the same number are one vertex for adjacency,
     /// as in skinned meshes, where equal rest positions may move apart.
     ///
     /// # Errors
@@ -80,7 +82,11 @@ impl<'a> Detector<'a> {
     pub fn with_weld_classes(mesh: &TriMesh, classes: &[u32], filter: &ContactFilter) -> Result<Self, Error> {
         check_count(classes.len(), mesh.rest_positions().len())?;
         filter.check_groups(mesh.faces().len())?;
-        Ok(Self::build(mesh, Some(classes), filter))
+        // Class numbers are numbers of vertices, which bounds the memory of tables by class.
+        let mut first = HashMap::new();
+        let vertices = classes.iter().enumerate();
+        let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
+        Ok(Self::build(mesh, Some(&classes), filter))
     }
 
     fn build(mesh: &TriMesh, classes: Option<&[u32]>, filter: &ContactFilter) -> Self {

@@ -5,7 +5,7 @@ use crate::Pair;
 /// Two triangles that collide during a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// The triangles, the lower number first.
+    /// The triangles: the lower number first; of two meshes, the triangle of the first mesh first.
     pub pair: Pair,
     /// The time of impact, from 0 to 1: never later than the true one, see
     /// [`Query::continuous`](crate::Query::continuous).

@@ -3,7 +3,7 @@
 use glam::{Vec3A, Vec4};
 
 /// Whether two triangles certainly have no point in common at either end, nor on the straight lines between: one direction
-/// separates them at both. Coordinates are within [-1, 1], up to `error`, the bound of their error along each axis.
+/// separates them at both. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
 #[inline]
 pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
     if !error.is_finite() {
@@ -37,7 +37,8 @@ impl Directions {
 
     /// Whether one of the directions separates the triangles in every configuration, by more than the error of
     /// positions and sums. In units of the direction's 1-norm: positions err by 2 `error`; differences, products and
-    /// sums by about 20 units of 2^-24, where `error` is at least 14.
+    /// sums by about 20 units of 2^-24 in [-1, 1], where `error` is at least 14. Coordinates beyond 1 occur only where given
+    /// positions are mapped: all errors together are then at most 40 units, and the slack is at least 56.
     #[inline]
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
@@ -45,15 +46,15 @@ impl Directions {
         let errors = right_or!(4.0, SeparatingAxisErrorHalved, 2.0) * error;
         let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
-        let mut apart = [u32::MAX; 2];
+        let mut separated = [u32::MAX; 2];
         for end in 0..E {
             let [a, b] = [a, b].map(|t| t.map(|ends| along(ends[end])));
-            let least = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);
-            let most = |t: &[Vec4; 3]| t[0].max(t[1]).max(t[2]);
-            apart[0] &= (least(&a) - most(&b)).cmpgt(slack).bitmask();
-            apart[1] &= (least(&b) - most(&a)).cmpgt(slack).bitmask();
+            let lower = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);
+            let upper = |t: &[Vec4; 3]| t[0].max(t[1]).max(t[2]);
+            separated[0] &= (lower(&a) - upper(&b)).cmpgt(slack).bitmask();
+            separated[1] &= (lower(&b) - upper(&a)).cmpgt(slack).bitmask();
         }
-        apart[0] | apart[1] != 0
+        separated[0] | separated[1] != 0
     }
 }
 
@@ -68,7 +69,7 @@ mod tests {
     /// With positions that are off by nearly the error bound, triangles are separated only if the exact ones are. These touch,
     /// or are a few error bounds apart or inside each other, or farther.
     #[test]
-    fn only_what_is_apart_is_said_to_be() {
+    fn only_separated_triangles_are_reported() {
         let random = &mut Random(5);
         let (mut apart, mut missed, mut met) = (0, 0, 0);
         for case in 0..200_000 {
@@ -136,7 +137,7 @@ mod tests {
 
     /// The same for triangles that move.
     #[test]
-    fn only_what_stays_apart_on_the_way_is_said_to() {
+    fn only_triangles_that_stay_separated_are_reported() {
         let random = &mut Random(6);
         let (mut apart, mut met) = (0, 0);
         for case in 0..20_000 {

@@ -36,10 +36,16 @@ impl NarrowPhase<2> for SweptHits {
         let time = match relation {
             Relation::Adjacent => None,
             Relation::NonAdjacent => time(&a, &b),
-            Relation::SharedVertex(_) => filter
-                .hulls_of_corners(pair.0, pair.1)
-                .filter_map(|hulls| time(&a.hull(hulls.a), &b.hull(hulls.b)))
-                .reduce(f64::min),
+            Relation::SharedVertex(class)
+                if filter.is_vertex_shared(class, pair, a_t0, b_t0)
+                    && filter.is_vertex_shared(class, pair, a_t1, b_t1) =>
+            {
+                filter
+                    .hulls_of_corners(pair.0, pair.1)
+                    .filter_map(|hulls| time(&a.hull(hulls.a), &b.hull(hulls.b)))
+                    .reduce(f64::min)
+            }
+            Relation::SharedVertex(_) => time(&a, &b),
         };
         time.map(|time| Impact { pair, time })
     }

@@ -135,10 +135,10 @@ fn smallest_support(a: &[DVec3; 3], b: &[DVec3; 3]) -> Penetration {
     if candidates.iter().all(Option::is_none) {
         candidates[0] = across(a, b);
     }
-    let rough = differences.map(|d| to_dvec3(&d));
+    let coarse = differences.map(|d| to_dvec3(&d));
     let first_look = candidates.iter().flatten().map(|normal| {
         let normal = to_dvec3(normal);
-        let along = rough.map(|d| normal.dot(d));
+        let along = coarse.map(|d| normal.dot(d));
         let upper = along.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x));
         let lower = along.iter().fold(f64::INFINITY, |m, x| m.min(*x));
         upper.min(-lower) / normal.length()
