@@ -190,7 +190,7 @@ pub struct Options {
     pub ignore_rest: bool,
     #[command(flatten)]
     pub groups: Groups,
-    /// Whether to weld vertices of equal position and modes, for adjacency only [default: on for STL and glTF]
+    /// Whether to weld vertices of equal position and modes (or frames), for adjacency only [default: on for STL and glTF]
     #[arg(long, value_enum, value_name = "SWITCH", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
     pub weld: Option<Switch>,
     /// Maximum number of exceptions: pairs that collide at the centre, which no radius covers and every query tests

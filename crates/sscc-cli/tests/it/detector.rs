@@ -161,6 +161,33 @@ fn frames_from_arrays_and_folders() {
     assert_eq!(counts(&ignored), [0; 4]);
 }
 
+/// Two triangles of an STL file with a common corner at rest, which parts: they are adjacent only while all frames have it.
+#[test]
+fn vertices_are_welded_that_stay_together() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let facet = |corners: [&str; 3]| {
+        format!("facet normal 0 0 0\nouter loop\nvertex {}\nendloop\nendfacet\n", corners.join("\nvertex "))
+    };
+    let facets = facet(["0 0 0", "1 0 0", "0 1 0"]) + &facet(["0 0 0", "0 -1 0", "-1 0 0"]);
+    fs::write(folder.join("two.stl"), format!("solid two\n{facets}endsolid two\n")).unwrap();
+    let still = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].concat();
+    let together = [[0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]].concat();
+    // The second triangle goes through the first.
+    let apart = [[0.2, 0.2, -1.0], [0.2, 0.3, 1.0], [0.3, 0.2, 1.0]].concat();
+    let frames = [&still[..], &together, &still, &apart].concat();
+    write_npy(&folder.join("apart.npy"), &[2, 6, 3], &frames).unwrap();
+    write_npy(&folder.join("together.npy"), &[1, 6, 3], &frames[..18]).unwrap();
+    let run = |frames: &str, weld: &[&str]| {
+        let frames = format!("--frames={frames}");
+        counts(&lines(folder, &[&["two.stl", &frames][..], weld].concat(), ""))
+    };
+    assert_eq!(run("together.npy", &[]), [0]);
+    assert_eq!(run("together.npy", &["--weld=off"]), [1]);
+    assert_eq!(run("apart.npy", &[]), [1, 1]);
+    assert_eq!(run("apart.npy", &["--weld=off"]), [1, 1]);
+}
+
 #[test]
 fn animations() {
     let directory = folder();

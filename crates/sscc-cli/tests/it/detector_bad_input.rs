@@ -192,7 +192,6 @@ fn flags_that_contradict_each_other() {
         ),
         (&["--frames=frames.npy", "--q=0"], "cannot be used with"),
         (&["--frames=frames.npy", "--animation=0"], "cannot be used with"),
-        (&["--frames=frames.npy", "--pose=a.ply"], "cannot be used with"),
         (&["--frames=frames.npy", "--fps=10"], "--fps is for animations: add --animation"),
         (&["--frames=frames.npy", "--times=0"], "--times is for animations: add --animation"),
         (&["--frames=frames.npy", "--node=1"], "--node is for animations: add --animation"),

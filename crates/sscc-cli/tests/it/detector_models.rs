@@ -144,7 +144,7 @@ fn skinned_animations() {
             ];
             let run = sscc(&folder, &args.concat());
             assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
-            let has_error = record["largest_weight_sum_error"].as_f64().unwrap() > 1e-3;
+            let has_error = record["largest_weight_sum_error"].as_f64().unwrap() > 1e-2;
             let is_warned = run.stderr.starts_with("warning: ") && run.stderr.lines().count() == 1;
             assert_eq!(is_warned, has_error && weights == "normalized", "{run:?}");
             let lines = run.json();

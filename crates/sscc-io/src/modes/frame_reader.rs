@@ -67,19 +67,19 @@ impl FrameReader {
         }
     }
 
-    /// Reads a frame to check it, so that an error in a late frame is found early. Keeps the positions of meshes.
+    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes.
     ///
     /// # Errors
     /// As [`FrameReader::read`].
     ///
     /// # Panics
     /// When there is no such frame.
-    pub fn check(&mut self, frame: usize) -> Result<(), IoError> {
-        let positions = self.positions(frame)?;
+    pub fn check(&mut self, frame: usize, positions: &mut Vec<DVec3>) -> Result<(), IoError> {
+        *positions = self.positions(frame)?;
         if let Source::Folder { kept, .. } = &mut self.source
             && frame.saturating_mul(size_of_val(&positions[..])) < MAX_KEPT
         {
-            kept[frame] = Some(positions);
+            kept[frame] = Some(positions.clone());
         }
         Ok(())
     }
@@ -179,8 +179,8 @@ mod tests {
         assert_eq!(all(&readers[0]), all(&readers[1]));
         assert_eq!(all(&readers[0])[1][0], DVec3::new(81.0, 100.0, 121.0));
         for reader in &mut readers {
-            reader.check(0).unwrap();
-            reader.check(1).unwrap();
+            reader.check(0, &mut Vec::new()).unwrap();
+            reader.check(1, &mut Vec::new()).unwrap();
         }
         // Meshes are kept: their files are not read again.
         std::fs::remove_dir_all(folder.join("frames")).unwrap();
@@ -211,8 +211,8 @@ mod tests {
             numbers[13] = bad;
             write_npy(&path, &[2, 3, 3], &numbers).unwrap();
             let mut reader = open().unwrap();
-            reader.check(0).unwrap();
-            let message = reader.check(1).unwrap_err().to_string();
+            reader.check(0, &mut Vec::new()).unwrap();
+            let message = reader.check(1, &mut Vec::new()).unwrap_err().to_string();
             assert!(
                 message.contains("x.npy: frame 1: vertex 1 (counted from 0) has the position [0.0, "),
                 "{message}"

@@ -12,6 +12,7 @@ mod moving_mesh;
 mod request;
 mod rows;
 mod times;
+mod weld_classes;
 mod worker;
 
 pub use answer::{DetectionAnswer, ShapeInMotion};

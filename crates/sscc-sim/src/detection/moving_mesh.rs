@@ -10,11 +10,12 @@ use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError, load_mesh, splits_vertices};
 
 use super::request::{Animated, Detection};
+use super::weld_classes::WeldClasses;
 use crate::error::{At, Result};
 use crate::watch::{Stage, Watch, check_cancelled};
 
 /// Weights whose sums differ from 1 by more than this are no rounding.
-const MAX_WEIGHT_ERROR: f64 = 1e-3;
+const MAX_WEIGHT_ERROR: f64 = 1e-2;
 
 /// A mesh that moves.
 pub(super) struct MovingMesh<'w> {
@@ -46,7 +47,7 @@ struct Evaluation {
 impl<'w> MovingMesh<'w> {
     /// Loads a mesh at rest.
     pub fn at_rest(file: &Path, request: &Detection, watch: &'w dyn Watch) -> Result<Self> {
-        Self::with_motion(file, request, watch, |_| Ok(Motion::Rest))
+        Self::with_motion(file, request, watch, |_, _| Ok(Motion::Rest))
     }
 
     /// Loads a mesh with frames, and checks all frames.
@@ -56,12 +57,16 @@ impl<'w> MovingMesh<'w> {
         request: &Detection,
         watch: &'w dyn Watch,
     ) -> Result<Self> {
-        Self::with_motion(file, request, watch, |mesh| {
+        Self::with_motion(file, request, watch, |mesh, mut classes| {
             let mut reader = FrameReader::open(frames, mesh, file)?;
             watch.begin(Stage::Reading);
+            let mut positions = Vec::new();
             for frame in 0..reader.len() {
                 check_cancelled(watch)?;
-                reader.check(frame)?;
+                reader.check(frame, &mut positions)?;
+                if let Some(classes) = &mut classes {
+                    classes.split(&positions);
+                }
                 watch.report(frame + 1, reader.len());
             }
             Ok(Motion::Frames(reader))
@@ -72,19 +77,23 @@ impl<'w> MovingMesh<'w> {
         file: &Path,
         request: &Detection,
         watch: &'w dyn Watch,
-        motion: impl FnOnce(&TriMesh) -> Result<Motion>,
+        motion: impl FnOnce(&TriMesh, Option<&mut WeldClasses>) -> Result<Motion>,
     ) -> Result<Self> {
         let name = request.mesh_name.as_deref().filter(|_| request.meshes.iter().any(|mesh| mesh == file));
         let mesh = load_mesh(file, name)?;
-        let motion = motion(&mesh)?;
         let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
+        let mut classes = weld.then(|| WeldClasses::at(mesh.rest_positions()));
+        let motion = motion(&mesh, classes.as_mut())?;
         // Every pair between two meshes counts.
         let groups = match request.against {
             Some(_) => None,
             None => request.groups.of_mesh(file, name, mesh.faces().len())?,
         };
         let filter = filter(request, weld, groups);
-        let make = |filter: &ContactFilter| Detector::with_filter(&mesh, filter);
+        let make = |filter: &ContactFilter| match &classes {
+            Some(classes) => Detector::with_weld_classes(&mesh, classes.numbers(), filter),
+            None => Detector::with_filter(&mesh, filter),
+        };
         let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
         Ok(Self { file: file.to_owned(), node: None, mesh, detector, motion, watch })
     }
@@ -98,7 +107,15 @@ impl<'w> MovingMesh<'w> {
     ) -> Result<Vec<Self>> {
         let scene = Arc::new(read_scene(file)?);
         let animation = scene.find_animation(&animated.animation).map_err(|error| in_file(error, file))?;
-        let times = animated.times.of(scene.animations()[animation].last_time);
+        let info = &scene.animations()[animation];
+        if info.channels > 0 && info.extension_channels > 0 {
+            watch.warn(&format!(
+                "{}: animations[{animation}]: {} of its channels are those of extensions, which are not evaluated",
+                file.display(),
+                info.extension_channels
+            ));
+        }
+        let times = animated.times.of(info.last_time);
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::SimError::refused(file.display(), cause))?.into();
         let nodes = scene.find_mesh_nodes(animated.node).map_err(|error| in_file(error, file))?;

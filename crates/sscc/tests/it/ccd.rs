@@ -266,10 +266,11 @@ fn the_detector_lists_every_contact_of_the_cloth() {
             let corners = frames.corners(kind, elements);
             for pair in frames.triangles_around(elements) {
                 let Some(time) = times.get(&pair) else { panic!("{name} {elements:?}: {pair:?} is missing") };
-                // The triangles meet when their features meet, or before.
+                // The triangles meet when their features meet, or before; both times are early by their own tolerance.
+                // That they are never late is compared with exact times below.
                 let of_features = kind.impact(&corners, Impact::TOLERANCE).unwrap();
                 assert!(
-                    *time <= of_features + 1e-9,
+                    *time <= of_features + 1e-6,
                     "{name} {elements:?}: {pair:?} at {time}, not {of_features}"
                 );
                 known.insert(pair);

@@ -19,6 +19,9 @@ pub fn check(args: &Check) -> Result<()> {
     let more = [&motion.against_frames, &options.metric, &options.groups.group_by];
     let files = files.into_iter().chain(more).flatten().chain(&args.meshes).chain([&model.path]);
     let inputs: Vec<&Path> = files.map(|file| file.as_path()).collect();
+    if let Some(report) = &args.report {
+        load::check_output(report, ".html", &inputs)?;
+    }
     for (path, what) in [(&args.pose, "a pose"), (&args.curves, "contact curves")] {
         let Some(path) = path else { continue };
         let ending = match ending(path) {

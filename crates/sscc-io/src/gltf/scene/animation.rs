@@ -18,8 +18,10 @@ pub struct AnimationInfo {
     pub first_time: f64,
     /// Time of the last key frame of any channel (s).
     pub last_time: f64,
-    /// Number of channels in the file. An animation without channels has the times 0, and cannot be evaluated.
+    /// Number of channels that move nodes. An animation without any has the times 0, and cannot be evaluated.
     pub channels: usize,
+    /// Number of channels of extensions, which are not evaluated.
+    pub extension_channels: usize,
 }
 
 /// Channels of an animation, sorted by node.

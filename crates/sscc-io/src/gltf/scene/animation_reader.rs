@@ -33,7 +33,8 @@ impl AnimationReader<'_, '_> {
             name: animation.name.clone(),
             first_time: f64::INFINITY,
             last_time: f64::NEG_INFINITY,
-            channels: animation.channels.len(),
+            channels: 0,
+            extension_channels: 0,
         };
         let mut channels: Vec<Channel> = Vec::new();
         for (at, channel) in animation.channels.iter().enumerate() {
@@ -43,10 +44,13 @@ impl AnimationReader<'_, '_> {
             };
             let sampler_part = format!("{part}.samplers[{}]", channel.sampler);
             let times = self.times_of(sampler.input, &sampler_part)?;
+            // Channels without a node belong to extensions; readers must ignore them.
+            let Some(node) = channel.target.node else {
+                info.extension_channels += 1;
+                continue;
+            };
             info.first_time = info.first_time.min(times[0]);
             info.last_time = info.last_time.max(times[times.len() - 1]);
-            // Channels without a node belong to extensions; readers must ignore them.
-            let Some(node) = channel.target.node else { continue };
             if node >= self.nodes.len() {
                 return Err(refused(format!("nodes[{node}] does not exist")));
             }
@@ -72,6 +76,7 @@ impl AnimationReader<'_, '_> {
             let sampler = self.sampler(times, sampler, role, width, &sampler_part)?;
             channels.push(Channel { node, property, sampler });
         }
+        info.channels = channels.len();
         if info.channels == 0 {
             // Some exporters write animations without channels. They are errors where they are evaluated.
             (info.first_time, info.last_time) = (0.0, 0.0);

@@ -36,7 +36,11 @@ impl AnimatedScene {
                     return Err(refused(format!("there is no such animation; the file has {count}")));
                 };
                 if self.infos[number].channels == 0 {
-                    return Err(refused("it has no key frames".into()));
+                    let cause = match self.infos[number].extension_channels {
+                        0 => "it has no key frames",
+                        _ => "all of its channels are those of extensions, which are not supported",
+                    };
+                    return Err(refused(cause.into()));
                 }
                 if time.is_nan() {
                     return Err(refused("the time is not a number".into()));

@@ -19,7 +19,13 @@ fn nodes_and_animations_are_listed() {
         // Order and zeros of influences do not count, nor the sign of zero.
         assert_eq!(node.weld_classes(), [0, 1, 2, 2]);
     }
-    let info = AnimationInfo { name: Some("wave".into()), first_time: 1.0, last_time: 4.0, channels: 5 };
+    let info = AnimationInfo {
+        name: Some("wave".into()),
+        first_time: 1.0,
+        last_time: 4.0,
+        channels: 5,
+        extension_channels: 0,
+    };
     assert_eq!(scene.animations(), [info]);
     fn is_shared<T: Send + Sync>(_: &T) -> bool {
         true
