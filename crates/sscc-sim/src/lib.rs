@@ -35,8 +35,8 @@ mod zero_radius;
 
 pub use certification::{CertificateRequest, Scheme};
 pub use detection::{
-    Animated, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries, ShapeInMotion,
-    Times, check_rows, detect,
+    AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries,
+    ShapeInMotion, Times, check_rows, detect,
 };
 pub use error::SimError;
 pub use groups::GroupRules;

@@ -10,7 +10,7 @@ use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
 use super::moving_mesh::MovingMesh;
 use super::request::{Detection, MeshMotion, OtherMesh};
-use super::worker::{Found, Worker};
+use super::worker::{QueryResult, Worker};
 use crate::error::Result;
 use crate::watch::check_cancelled;
 use crate::{SimError, Stage, Watch, available_threads};
@@ -51,7 +51,7 @@ pub fn detect<E: From<SimError>>(
                     check_cancelled(watch)?;
                     let taken = take(&answer(
                         mesh.into(),
-                        other.as_ref().map(Moved::from),
+                        other.as_ref().map(AnswerSource::from),
                         index,
                         &found?,
                         [queries, frames],
@@ -91,7 +91,7 @@ fn at_rest<E: From<SimError>>(
         |index, result: Result<_>| {
             check_cancelled(watch)?;
             let (mesh, found) = result?;
-            let mesh = Moved { file: &request.meshes[index], mesh: &mesh, node: None, times: None };
+            let mesh = AnswerSource { file: &request.meshes[index], mesh: &mesh, node: None, times: None };
             let taken = take(&answer(mesh, None, 0, &found, [1, 1]))?;
             watch.report(index + 1, count);
             Ok(taken)
@@ -102,31 +102,28 @@ fn at_rest<E: From<SimError>>(
 
 /// The parts of a [`MovingMesh`] that answers show.
 #[derive(Clone, Copy)]
-struct Moved<'a> {
+struct AnswerSource<'a> {
     file: &'a Path,
     mesh: &'a TriMesh,
     node: Option<usize>,
     times: Option<&'a [f64]>,
 }
 
-impl<'a> From<&'a MovingMesh<'_>> for Moved<'a> {
+impl<'a> From<&'a MovingMesh<'_>> for AnswerSource<'a> {
     fn from(mesh: &'a MovingMesh<'_>) -> Self {
         Self { file: &mesh.file, mesh: &mesh.mesh, node: mesh.node, times: mesh.times() }
     }
 }
 
 fn answer<'a>(
-    mesh: Moved<'a>,
-    other: Option<Moved<'a>>,
+    mesh: AnswerSource<'a>,
+    other: Option<AnswerSource<'a>>,
     index: usize,
-    found: &'a Found,
+    found: &'a QueryResult,
     [queries, frames]: [usize; 2],
 ) -> DetectionAnswer<'a> {
-    let shape = |Moved { file, mesh, .. }: Moved<'a>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| ShapeInMotion {
-        file,
-        mesh,
-        x_t0,
-        x_t1,
+    let shape = |AnswerSource { file, mesh, .. }: AnswerSource<'a>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| {
+        ShapeInMotion { file, mesh, x_t0, x_t1 }
     };
     let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
     let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));

@@ -18,5 +18,5 @@ mod worker;
 pub use answer::{DetectionAnswer, ShapeInMotion};
 pub use contacts::ContactOptions;
 pub use detect::detect;
-pub use request::{Animated, Detection, MeshMotion, OtherMesh, Times};
+pub use request::{AnimationMotion, Detection, MeshMotion, OtherMesh, Times};
 pub use rows::{RowQueries, check_rows};

@@ -9,7 +9,7 @@ use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError, load_mesh, splits_vertices};
 
-use super::request::{Animated, Detection};
+use super::request::{AnimationMotion, Detection};
 use super::weld_classes::WeldClasses;
 use crate::error::{At, Result};
 use crate::watch::{Stage, Watch, check_cancelled};
@@ -101,7 +101,7 @@ impl<'w> MovingMesh<'w> {
     /// Loads the nodes of an animation.
     pub fn animated(
         file: &Path,
-        animated: &Animated,
+        animated: &AnimationMotion,
         request: &Detection,
         watch: &'w dyn Watch,
     ) -> Result<Vec<Self>> {

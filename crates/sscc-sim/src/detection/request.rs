@@ -70,12 +70,12 @@ pub enum MeshMotion {
     /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
     Frames(PathBuf),
     /// An animation of the glTF file.
-    Animation(Animated),
+    Animation(AnimationMotion),
 }
 
 /// An animation of a glTF file, and when it is answered.
 #[derive(Clone, Debug)]
-pub struct Animated {
+pub struct AnimationMotion {
     /// Name of the animation, or its number.
     pub animation: String,
     /// Times of the queries.

@@ -35,7 +35,7 @@ struct Side<'m, 'w> {
 }
 
 /// The result of one query.
-pub(super) struct Found {
+pub(super) struct QueryResult {
     pub pairs: Vec<Pair>,
     pub times: Option<Vec<f64>>,
     pub contacts: Contacts,
@@ -58,7 +58,7 @@ impl<'m, 'w> Worker<'m, 'w> {
     }
 
     /// Answers the query at a frame, or from it to the next one.
-    pub fn answer(&mut self, frame: usize) -> Result<Found> {
+    pub fn answer(&mut self, frame: usize) -> Result<QueryResult> {
         let is_continuous = self.request.is_continuous;
         self.side.read(frame, is_continuous)?;
         if let Some(other) = &mut self.other {
@@ -80,7 +80,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         Ok(found)
     }
 
-    fn discrete(&mut self, is_last: bool) -> Result<Found, sscc::Error> {
+    fn discrete(&mut self, is_last: bool) -> Result<QueryResult, sscc::Error> {
         let x = &mut self.side;
         let limit = if self.request.limit == usize::MAX { MAX_PAIRS + 1 } else { self.request.limit };
         let start = Instant::now();
@@ -97,10 +97,10 @@ impl<'m, 'w> Worker<'m, 'w> {
             Contacts::of(self.side.surface(), self.other.as_ref().map(Side::surface), &pairs, options)?;
         let is_complete = statistics.complete;
         let positions = Vec::new();
-        Ok(Found { pairs, times: None, contacts, is_complete, microseconds, statistics, positions })
+        Ok(QueryResult { pairs, times: None, contacts, is_complete, microseconds, statistics, positions })
     }
 
-    fn continuous(&mut self) -> Result<Found, sscc::Error> {
+    fn continuous(&mut self) -> Result<QueryResult, sscc::Error> {
         let x = &mut self.side;
         let start = Instant::now();
         let impacts = match &mut self.other {
@@ -111,7 +111,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         let all = impacts?;
         let kept: Vec<Impact> = earliest_impacts(all, self.request.limit);
         let is_complete = kept.len() == all.len();
-        Ok(Found {
+        Ok(QueryResult {
             pairs: kept.iter().map(|impact| impact.pair).collect(),
             times: Some(kept.iter().map(|impact| impact.time).collect()),
             contacts: Contacts::default(),

@@ -6,7 +6,9 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::gltf::SkinWeights;
 use sscc_io::write_whole;
-use sscc_sim::{Animated, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect};
+use sscc_sim::{
+    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect,
+};
 use sscc_view::MeshReport;
 
 use super::printer::Printer;
@@ -99,7 +101,7 @@ fn check_flags(args: &Check) -> Result<()> {
 
 fn request(args: &Check) -> Detection {
     let (options, motion) = (&args.options, &args.motion);
-    let animated = motion.animation.as_ref().map(|animation| Animated {
+    let animated = motion.animation.as_ref().map(|animation| AnimationMotion {
         animation: animation.clone(),
         times: match &motion.times {
             Some(times) => Times::List(times.clone()),

@@ -45,7 +45,7 @@ pub(super) enum Property {
 }
 
 /// State of the nodes that an animation moves.
-pub(super) struct Moved {
+pub(super) struct NodeStates {
     /// Local transforms.
     pub transforms: Vec<(usize, DMat4)>,
     /// Weights of morph targets.
@@ -64,8 +64,8 @@ impl Animation {
     }
 
     /// Returns the nodes that the animation moves, at a time (s).
-    pub fn moved_at(&self, time: f64, nodes: &Nodes) -> Result<Moved, FormatError> {
-        let mut moved = Moved { transforms: Vec::new(), weights: BTreeMap::new() };
+    pub fn moved_at(&self, time: f64, nodes: &Nodes) -> Result<NodeStates, FormatError> {
+        let mut moved = NodeStates { transforms: Vec::new(), weights: BTreeMap::new() };
         for channels in self.channels.chunk_by(|a, b| a.node == b.node) {
             let node = channels[0].node;
             let mut parts = None;

@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec3};
 use sscc::limits;
 
 use super::animated_scene::AnimatedScene;
-use super::animation::Moved;
+use super::animation::NodeStates;
 use super::shape::SkinWeights;
 use crate::FormatError;
 
@@ -15,7 +15,7 @@ pub struct ScenePose<'a> {
     scene: &'a AnimatedScene,
     /// World transforms of all nodes.
     world: Vec<DMat4>,
-    /// Animated weights of morph targets, by node.
+    /// AnimationMotion weights of morph targets, by node.
     weights: BTreeMap<usize, Vec<f64>>,
 }
 
@@ -28,7 +28,7 @@ impl AnimatedScene {
     /// When there is no such animation, it has no key frames, or the time is NaN.
     pub fn pose(&self, animation: Option<usize>, time: f64) -> Result<ScenePose<'_>, FormatError> {
         let moved = match animation {
-            None => Moved { transforms: Vec::new(), weights: BTreeMap::new() },
+            None => NodeStates { transforms: Vec::new(), weights: BTreeMap::new() },
             Some(number) => {
                 let refused = |cause: String| FormatError::part(format!("animations[{number}]"), cause);
                 let count = self.animations.len();
