@@ -1,4 +1,4 @@
-//! AnimationMotion scenes: world positions of meshes with morph targets and skins, as a player shows them.
+//! Animated scenes: world positions of meshes with morph targets and skins, as a player shows them.
 //!
 //! Evaluation is in double precision. It follows version 2.0 of the format: node hierarchy, one animation alone, morph
 //! targets, then skins with all sets of joints.

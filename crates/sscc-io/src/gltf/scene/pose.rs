@@ -15,7 +15,7 @@ pub struct ScenePose<'a> {
     scene: &'a AnimatedScene,
     /// World transforms of all nodes.
     world: Vec<DMat4>,
-    /// AnimationMotion weights of morph targets, by node.
+    /// Animated weights of morph targets, by node.
     weights: BTreeMap<usize, Vec<f64>>,
 }
 
