@@ -17,8 +17,13 @@ struct BucketLane {
 
 impl<const E: usize> BroadPhase<E> {
     /// Whether the triangles in two slots never count.
+    #[inline]
     fn are_adjacent(&self, context: &Context<'_>, slots: [usize; 2]) -> bool {
-        let [a, b] = slots.map(|slot| self.volumes.layout.buckets.triangle(slot));
+        let buckets = &self.volumes.layout.buckets;
+        if context.filter.is_adjacency_alone() {
+            return buckets.share_vertex(slots);
+        }
+        let [a, b] = slots.map(|slot| buckets.triangle(slot));
         context.filter.relation(a, b) == Relation::Adjacent
     }
 

@@ -32,6 +32,8 @@ pub(crate) struct Buckets {
     /// [`VertexStore`](super::vertex_store::VertexStore).
     triangles: Vec<u32>,
     corners: Vec<[u32; 3]>,
+    /// For each slot the vertex classes of its triangle.
+    classes: Vec<[u32; 3]>,
     /// For each bucket its first vertex, and the end.
     vertex_starts: Vec<u32>,
     vertices: Vec<u32>,
@@ -82,8 +84,20 @@ impl Buckets {
             node.children().for_each(|child| of_node[child as usize] = of_node[n]);
         }
         let corners: Vec<[u32; 3]> = triangles.iter().map(|&t| faces[t as usize]).collect();
+        let classes = triangles.iter().map(|&t| filter.vertex_classes(t)).collect();
         let adjacency = OnceLock::new();
-        Self { of_node, nodes, packets, slots, triangles, corners, vertex_starts, vertices, adjacency }
+        Self {
+            of_node,
+            nodes,
+            packets,
+            slots,
+            triangles,
+            corners,
+            classes,
+            vertex_starts,
+            vertices,
+            adjacency,
+        }
     }
 
     /// Computes the masks of adjacent triangles, unless they are known. They take longer than one search and save about
@@ -100,6 +114,14 @@ impl Buckets {
             Some(masks) => (masks.masked_pairs(first, second), true),
             None => (AdjacencyMasks::masked_without(first, second), false),
         }
+    }
+
+    /// Whether the triangles in two slots share a vertex class.
+    #[inline]
+    pub(crate) fn share_vertex(&self, slots: [usize; 2]) -> bool {
+        let [[a, b, c], other] = slots.map(|slot| self.classes[slot]);
+        // Without branches: most triangles whose boxes overlap share a vertex, but not the same one.
+        other.into_iter().fold(false, |shared, x| shared | (x == a) | (x == b) | (x == c))
     }
 
     /// The bucket that a node is, or lies in; none for a larger node.

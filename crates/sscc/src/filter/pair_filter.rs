@@ -89,6 +89,12 @@ impl PairFilter {
         self.classes[triangle as usize]
     }
 
+    /// Whether triangles never count exactly if they share a vertex class.
+    #[inline]
+    pub(crate) fn is_adjacency_alone(&self) -> bool {
+        self.neighbours == Neighbours::Exclude && self.groups.is_none()
+    }
+
     /// The relation of two triangles, whether or not their pair is excluded.
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {

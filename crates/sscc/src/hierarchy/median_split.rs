@@ -83,13 +83,23 @@ fn split_in_half(triangles: &mut [SortKey], unit: usize) -> usize {
         let (lower, upper) = triangles.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |all, key| {
             (all.0.min(key.centroid), all.1.max(key.centroid))
         });
-        let axis = (upper - lower).max_position();
-        let compare = |a: &SortKey, b: &SortKey| {
-            a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.triangle.cmp(&b.triangle))
+        // One integer comparison: coordinate first, then triangle.
+        let key = |coordinate: f32, triangle: u32| {
+            u64::from(ascending_bits(coordinate)) << 32 | u64::from(triangle)
         };
-        triangles.select_nth_unstable_by(middle, compare);
+        match (upper - lower).max_position() {
+            0 => triangles.select_nth_unstable_by_key(middle, |t| key(t.centroid.x, t.triangle)),
+            1 => triangles.select_nth_unstable_by_key(middle, |t| key(t.centroid.y, t.triangle)),
+            _ => triangles.select_nth_unstable_by_key(middle, |t| key(t.centroid.z, t.triangle)),
+        };
     }
     middle
+}
+
+/// An integer for each number, in the same order, -0 before +0.
+fn ascending_bits(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 #[cfg(test)]
