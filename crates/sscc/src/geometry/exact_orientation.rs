@@ -22,6 +22,10 @@ const ROBUST_MIN: f64 = f64::from_bits((1023 - 240) << 52);
 #[cold]
 #[inline(never)]
 pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
+    // Meshes with split vertices have many triangles that meet at equal positions.
+    if d == a || d == b || d == c || a == b || a == c || b == c {
+        return 0;
+    }
     if [a, b, c, d].iter().flat_map(DVec3::as_ref).all(|x| is_robust_exact(*x)) {
         let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
         // Of the opposite sign convention: positive if the last point is below the plane.
@@ -34,6 +38,9 @@ pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
 #[cold]
 #[inline(never)]
 pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
+    if a == b || a == c || b == c {
+        return 0;
+    }
     if [a, b, c].iter().flat_map(DVec2::as_ref).all(|x| is_robust_exact(*x)) {
         let coord = |p: DVec2| Coord { x: p.x, y: p.y };
         return sign(robust::orient2d(coord(a), coord(b), coord(c)));
@@ -100,6 +107,13 @@ mod tests {
             d.z = d.z.next_up();
             [a, b, c, d].map(|p| p * g)
         };
+        // Equal points, without arithmetic.
+        let [a, b, c, d] = corners(1.0);
+        for [a, b, c, d] in
+            [[a, b, c, a], [a, b, c, b], [a, b, c, c], [a, a, c, d], [a, b, a, d], [a, b, b, d]]
+        {
+            assert_eq!((orient3d(a, b, c, d), orient3d_integer(a, b, c, d)), (0, 0));
+        }
         for (g, used) in [(1.0, true), (ROBUST_MIN, true), (ROBUST_MIN / 8.0, false), (1e-110, false)] {
             let points = corners(g);
             let [a, b, c, d] = points;
