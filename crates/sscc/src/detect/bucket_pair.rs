@@ -107,8 +107,8 @@ impl<const E: usize> BroadPhase<E> {
                 if !has_adjacent && self.are_adjacent(context, slots) {
                     continue;
                 }
-                let [a, b] = [(x, slots[0]), (y, slots[1])]
-                    .map(|(packet, slot)| BucketSlot { bucket: packet.bucket, slot });
+                let a = BucketSlot { bucket: x.bucket, slot: slots[0] };
+                let b = BucketSlot { bucket: y.bucket, slot: slots[1] };
                 if self.volumes.are_separated(a, b) {
                     continue;
                 }

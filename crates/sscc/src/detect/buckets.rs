@@ -119,7 +119,7 @@ impl Buckets {
     /// Whether the triangles in two slots share a vertex class.
     #[inline]
     pub(crate) fn share_vertex(&self, slots: [usize; 2]) -> bool {
-        let [[a, b, c], other] = slots.map(|slot| self.classes[slot]);
+        let ([a, b, c], other) = (self.classes[slots[0]], self.classes[slots[1]]);
         // Without branches: most triangles whose boxes overlap share a vertex, but not the same one.
         other.into_iter().fold(false, |shared, x| shared | (x == a) | (x == b) | (x == c))
     }

@@ -103,7 +103,8 @@ impl CoarseVertices {
         positions: &[[Vec4; E]],
     ) -> [[Vec4; E]; 3] {
         let first = self.starts[bucket as usize] as usize * GROUP;
-        self.corners[slot].map(|v| positions[first + v as usize])
+        let [a, b, c] = self.corners[slot];
+        [positions[first + a as usize], positions[first + b as usize], positions[first + c as usize]]
     }
 }
 

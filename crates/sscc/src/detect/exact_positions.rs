@@ -78,7 +78,8 @@ impl<const E: usize> ExactPositions<E> {
     /// The same in the frame, corner by corner.
     #[inline]
     pub(crate) fn mapped(&self, vertices: [u32; 3]) -> [[Vec4; E]; 3] {
-        vertices.map(|v| self.mapped[v as usize])
+        let [a, b, c] = vertices;
+        [self.mapped[a as usize], self.mapped[b as usize], self.mapped[c as usize]]
     }
 
     /// The frame of this search.

@@ -260,7 +260,7 @@ impl<const E: usize> NodeVolumes<E> {
     }
 
     /// The corners of the triangle in a slot of a bucket, in the frame.
-    #[inline]
+    #[inline(always)]
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         let Layout { buckets, coarse, .. } = &*self.layout;
         if self.is_coarse {

@@ -4,7 +4,7 @@ use super::search::Search;
 use crate::detect::broad_phase::Counters;
 use crate::detect::narrow_phase::NarrowPhase;
 
-/// The cost of the last answer of a [`Detector`], and the state of its hierarchy.
+/// The cost of the last answer of a [`Detector`](crate::Detector), and the state of its hierarchy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DetectorStatistics {
     /// Whether the search was complete: the pairs listed are all. False where a limit stopped it, or an error.

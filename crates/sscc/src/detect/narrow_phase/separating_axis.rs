@@ -10,8 +10,7 @@ pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 
         return false;
     }
     let origin: [Vec4; E] = std::array::from_fn(|end| x[0][end]);
-    let [a, b] =
-        [x, y].map(|t| t.map(|ends| std::array::from_fn(|end| Vec3A::from_vec4(ends[end] - origin[end]))));
+    let (a, b) = (relative_to(x, &origin), relative_to(y, &origin));
     let edges = |t: &[[Vec3A; E]; 3]| [t[1][0] - t[0][0], t[2][0] - t[1][0], t[0][0] - t[2][0]];
     let (e, f) = (edges(&a), edges(&b));
     let (m, n) = (e[0].cross(e[1]), f[0].cross(f[1]));
@@ -24,6 +23,18 @@ pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 
             .separate(&a, &b, error)
 }
 
+/// The corners relative to an origin. A loop, because nested maps of arrays are not inlined.
+#[inline(always)]
+fn relative_to<const E: usize>(corners: &[[Vec4; E]; 3], origin: &[Vec4; E]) -> [[Vec3A; E]; 3] {
+    let mut relative = [[Vec3A::ZERO; E]; 3];
+    for (corner, at) in corners.iter().zip(&mut relative) {
+        for end in 0..E {
+            at[end] = Vec3A::from_vec4(corner[end] - origin[end]);
+        }
+    }
+    relative
+}
+
 /// Four directions side by side.
 struct Directions {
     axes: [Vec4; 3],
@@ -31,8 +42,14 @@ struct Directions {
 
 impl Directions {
     #[inline]
-    fn new(all: [Vec3A; 4]) -> Self {
-        Self { axes: [0, 1, 2].map(|axis| Vec4::from_array(all.map(|v| v[axis]))) }
+    fn new([p, q, r, s]: [Vec3A; 4]) -> Self {
+        Self {
+            axes: [
+                Vec4::new(p.x, q.x, r.x, s.x),
+                Vec4::new(p.y, q.y, r.y, s.y),
+                Vec4::new(p.z, q.z, r.z, s.z),
+            ],
+        }
     }
 
     /// Whether one of the directions separates the triangles in every configuration, by more than the error of
@@ -48,7 +65,8 @@ impl Directions {
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut separated = [u32::MAX; 2];
         for end in 0..E {
-            let [a, b] = [a, b].map(|t| t.map(|ends| along(ends[end])));
+            let a = [along(a[0][end]), along(a[1][end]), along(a[2][end])];
+            let b = [along(b[0][end]), along(b[1][end]), along(b[2][end])];
             let lower = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);
             let upper = |t: &[Vec4; 3]| t[0].max(t[1]).max(t[2]);
             separated[0] &= (lower(&a) - upper(&b)).cmpgt(slack).bitmask();
