@@ -100,8 +100,8 @@ impl Buckets {
         }
     }
 
-    /// Computes the masks of adjacent triangles, unless they are known. They take longer than one search and save about
-    /// two thirds of each later one (docs/notes/2026-11-23-one-shot.md).
+    /// Computes the masks of adjacent triangles, unless they are known. They take as long as four searches and save nearly
+    /// half of each later one (docs/notes/2026-11-23-one-shot.md).
     pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
         self.adjacency.get_or_init(|| AdjacencyMasks::new(&self.slots, &self.triangles, filter));
     }

@@ -58,7 +58,7 @@ pub struct Detector<'a> {
 
 impl<'a> Detector<'a> {
     /// A detector for a mesh, under the default contact filter: pairs count that share no vertex. The rest positions choose the
-    /// hierarchy and nothing else. About as much work as three answers.
+    /// hierarchy and nothing else. About as much work as two answers.
     pub fn new(mesh: &TriMesh) -> Self {
         Self::build(mesh, None, &ContactFilter::default())
     }
