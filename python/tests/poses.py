@@ -33,6 +33,12 @@ FILES: dict[str, tuple[str, str | int | None]] = {
     "greenman": ("skinned/greenman.glb", 0),
     "RobotExpressive right hand": ("skinned/RobotExpressive.glb", 0),
     "RobotExpressive left hand": ("skinned/RobotExpressive.glb", 1),
+    "SimpleSkin": ("skinned/SimpleSkin.gltf", 0),
+    "03_skinned_cylinder": ("skinned/03_skinned_cylinder.gltf", 0),
+    "Animation_Skin_10": ("skinned/Animation_Skin_10.gltf", 0),
+    "made_Fox_mixed": ("skinned/made_Fox_mixed.glb", 0),
+    "cloth 227": ("ccd_frames/cloth-funnel/227.ply", None),
+    "cloth 228": ("ccd_frames/cloth-funnel/228.ply", None),
 }
 
 

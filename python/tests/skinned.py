@@ -5,6 +5,7 @@ For files with linear keys and without morph targets, such as those of Fox and C
 
 from __future__ import annotations
 
+import base64
 import json
 import struct
 from dataclasses import dataclass
@@ -32,12 +33,23 @@ class Character:
 
     @classmethod
     def load(cls, path: Path, place: int = 0) -> Character:
-        """Reads a GLB file; the node at that place among those with a skin."""
+        """Reads a GLB or glTF file; the node at that place among those with a skin."""
         content = path.read_bytes()
-        size = struct.unpack_from("<I", content, 12)[0]
-        gltf = json.loads(content[20 : 20 + size])
+        if content.startswith(b"glTF"):
+            size = struct.unpack_from("<I", content, 12)[0]
+            gltf, data = json.loads(content[20 : 20 + size]), content[20 + size + 8 :]
+        else:
+            gltf, data = json.loads(content), b""
+            starts = []
+            for buffer in gltf["buffers"]:
+                starts.append(len(data))
+                uri = buffer["uri"]
+                is_data = uri.startswith("data:")
+                data += base64.b64decode(uri.split(",")[1]) if is_data else (path.parent / uri).read_bytes()
+            for view in gltf["bufferViews"]:
+                view["byteOffset"] = view.get("byteOffset", 0) + starts[view["buffer"]]
         skinned = [i for i, node in enumerate(gltf["nodes"]) if "skin" in node]
-        return cls(gltf, content[20 + size + 8 :], skinned[place])
+        return cls(gltf, data, skinned[place])
 
     def array(self, accessor: int) -> NDArray[Any]:
         """The rows of an accessor."""

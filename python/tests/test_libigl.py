@@ -66,10 +66,9 @@ def test_real_meshes_as_they_are(models: Path) -> None:
         these, at_coincident[some.name] = exact.unexplained(some.vertices, some.faces, found, libigl)
         wrong += [f"{some.name}: {difference}" for difference in these]
     assert not wrong, "\n".join(wrong)
-    # Vertices of equal position: glTF files split them for rendering.
-    assert {name for name, count in at_coincident.items() if count > 0} == {
-        name for name, (file, _) in FILES.items() if file.endswith((".glb", ".gltf"))
-    }
+    # Vertices of equal position: most glTF files split them for rendering.
+    split = {name for name, (file, _) in FILES.items() if file.endswith((".glb", ".gltf"))}
+    assert {name for name, count in at_coincident.items() if count > 0} == split - {"SimpleSkin", "Animation_Skin_10"}
 
 
 @pytest.mark.usefixtures("libigl")
