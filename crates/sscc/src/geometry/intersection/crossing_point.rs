@@ -42,10 +42,14 @@ pub(super) fn cross_edge_face(edge: [DVec3; 2], face: &[DVec3; 3]) -> DVec3 {
     interpolate(edge, weights.unwrap_or([0.5; 2]), &face)
 }
 
-/// The point where two edges in one plane cross. Computed along the shorter one.
+/// The point where two edges in one plane cross. Computed along the shorter one, up to rounding of the lengths.
 pub(super) fn cross_edge_edge(e: [DVec3; 2], f: [DVec3; 2]) -> DVec3 {
     let (e, f) = (sorted(e), sorted(f));
-    let length = |[p, q]: [DVec3; 2]| (q - p).length_squared();
+    // Scaled, because squares of small numbers underflow.
+    let length = |[p, q]: [DVec3; 2]| {
+        let largest = (q - p).abs().max_element();
+        if largest > 0.0 { largest * ((q - p) / largest).length() } else { 0.0 }
+    };
     let is_e_first =
         length(e) < length(f) || length(e) == length(f) && e.map(|p| p.to_array()) < f.map(|p| p.to_array());
     let (e, f) = if is_e_first { (e, f) } else { (f, e) };
