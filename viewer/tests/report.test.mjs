@@ -142,10 +142,12 @@ describe("the shape", () => {
             await page.locator('.dialog input[type="file"]').setInputFiles(file);
             await page.waitForFunction(() => globalThis.sscc.pose.q[2] === -0.25);
             assert.deepEqual(await q(), [0.5, 0, -0.25, 0]);
+            await page.locator(".dialog").waitFor({ state: "detached" });
             await page.keyboard.press("l");
             const rows = npy([0.1, 0, 0, 0, 0.2, 0, 0, 0, 0.3, 0, 0, 0], [3, 4]);
             await page.locator('.dialog input[type="file"]').setInputFiles({ ...file, buffer: rows });
             await page.waitForFunction(() => globalThis.sscc.pose.q[0] > 0.299);
+            await page.locator(".dialog").waitFor({ state: "detached" });
             await page.keyboard.press("l");
             const cut = { ...file, buffer: rows.subarray(0, rows.length - 5) };
             await page.locator('.dialog input[type="file"]').setInputFiles(cut);
