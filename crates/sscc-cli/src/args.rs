@@ -368,8 +368,8 @@ pub struct At {
 
 impl Check {
     /// Returns the maximum number of pairs for each query.
-    pub fn max_pairs(&self) -> usize {
-        self.limit.map_or(if self.first { 1 } else { usize::MAX }, |limit| limit as usize)
+    pub fn max_pairs(&self) -> Option<usize> {
+        self.limit.map(|limit| limit as usize).or(self.first.then_some(1))
     }
 }
 

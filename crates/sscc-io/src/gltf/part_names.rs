@@ -1,6 +1,10 @@
 //! Names of a glTF file's nodes and materials, for groups of triangles.
 
-use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 use super::json::parse_parts;
 use crate::FormatError;
@@ -14,7 +18,15 @@ pub(super) struct PartNames {
     #[serde(default)]
     meshes: Vec<MaterialsOfMesh>,
     #[serde(default)]
-    nodes: Vec<NodeName>,
+    nodes: NodeNames,
+}
+
+/// What nodes have, by their numbers: most nodes of a hostile file may have nothing, in three bytes of text.
+#[derive(Default)]
+struct NodeNames {
+    names: BTreeMap<usize, Box<str>>,
+    /// The first node that shows each mesh.
+    first_of_mesh: BTreeMap<u32, usize>,
 }
 
 #[derive(Deserialize)]
@@ -23,7 +35,7 @@ struct Named {
 }
 
 #[derive(Deserialize)]
-struct NodeName {
+struct Node {
     name: Option<Box<str>>,
     mesh: Option<u32>,
 }
@@ -46,7 +58,7 @@ impl PartNames {
 
     /// The first node that shows a mesh.
     pub fn node_of_mesh(&self, mesh: usize) -> Option<usize> {
-        self.nodes.iter().position(|node| node.mesh.is_some_and(|shown| shown as usize == mesh))
+        self.nodes.first_of_mesh.get(&u32::try_from(mesh).ok()?).copied()
     }
 
     /// The name of the group of a primitive; `node` shows its mesh. Materials that do not exist are named by number:
@@ -59,7 +71,7 @@ impl PartNames {
         match by {
             GroupsBy::Group => format!("#{primitive}"),
             GroupsBy::Object => match node {
-                Some(node) => numbered(self.nodes.get(node).and_then(|node| node.name.as_ref()), node),
+                Some(node) => numbered(self.nodes.names.get(&node), node),
                 None => numbered(shape.and_then(|shape| shape.name.as_ref()), mesh),
             },
             GroupsBy::Material => {
@@ -72,5 +84,36 @@ impl PartNames {
                 }
             }
         }
+    }
+}
+
+impl<'de> Deserialize<'de> for NodeNames {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(NodesVisitor)
+    }
+}
+
+struct NodesVisitor;
+
+impl<'de> Visitor<'de> for NodesVisitor {
+    type Value = NodeNames;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an array of nodes")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut nodes: A) -> Result<NodeNames, A::Error> {
+        let mut found = NodeNames::default();
+        let mut number = 0;
+        while let Some(Node { name, mesh }) = nodes.next_element()? {
+            if let Some(name) = name {
+                found.names.insert(number, name);
+            }
+            if let Some(mesh) = mesh {
+                found.first_of_mesh.entry(mesh).or_insert(number);
+            }
+            number += 1;
+        }
+        Ok(found)
     }
 }

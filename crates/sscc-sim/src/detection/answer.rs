@@ -65,10 +65,10 @@ pub struct ShapeInMotion<'a> {
     pub x_t1: &'a [DVec3],
 }
 
-/// Returns the `limit` earliest impacts, sorted by pair.
-pub(super) fn earliest_impacts(impacts: &[Impact], limit: usize) -> Vec<Impact> {
+/// Returns the `limit` earliest impacts (None: all), sorted by pair.
+pub(super) fn earliest_impacts(impacts: &[Impact], limit: Option<usize>) -> Vec<Impact> {
     let mut kept = impacts.to_vec();
-    if limit < kept.len() {
+    if let Some(limit) = limit.filter(|limit| *limit < kept.len()) {
         kept.sort_by(|a, b| a.time.total_cmp(&b.time));
         kept.truncate(limit);
         kept.sort_by_key(|impact| impact.pair);

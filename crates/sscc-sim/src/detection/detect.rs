@@ -22,7 +22,7 @@ use crate::{SimError, Stage, Watch, available_threads};
 ///
 /// # Errors
 /// When a file cannot be read or does not fit its mesh; when a request is contradictory; when positions are not finite;
-/// when a discrete query without a limit has more than 67,108,864 pairs; when `watch` cancels; when `take` fails.
+/// when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit; when `watch` cancels; when `take` fails.
 pub fn detect<E: From<SimError>>(
     request: &Detection,
     watch: &dyn Watch,

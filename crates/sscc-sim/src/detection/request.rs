@@ -30,9 +30,9 @@ pub struct Detection {
     pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
     pub is_continuous: bool,
-    /// Maximum number of pairs for each query; of continuous queries the earliest. `usize::MAX`: a discrete query with more
-    /// than 67,108,864 pairs is an error.
-    pub limit: usize,
+    /// Maximum number of pairs for each query; of continuous queries the earliest. None: more than
+    /// [`sscc::Detector::MAX_PAIRS`] are an error.
+    pub limit: Option<usize>,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
     /// Whether answers have the positions of each frame, as reports need them.
@@ -54,7 +54,7 @@ impl Default for Detection {
             ignore_rest: false,
             groups: GroupRules::default(),
             is_continuous: false,
-            limit: usize::MAX,
+            limit: None,
             contacts: ContactOptions::default(),
             has_positions: false,
             threads: None,

@@ -20,8 +20,8 @@ pub struct RowQueries<'a> {
     pub rows: &'a Rows,
     /// Whether to answer continuous queries.
     pub is_continuous: bool,
-    /// Maximum number of pairs for each query; of continuous queries the earliest.
-    pub limit: usize,
+    /// Maximum number of pairs for each query; of continuous queries the earliest. None: all.
+    pub limit: Option<usize>,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
 }
@@ -45,7 +45,7 @@ pub fn check_rows<E: From<SimError>>(
         let found = if is_continuous {
             query.continuous(rows[index], rows[index + 1]).map(<[Impact]>::to_vec)
         } else {
-            query.discrete_at_most(rows[index], limit).map(|_| Vec::new())
+            query.discrete_at_most(rows[index], limit.unwrap_or(usize::MAX)).map(|_| Vec::new())
         };
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         check_cancelled(progress)?;

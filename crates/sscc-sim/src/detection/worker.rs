@@ -9,13 +9,7 @@ use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
 use super::moving_mesh::MovingMesh;
 use super::request::Detection;
-use crate::SimError;
 use crate::error::{At, Result};
-use crate::text::grouped;
-
-/// Maximum number of pairs of a query without a limit: 512 MiB. A mesh of n triangles that collapses to a point has about
-/// n^2 / 2 pairs.
-const MAX_PAIRS: usize = 1 << 26;
 
 /// A detector for each mesh, and buffers.
 pub(super) struct Worker<'m, 'w> {
@@ -64,15 +58,9 @@ impl<'m, 'w> Worker<'m, 'w> {
         if let Some(other) = &mut self.other {
             other.read(frame, is_continuous)?;
         }
-        let file = &self.side.mesh.file;
-        let mut found = if is_continuous {
-            self.continuous().in_file(file)?
-        } else {
-            let found = self.discrete(self.last == Some(frame)).in_file(file)?;
-            check_count(found.pairs.len(), self.request.limit)
-                .map_err(|cause| SimError::refused(self.side.mesh.place(frame), cause))?;
-            found
-        };
+        let mesh = self.side.mesh;
+        let found = if is_continuous { self.continuous() } else { self.discrete(self.last == Some(frame)) };
+        let mut found = found.at(|| mesh.place(frame))?;
         if self.request.has_positions {
             let sides = [&self.side].into_iter().chain(&self.other);
             found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
@@ -82,11 +70,12 @@ impl<'m, 'w> Worker<'m, 'w> {
 
     fn discrete(&mut self, is_last: bool) -> Result<QueryResult, sscc::Error> {
         let x = &mut self.side;
-        let limit = if self.request.limit == usize::MAX { MAX_PAIRS + 1 } else { self.request.limit };
         let start = Instant::now();
-        let pairs = match &mut self.other {
-            Some(y) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
-            None => x.detector.discrete_at_most(&x.x_t0, limit),
+        let pairs = match (&mut self.other, self.request.limit) {
+            (Some(y), Some(limit)) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
+            (Some(y), None) => x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0),
+            (None, Some(limit)) => x.detector.discrete_at_most(&x.x_t0, limit),
+            (None, None) => x.detector.discrete(&x.x_t0),
         };
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let pairs = pairs?.to_vec();
@@ -123,17 +112,6 @@ impl<'m, 'w> Worker<'m, 'w> {
     }
 }
 
-/// Refuses more pairs than fit into memory, unless the caller has set the limit. The error is the cause.
-fn check_count(pairs: usize, limit: usize) -> Result<(), String> {
-    if limit < usize::MAX || pairs <= MAX_PAIRS {
-        return Ok(());
-    }
-    let most = grouped(MAX_PAIRS as u64);
-    Err(format!(
-        "more than {most} pairs collide: is the mesh flat or a point there? --limit N lists at most N"
-    ))
-}
-
 impl<'m, 'w> Side<'m, 'w> {
     fn new(mesh: &'m MovingMesh<'w>) -> Self {
         Self { mesh, detector: mesh.detector.clone(), x_t0: Vec::new(), x_t1: Vec::new() }
@@ -150,18 +128,5 @@ impl<'m, 'w> Side<'m, 'w> {
             self.mesh.positions(frame + 1, &mut self.x_t1)?;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn too_many_pairs_are_refused() {
-        assert_eq!(check_count(MAX_PAIRS, usize::MAX), Ok(()));
-        assert_eq!(check_count(MAX_PAIRS + 1, MAX_PAIRS + 1), Ok(()));
-        let cause = check_count(MAX_PAIRS + 1, usize::MAX).unwrap_err();
-        assert!(cause.starts_with("more than 67,108,864 pairs collide: "), "{cause}");
     }
 }

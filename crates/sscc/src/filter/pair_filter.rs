@@ -165,7 +165,7 @@ impl PairFilter {
         let corners = classes_a.iter().zip(corners_a).chain(classes_b.iter().zip(corners_b));
         let mut shared = corners.filter(|(other, _)| **other == class).map(|(_, corner)| corner);
         let first = shared.next();
-        shared.all(|corner| Some(corner) == first)
+        right_or!(shared.all(|corner| Some(corner) == first), WeldedVerticesStayTogether, true)
     }
 
     fn collide_as_shared_vertex_pair(

@@ -10,6 +10,8 @@ mutants! {
     GroupsForgotten: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// A node has the group of its first part.
     NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
+    /// Vertices that are welded at rest are taken to be at one position always.
+    WeldedVerticesStayTogether: CaughtBy("it detector::welded_vertices_can_move_apart");
     /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
     KineticBallAtCenter: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
     /// The rounding bound of positions about a centre omits the displacement of the centre.

@@ -260,19 +260,12 @@ fn the_detector_lists_every_contact_of_the_cloth() {
     let times: BTreeMap<Pair, f64> = impacts.iter().map(|impact| (impact.pair, impact.time)).collect();
 
     let (mut queries, mut known) = (0, BTreeSet::new());
-    for (name, kind) in [("ee", Kind::EdgeEdge), ("vf", Kind::VertexFace)] {
+    for name in ["ee", "vf"] {
         for (elements, _) in read_pairs(&folder, name).into_iter().filter(|(_, collides)| *collides) {
             queries += 1;
-            let corners = frames.corners(kind, elements);
             for pair in frames.triangles_around(elements) {
-                let Some(time) = times.get(&pair) else { panic!("{name} {elements:?}: {pair:?} is missing") };
-                // The triangles meet when their features meet, or before; both times are early by their own tolerance.
-                // That they are never late is compared with exact times below.
-                let of_features = kind.impact(&corners, Impact::TOLERANCE).unwrap();
-                assert!(
-                    *time <= of_features + 1e-6,
-                    "{name} {elements:?}: {pair:?} at {time}, not {of_features}"
-                );
+                // That its time is not late is compared with exact times below.
+                assert!(times.contains_key(&pair), "{name} {elements:?}: {pair:?} is missing");
                 known.insert(pair);
             }
         }

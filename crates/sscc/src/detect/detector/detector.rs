@@ -119,8 +119,9 @@ impl<'a> Detector<'a> {
         self
     }
 
-    /// The maximum number of pairs of an answer without a limit: 2^27, which bounds its memory to 1 GiB (2 GiB of impacts).
-    pub const MAX_PAIRS: usize = 1 << 27;
+    /// The maximum number of pairs of an answer without a limit: 2^26, which bounds its memory to 512 MiB (1 GiB of impacts).
+    /// A mesh of n triangles that collapses to a point has about n^2 / 2 pairs.
+    pub const MAX_PAIRS: usize = 1 << 26;
 
     /// All colliding pairs at these positions (one for each vertex of the mesh, model unit): triangle indices `i < j`, sorted.
     ///
