@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::{PyBytes, PyList, PyType};
 use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
 use sscc_io::{read_certificates, write_certificates};
 
@@ -19,6 +19,7 @@ use crate::kinetic::KineticQuery;
 use crate::metric::factor;
 use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
+use crate::sweeps::SweepArguments;
 
 #[pyclass(frozen, module = "sscc", name = "Certificates")]
 pub struct Certificates {
@@ -120,6 +121,19 @@ impl Certificates {
         let q = vector(q, "q")?;
         let scale = answer(py, || self.pool.with_query(|query| query.safe_scale(&q)))?;
         scale.map_err(|error| refused(&error, "q"))
+    }
+
+    #[pyo3(signature = (range=None, *, q=None, modes=None, threads=None, progress=None))]
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        range: Option<&Bound<'py, PyAny>>,
+        q: Option<&Bound<'py, PyAny>>,
+        modes: Option<&Bound<'py, PyAny>>,
+        threads: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        SweepArguments { range, q, modes, threads }.run(py, &self.pool, progress)
     }
 
     fn clamp<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {

@@ -27,6 +27,7 @@ mod pool;
 mod positions;
 mod shards;
 mod simulate;
+mod sweeps;
 
 use pyo3::prelude::*;
 

@@ -29,6 +29,7 @@ from sscc._sscc import (
     self_intersections,
 )
 from sscc._simulate import Simulation, simulate
+from sscc._sweep import Sweep
 
 __all__ = [
     "Answer",
@@ -44,6 +45,7 @@ __all__ = [
     "KineticQuery",
     "Model",
     "Simulation",
+    "Sweep",
     "__version__",
     "modes",
     "self_intersections",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sscc._curve import Curve
+from sscc._sweep import Sweep
 
 __version__: str
 
@@ -144,6 +145,23 @@ class Certificates:
         """The pairs that collide between q0 and q1, and when. Each vertex moves on a straight line."""
     def safe_scale(self, q: ArrayLike) -> float:
         """A scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s."""
+    def sweep(
+        self,
+        range: ArrayLike | None = None,
+        *,
+        q: ArrayLike | None = None,
+        modes: Sequence[int | str] | None = None,
+        threads: int | None = None,
+        progress: _Progress = None,
+    ) -> list[Sweep]:
+        """For each mode, up and then down, the first weight at which the shape touches itself.
+
+        range: (2,) or (r, 2), the ends of the weights; None: 0 to 1 for morph targets, else as far as moves some vertex
+            by half the diagonal of the AABB.
+        q: the weights at the start (r,), at which the other modes stay; None: the centre.
+        modes: numbers or names; None: all.
+        threads, progress: as in ``Model.certify``.
+        """
     def clamp(self, q: ArrayLike) -> _F64 | None:
         """q, or the last point on the line from the centre to q that the root's certificate proves free. None if its
         radius is 0 or there are exceptions."""

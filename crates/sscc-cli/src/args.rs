@@ -52,6 +52,8 @@ pub enum Command {
     /// Check whether a model collides with itself at q, or a mesh as it is, in frames, in an animation or against another
     /// mesh, and list the colliding triangle pairs
     Check(Box<Check>),
+    /// Find for each mode or morph target the first weight at which the shape touches itself
+    Sweep(Box<Sweep>),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
     /// Show the contents of a model, certificate, mesh or solid file
@@ -361,9 +363,9 @@ pub struct At {
     /// Configurations, one q in each row: .npy of shape (T, r), or (r)
     #[arg(long, value_name = "FILE")]
     pub trajectory: Option<PathBuf>,
-    /// One configuration: r numbers
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', allow_hyphen_values = true)]
-    pub q: Option<Vec<f64>>,
+    /// One configuration: r numbers, or weights by the names of modes, as in jawOpen=0.5,smile=0.2 (the others are 0)
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    pub q: Option<String>,
 }
 
 impl Check {
@@ -432,6 +434,39 @@ pub enum Method {
     NormalCones,
     /// A test of every triangle pair
     BruteForce,
+}
+
+/// `sscc sweep`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc sweep head.glb"
+        "sscc sweep spring.model.safetensors --certificates spring.sscc.safetensors --range=-1,1 --json"
+        "sscc sweep face.obj --modes targets/ --ignore-rest --pose poses/"
+    ),
+    after_help = "\
+Each weight goes up and down from its value in --q; the others stay. Free is proven at every weight, not at samples.\n\
+Exit codes: 0 nothing touches, 1 some sweep is not free to its end, 2 error."
+)]
+pub struct Sweep {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    /// The range of every weight [default: 0,1 for morph targets; else as far as moves a vertex by half the AABB's diagonal]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
+    pub range: Option<String>,
+    /// The weights at the start: r numbers, or by name, as in jawOpen=0.5 (the others are 0) [default: the centre]
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    pub q: Option<String>,
+    /// Also write the shape at each hit (.ply), its colliding triangles red, to this folder
+    #[arg(long, value_name = "DIR")]
+    pub pose: Option<PathBuf>,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
 }
 
 /// `sscc audit`

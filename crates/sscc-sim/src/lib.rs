@@ -29,6 +29,7 @@ mod recipes;
 mod run;
 mod scenes;
 mod simulate;
+mod sweeps;
 pub mod text;
 mod watch;
 mod zero_radius;
@@ -57,5 +58,6 @@ pub use run::{
 };
 pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
+pub use sweeps::{SweepRequest, SweepRow, default_ranges, read_q, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;

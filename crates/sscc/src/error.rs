@@ -134,6 +134,24 @@ pub enum Error {
     /// A q at which positions leave the range in which predicates are exact.
     #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
     CoordinatesRange,
+    /// A mode that does not exist.
+    #[error("there is no mode {mode}: the model has {rank} modes, counted from 0")]
+    ModeIndex {
+        /// The mode named.
+        mode: usize,
+        /// Number of modes.
+        rank: usize,
+    },
+    /// A range of weights that is empty or not finite.
+    #[error("mode {mode} (counted from 0): the range from {low} to {high} is empty or not finite")]
+    SweepRange {
+        /// The mode, from 0.
+        mode: usize,
+        /// The lower end.
+        low: f64,
+        /// The upper end.
+        high: f64,
+    },
     /// Too many collisions to list.
     #[error(
         "more than {most} pairs of triangles collide at rest or at the centre: repair the mesh, or choose another centre"

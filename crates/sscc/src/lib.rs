@@ -55,6 +55,7 @@
 //! | Which collide between one q and another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
 //! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
 //! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
+//! | How far can the weight of a mode go until the shape touches itself? | [`Query::sweep`], [`Query::sweep_modes`] |
 //! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
 //! | Which positions do vertices have at q? | [`ReducedModel::positions`] |
 //! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |
@@ -289,4 +290,4 @@ pub use geometry::{
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};
 pub use progress::Progress;
-pub use query::{Answer, KineticQuery, Method, Query, Statistics};
+pub use query::{Answer, KineticQuery, Method, Query, Statistics, Sweep, SweepOutcome};

@@ -9,8 +9,8 @@ use sscc_io::write_npy;
 
 use crate::common::{Run, STRIP, command, strips};
 
-const COMMANDS: [&str; 9] =
-    ["demo", "modes", "certify", "check", "audit", "info", "simulate", "bench", "view"];
+const COMMANDS: [&str; 10] =
+    ["demo", "modes", "certify", "check", "sweep", "audit", "info", "simulate", "bench", "view"];
 
 /// Returns the lines of a help page in a terminal of that width.
 fn page(name: Option<&str>, width: usize) -> Vec<String> {
@@ -188,7 +188,8 @@ fn examples_run_as_they_are_shown() {
             continue;
         }
         let done = crate::common::sscc(folder, &args);
-        let expected: &[_] = if args[0] == "check" { &[Some(0), Some(1)] } else { &[Some(0)] };
+        let expected: &[_] =
+            if matches!(args[0].as_str(), "check" | "sweep") { &[Some(0), Some(1)] } else { &[Some(0)] };
         assert!(expected.contains(&done.code) && !done.stdout.is_empty(), "{example}: {done:?}");
         run += 1;
         collided += usize::from(done.code == Some(1));

@@ -18,4 +18,5 @@ mod readme;
 mod real_data;
 mod scopes;
 mod simulate;
+mod sweep;
 mod view;

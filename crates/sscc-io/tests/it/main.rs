@@ -5,3 +5,4 @@
 mod hostile;
 mod real_data;
 mod real_solids;
+mod sweeps;

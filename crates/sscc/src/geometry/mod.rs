@@ -26,6 +26,7 @@ mod triangle_triangle;
 mod two_triangles;
 
 pub use aabb::Aabb;
+pub(crate) use ccd::free_until;
 pub use ccd::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub(crate) use intersection::TriangleContact;
 pub use intersection::{

@@ -9,6 +9,7 @@ mod reduced_model;
 pub(crate) mod rounding;
 mod rounding_bound;
 mod scaled_model;
+mod weight_limit;
 
 pub use mesh::TriMesh;
 pub(crate) use metric::check_scaled_modes;

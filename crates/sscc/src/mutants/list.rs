@@ -52,6 +52,8 @@ mutants! {
     ConeExact: CaughtBy("lib bounds::cone_rate::tests::rates_that_cancel_are_not_too_small");
     /// Safe scales omit the rounding error of positions along the line.
     LineExact: CaughtBy("it rounding::safe_scales_end_before_rounding_closes_a_gap");
+    /// Sweeps omit the rounding of positions between two weights.
+    SweepExact: CaughtBy("it sweep::rounding_between_two_weights_is_not_forgotten");
     /// A |z| that equals the root's radius is certified.
     RootRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals a node's radius is certified in a traversal.

@@ -31,8 +31,9 @@ impl Query<'_> {
             return Ok(&[]);
         }
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
-        swept.find(&self.context, [t0, t1], self.norm, &mut self.statistics)?;
-        let impacts = &swept.narrow.0.list;
+        swept.find(&self.context, [t0, t1], self.norm, usize::MAX, &mut self.statistics)?;
+        let impacts = &mut swept.narrow.0.list;
+        impacts.sort_unstable_by_key(|impact| impact.pair);
         self.discrete.narrow.0.list.extend(impacts.iter().map(|impact| impact.pair));
         Ok(impacts)
     }

@@ -16,6 +16,7 @@ mod pair_tree_traversal;
 mod query;
 mod safe_scale;
 mod statistics;
+mod sweep;
 mod swept_search;
 mod valid_ball;
 
@@ -24,3 +25,4 @@ pub use kinetic::KineticQuery;
 pub use method::Method;
 pub use query::Query;
 pub use statistics::Statistics;
+pub use sweep::{Sweep, SweepOutcome};

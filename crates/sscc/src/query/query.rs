@@ -9,6 +9,7 @@ use super::method::Method;
 use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
 use super::valid_ball::ValidBall;
+use crate::detect::narrow_phase::{BallHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
 use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
@@ -26,7 +27,9 @@ pub struct Query<'a> {
     /// Has the last answer, of continuous queries the pairs.
     pub(super) discrete: DiscreteSearch,
     /// Made by the first continuous query.
-    pub(super) swept: Option<Box<SweptSearch>>,
+    pub(super) swept: Option<Box<SweptSearch<SweptHits>>>,
+    /// Made by the first sweep.
+    pub(super) candidates: Option<Box<SweptSearch<BallHits>>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) valid_ball: ValidBall,
@@ -89,7 +92,7 @@ impl<'a> Query<'a> {
         let discrete = DiscreteSearch::new(&context);
         let valid_ball = ValidBall::new(&context);
         let statistics = Statistics::default();
-        Self { context, discrete, swept: None, norm: 0.0, statistics, valid_ball, offset }
+        Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, valid_ball, offset }
     }
 
     /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.

@@ -1,4 +1,4 @@
-//! The swept search: triangles that have a point in common on the straight lines between two configurations.
+//! The swept search: pairs of triangles that the narrow phase finds on the straight lines between two configurations.
 
 use super::certified_search::CertifiedSearch;
 use super::configuration::Configuration;
@@ -6,22 +6,23 @@ use super::context::QueryContext;
 use super::method::Method;
 use super::statistics::Statistics;
 use crate::Error;
-use crate::detect::narrow_phase::SweptHits;
+use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::DeformedMotion;
 
-/// Finds the impacts between two configurations, and owns the memory for it.
+/// Finds the hits between two configurations, and owns the memory for it.
 #[derive(Clone)]
-pub(super) struct SweptSearch {
+pub(super) struct SweptSearch<N> {
     certified: CertifiedSearch<2>,
-    pub(super) narrow: SweptHits,
+    pub(super) narrow: N,
 }
 
-impl SweptSearch {
+impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
-        Self { certified: CertifiedSearch::new(context), narrow: SweptHits::default() }
+        Self { certified: CertifiedSearch::new(context), narrow: N::default() }
     }
 
-    /// Finds all impacts, sorted by pair. `norm`: the larger one of start and end.
+    /// Finds at most `limit` hits, in no particular order; all of them where the search is complete. `norm`: the larger one
+    /// of start and end.
     ///
     /// # Errors
     /// When it was cancelled.
@@ -30,10 +31,11 @@ impl SweptSearch {
         context: &QueryContext<'_>,
         [t0, t1]: [Configuration<'_>; 2],
         norm: f64,
+        limit: usize,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
-        narrow.0.begin(usize::MAX);
+        narrow.hits().begin(limit);
         certified.broad.begin();
         statistics.root_certified = context.is_root_certified(norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {
@@ -50,9 +52,8 @@ impl SweptSearch {
             }
             statistics.set_counters(&certified.broad.counters);
             certified.broad.end(narrow)?;
-            narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
         }
-        statistics.complete = narrow.0.is_complete();
+        statistics.complete = narrow.hits().is_complete();
         Ok(())
     }
 }

@@ -24,3 +24,4 @@ mod pair_tree_traversal;
 mod penetration;
 mod rounding;
 mod safe_scale;
+mod sweep;

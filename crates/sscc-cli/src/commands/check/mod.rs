@@ -7,9 +7,9 @@ mod shapes;
 mod text;
 
 use anyhow::{Context, Result, bail, ensure};
-use sscc::{Certificates, Method, Query, ReducedModel};
-use sscc_io::{Rows, read_rows};
-use sscc_sim::{DetectionAnswer, RowQueries, check_rows};
+use sscc::{Certificates, Method, Query};
+use sscc_io::{LoadedModel, Rows, read_rows};
+use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_q};
 
 use crate::args::{self, At, Check};
 use crate::outcome::Outcome;
@@ -29,8 +29,9 @@ fn check_model(args: &Check) -> Result<bool> {
         bail!("{}: --q and --trajectory take one model: leave it out", second.display());
     }
     let typed_method = args.method.unwrap_or(args::Method::Certified);
-    let model = load::model(&args.model)?.model;
-    let rows = coordinates(&args.at, &model)?;
+    let loaded = load::model(&args.model)?;
+    let rows = coordinates(&args.at, &loaded)?;
+    let model = loaded.model;
     ensure!(
         !args.continuous || rows.rows > 1,
         "--continuous: the trajectory has one row; a motion needs at least two"
@@ -86,19 +87,18 @@ fn method(typed: args::Method) -> Method {
 }
 
 /// Returns every configuration. All are validated before the first query.
-fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
+fn coordinates(at: &At, loaded: &LoadedModel) -> Result<Rows> {
     match (&at.trajectory, &at.q) {
         (Some(path), _) => {
             let rows = read_rows(path)?;
             for (index, q) in rows.iter().enumerate() {
                 let in_row = || format!("{}: row {index} (counted from 0)", path.display());
-                model.check_coordinates(q).with_context(in_row)?;
+                loaded.model.check_coordinates(q).with_context(in_row)?;
             }
             Ok(rows)
         }
         (None, q) => {
-            let q = q.clone().unwrap_or_default();
-            model.check_coordinates(&q).context("--q")?;
+            let q = read_q(q.as_deref().unwrap_or_default(), loaded)?;
             Ok(Rows { rows: 1, columns: q.len(), data: q })
         }
     }

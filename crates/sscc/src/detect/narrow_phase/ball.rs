@@ -1,4 +1,5 @@
-//! The narrow phase of kinetic searches: triangles that may collide at some configuration in a ball.
+//! The narrow phase of kinetic searches and of sweeps: triangles that may collide at some configuration in a ball, or
+//! between two configurations.
 
 use glam::DVec3;
 
@@ -8,7 +9,8 @@ use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 use crate::geometry::Aabb;
 
-/// The pairs whose boxes overlap; the two configurations have the lowest and the highest coordinates of each corner in the ball.
+/// The pairs whose boxes overlap; the two configurations have the lowest and the highest coordinates of each corner, in any
+/// order.
 #[derive(Clone, Default)]
 pub(crate) struct BallHits(pub(crate) Hits<Pair>);
 

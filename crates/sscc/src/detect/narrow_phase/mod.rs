@@ -2,7 +2,8 @@
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
-//! - ball ([`BallHits`]): whether their boxes, around all positions in a ball of configurations, overlap.
+//! - ball ([`BallHits`]): whether their boxes, around all positions in a ball or on the way between two configurations,
+//!   overlap.
 
 mod ball;
 mod discrete;

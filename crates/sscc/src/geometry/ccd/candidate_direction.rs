@@ -9,6 +9,9 @@
 //! where the function changes by at most `4 m`: `12 u m`. A gap separates when it exceeds `40 u m`, more than all of them
 //! together. Underflow: each of these few dozen operations errs by at most 2^-1074, for which 2^-1022 is added. The
 //! coordinates are at most 2^200 and the largest component of a direction is 1, so nothing overflows.
+//!
+//! A slack makes a proof hold for corners that are off these lines: the gap must then also exceed `slack sum_c |n_c|`,
+//! which is at least the change of a gap of two corners whose distance along each axis is off by at most the slack.
 
 use glam::DVec3;
 
@@ -27,6 +30,8 @@ pub(super) struct MovingPair {
     b: MovingTriangle,
     /// For each axis the largest magnitude of a corner.
     reach: DVec3,
+    /// How far, along each axis, the distance of two corners may be from that of corners that move linearly.
+    slack: f64,
 }
 
 /// A candidate direction with the corners of both triangles projected on it, at t = 0 and at t = 1.
@@ -41,6 +46,11 @@ pub(super) struct CandidateDirection {
 impl MovingPair {
     #[inline]
     pub(super) fn new(a: &MovingTriangle, b: &MovingTriangle) -> Self {
+        Self::with_slack(a, b, 0.0)
+    }
+
+    #[inline]
+    pub(super) fn with_slack(a: &MovingTriangle, b: &MovingTriangle, slack: f64) -> Self {
         let relative = |triangle: &MovingTriangle| MovingTriangle {
             t0: triangle.t0.map(|p| p - a.t0[0]),
             t1: triangle.t1.map(|p| p - a.t1[0]),
@@ -48,7 +58,7 @@ impl MovingPair {
         let (a, b) = (relative(a), relative(b));
         let corners = a.t0.iter().chain(&a.t1).chain(&b.t0).chain(&b.t1);
         let reach = corners.fold(DVec3::ZERO, |reach, p| reach.max(p.abs()));
-        Self { a, b, reach }
+        Self { a, b, reach, slack }
     }
 
     /// The largest coordinate of a corner relative to that one: the unit of tolerances.
@@ -78,6 +88,7 @@ impl MovingPair {
     #[inline]
     pub(super) fn rounding(&self, dir: DVec3) -> f64 {
         right_or!(RELATIVE * dir.abs().dot(self.reach) + ABSOLUTE, SeparationExact, 0.0)
+            + self.slack * dir.abs().element_sum()
     }
 }
 

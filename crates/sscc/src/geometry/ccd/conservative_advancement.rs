@@ -35,7 +35,7 @@ const AHEAD: f64 = 4.0;
 const CONVERGES: f64 = 0.25;
 
 /// The result of the steps by rounded directions.
-enum Advance {
+pub(super) enum Advance {
     /// There is no contact until t = 1.
     Free,
     /// At this time the distance is within the tolerance; before it there is no contact.
@@ -65,7 +65,7 @@ pub(super) fn advance(
 /// Near a contact, the fixed direction of the closest points converges like Newton's method. Along a narrow gap that
 /// turns, only a turning direction advances far; it is tried when the fixed one does not bring the triangles much
 /// closer.
-fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -> Advance {
+pub(super) fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -> Advance {
     let (mut t, mut step) = (0.0, 1.0);
     let mut here = ClosestPoints::at(pair, t);
     let mut converges = true;

@@ -78,7 +78,7 @@ pub fn impact_edge_edge(a: [[DVec3; 2]; 2], b: [[DVec3; 2]; 2], tolerance: f64) 
 }
 
 /// Whether the normal of one of the triangles at t = 0.5 separates the two from t = 0 to 1: settles most pairs.
-fn is_separated_by_planes(pair: &MovingPair) -> bool {
+pub(super) fn is_separated_by_planes(pair: &MovingPair) -> bool {
     let TwoTriangles { a, b } = pair.at(0.5);
     [a, b].into_iter().any(|[p, q, r]| {
         let normal = pair.along((q - p).cross(r - p));

@@ -30,11 +30,13 @@ mod closest_points;
 mod conservative_advancement;
 mod dyadic;
 mod feature_direction;
+mod free_until;
 mod impact_triangle_triangle;
 mod moving_triangle;
 mod number;
 #[cfg(test)]
 mod number_tests;
 
+pub(crate) use free_until::free_until;
 pub use impact_triangle_triangle::{impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
 pub use moving_triangle::MovingTriangle;

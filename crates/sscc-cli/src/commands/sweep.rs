@@ -1,0 +1,40 @@
+//! `sscc sweep`: for each mode the first weight at which the shape touches itself.
+
+use anyhow::Result;
+use sscc::SweepOutcome;
+use sscc_sim::{SweepRequest, sweep_model, sweep_table};
+
+use crate::args::Sweep;
+use crate::outcome::Outcome;
+use crate::output::{Output, note};
+use crate::progress::Bar;
+use crate::{interrupt, load};
+
+pub fn run(args: &Sweep) -> Result<Outcome> {
+    let loaded = load::model(&args.model)?;
+    let threads = Some(load::threads(&args.options.threads));
+    let Sweep { q, range, pose, .. } = args;
+    let request = SweepRequest { q: q.clone(), range: range.clone(), pose: pose.clone(), threads };
+    // Refused before certificates are computed.
+    request.prepare(&loaded, &vec![0.0; loaded.model.rank()])?;
+    let certificates = match &args.certificates {
+        Some(path) => load::request(&args.model, &args.options).read(path, &loaded.model)?,
+        None => load::certificates_now(&loaded.model, &args.model, &args.options)?,
+    };
+    let swept = sweep_model(&loaded, &certificates, &request, &Bar::new("sweeping"));
+    interrupt::check()?;
+    let rows = swept.map_err(|error| load::in_file(error.into(), &args.model.path))?;
+    let mut out = Output::new();
+    match args.json.json {
+        true => rows.iter().try_for_each(|row| out.json(row))?,
+        false => sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?,
+    }
+    out.finish()?;
+    if rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
+        note(
+            "the shape collides at the start: begin at a free --q, or leave out pairs at rest by --ignore-rest",
+        );
+    }
+    let is_free = rows.iter().all(|row| row.outcome == SweepOutcome::Free);
+    Ok(if is_free { Outcome::Done } else { Outcome::Finding })
+}

@@ -1,0 +1,106 @@
+//! Sweeps of real blendshapes, against exact queries at many weights.
+
+use std::path::Path;
+
+use sscc::{
+    Certificates, CertifyOptions, ContactFilter, KineticQuery, Neighbours, Query, ReducedModel, Sweep,
+    SweepOutcome,
+};
+use sscc_io::{LoadOptions, load_model, load_model_with, splits_vertices};
+use sscc_testing::{cases, models};
+
+/// Nothing that queries find is below `first_free`, and the brackets are narrow. The first queries are of another method:
+/// a kinetic query answers close weights in little time.
+fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &[Sweep], weights: usize) {
+    let mut kinetic = KineticQuery::new(model, certificates).unwrap();
+    let mut query = Query::new(model, certificates).unwrap();
+    for sweep in sweeps {
+        let at = |w: f64| {
+            let mut q = q.to_vec();
+            q[sweep.mode] = w;
+            q
+        };
+        let Some(free) = sweep.first_free else {
+            assert_eq!((sweep.outcome, sweep.first_hit), (SweepOutcome::CollidingAtStart, Some(sweep.from)));
+            continue;
+        };
+        for i in 0..=weights {
+            let w = sweep.from + (free - sweep.from) * (i as f64 / weights as f64);
+            assert_eq!(kinetic.discrete(&at(w)).unwrap(), [], "mode {} at {w}", sweep.mode);
+        }
+        assert_eq!(query.discrete(&at(free)).unwrap(), [], "{sweep:?}");
+        match (sweep.outcome, sweep.first_hit) {
+            (SweepOutcome::Free, None) => assert_eq!(free, sweep.to),
+            (SweepOutcome::Hit, Some(hit)) => {
+                assert_eq!(query.discrete(&at(hit)).unwrap(), sweep.pairs);
+                assert!(
+                    !sweep.pairs.is_empty() && (hit - free).abs() <= 1e-9 * (sweep.to - sweep.from).abs()
+                );
+            }
+            _ => panic!("{sweep:?}"),
+        }
+    }
+}
+
+fn certify(model: &ReducedModel, path: &Path, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
+    let filter = ContactFilter::new(Neighbours::Exclude, splits_vertices(path));
+    let options = CertifyOptions { filter, ignore_rest, center, budget: 0, ..CertifyOptions::default() };
+    Certificates::compute(model, &options, &()).unwrap()
+}
+
+#[test]
+fn morph_targets_of_gltf_files() {
+    let Some(folder) = models("morph_targets_of_gltf_files") else { return };
+    for (file, mesh) in [
+        ("AnimatedMorphSphere.gltf", None),
+        ("MorphStressTest.gltf", None),
+        ("RobotExpressive.glb", Some("Head")),
+    ] {
+        let path = folder.join("morph").join(file);
+        let loaded = load_model_with(&path, &LoadOptions::new(None, mesh)).unwrap();
+        let model = &loaded.model;
+        let certificates = certify(model, &path, true, None);
+        let query = Query::new(model, &certificates).unwrap();
+        let q = vec![0.0; model.rank()];
+        for (range, hits) in [([0.0, 1.0], false), ([-3.0, 3.0], true)] {
+            let ranges: Vec<_> = (0..model.rank()).map(|mode| (mode, range)).collect();
+            let sweeps = query.sweep_modes(&q, &ranges, None, &()).unwrap();
+            let outcomes: Vec<_> = sweeps.iter().map(|sweep| (sweep.outcome, sweep.first_hit)).collect();
+            println!("{file} {range:?}: {outcomes:?}");
+            assert_eq!(sweeps.len(), if hits { 2 } else { 1 } * model.rank());
+            check(model, &certificates, &q, &sweeps, cases(10_000).max(4000) / 20);
+        }
+    }
+}
+
+#[test]
+fn expressions_of_a_face() {
+    let Some(folder) = models("expressions_of_a_face") else { return };
+    let path = folder.join("ict_face/ict_face_neutral.obj");
+    let modes = folder.join("ict_face/ict_face_expressions30.U.float");
+    let (model, _) = load_model(&path, Some(&modes)).unwrap();
+    let count = cases(32).min(30);
+    let ranges: Vec<_> = (0..count).map(|mode| (mode, [0.0, 1.0])).collect();
+    let weights = cases(10_000) / 25;
+    // With the pairs of closed lips and lids ignored.
+    let rest = vec![0.0; 30];
+    let certificates = certify(&model, &path, true, None);
+    let query = Query::new(&model, &certificates).unwrap();
+    let sweeps = query.sweep_modes(&rest, &ranges, None, &()).unwrap();
+    check(&model, &certificates, &rest, &sweeps, weights);
+    let hits = sweeps.iter().filter(|sweep| sweep.first_hit.is_some()).count();
+    println!("{hits} of {count} expressions make new collisions");
+    assert!(hits > 0 && hits < count);
+    // About the open mouth, which is free.
+    let mut open = rest.clone();
+    open[0] = 1.0;
+    let certificates = certify(&model, &path, false, Some(open.clone()));
+    let query = Query::new(&model, &certificates).unwrap();
+    let sweeps = query.sweep_modes(&open, &ranges, None, &()).unwrap();
+    assert!(sweeps[0].to == 0.0 && sweeps[0].first_hit.is_some_and(|hit| hit > 0.0), "{:?}", sweeps[0]);
+    check(&model, &certificates, &open, &sweeps, weights);
+    // At rest it collides.
+    let all = certify(&model, &path, false, None);
+    let sweep = Query::new(&model, &all).unwrap().sweep(&rest, 0, 1.0).unwrap();
+    assert_eq!((sweep.outcome, sweep.pairs.len()), (SweepOutcome::CollidingAtStart, 124));
+}

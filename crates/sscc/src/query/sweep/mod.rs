@@ -1,0 +1,9 @@
+//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket.
+
+#[allow(clippy::module_inception)] // named after its type, as all files here
+mod sweep;
+mod sweep_modes;
+mod weight_line;
+mod weight_sweep;
+
+pub use sweep::{Sweep, SweepOutcome};

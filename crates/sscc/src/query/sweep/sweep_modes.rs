@@ -1,0 +1,55 @@
+//! Sweeps of several modes in both directions, in parallel.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::sweep::Sweep;
+use crate::query::query::Query;
+use crate::thread_pool::on_threads;
+use crate::{Error, Progress};
+
+impl Query<'_> {
+    /// Sweeps modes over ranges of their weights `(mode, [low, high])`, with all others as in q: for each mode upwards from
+    /// its weight in q to `high`, then downwards to `low`. Where the weight in q is outside of the range, one sweep goes
+    /// from the nearer end of the range to the other one. The results are the same for any number of threads (none: all
+    /// cores). `progress` may cancel them; that of [`Query::cancelled_by`] is not used.
+    ///
+    /// [`ReducedModel::weight_limit`](crate::ReducedModel::weight_limit) is a range for modes of any unit.
+    ///
+    /// # Errors
+    /// When a range is empty or not finite; as [`Query::sweep`], for the first sweep that has an error.
+    pub fn sweep_modes(
+        &self,
+        q: &[f64],
+        ranges: &[(usize, [f64; 2])],
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Sweep>, Error> {
+        self.context.model.check_coordinates(q)?;
+        let mut ways = Vec::with_capacity(2 * ranges.len());
+        for &(mode, [low, high]) in ranges {
+            let weight = *q.get(mode).ok_or(Error::ModeIndex { mode, rank: q.len() })?;
+            if !(low < high && (high - low).is_finite()) {
+                return Err(Error::SweepRange { mode, low, high });
+            }
+            let from = weight.clamp(low, high);
+            ways.extend([high, low].into_iter().filter(|to| *to != from).map(|to| (mode, from, to)));
+        }
+        let done = AtomicUsize::new(0);
+        let start = || (self.clone().cancelled_by(progress), q.to_vec());
+        let sweep = |(query, at): &mut (Query<'_>, Vec<f64>), &(mode, from, to): &(usize, f64, f64)| {
+            if progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            at.copy_from_slice(q);
+            at[mode] = from;
+            let found = query.sweep(at, mode, to)?;
+            progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, ways.len());
+            Ok(found)
+        };
+        let all: Vec<Result<Sweep, Error>> =
+            on_threads(threads, || ways.par_iter().with_max_len(1).map_init(start, sweep).collect());
+        all.into_iter().collect()
+    }
+}

@@ -1,0 +1,191 @@
+//! Configurations that differ in the weight of one mode, and how far their computed positions are from straight lines.
+//!
+//! The proof of a sweep. Let w go from w0 to w1, and let X(w) be the computed position of a vertex
+//! ([`deformed_position`](crate::deformed_position)); per coordinate, with u = 2^-53 and mode k:
+//!
+//! - **X is monotone.** The sum A of the terms before mode k is one f64 for all w. Then follow `fl(U_k w)`,
+//!   `fl(A + ...)`, and sums with terms that are the same for all w. Each step is monotone, so X(w) is between X(w0) and
+//!   X(w1). So every AABB that contains both ends contains the vertex at every w: swept AABBs cull exactly.
+//! - **X is nearly a line.** With the exact line `l(w) = A + U_k w + C`, where C is the sum of the computed terms after
+//!   mode k, X(w) = l(w) + e(w). The product adds an error of `u |U_k w|`, each sum one of u times itself; sums with 0 are
+//!   exact. All of these magnitudes are at most the reach (`|p| + sum_j |U_j q_j|`, the larger one of both ends) and its
+//!   rounding. So `|e(w)| <= E = u (2 + n) reach`, where n counts the weights after mode k that are not 0.
+//! - **X is nearly the chord.** The chord c(w) from X(w0) to X(w1) is an affine function, as l is, so
+//!   `|X(w) - c(w)| <= |e(w)| + max(|e(w0)|, |e(w1)|) <= 2 E`. The distance of two vertices along an axis differs from that
+//!   of their chords by at most 4 E: the slack of [`free_until`](crate::geometry::free_until).
+//!
+//! A certificate that holds at w0 and at w1 holds at every w between: the weights between are on the line between the two
+//! q, and |z| is convex. The separating-axis test in single precision (`detect/narrow_phase/separating_axis.rs`) grants four
+//! of its error bounds at both ends. Two of them, less 20 units of 2^-24, are not used; they contain 8 `rounding_bound` of
+//! positions, which is more than 4 E.
+
+use glam::DVec3;
+
+use crate::{MovingTriangle, ReducedModel};
+
+/// The configurations of a model in which one weight varies, at two values of it.
+pub(super) struct WeightLine<'a> {
+    model: &'a ReducedModel,
+    mode: usize,
+    ends: [Vec<f64>; 2],
+}
+
+impl<'a> WeightLine<'a> {
+    /// `q`: the other weights; both ends are at q.
+    pub(super) fn new(model: &'a ReducedModel, q: &[f64], mode: usize) -> Self {
+        Self { model, mode, ends: [q.to_vec(), q.to_vec()] }
+    }
+
+    /// Sets the weights of both ends.
+    pub(super) fn set(&mut self, weights: [f64; 2]) {
+        for (q, weight) in self.ends.iter_mut().zip(weights) {
+            q[self.mode] = weight;
+        }
+    }
+
+    /// The configurations of both ends.
+    pub(super) fn ends(&self) -> [&[f64]; 2] {
+        [&self.ends[0], &self.ends[1]]
+    }
+
+    /// The configuration at a weight, which becomes that of both ends.
+    pub(super) fn at(&mut self, weight: f64) -> &[f64] {
+        self.set([weight; 2]);
+        &self.ends[0]
+    }
+
+    /// Three vertices that move from one end to the other.
+    pub(super) fn moving(&self, vertices: [u32; 3]) -> MovingTriangle {
+        let [t0, t1] = self.ends();
+        let corners = |q: &[f64]| -> [DVec3; 3] { vertices.map(|v| self.model.position(v, q)) };
+        MovingTriangle { t0: corners(t0), t1: corners(t1) }
+    }
+
+    /// How far, along each axis, the distance of two vertices may be from that of their chords at any weight between the ends:
+    /// 4 E of the head of this file. `reach`: the larger one of both ends, rounded to nearest.
+    pub(super) fn slack(&self, reach: f64) -> f64 {
+        let after = self.ends[0][self.mode + 1..].iter().filter(|weight| **weight != 0.0).count();
+        let error = (f64::EPSILON / 2.0) * (2 + after) as f64 * reach;
+        // The reach and partial sums are rounded fewer times than this covers; products underflow by less than the constant.
+        right_or!(4.0 * error * (1.0 + 1e-9) + f64::MIN_POSITIVE, SweepExact, 0.0)
+    }
+}
+
+/// The weight that is `step` farther from `from` towards `to`: at least the next f64, at most `to`.
+pub(super) fn forward(from: f64, step: f64, to: f64) -> f64 {
+    if to > from {
+        (from + step).max(from.next_up()).min(to)
+    } else {
+        (from - step).min(from.next_down()).max(to)
+    }
+}
+
+/// A weight between two others, at or before the share t of the way: three roundings are granted to the product, and one
+/// f64 to the sum.
+pub(super) fn weight_before([w0, w1]: [f64; 2], t: f64) -> f64 {
+    let w = w0 + (t * (1.0 - 4.0 * f64::EPSILON)) * (w1 - w0);
+    if w1 > w0 { w.next_down().clamp(w0, w1) } else { w.next_up().clamp(w1, w0) }
+}
+
+/// The number with the fewest binary digits beyond w0, up to w1, which is another number.
+pub(super) fn simplest_between(w0: f64, w1: f64) -> f64 {
+    if (w0 < 0.0) != (w1 < 0.0) && w0 != 0.0 {
+        return 0.0;
+    }
+    // Of the end that is farther from 0 as few digits as stay in the interval; w0 itself is outside.
+    let is_outward = w1.abs() > w0.abs();
+    for digits in (0..=52).rev() {
+        let unit = 1_u64 << digits;
+        let bits = if is_outward { w1.to_bits() } else { w0.to_bits() - 1 };
+        let w = f64::from_bits(bits / unit * unit);
+        if w != w0 && (w1.min(w0)..=w1.max(w0)).contains(&w) {
+            return w;
+        }
+    }
+    w1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::{Random, strips};
+    use num_bigint::BigInt;
+
+    /// An f64 times 2^1100 as an integer: exact from 2^-1074 on.
+    fn exact(x: f64) -> BigInt {
+        let bits = x.to_bits();
+        let exponent = (bits >> 52 & 0x7ff) as i64;
+        let mantissa = (bits & ((1 << 52) - 1)) | if exponent > 0 { 1 << 52 } else { 0 };
+        let magnitude = BigInt::from(mantissa) << (exponent.max(1) - 1075 + 1100) as usize;
+        if x < 0.0 { -magnitude } else { magnitude }
+    }
+
+    #[test]
+    fn positions_are_within_the_slack_of_their_chords_and_monotone() {
+        let random = &mut Random(11);
+        let mut closest = 0.0_f64;
+        for case in 0..60 {
+            let (model, _) = strips(random, case);
+            let mode = case % model.rank();
+            let mut q: Vec<f64> = (0..model.rank()).map(|_| random.signed() * 3.0).collect();
+            (0..q.len()).filter(|k| (k + case) % 3 == 0).for_each(|k| q[k] = 0.0);
+            let (w0, w1) = (random.signed() * 2.0, random.signed() * 2.0);
+            let mut line = WeightLine::new(&model, &q, mode);
+            line.set([w0, w1]);
+            let reach = line.ends().map(|q| model.reach(q)).into_iter().fold(0.0, f64::max);
+            // Of one vertex against its chord: half of the slack.
+            let slack = exact(line.slack(reach) / 2.0);
+            for v in 0..model.mesh().rest_positions().len() as u32 {
+                let [x0, x1] = line.ends().map(|q| model.position(v, q));
+                for i in 1..8 {
+                    let w = w0 + (w1 - w0) * f64::from(i) / 8.0;
+                    let x = model.position(v, WeightLine::new(&model, &q, mode).at(w));
+                    for axis in 0..3 {
+                        let [a, b, x] = [x0[axis], x1[axis], x[axis]];
+                        assert!((a.min(b)..=a.max(b)).contains(&x));
+                        // (x - a) (w1 - w0) - (b - a) (w - w0), all over w1 - w0.
+                        let whole = exact(w1) - exact(w0);
+                        let off =
+                            (exact(x) - exact(a)) * &whole - (exact(b) - exact(a)) * (exact(w) - exact(w0));
+                        let (off, limit) = (off.magnitude().clone(), whole.magnitude() * slack.magnitude());
+                        assert!(off <= limit, "case {case}: vertex {v}, weight {w}");
+                        let scaled = (off * 1000_u32 / limit).try_into().unwrap_or(u32::MAX);
+                        closest = closest.max(f64::from(scaled) / 1000.0);
+                    }
+                }
+            }
+        }
+        // The bound is not wasted.
+        assert!(closest > 0.05, "{closest}");
+    }
+
+    #[test]
+    fn weights_are_rounded_towards_the_start() {
+        let random = &mut Random(12);
+        for _ in 0..2000 {
+            let [w0, w1] =
+                [random.signed(), random.signed()].map(|x| x * 2.0_f64.powi((random.signed() * 30.0) as i32));
+            let t = (random.signed() + 1.0) / 2.0;
+            let w = weight_before([w0, w1], t);
+            assert!((w0.min(w1)..=w0.max(w1)).contains(&w));
+            // w - w0 <= t (w1 - w0), with both sides exact; times 2^1100 once more.
+            let way = exact(w) - exact(w0);
+            let whole = exact(w1) - exact(w0);
+            assert!((way.magnitude() << 1100_usize) <= whole.magnitude() * exact(t).magnitude());
+            assert!(forward(w0, 0.0, w1) != w0 && forward(w0, f64::INFINITY, w1) == w1);
+        }
+        for (w0, w1, simplest) in [
+            (0.999_999_99, 1.000_000_1, 1.0),
+            (1.0, 0.999_999_9, 0.999_999_940_395_355_2),
+            (-0.7, -0.75, -0.75),
+            (0.1, 0.100_1, 0.100_097_656_25),
+            (-0.1, 0.3, 0.0),
+            (0.3, 0.0, 0.25),
+            (0.0, 0.5, 0.5),
+            (1.0, 1.0_f64.next_up(), 1.0_f64.next_up()),
+        ] {
+            assert_eq!(simplest_between(w0, w1), simplest, "{w0} {w1}");
+        }
+        assert_eq!((forward(0.0, 0.25, 1.0), forward(0.0, 0.25, -1.0)), (0.25, -0.25));
+    }
+}

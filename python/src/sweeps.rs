@@ -1,0 +1,97 @@
+//! `Certificates.sweep`: its arguments, and its result as a list of `sscc.Sweep`.
+
+use numpy::PyUntypedArrayMethods;
+use pyo3::prelude::*;
+use pyo3::types::{PyList, PyString};
+use sscc::{Sweep, SweepOutcome};
+use sscc_sim::{default_ranges, nearest};
+
+use crate::arguments::count;
+use crate::arrays::{copied, floats, frozen, pairs, vector};
+use crate::errors::{refused, value};
+use crate::interrupt::run_borrowing;
+use crate::model::LoadedModel;
+use crate::pool::{Pool, threads};
+
+/// The arguments of `Certificates.sweep`, except `progress`; `None` for an absent one.
+pub struct SweepArguments<'a, 'py> {
+    pub range: Option<&'a Bound<'py, PyAny>>,
+    pub q: Option<&'a Bound<'py, PyAny>>,
+    pub modes: Option<&'a Bound<'py, PyAny>>,
+    pub threads: Option<&'a Bound<'py, PyAny>>,
+}
+
+impl<'py> SweepArguments<'_, 'py> {
+    /// Sweeps the modes. Ctrl-C stops it.
+    pub fn run(
+        &self,
+        py: Python<'py>,
+        pool: &Pool,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let certified = pool.borrow_owner();
+        let (loaded, center) = (&*certified.loaded, certified.certificates.center());
+        let q = self.q.map_or_else(|| Ok(center.to_vec()), |q| vector(q, "q"))?;
+        loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
+        let ranges = self.ranges(loaded, &q)?;
+        let modes = self.modes(loaded)?.into_iter().map(|mode| (mode, ranges[mode]));
+        let (modes, threads) = (modes.collect::<Vec<_>>(), threads(self.threads)?);
+        let swept = run_borrowing(py, progress, "sweeping", |progress| {
+            pool.with_first(|query| query.sweep_modes(&q, &modes, threads, progress))
+        })?;
+        let sweeps = swept.map_err(|error| refused(&error, "range"))?;
+        let class = py.import("sscc._sweep")?.getattr("Sweep")?;
+        let made = sweeps.into_iter().map(|sweep| {
+            let Sweep { mode, from, to, first_free, first_hit, outcome, .. } = sweep;
+            let name = loaded.mode_names.get(mode).cloned().unwrap_or_else(|| mode.to_string());
+            let is_usual = matches!(outcome, SweepOutcome::Free | SweepOutcome::Hit);
+            let note = (!is_usual).then(|| outcome.to_string());
+            let pairs = frozen(pairs(py, &sweep.pairs)?)?;
+            class.call1((mode, name, from, to, first_free, first_hit, pairs, note))
+        });
+        PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Returns the range of each mode.
+    fn ranges(&self, loaded: &LoadedModel, q: &[f64]) -> PyResult<Vec<[f64; 2]>> {
+        let Some(range) = self.range else {
+            return Ok(default_ranges(&loaded.model, &loaded.mode_names, q));
+        };
+        let array = floats(range, "range")?;
+        let entries = copied(&array, "range")?;
+        let (rows, []) = entries.as_chunks::<2>() else { return Err(self.shape(array.shape(), q.len())) };
+        match array.shape() {
+            [2] => Ok(vec![rows[0]; q.len()]),
+            [rank, 2] if *rank == q.len() => Ok(rows.to_vec()),
+            shape => Err(self.shape(shape, q.len())),
+        }
+    }
+
+    fn shape(&self, shape: &[usize], rank: usize) -> PyErr {
+        value(format!("range has shape {shape:?}: (2,) or ({rank}, 2) was expected"))
+    }
+
+    /// Returns the numbers of the modes to sweep.
+    fn modes(&self, loaded: &LoadedModel) -> PyResult<Vec<usize>> {
+        let rank = loaded.model.rank();
+        let Some(modes) = self.modes else { return Ok((0..rank).collect()) };
+        let names = &loaded.mode_names;
+        let mut numbers = Vec::new();
+        for item in modes.try_iter()? {
+            let item = item?;
+            let Ok(name) = item.cast::<PyString>() else {
+                numbers.extend(count(Some(&item), "modes", 0..=rank - 1)?);
+                continue;
+            };
+            let name = name.to_string_lossy();
+            let unknown = || match nearest(&name, names.iter().map(String::as_str)) {
+                Some(nearest) => {
+                    value(format!("modes: there is no {name:?}; the nearest name is {nearest:?}"))
+                }
+                None => value(format!("modes: there is no {name:?}: the modes of this model have no names")),
+            };
+            numbers.push(names.iter().position(|known| *known == *name).ok_or_else(unknown)?);
+        }
+        Ok(numbers)
+    }
+}

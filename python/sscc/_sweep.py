@@ -1,0 +1,29 @@
+"""Sweeps of the weights of modes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Sweep(NamedTuple):
+    """How far the weight of one mode can go, with all others fixed, until the shape touches itself."""
+
+    mode: int
+    """The mode, counted from 0."""
+    name: str
+    """Its name, or its number."""
+    start: float
+    """The weight at which the sweep starts."""
+    end: float
+    """The weight at which it ends."""
+    first_free: float | None
+    """The shape is proven free at every weight from ``start`` to this one. None: it collides at ``start``."""
+    first_hit: float | None
+    """The first weight at which it collides, at most 1e-9 of the range beyond ``first_free``. None: none was found."""
+    pairs: NDArray[np.uint32]
+    """The pairs that collide at ``first_hit``: (n, 2), i < j, sorted, read-only."""
+    note: str | None
+    """What is unusual: a collision at ``start``, a grazing contact, or why ``first_hit`` is farther away or None."""
