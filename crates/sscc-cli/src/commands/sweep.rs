@@ -6,7 +6,7 @@ use sscc_sim::{SweepRequest, sweep_model, sweep_table};
 
 use crate::args::Sweep;
 use crate::outcome::Outcome;
-use crate::output::{Output, note};
+use crate::output::Output;
 use crate::progress::Bar;
 use crate::{interrupt, load};
 
@@ -30,11 +30,6 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         false => sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?,
     }
     out.finish()?;
-    if rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
-        note(
-            "the shape collides at the start: begin at a free --q, or leave out pairs at rest by --ignore-rest",
-        );
-    }
     let is_free = rows.iter().all(|row| row.outcome == SweepOutcome::Free);
     Ok(if is_free { Outcome::Done } else { Outcome::Finding })
 }

@@ -108,10 +108,12 @@ mod tests {
         assert_eq!(message("1,2"), "--q: q has 2 entries, the model has 3 modes");
         assert_eq!(message("smile=inf"), "--q: q[1] is inf: every entry must be finite");
         assert!(message(&format!("{}=1", "a\u{7}".repeat(5000))).len() < 250);
-        let twice = LoadedModel { mode_names: vec!["a".into(), "b".into(), "a".into()], ..loaded.clone() };
+        let mut twice = loaded.clone();
+        twice.mode_names = vec!["a".into(), "b".into(), "a".into()];
         let ambiguous = read_q("a=1", &twice).unwrap_err().to_string();
         assert_eq!(ambiguous, "--q: modes 0 and 2 are both named 'a': use their numbers");
-        let unnamed = LoadedModel { mode_names: Vec::new(), ..loaded.clone() };
+        let mut unnamed = loaded.clone();
+        unnamed.mode_names.clear();
         assert_eq!(read_q("2=1", &unnamed).unwrap(), [0.0, 0.0, 1.0]);
         let no_names = read_q("3=1", &unnamed).unwrap_err().to_string();
         let expected =

@@ -86,6 +86,9 @@ pub fn sweep_table(rows: &[SweepRow]) -> Vec<String> {
     for (row, [n, f, t]) in rows.iter().zip(&cells) {
         lines.push(format!("{n:<name$}  {f:>from$}  {t:>to$}  {}", row.result()));
     }
+    if let Some(row) = rows.iter().find(|row| row.outcome == SweepOutcome::CollidingAtStart) {
+        lines.push(format!("{} (--q, --ignore-rest)", row.outcome));
+    }
     let free = rows.iter().filter(|row| row.outcome == SweepOutcome::Free).count();
     let proven = "free means proven free at every weight";
     lines.push(format!(
@@ -133,6 +136,7 @@ mod tests {
         assert_eq!(lines[2], "smile\\u{7} L/R     0  -1.5  free");
         assert_eq!(lines[3], "smile\\u{7} L/R     0  -1.5  COLLIDING at the start  1 pair, first 0 7");
         assert!(lines[4].contains("free up to -1.000000e-9; beyond it triangles 1 and 2"), "{}", lines[4]);
-        assert_eq!(lines[5], "4 sweeps: 1 free, 3 not; free means proven free at every weight");
+        assert!(lines[5].starts_with("the shape collides at the start: start elsewhere"), "{}", lines[5]);
+        assert_eq!(lines[6], "4 sweeps: 1 free, 3 not; free means proven free at every weight");
     }
 }

@@ -212,8 +212,17 @@ fn rounding_between_two_weights_is_not_forgotten() {
     assert!(query.continuous(&[0.0], &[4.0 * ulp]).unwrap().is_empty());
     let sweep = query.sweep(&[0.0], 0, 4.0 * ulp).unwrap();
     assert!(sweep.first_free.is_some_and(|free| free < 0.5 * ulp), "{sweep:?}");
-    assert_eq!(sweep.outcome, SweepOutcome::TooClose((0, 1)));
-    assert_eq!((sweep.first_hit, sweep.pairs.as_slice()), (Some(0.5 * ulp), &[(0, 1)][..]));
+    assert_eq!((sweep.outcome, sweep.first_hit), (SweepOutcome::Hit, Some(0.5 * ulp)), "{sweep:?}");
+    assert_eq!(sweep.pairs, [(0, 1)]);
+
+    // Side by side along a diagonal, where no AABB separates them: the answer is that nothing is proven.
+    let at = |x: f64| [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::Z].map(|p| p + DVec3::X * x);
+    let mesh = TriMesh::new([at(place), at(place + 2.0 * ulp)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::Z; 6]).unwrap()).unwrap();
+    let mut query = Query::without_certificates(&model, Scope::of(&model), Method::BdTree).unwrap();
+    let sweep = query.sweep(&[0.0], 0, 1.0).unwrap();
+    assert_eq!((sweep.outcome, sweep.first_free), (SweepOutcome::TooClose((0, 1)), Some(0.0)), "{sweep:?}");
+    assert_eq!((sweep.first_hit, sweep.pairs.len()), (None, 0));
 }
 
 #[test]

@@ -49,7 +49,12 @@ impl fmt::Display for SweepOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Free => write!(f, "free"),
-            Self::CollidingAtStart => write!(f, "the shape collides at the start"),
+            Self::CollidingAtStart => {
+                write!(
+                    f,
+                    "the shape collides at the start: start elsewhere, or ignore the pairs that collide at rest"
+                )
+            }
             Self::Hit => write!(f, "it collides"),
             Self::WithinTolerance => {
                 write!(
