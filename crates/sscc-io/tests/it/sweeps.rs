@@ -31,8 +31,9 @@ fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &
         assert_eq!(query.discrete(&at(free)).unwrap(), [], "{sweep:?}");
         match (sweep.outcome, sweep.first_hit) {
             (SweepOutcome::Free, None) => assert_eq!(free, sweep.to),
-            (SweepOutcome::Hit, Some(hit)) => {
-                assert_eq!(query.discrete(&at(hit)).unwrap(), sweep.pairs);
+            (SweepOutcome::Hit | SweepOutcome::WithinTolerance, Some(hit)) => {
+                let is_exact = sweep.outcome == SweepOutcome::Hit;
+                assert!(!is_exact || query.discrete(&at(hit)).unwrap() == sweep.pairs, "{sweep:?}");
                 assert!(
                     !sweep.pairs.is_empty() && (hit - free).abs() <= 1e-9 * (sweep.to - sweep.from).abs()
                 );
