@@ -91,7 +91,7 @@ fn expressions_of_a_face() {
     check(&model, &certificates, &rest, &sweeps, weights);
     let hits = sweeps.iter().filter(|sweep| sweep.first_hit.is_some()).count();
     println!("{hits} of {count} expressions make new collisions");
-    assert!(hits > 0 && hits < count);
+    assert!(hits > 0);
     // About the open mouth, which is free.
     let mut open = rest.clone();
     open[0] = 1.0;
