@@ -66,8 +66,6 @@ fn morph_targets_of_gltf_files() {
         for (range, hits) in [([0.0, 1.0], false), ([-3.0, 3.0], true)] {
             let ranges: Vec<_> = (0..model.rank()).map(|mode| (mode, range)).collect();
             let sweeps = query.sweep_modes(&q, &ranges, None, &()).unwrap();
-            let outcomes: Vec<_> = sweeps.iter().map(|sweep| (sweep.outcome, sweep.first_hit)).collect();
-            println!("{file} {range:?}: {outcomes:?}");
             assert_eq!(sweeps.len(), if hits { 2 } else { 1 } * model.rank());
             check(model, &certificates, &q, &sweeps, cases(10_000).max(4000) / 20);
         }
@@ -90,7 +88,6 @@ fn expressions_of_a_face() {
     let sweeps = query.sweep_modes(&rest, &ranges, None, &()).unwrap();
     check(&model, &certificates, &rest, &sweeps, weights);
     let hits = sweeps.iter().filter(|sweep| sweep.first_hit.is_some()).count();
-    println!("{hits} of {count} expressions make new collisions");
     assert!(hits > 0);
     // About the open mouth, which is free.
     let mut open = rest.clone();

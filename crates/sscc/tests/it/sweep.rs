@@ -87,7 +87,7 @@ fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query<'_>,
 #[test]
 fn brute_force_finds_nothing_below_first_free() {
     let (mut outcomes, mut weighed) = ([0; 5], 0);
-    let weights = cases(10_000).max(1000) / 2;
+    let weights = cases(10_000);
     for seed in 0..cases(200) {
         let model = random_model(seed + 40_000);
         let random = &mut Random::new(seed + 9_100_000);
@@ -131,7 +131,6 @@ fn brute_force_finds_nothing_below_first_free() {
             );
         }
     }
-    println!("free, at the start, hits, within the tolerance, other: {outcomes:?}");
     let [free, start, hits, _, other] = outcomes;
     assert!(
         free > threshold(60) && hits > threshold(30) && start > threshold(20) && 20 * other <= weighed,
