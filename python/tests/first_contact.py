@@ -52,12 +52,19 @@ class Pair:
 
     def __init__(self, corners: NDArray[np.float64]) -> None:
         starts, ends = np.swapaxes(corners, 0, 1).reshape(2, 6, 3).tolist()
+        # Times a common denominator, which changes no sign and no root.
+        scale = max(x.as_integer_ratio()[1] for corner in starts + ends for x in corner)
+
+        def whole(x: float) -> int:
+            p, q = x.as_integer_ratio()
+            return p * (scale // q)
+
         #: Homogeneous coordinates of each corner, linear in time.
         self.coordinates = [
-            [trimmed([Fraction(p), Fraction(q) - Fraction(p)]) for p, q in zip(start, end, strict=True)] + [(Fraction(1),)]
+            [trimmed([whole(p), whole(q) - whole(p)]) for p, q in zip(start, end, strict=True)] + [(1,)]
             for start, end in zip(starts, ends, strict=True)
         ]
-        self.minors: dict[tuple[Set, Set], Polynomial] = {((), ()): (Fraction(1),)}
+        self.minors: dict[tuple[Set, Set], Polynomial] = {((), ()): (1,)}
 
     def minor(self, some: Set, rows: Set) -> Polynomial:
         """The determinant of some corners and as many coordinates."""
@@ -86,19 +93,13 @@ class Pair:
         for rows in combinations(range(4), len(some) - 1):
             # By Cramer's rule the only dependency within these rows, unless it is 0.
             others = [self.minor(some[:i] + some[i + 1 :], rows) for i in range(len(some))]
-            dependency = [negate(minor) if i % 2 else minor for i, minor in enumerate(others)]
-            signs = [sign_at(p, time) for p in dependency]
+            signs = [-sign_at(p, time) if i % 2 else sign_at(p, time) for i, p in enumerate(others)]
             if any(signs):
                 sides = [1 if corner < 3 else -1 for corner in some]
-                return signs in (sides, [-side for side in sides]) and self.is_dependency(some, dependency, time)
+                return signs in (sides, [-side for side in sides]) and self.is_dependency(some, rows, time)
         return False
 
-    def is_dependency(self, some: Set, factors: list[Polynomial], time: Root) -> bool:
-        """Whether the sum of the corners, each with its factor, is 0 in every coordinate."""
-        for row in range(4):
-            total: Polynomial = ()
-            for corner, factor in zip(some, factors, strict=True):
-                total = add(total, multiply(factor, self.coordinates[corner][row]))
-            if sign_at(total, time) != 0:
-                return False
-        return True
+    def is_dependency(self, some: Set, rows: Set, time: Root) -> bool:
+        """Whether the dependency within these rows holds in every other row: a determinant is 0 there."""
+        others = (tuple(sorted((*rows, row))) for row in set(range(4)) - set(rows))
+        return all(sign_at(self.minor(some, all_rows), time) == 0 for all_rows in others)

@@ -1,13 +1,14 @@
-"""Polynomials with rational coefficients: their roots in [0, 1] by Sturm's theorem, and exact signs at these roots."""
+"""Polynomials with integer coefficients: their roots in [0, 1] by Sturm's theorem, and exact signs at these roots."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from math import gcd
 from typing import NamedTuple
 
 #: Coefficients, the constant one first, the last one not 0.
-Polynomial = tuple[Fraction, ...]
+Polynomial = tuple[int, ...]
 
 
 class Root(NamedTuple):
@@ -23,7 +24,7 @@ def rational(x: Fraction) -> Root:
     return Root((), x, x)
 
 
-def trimmed(coefficients: list[Fraction]) -> Polynomial:
+def trimmed(coefficients: list[int]) -> Polynomial:
     while coefficients and coefficients[-1] == 0:
         coefficients.pop()
     return tuple(coefficients)
@@ -39,7 +40,7 @@ def negate(p: Polynomial) -> Polynomial:
 
 
 def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
-    product = [Fraction(0)] * max(len(p) + len(q) - 1, 0)
+    product = [0] * max(len(p) + len(q) - 1, 0)
     for i, a in enumerate(p):
         for j, b in enumerate(q):
             product[i + j] += a * b
@@ -47,14 +48,21 @@ def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
 
 
 def value(p: Polynomial, x: Fraction) -> Fraction:
-    total = Fraction(0)
+    return Fraction(numerator(p, x), x.denominator ** max(len(p) - 1, 0))
+
+
+def numerator(p: Polynomial, x: Fraction) -> int:
+    """The value times a power of the denominator of x: Horner's rule in integers."""
+    total, power = 0, 1
     for coefficient in reversed(p):
-        total = total * x + coefficient
+        total = total * x.numerator + coefficient * power
+        power *= x.denominator
     return total
 
 
-def sign(x: Fraction) -> int:
-    return (x > 0) - (x < 0)
+def sign_of(p: Polynomial, x: Fraction) -> int:
+    total = numerator(p, x)
+    return (total > 0) - (total < 0)
 
 
 def derivative(p: Polynomial) -> Polynomial:
@@ -62,13 +70,22 @@ def derivative(p: Polynomial) -> Polynomial:
 
 
 def divide(p: Polynomial, by: Polynomial) -> tuple[Polynomial, Polynomial]:
-    """Quotient and remainder."""
-    rest, quotient = list(p), [Fraction(0)] * max(len(p) - len(by) + 1, 0)
+    """Quotient and remainder, each up to a positive factor."""
+    rest, quotient = list(p), [0] * max(len(p) - len(by) + 1, 0)
+    size = abs(by[-1])
     for i in reversed(range(len(quotient))):
-        quotient[i] = rest[i + len(by) - 1] / by[-1]
+        # The rest is multiplied by the size of the leading coefficient, so that the factor is an integer.
+        factor = rest[i + len(by) - 1] * (by[-1] // size)
+        rest, quotient = [c * size for c in rest], [c * size for c in quotient]
+        quotient[i] = factor
         for j, b in enumerate(by):
-            rest[i + j] -= quotient[i] * b
-    return trimmed(quotient), trimmed(rest)
+            rest[i + j] -= factor * b
+    return reduced(quotient), reduced(rest)
+
+
+def reduced(coefficients: list[int]) -> Polynomial:
+    common = gcd(*coefficients)
+    return trimmed([c // common for c in coefficients] if common > 1 else coefficients)
 
 
 def common_divisor(p: Polynomial, q: Polynomial) -> Polynomial:
@@ -81,7 +98,7 @@ def count_roots(chain: list[Polynomial], low: Fraction, high: Fraction) -> int:
     """The number of different roots above ``low`` and not above ``high``, by a Sturm chain."""
     changes = []
     for x in (low, high):
-        signs = [s for s in (sign(value(p, x)) for p in chain) if s != 0]
+        signs = [s for s in (sign_of(p, x) for p in chain) if s != 0]
         changes.append(sum(a != b for a, b in pairwise(signs)))
     return changes[0] - changes[1]
 
@@ -92,14 +109,14 @@ def roots(p: Polynomial) -> list[Root]:
     chain = [of, derivative(of)]
     while chain[-1]:
         chain.append(negate(divide(chain[-2], chain[-1])[1]))
-    found = [rational(Fraction(0))] if value(of, Fraction(0)) == 0 else []
+    found = [rational(Fraction(0))] if sign_of(of, Fraction(0)) == 0 else []
     waiting = [(Fraction(0), Fraction(1))]
     while waiting:
         low, high = waiting.pop()
         inside = count_roots(chain, low, high)
-        if inside == 1 and value(of, high) == 0:
+        if inside == 1 and sign_of(of, high) == 0:
             found.append(rational(high))
-        elif inside == 1 and value(of, low) != 0:
+        elif inside == 1 and sign_of(of, low) != 0:
             found.append(Root(of, low, high))
         elif inside > 0:
             middle = (low + high) / 2
@@ -110,11 +127,11 @@ def roots(p: Polynomial) -> list[Root]:
 def halve(root: Root) -> Root:
     """The same root in half the interval."""
     middle = (root.low + root.high) / 2
-    at_middle = sign(value(root.of, middle))
+    at_middle = sign_of(root.of, middle)
     if at_middle == 0:
         return rational(middle)
     # The root is simple, so the sign changes there.
-    is_above = at_middle == sign(value(root.of, root.low))
+    is_above = at_middle == sign_of(root.of, root.low)
     return Root(root.of, middle, root.high) if is_above else Root(root.of, root.low, middle)
 
 
@@ -127,16 +144,16 @@ def refine(root: Root, width: Fraction) -> Root:
 
 def sign_at(p: Polynomial, root: Root) -> int:
     """The exact sign of a polynomial at a root in [0, 1]."""
-    slope = sum((abs(a) for a in derivative(p)), Fraction(0))
+    slope = sum(abs(a) for a in derivative(p))
     is_known_not_zero = False
     while True:
         at_low = value(p, root.low)
         # Within the interval the polynomial changes by no more than this.
         if root.low == root.high or abs(at_low) > slope * (root.high - root.low):
-            return sign(at_low)
+            return (at_low > 0) - (at_low < 0)
         if not is_known_not_zero:
             common = common_divisor(root.of, p)
-            if sign(value(common, root.low)) != sign(value(common, root.high)):
+            if sign_of(common, root.low) != sign_of(common, root.high):
                 return 0
             is_known_not_zero = True
         root = halve(root)

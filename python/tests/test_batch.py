@@ -204,10 +204,10 @@ def test_a_killed_worker_loses_no_shard(client: Any, tmp_path: Path) -> None:
 def test_a_killed_worker_loses_no_model(client: Any, tmp_path: Path) -> None:
     models = {f"torus {n}": sscc.Model(*torus(16, n, 3)) for n in (8, 9, 10, 11, 12)}
     with Killed(client, tmp_path, "content_of", 1):
-        library = within(lambda: sscc.batch.certify(models, client))
+        library = within(lambda: sscc.batch.certify(models, client, epsilon=0.5))
     assert library.failures == {}
     for name, certificates in library.certificates.items():
-        assert content_of(certificates) == content_of(models[name].certify()), name
+        assert content_of(certificates) == content_of(models[name].certify(epsilon=0.5)), name
 
 
 def test_a_killed_worker_loses_no_query(client: Any, certs: sscc.Certificates, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Answers equal libigl's exact self-intersections at 500 random configurations of each of three real models."""
+"""Answers equal libigl's exact self-intersections at random configurations of each of three real models."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ import exact
 @pytest.mark.parametrize("name", exact.MODELS)
 def test_answers_equal_libigls(name: str, models: Path) -> None:
     colliding, pairs, wrong = exact.differences(name, models)
-    print(f"{name}: {exact.COUNT} configurations, {colliding} colliding, {pairs} pairs, {len(wrong)} differ")
+    print(f"{name}: {exact.COMPARED} configurations, {colliding} colliding, {pairs} pairs, {len(wrong)} differ")
     assert wrong == []
-    assert 100 < colliding <= exact.COUNT and pairs > colliding
+    assert exact.COMPARED / 5 < colliding <= exact.COMPARED and pairs > colliding

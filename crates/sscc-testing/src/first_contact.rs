@@ -7,7 +7,7 @@
 //! determinant vanishes at all times, the time is a root of a smaller one. The oracle therefore tries time 0 and all
 //! these roots.
 
-use crate::partition::{corners, meet_at, minor, subsets};
+use crate::partition::{Minors, subsets};
 use crate::polynomial::{Polynomial, Root};
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -18,27 +18,26 @@ use sscc::MovingTriangle;
 /// # Panics
 /// When a corner is not finite.
 pub fn first_contact(x: &MovingTriangle, y: &MovingTriangle) -> Option<Root> {
-    let corners = corners(x, y);
+    let minors = Minors::new(x, y);
     let start = Root::at(BigRational::zero());
-    if meet_at(&corners, &start, 5) {
+    if minors.meet_at(&start, 5) {
         return Some(start);
     }
-    let mut polynomials: Vec<Polynomial> =
-        subsets(6, 4).map(|set| minor(&corners, &set, &[0, 1, 2, 3])).collect();
-    if polynomials.iter().any(Polynomial::is_zero) {
+    let mut polynomials: Vec<&Polynomial> = subsets(6, 4).map(|set| minors.of(set, 0b1111)).collect();
+    if polynomials.iter().any(|p| p.is_zero()) {
         for size in 2..4 {
             for set in subsets(6, size) {
-                polynomials.extend(subsets(4, size).map(|rows| minor(&corners, &set, &rows)));
+                polynomials.extend(subsets(4, size).map(|rows| minors.of(set, rows)));
             }
         }
     }
     polynomials.sort();
     polynomials.dedup();
-    let roots = polynomials.iter().filter(|p| !p.is_zero()).flat_map(Polynomial::roots);
+    let roots = polynomials.iter().filter(|p| !p.is_zero()).flat_map(|p| p.roots());
     let mut first: Option<Root> = None;
     for root in roots {
         let earlier = first.as_ref().is_none_or(|first| root.lower() < first.lower());
-        if earlier && meet_at(&corners, &root, 4) {
+        if earlier && minors.meet_at(&root, 4) {
             first = Some(root);
         }
     }

@@ -2,6 +2,7 @@
 
 mod cases;
 mod distance;
+mod dyadic;
 mod first_contact;
 mod models;
 mod partition;

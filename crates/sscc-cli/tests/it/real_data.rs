@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde_json::Value;
 use sscc::{AuditOptions, Certificates, CertifyOptions, Method, Query, ReducedModel, audit};
@@ -28,12 +29,9 @@ fn cases(file: &Path) -> (ReducedModel, Vec<Case>) {
     (model, cases.collect())
 }
 
-fn every_method_gives_the_listed_pairs(file: &Path, count: usize) {
-    let (model, cases) = cases(file);
-    assert_eq!(cases.len(), count);
-    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+fn every_method_gives_the_listed_pairs(model: &ReducedModel, cases: &[Case], certificates: &Certificates) {
     for method in [Method::Certified, Method::BdTree, Method::Traditional] {
-        let mut query = Query::with_method(&model, &certificates, method).unwrap();
+        let mut query = Query::with_method(model, certificates, method).unwrap();
         for (i, case) in cases.iter().enumerate() {
             assert_eq!(query.discrete(&case.q).unwrap(), case.pairs, "case {i} by {method:?}");
         }
@@ -43,7 +41,10 @@ fn every_method_gives_the_listed_pairs(file: &Path, count: usize) {
 #[test]
 fn vega_letter() {
     let Some(folder) = models("vega_letter") else { return };
-    every_method_gives_the_listed_pairs(&folder.join("vega_A/A_selfcollision_cases.json"), 17);
+    let (model, cases) = cases(&folder.join("vega_A/A_selfcollision_cases.json"));
+    assert_eq!(cases.len(), 17);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    every_method_gives_the_listed_pairs(&model, &cases, &certificates);
 }
 
 /// An audit of the letter finds no violation, and its root radius is tight.
@@ -56,12 +57,6 @@ fn vega_letter_audit() {
     let report = audit(&model, &certificates, &options, &()).unwrap();
     assert_eq!((report.samples, report.violations), (2000, vec![]));
     assert!(report.root_tightness.unwrap() >= 0.9, "{:?}", report.root_tightness);
-}
-
-#[test]
-fn face() {
-    let Some(folder) = models("face") else { return };
-    every_method_gives_the_listed_pairs(&folder.join("ict_face/ict_face_selfcollision_cases.json"), 12);
 }
 
 /// A GLB of another tool, and the same model as OBJ and npy, have the same pairs at 200 random q.
@@ -111,21 +106,45 @@ fn random(i: usize) -> f64 {
     (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
+/// The face, its cases and certificates with loose radii: tests are about the pairs that these cover.
+struct Face {
+    model: ReducedModel,
+    cases: Vec<Case>,
+    with_exceptions: Certificates,
+}
+
+fn certify_face(model: &ReducedModel, ignore_rest: bool) -> Certificates {
+    let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
+    Certificates::compute(model, &options, &()).unwrap()
+}
+
+/// Returns the face, which two tests share; none without real models.
+fn face_of(test: &str) -> Option<&'static Face> {
+    static FACE: OnceLock<Face> = OnceLock::new();
+    let file = models(test)?.join("ict_face/ict_face_selfcollision_cases.json");
+    Some(FACE.get_or_init(|| {
+        let (model, cases) = cases(&file);
+        let with_exceptions = certify_face(&model, false);
+        Face { model, cases, with_exceptions }
+    }))
+}
+
+#[test]
+fn face() {
+    let Some(Face { model, cases, with_exceptions }) = face_of("face") else { return };
+    assert_eq!(cases.len(), 12);
+    every_method_gives_the_listed_pairs(model, cases, with_exceptions);
+}
+
 /// Every published configuration, with the pairs that collide at rest as exceptions, or ignored.
 #[test]
 fn face_with_exceptions() {
-    let Some(folder) = models("face_with_exceptions") else { return };
-    let (model, cases) = cases(&folder.join("ict_face/ict_face_selfcollision_cases.json"));
+    let Some(Face { model, cases, with_exceptions: with }) = face_of("face_with_exceptions") else { return };
     let rest = &cases[0].pairs;
-    let certify = |ignore_rest| {
-        // Radii may be loose: the test is about the pairs that they cover.
-        let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
-        Certificates::compute(&model, &options, &()).unwrap()
-    };
-    let (with, ignoring) = (certify(false), certify(true));
+    let ignoring = certify_face(model, true);
     assert_eq!((with.exceptions(), ignoring.filter().ignored()), (&rest[..], &rest[..]));
     assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
-    let mut query = Query::new(&model, &with).unwrap();
+    let mut query = Query::new(model, with).unwrap();
     assert_eq!(query.discrete(&cases[0].q).unwrap(), rest);
     assert!(query.statistics().root_certified && query.statistics().opened == 0);
     // The jaw alone opens a small part of the hierarchy.
@@ -138,8 +157,8 @@ fn face_with_exceptions() {
     let leaves = || (0..nodes.len()).filter(|n| nodes[*n].children().is_empty());
     let open: u32 = leaves().filter(|n| open[*n]).map(|n| nodes[n].triangle_count).sum();
     assert!(0 < open && 8 * open < model.mesh().faces().len() as u32, "{open}");
-    let mut ignoring = Query::new(&model, &ignoring).unwrap();
-    for case in &cases {
+    let mut ignoring = Query::new(model, &ignoring).unwrap();
+    for case in cases {
         let expected: Pairs = case.pairs.iter().copied().filter(|pair| !rest.contains(pair)).collect();
         assert_eq!(ignoring.discrete(&case.q).unwrap(), expected);
     }
