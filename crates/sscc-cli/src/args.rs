@@ -110,8 +110,13 @@ pub struct Modes {
     /// Number of modes [default: 20 for linear, 30 for nonlinear; for pca as many as explain 99.9% of the variance]
     #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=500))]
     pub rank: Option<u32>,
-    /// Vertices that do not move: numbers counted from 0, as in 0,5,7; box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers
-    /// (.npy, text) [default: none; the modes are those of a free body, without its rigid motions]
+    /// A solid that moves the surface SOURCE, such as a coarse mesh around it: each vertex moves with the element that
+    /// contains it, or with the nearest one
+    #[arg(long, value_name = "FILE", conflicts_with = "resolution")]
+    pub solid: Option<PathBuf>,
+    /// Vertices that do not move: numbers counted from 0, as in 0,5,7 (with --solid those of the solid);
+    /// box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1) [default: none; the modes
+    /// are those of a free body, without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
     /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of

@@ -71,6 +71,10 @@ impl Watch for Stages {
         self.write(|| output::note(note));
     }
 
+    fn inform(&self, line: &str) {
+        self.note(line);
+    }
+
     fn warn(&self, warning: &str) {
         self.write(|| output::write_stderr(format_args!("warning: {warning}")));
     }

@@ -78,6 +78,7 @@ mod part_file;
 mod pose;
 pub mod solid;
 mod text;
+mod vertex_numbers;
 mod wav;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
@@ -96,4 +97,5 @@ pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
 pub use solid::read_volume_mesh;
+pub use vertex_numbers::read_vertex_numbers;
 pub use wav::{WavFormat, wav_to_bytes, write_wav};

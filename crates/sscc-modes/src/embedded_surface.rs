@@ -1,21 +1,25 @@
-//! Surface embedded in a lattice of cubes.
+//! Surface embedded in a solid: a lattice of cubes around it, or a given solid.
 
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_solid::{Material, Solid};
 
-use crate::ModesError;
-use crate::lattice::{Interpolation, Lattice};
+use crate::embedding::embed;
+use crate::interpolation::Interpolation;
+use crate::lattice::Lattice;
+use crate::{ModesError, Outside};
 
-/// Closed surface with the lattice of cubes around it, which carries mass and stiffness.
+/// Surface with the solid that moves it and carries mass and stiffness: a lattice of cubes around a closed surface, or a
+/// given solid.
 ///
 /// The lattice keeps parts separate that are close in space but not along the surface, however narrow the gap. The
 /// filled share of each octant scales mass and stiffness of cubes at the surface.
 pub struct EmbeddedSurface {
     solid: Solid,
     interpolation: Interpolation,
-    spacing: f64,
+    spacing: Option<f64>,
     is_split: bool,
+    outside: Option<Outside>,
 }
 
 impl EmbeddedSurface {
@@ -34,16 +38,32 @@ impl EmbeddedSurface {
         let Lattice { vertices, cubes, fill, spacing, interpolation, is_split } =
             Lattice::around(surface, cells, progress)?;
         let solid = Solid::filled(vertices, cubes, fill, material)?;
-        Ok(Self { solid, interpolation, spacing, is_split })
+        Ok(Self { solid, interpolation, spacing: Some(spacing), is_split, outside: None })
     }
 
-    /// Returns the lattice as a solid.
+    /// Embeds any surface in a solid, which may be coarser: a vertex moves with the element that contains it, or with the
+    /// nearest one. The solid may have gaps and overlaps; a vertex in several parts moves with that of its neighbours.
+    ///
+    /// # Errors
+    /// When a vertex is farther from the solid than a tenth of the longest side of the solid, or the work is cancelled.
+    pub fn within(surface: &TriMesh, solid: Solid, progress: &dyn Progress) -> Result<Self, ModesError> {
+        let (interpolation, outside) = embed(&solid, surface, progress)?;
+        let outside = Some(outside).filter(|outside| outside.count > 0);
+        Ok(Self { solid, interpolation, spacing: None, is_split: false, outside })
+    }
+
+    /// Returns the vertices outside the solid; None if there are none.
+    pub fn outside(&self) -> Option<&Outside> {
+        self.outside.as_ref()
+    }
+
+    /// Returns the solid.
     pub fn solid(&self) -> &Solid {
         &self.solid
     }
 
-    /// Returns the length of an edge of a cube (model unit).
-    pub fn spacing(&self) -> f64 {
+    /// Returns the length of an edge of a cube of the lattice (model unit); None for a given solid.
+    pub fn spacing(&self) -> Option<f64> {
         self.spacing
     }
 
@@ -53,8 +73,8 @@ impl EmbeddedSurface {
         self.is_split
     }
 
-    /// Interpolates modes of the solid to the surface: a vertex moves with its cube (trilinear). Unused vertices do not
-    /// move.
+    /// Interpolates modes of the solid to the surface: a vertex moves with its element (barycentric or trilinear).
+    /// Unused vertices do not move.
     ///
     /// # Errors
     /// When the modes have another number of vertices.
@@ -74,6 +94,6 @@ impl EmbeddedSurface {
 
     /// Returns the vertices of the solid that move a vertex of the surface; fixing them fixes it.
     pub fn holding(&self, vertex: usize) -> impl Iterator<Item = u32> {
-        self.interpolation.vertices[vertex].iter().filter(|(_, share)| *share > 0.0).map(|(v, _)| *v)
+        self.interpolation.vertices[vertex].iter().filter(|(_, share)| *share != 0.0).map(|(v, _)| *v)
     }
 }

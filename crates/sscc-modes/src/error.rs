@@ -1,5 +1,7 @@
 //! Errors of the computation of modes.
 
+use crate::outside::Outside;
+
 /// Error of a computation of modes; the message is one line with the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -178,7 +180,7 @@ pub enum ModesError {
     NoVolume,
     /// The surface collides with itself at rest, so its inside is ambiguous.
     #[error(
-        "triangles {a} and {b} (counted from 0) collide at rest: a lattice needs a surface that neither cuts nor touches itself; move them apart, or remove one"
+        "triangles {a} and {b} (counted from 0) collide at rest: a lattice needs a surface that neither cuts nor touches itself; move them apart, remove one, or embed the surface in a solid from another file"
     )]
     CollidesAtRest {
         /// A triangle, from 0.
@@ -208,6 +210,11 @@ pub enum ModesError {
         /// Number of pieces.
         count: usize,
     },
+    /// A surface leaves the solid in which it is embedded.
+    #[error(
+        "{_0}: more than a tenth of its size; use a solid that encloses the surface, in the same units and place"
+    )]
+    OutsideSolid(Outside),
     /// An animation has fewer than two frames.
     #[error("{found} frames are too few: principal components need at least two")]
     TooFewFrames {

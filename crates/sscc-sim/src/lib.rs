@@ -43,20 +43,20 @@ pub use error::SimError;
 pub use groups::GroupRules;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
-    Components, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,
+    Components, Fix, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,
     elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model,
 };
 pub use nearest::nearest;
 pub use outputs::{Outputs, SoundTrack};
 pub use recipes::{
-    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, SPRING_RINGS, Shape,
-    TimedCertificates, models_folder,
+    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, Resize,
+    SPRING_RINGS, Shape, TimedCertificates, models_folder,
 };
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
     StateLayout, StateLog, StepRecord, Summary, run,
 };
-pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Sound, read_scene};
+pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
 pub use sweeps::{SweepRequest, SweepRow, default_ranges, read_q, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};

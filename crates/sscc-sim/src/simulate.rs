@@ -8,7 +8,7 @@ use sscc_io::check_writable;
 use crate::error::{At, Result, SimError};
 use crate::machine::available_threads;
 use crate::recipes::{Cache, models_folder};
-use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, run, traditional_costs};
+use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, announcement, run, traditional_costs};
 use crate::scenes::{Scene, read_scene};
 use crate::watch::Watch;
 
@@ -65,8 +65,9 @@ fn finish(
 ) -> Result<FinishedRun> {
     let in_scene = || scene.name.clone();
     let prepared = PreparedScene::get(&scene, models, cache, watch).at(in_scene)?;
+    let lines = announcement(&scene, &prepared).at(in_scene)?;
     let RunOutcome { history, processor_seconds, failure } =
-        run(&scene, &prepared, &folder, steps, again, watch).at(in_scene)?;
+        run(&scene, &prepared, &folder, steps, again, &lines, watch).at(in_scene)?;
     if history.is_empty() {
         let failure = failure.unwrap_or_else(|| SimError::refused("steps", "no step was made"));
         return Err(failure).at(in_scene);

@@ -35,6 +35,9 @@ pub trait Watch: Progress {
     /// Receives a note: one line that is no error, for example that a damaged file of the cache was computed again.
     fn note(&self, note: &str);
 
+    /// Receives a line about work that begins, for example the energy of a body; by default dropped.
+    fn inform(&self, _line: &str) {}
+
     /// Receives a warning: one line about input that breaks a rule, and how it was understood. By default a note.
     fn warn(&self, warning: &str) {
         self.note(warning);

@@ -6,7 +6,7 @@
 //! - [`Solid`]: elements of positive volume, each with a [`Material`]; [`VolumeMesh::solid`] creates one;
 //! - [`PartialMaterial`]: the known properties of a material; [`Material::new`] fills in the others;
 //! - [`Element`]: one tetrahedron or cube with its integration points;
-//! - [`Boundary`] and [`MassProperties`] of a solid;
+//! - [`Boundary`] and [`MassProperties`] of a solid, [`MassData`] of a reduced model;
 //! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q.
 //!
 //! Constructors check their data, so functions can rely on valid values.
@@ -33,6 +33,7 @@ mod error;
 mod forces;
 mod interior;
 mod mass;
+mod mass_data;
 mod material;
 mod meshed_solid;
 pub mod monomials;
@@ -47,6 +48,7 @@ pub use error::SolidError;
 pub use forces::ReducedForces;
 pub use interior::tets_within;
 pub use mass::MassProperties;
+pub use mass_data::MassData;
 pub use material::{Material, MaterialError, NamedMaterial, PartialMaterial};
 pub use meshed_solid::MeshedSolid;
 pub use solid::Solid;

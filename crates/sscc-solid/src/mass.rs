@@ -1,7 +1,7 @@
 //! Mass properties of a solid.
 
 use glam::{DMat3, DVec3};
-use sscc::Modes;
+use sscc::{Modes, TriMesh};
 
 use crate::{Solid, SolidError};
 
@@ -14,6 +14,52 @@ pub struct MassProperties {
     pub center: DVec3,
     /// Inertia tensor about the centre of mass: the integral of `|x|^2 - x x'` over the mass.
     pub inertia: DMat3,
+}
+
+impl MassProperties {
+    /// Returns the mass properties of a uniform body within a closed surface whose triangles are oriented outwards. None
+    /// where the enclosed volume is not positive.
+    pub fn within(surface: &TriMesh, density: f64) -> Option<Self> {
+        let p = surface.rest_positions();
+        let origin = p[surface.faces()[0][0] as usize];
+        let (mut mass, mut moment, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        for face in surface.faces() {
+            // The tetrahedron of the triangle and the origin has a signed volume.
+            let [a, b, c] = face.map(|v| p[v as usize] - origin);
+            let own = density * a.dot(b.cross(c)) / 6.0;
+            let sum = a + b + c;
+            mass += own;
+            moment += sum * (own / 4.0);
+            for x in [a, b, c, sum] {
+                second += outer(x) * (own / 20.0);
+            }
+        }
+        let is_positive = mass.is_finite() && mass > 0.0;
+        is_positive.then(|| Self::of_moments(mass, moment, second, origin))
+    }
+
+    /// Returns the mass properties from the integrals of 1, `x` and `x x'` over the mass, for positions relative to
+    /// `origin`.
+    fn of_moments(mass: f64, moment: DVec3, mut second: DMat3, origin: DVec3) -> Self {
+        let center = moment / mass;
+        second -= outer(center) * mass;
+        second = (second + second.transpose()) * 0.5;
+        let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
+        let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - second;
+        Self { mass, center: origin + center, inertia }
+    }
+
+    /// Returns the mass properties of the body with all lengths multiplied by `factor`, of the same density.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let Self { mass, center, inertia } = *self;
+        Self { mass: mass * factor.powi(3), center: center * factor, inertia: inertia * factor.powi(5) }
+    }
+}
+
+/// Returns `x x'`.
+fn outer(x: DVec3) -> DMat3 {
+    DMat3::from_cols(x * x.x, x * x.y, x * x.z)
 }
 
 impl Solid {
@@ -36,13 +82,7 @@ impl Solid {
                 }
             }
         }
-        let center = moment / mass;
-        let outer = |x: DVec3| DMat3::from_cols(x * x.x, x * x.y, x * x.z);
-        second -= outer(center) * mass;
-        second = (second + second.transpose()) * 0.5;
-        let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
-        let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - second;
-        MassProperties { mass, center: origin + center, inertia }
+        MassProperties::of_moments(mass, moment, second, origin)
     }
 
     /// Returns the integral of each mode over the mass (r vectors). Its product with an acceleration is the generalised
@@ -92,6 +132,22 @@ mod tests {
             assert!((found.center - DVec3::new(11.0, 11.5, 12.0)).length() < 1e-12);
             let expected = DVec3::new(9.0 + 16.0, 4.0 + 16.0, 4.0 + 9.0) * mass / 12.0;
             assert!((found.inertia - DMat3::from_diagonal(expected)).abs_diff_eq(DMat3::ZERO, 1e-9));
+
+            // The boundary encloses the same body, and a body of twice the size has the same density.
+            let surface = solid.boundary().unwrap().mesh;
+            let within = MassProperties::within(&surface, 5.0).unwrap();
+            let near = |a: &MassProperties, b: &MassProperties| {
+                (a.mass / b.mass - 1.0).abs() < 1e-12
+                    && a.center.abs_diff_eq(b.center, 1e-10)
+                    && a.inertia.abs_diff_eq(b.inertia, 1e-10 * b.inertia.x_axis.x)
+            };
+            assert!(near(&within, &found), "{within:?} {found:?}");
+            let twice = surface.rest_positions().iter().map(|p| *p * 2.0).collect();
+            let twice = TriMesh::new(twice, surface.faces().to_vec()).unwrap();
+            assert!(near(&MassProperties::within(&twice, 5.0).unwrap(), &found.scaled(2.0)));
+            let reversed = surface.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+            let reversed = TriMesh::new(surface.rest_positions().to_vec(), reversed).unwrap();
+            assert_eq!(MassProperties::within(&reversed, 5.0), None);
         }
     }
 }

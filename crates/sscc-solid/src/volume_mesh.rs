@@ -77,6 +77,18 @@ impl VolumeMesh {
         Ok(self)
     }
 
+    /// Multiplies all lengths by `factor`.
+    ///
+    /// # Errors
+    /// When a coordinate is then beyond [`sscc::limits`].
+    pub fn scaled(mut self, factor: f64) -> Result<Self, SolidError> {
+        self.parts.vertices.iter_mut().for_each(|p| *p *= factor);
+        match self.parts.vertices.iter().position(|p| !limits::contains(*p)) {
+            Some(vertex) => Err(SolidError::Vertex { vertex }),
+            None => Ok(self),
+        }
+    }
+
     /// Returns the rest positions (the file's unit).
     pub fn vertices(&self) -> &[DVec3] {
         &self.parts.vertices
@@ -185,6 +197,9 @@ mod tests {
         let same = SolidError::SameCorners { kind: "tetrahedra", first: 0, second: 1 };
         assert_eq!(rejected(&|p| p.tets[1] = [3, 1, 0, 2]), same);
         assert_eq!(same.to_string(), "tetrahedra 0 and 1 (counted from 0) have the same corners");
+        let scaled = VolumeMesh::new(parts()).unwrap().scaled(0.5).unwrap();
+        assert_eq!((scaled.vertices()[4], scaled.tets()), (DVec3::splat(0.5), &parts().tets[..]));
+        assert_eq!(scaled.scaled(1e300), Err(SolidError::Vertex { vertex: 1 }));
         let materials = |found| SolidError::ElementMaterials { elements: 2, found };
         assert_eq!(rejected(&|p| p.element_material.truncate(1)), materials(1));
         assert_eq!(rejected(&|p| p.element_material[1] = 1), materials(2));

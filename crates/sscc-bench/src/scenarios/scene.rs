@@ -73,7 +73,8 @@ fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Resul
     let folder = setup.cache.folder().join(format!("{}-{hash}.scene", scene.name));
     make_folder(&folder)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let run_on_pool = |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, setup.watch));
+    let run_on_pool =
+        |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &[], setup.watch));
     let RunOutcome { history, failure, .. } = match run_on_pool(false) {
         Err(error) if StateLog::is_begun(&folder) => {
             setup.watch.note(&format!("simulated again: {}", one_line(&error.to_string())));

@@ -10,6 +10,7 @@ mod detector_bad_input;
 mod detector_models;
 mod detector_report;
 mod formats;
+mod guide;
 mod help;
 mod interrupt;
 mod modes;

@@ -44,7 +44,7 @@ fn the_rust_example_is_a_project_of_its_own() {
 }
 
 /// Returns the words of the lines that begin with `sscc ` in blocks marked `sh`.
-fn commands(text: &str) -> Vec<Vec<String>> {
+pub fn commands(text: &str) -> Vec<Vec<String>> {
     let mut in_block = false;
     let mut commands = Vec::new();
     for line in text.lines() {

@@ -10,18 +10,22 @@
 //! | `stiffness` | F64 | r x r | optional: the reduced stiffness `K~` at rest, symmetric |
 //! | `forces_quadratic` | F64 | r x r(r+1)/2 | optional, beside it: coefficients of `q_i q_j` in each force, i <= j |
 //! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with the former: of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
+//! | `mass_properties` | F64 | 13 | optional: mass, centre of mass, inertia about it (3 x 3) at rest |
+//! | `mode_moments` | F64 | r x 3 | with the former: the integral of each mode over the mass |
 //!
 //! Text: `metric` (the kind of the metric), `units`, `provenance`. A file with a stiffness also has the text `mass`
 //! with the value "identity": the modes are mass-orthonormal, and `M~` is the identity. The natural frequencies in Hz
-//! are then the square roots of the stiffness's eigenvalues over 2 pi, if the unit of time is the second.
+//! are then the square roots of the stiffness's eigenvalues over 2 pi, if the unit of time is the second. A file with
+//! mass properties has the text `support`: "held" if vertices of the body are fixed, else "free". Mass properties are new
+//! in version 2; files without them are written in version 1.
 
 use std::path::Path;
 
 use glam::DVec3;
 use sscc::{Modes, ReducedModel, TriMesh};
-use sscc_solid::Elasticity;
+use sscc_solid::{Elasticity, MassData};
 
-use super::{ANY, Container, ContainerWriter, MODEL, elasticity, metric};
+use super::{ANY, Container, ContainerWriter, Kind, MODEL, elasticity, mass_data, metric};
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError};
 
@@ -35,12 +39,17 @@ pub struct ModelInfo {
     pub provenance: String,
     /// Elastic forces, if known.
     pub elasticity: Option<Elasticity>,
+    /// Mass and support, if known.
+    pub mass: Option<MassData>,
 }
 
+/// Files without mass properties are written in this version, which earlier builds read.
+const VERSION_WITHOUT_MASS: u32 = 1;
+
 impl ModelInfo {
-    /// Creates the data from these texts, without forces.
+    /// Creates the data from these texts, without forces and mass.
     pub fn new(units: impl Into<String>, provenance: impl Into<String>) -> Self {
-        Self { units: units.into(), provenance: provenance.into(), elasticity: None }
+        Self { units: units.into(), provenance: provenance.into(), ..Self::default() }
     }
 
     /// Adds elastic forces of a model whose modes are mass-orthonormal.
@@ -48,12 +57,18 @@ impl ModelInfo {
     pub fn with_elasticity(self, elasticity: Elasticity) -> Self {
         Self { elasticity: Some(elasticity), ..self }
     }
+
+    /// Adds mass and support.
+    #[must_use]
+    pub fn with_mass(self, mass: MassData) -> Self {
+        Self { mass: Some(mass), ..self }
+    }
 }
 
 /// Writes a model. Reading returns the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, the elastic forces are of another rank, or the file cannot be written.
+/// When the texts are beyond 1 MiB, elastic forces or mass data are of another rank, or the file cannot be written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -69,7 +84,7 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// Returns the bytes of a model file.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, or the elastic forces are of another rank.
+/// When the texts are beyond 1 MiB, or elastic forces or mass data are of another rank.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());
@@ -79,10 +94,14 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .chunks_exact(rank)
         .flat_map(|of_vertex| (0..3).flat_map(move |axis| of_vertex.iter().map(move |u| u[axis])))
         .collect();
-    let mut writer = ContainerWriter::new(MODEL);
+    let version = if info.mass.is_some() { MODEL.version } else { VERSION_WITHOUT_MASS };
+    let mut writer = ContainerWriter::new(Kind { version, ..MODEL });
     metric::write(&mut writer, model.metric());
     if let Some(forces) = &info.elasticity {
         elasticity::write(&mut writer, forces, rank)?;
+    }
+    if let Some(mass) = &info.mass {
+        mass_data::write(&mut writer, mass, rank)?;
     }
     writer
         .text("units", &info.units)
@@ -103,6 +122,8 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
         "faces",
         elasticity::CUBIC,
         elasticity::QUADRATIC,
+        mass_data::MOMENTS,
+        mass_data::PROPERTIES,
         metric::FACTOR,
         metric::SCALES,
         "modes",
@@ -121,8 +142,9 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     let model = ReducedModel::with_metric(mesh, modes, metric)?;
     // The model has a vertex, so the size of its modes bounds the rank.
     let elasticity = elasticity::read(&file, rank)?;
+    let mass = mass_data::read(&file, rank)?;
     let info = ModelInfo::new(file.text("units")?, file.text("provenance")?);
-    Ok((model, ModelInfo { elasticity, ..info }))
+    Ok((model, ModelInfo { elasticity, mass, ..info }))
 }
 
 #[cfg(test)]

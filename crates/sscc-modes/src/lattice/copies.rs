@@ -12,15 +12,12 @@ use super::pieces::{SampleSet, for_each_piece};
 use super::probe::Probe;
 use super::surface::Surface;
 use crate::cancel::check_cancelled;
+use crate::interpolation::OCTANTS;
 
 /// Minimum filled share of an octant. It gives every cube mass and stiffness, and bounds the ratio of stiffness by
 /// 1000, three of sixteen digits. The added volume is a thousandth of the outermost layer, less than the error of the
 /// sample lines.
 pub(super) const MIN_FILL: f64 = 1e-3;
-
-/// The octants of a cube, in the order of its corners: 000, 100, 110, 010, 001, 101, 111, 011 (x, y, z).
-pub(super) const OCTANTS: [[u32; 3]; 8] =
-    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 
 /// The copies of all cells, in the order of cells; within a cell in the order of their smallest elements.
 pub(super) struct Copies {

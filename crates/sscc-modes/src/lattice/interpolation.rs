@@ -1,18 +1,12 @@
-//! Interpolation from the nodes of a lattice to the vertices of the surface.
+//! Weights of the nodes of a lattice at the vertices of the surface: trilinear in each cube.
 
 use glam::DVec3;
 
 use super::cells::Cells;
-use super::copies::{Copies, OCTANTS};
+use super::copies::Copies;
 use super::grid::Grid;
 use super::surface::Surface;
-
-/// Weights of surface vertices: each is a trilinear mean of the 8 nodes of its cube.
-pub(crate) struct Interpolation {
-    /// Nodes and weights of each vertex. Weights are positive and have the sum 1. A vertex without faces has weights 0 and
-    /// does not move.
-    pub vertices: Vec<[(u32, f64); 8]>,
-}
+use crate::interpolation::{Interpolation, OCTANTS};
 
 impl Interpolation {
     /// Computes the weights of vertices (in units of cells), in the copies that contain their triangles.
@@ -45,13 +39,5 @@ impl Interpolation {
             }
         }
         Self { vertices }
-    }
-
-    /// Interpolates a field at the nodes to the vertices.
-    pub fn apply(&self, field: &[DVec3]) -> Vec<DVec3> {
-        let value = |weights: &[(u32, f64); 8]| {
-            weights.iter().fold(DVec3::ZERO, |sum, (node, weight)| sum + *weight * field[*node as usize])
-        };
-        self.vertices.iter().map(value).collect()
     }
 }

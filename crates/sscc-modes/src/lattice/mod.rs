@@ -13,11 +13,11 @@ use sscc::{Progress, TriMesh};
 
 use crate::ModesError;
 use crate::cancel::check_cancelled;
+use crate::interpolation::Interpolation;
 use cells::Cells;
 use copies::Copies;
 use crossings::intervals;
 use grid::Grid;
-pub(crate) use interpolation::Interpolation;
 use nodes::Nodes;
 use orientation::check_orientation;
 use surface::{Surface, check_rest};

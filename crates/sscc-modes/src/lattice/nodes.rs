@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::cells::{Cells, NONE};
-use super::copies::{Copies, OCTANTS};
+use super::copies::Copies;
 use super::crossings::Interval;
 use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
@@ -11,6 +11,7 @@ use super::overlap::{Block, SLACK};
 use super::pieces::for_each_piece;
 use super::surface::Surface;
 use crate::ModesError;
+use crate::interpolation::OCTANTS;
 
 /// Common corners of a cube and the next one along each axis: the number in the cube, and in the next one.
 const COMMON: [[[u32; 2]; 4]; 3] =

@@ -3,6 +3,7 @@
 use sscc::{Modes, Progress, ReducedModel};
 use sscc_io::ModelInfo;
 use sscc_modes::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};
+use sscc_solid::MassData;
 
 use super::new_model::{NewModel, SolidFacts};
 use super::source::SolidSource;
@@ -38,10 +39,11 @@ impl ModesKind {
     }
 }
 
-/// Modes of a solid, and the same modes on its surface.
+/// Modes of a solid, the same modes on its surface, and its mass.
 pub(crate) struct ElasticModes {
     pub solid: SolidModes,
     pub on_surface: Modes,
+    pub mass: MassData,
 }
 
 impl ElasticModes {
@@ -54,7 +56,7 @@ impl ElasticModes {
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
         let solid = source.solid();
-        let (solid, on_surface) = match kind {
+        let (found, on_surface) = match kind {
             ModesKind::Linear => {
                 let found = linear_modes(solid, fixed, rank.unwrap_or(LINEAR_RANK), progress)?;
                 let modes = source.on_surface(&found.modes)?;
@@ -66,12 +68,14 @@ impl ElasticModes {
                 (found, modes)
             }
             ModesKind::Polynomial => {
-                let PolynomialModes { solid, surface } =
+                let PolynomialModes { solid: found, surface } =
                     polynomial_solid_modes(solid, source.mesh(), progress)?;
-                (solid, surface)
+                (found, surface)
             }
         };
-        Ok(Self { solid, on_surface })
+        let moments = solid.mode_moments(&found.modes)?;
+        let mass = MassData { properties: solid.mass_properties(), moments, is_held: !fixed.is_empty() };
+        Ok(Self { solid: found, on_surface, mass })
     }
 }
 
@@ -92,7 +96,8 @@ pub fn elastic_model(
     if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
         return Err(SimError::refused("--rank and --fix", POLYNOMIAL_MODES_ERROR));
     }
-    let ElasticModes { solid: found, on_surface } = ElasticModes::new(&source, kind, rank, fixed, progress)?;
+    let ElasticModes { solid: found, on_surface, mass } =
+        ElasticModes::new(&source, kind, rank, fixed, progress)?;
     let solid = source.solid();
     let (elements, freedom) = (solid.element_count(), 3 * (solid.vertices().len() - fixed.len()));
     let of_source = if source.is_embedded() { "mesh" } else { "solid" };
@@ -106,7 +111,7 @@ pub fn elastic_model(
     let metric = found.energy_metric()?;
     Ok(NewModel {
         model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
-        info: ModelInfo::new("", provenance).with_elasticity(found.elasticity),
+        info: ModelInfo::new("", provenance).with_elasticity(found.elasticity).with_mass(mass),
         is_split,
         solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
         components: None,

@@ -2,6 +2,7 @@
 
 mod elastic;
 mod equal_vertices;
+mod fix;
 mod material;
 mod new_model;
 mod pca;
@@ -11,8 +12,10 @@ mod source;
 pub(crate) use elastic::ElasticModes;
 pub use elastic::{ModesKind, POLYNOMIAL_MODES_ERROR, elastic_model};
 pub use equal_vertices::has_equal_vertices;
+pub use fix::Fix;
 pub use material::MaterialOrigin;
 pub use new_model::{Components, NewModel, SolidFacts};
 pub use pca::pca_model;
 pub use polynomial::polynomial_model;
+pub(crate) use source::read_embedded;
 pub use source::{SolidSource, is_solid};

@@ -1,4 +1,5 @@
-//! The solid that modes are computed for: from a file, or a lattice around a surface.
+//! The solid that modes are computed for: from a file, with or without a surface of its own, or a lattice around a
+//! surface.
 
 use std::path::Path;
 
@@ -6,12 +7,13 @@ use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_io::{read_mesh, read_volume_mesh};
 use sscc_modes::EmbeddedSurface;
-use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid};
+use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid, VolumeMesh};
 
 use super::material::MaterialOrigin;
 use crate::SimError;
+use crate::error::At;
 
-/// A solid with its surface: from a file, or a lattice around a surface.
+/// A solid with its surface.
 pub enum SolidSource {
     /// A lattice around a surface.
     Around {
@@ -19,6 +21,19 @@ pub enum SolidSource {
         mesh: TriMesh,
         /// The lattice, and how it moves the surface.
         embedded: EmbeddedSurface,
+        /// Where its material comes from.
+        material: MaterialOrigin,
+    },
+    /// A surface embedded in a solid from another file.
+    Within {
+        /// The surface.
+        mesh: TriMesh,
+        /// The solid, and how it moves the surface.
+        embedded: EmbeddedSurface,
+        /// Vertex of the solid for each vertex of its file; None for those of elements that were left out.
+        vertices: Vec<Option<u32>>,
+        /// Number of elements that were left out.
+        left_out: usize,
         /// Where its material comes from.
         material: MaterialOrigin,
     },
@@ -54,6 +69,49 @@ impl SolidSource {
         Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
     }
 
+    /// Embeds a surface in a solid, which may be coarser: its vertices move with the elements that contain them, or with
+    /// the nearest ones. Numbers of `material` override those of the solid.
+    ///
+    /// # Errors
+    /// When the solid is invalid, the material is out of range, the surface leaves the solid by more than a tenth of its
+    /// size, or `progress` cancels.
+    pub fn embedded(
+        mesh: TriMesh,
+        solid: &VolumeMesh,
+        material: &PartialMaterial,
+        progress: &dyn Progress,
+    ) -> Result<Self, SimError> {
+        let MeshedSolid { solid, vertices, stated, outside } = solid.solid(material)?;
+        let material = MaterialOrigin::new(material, &stated);
+        let embedded = EmbeddedSurface::within(&mesh, solid, progress)?;
+        Ok(Self::Within { mesh, embedded, vertices, left_out: outside, material })
+    }
+
+    /// Takes a solid with its boundary. Numbers of `material` override those of the solid.
+    ///
+    /// # Errors
+    /// When the solid is invalid, or the material is out of range.
+    pub fn whole(solid: &VolumeMesh, material: &PartialMaterial) -> Result<Self, SimError> {
+        let meshed = solid.solid(material)?;
+        let material = MaterialOrigin::new(material, &meshed.stated);
+        let boundary = meshed.solid.boundary()?;
+        Ok(Self::Whole { meshed, boundary, material })
+    }
+
+    /// Reads a surface and the solid in which it is embedded: see [`SolidSource::embedded`].
+    ///
+    /// # Errors
+    /// When a file cannot be read or is of another kind, and those of [`SolidSource::embedded`].
+    pub fn read_within(
+        surface: &Path,
+        solid: &Path,
+        material: &PartialMaterial,
+        progress: &dyn Progress,
+    ) -> Result<Self, SimError> {
+        let mesh = read_embedded(surface)?;
+        Self::embedded(mesh, &read_volume_mesh(solid)?, material, progress).in_file(solid)
+    }
+
     /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
     /// Numbers of `material` override those of the file.
     ///
@@ -73,16 +131,13 @@ impl SolidSource {
         if resolution.is_some() {
             return Err(SimError::refused("--resolution is for surfaces", "this file has its own elements"));
         }
-        let meshed = file.solid(material)?;
-        let material = MaterialOrigin::new(material, &meshed.stated);
-        let boundary = meshed.solid.boundary()?;
-        Ok(Self::Whole { meshed, boundary, material })
+        Self::whole(&file, material)
     }
 
     /// Returns the solid.
     pub fn solid(&self) -> &Solid {
         match self {
-            Self::Around { embedded, .. } => embedded.solid(),
+            Self::Around { embedded, .. } | Self::Within { embedded, .. } => embedded.solid(),
             Self::Whole { meshed, .. } => &meshed.solid,
         }
     }
@@ -90,18 +145,23 @@ impl SolidSource {
     /// Returns the origin of its material.
     pub fn material(&self) -> &MaterialOrigin {
         match self {
-            Self::Around { material, .. } | Self::Whole { material, .. } => material,
+            Self::Around { material, .. } | Self::Within { material, .. } | Self::Whole { material, .. } => {
+                material
+            }
         }
     }
 
-    /// Returns a note on elements that were left out, if any.
+    /// Returns a note on elements that were left out and on vertices of the surface outside the solid, if there are any.
     pub fn note(&self) -> Option<String> {
-        match self {
-            Self::Whole { meshed: MeshedSolid { outside, .. }, .. } if *outside > 0 => {
-                Some(format!("{outside} tetrahedra outside the surface of the file are left out"))
-            }
-            _ => None,
-        }
+        let (left_out, outside) = match self {
+            Self::Around { .. } => (0, None),
+            Self::Within { embedded, left_out, .. } => (*left_out, embedded.outside()),
+            Self::Whole { meshed, .. } => (meshed.outside, None),
+        };
+        let left_out = (left_out > 0)
+            .then(|| format!("{left_out} tetrahedra outside the surface of the file are left out"));
+        let notes: Vec<String> = left_out.into_iter().chain(outside.map(ToString::to_string)).collect();
+        (!notes.is_empty()).then(|| notes.join("; "))
     }
 
     /// Whether vertices of the surface are split along seams.
@@ -109,15 +169,15 @@ impl SolidSource {
         matches!(self, Self::Around { embedded, .. } if embedded.is_split())
     }
 
-    /// Whether it is a lattice around a surface.
+    /// Whether the surface is embedded: in a lattice or another solid.
     pub fn is_embedded(&self) -> bool {
-        matches!(self, Self::Around { .. })
+        !matches!(self, Self::Whole { .. })
     }
 
     /// Returns the surface.
     pub fn mesh(&self) -> &TriMesh {
         match self {
-            Self::Around { mesh, .. } => mesh,
+            Self::Around { mesh, .. } | Self::Within { mesh, .. } => mesh,
             Self::Whole { boundary, .. } => &boundary.mesh,
         }
     }
@@ -125,7 +185,7 @@ impl SolidSource {
     /// Returns the surface alone.
     pub fn into_mesh(self) -> TriMesh {
         match self {
-            Self::Around { mesh, .. } => mesh,
+            Self::Around { mesh, .. } | Self::Within { mesh, .. } => mesh,
             Self::Whole { boundary, .. } => boundary.mesh,
         }
     }
@@ -136,31 +196,31 @@ impl SolidSource {
     /// When the modes belong to another solid.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SimError> {
         match self {
-            Self::Around { embedded, .. } => Ok(embedded.on_surface(modes)?),
+            Self::Around { embedded, .. } | Self::Within { embedded, .. } => Ok(embedded.on_surface(modes)?),
             Self::Whole { boundary, .. } => Ok(boundary.on_surface(modes)?),
         }
     }
 
-    /// Returns the vertices of the solid that move a vertex of the file.
+    /// Returns the vertices of the solid that move a vertex of the file; of an embedded surface, of the solid's file.
     ///
     /// # Errors
     /// When the file has fewer vertices.
     pub fn holding(&self, number: u32) -> Result<Vec<u32>, SimError> {
-        let count = match self {
-            Self::Around { mesh, .. } => mesh.rest_positions().len(),
-            Self::Whole { meshed, .. } => meshed.vertices.len(),
+        let missing = |count: usize| {
+            let place = format!("there is no vertex {number} (counted from 0)");
+            SimError::refused(place, format!("the file has {count}"))
         };
-        if number as usize >= count {
-            let cause = format!("the file has {count}");
-            return Err(SimError::refused(
-                format_args!("there is no vertex {number} (counted from 0)"),
-                cause,
-            ));
+        let at = number as usize;
+        match self {
+            Self::Around { mesh, embedded, .. } => {
+                let count = mesh.rest_positions().len();
+                if at < count { Ok(embedded.holding(at).collect()) } else { Err(missing(count)) }
+            }
+            Self::Within { vertices, .. } | Self::Whole { meshed: MeshedSolid { vertices, .. }, .. } => {
+                let known = vertices.get(at).ok_or_else(|| missing(vertices.len()))?;
+                Ok(known.iter().copied().collect())
+            }
         }
-        Ok(match self {
-            Self::Around { embedded, .. } => embedded.holding(number as usize).collect(),
-            Self::Whole { meshed, .. } => meshed.vertices[number as usize].into_iter().collect(),
-        })
     }
 
     /// The vertices of the solid in a box, and those that hold vertices of the surface there.
@@ -168,10 +228,22 @@ impl SolidSource {
         let inside = |p: &DVec3| p.cmpge(low).all() && p.cmple(high).all();
         let solid = self.solid().vertices();
         let mut found: Vec<u32> = (0..solid.len() as u32).filter(|v| inside(&solid[*v as usize])).collect();
-        if let Self::Around { mesh, embedded, .. } = self {
+        if let Self::Around { mesh, embedded, .. } | Self::Within { mesh, embedded, .. } = self {
             let points = mesh.rest_positions();
             (0..points.len()).filter(|v| inside(&points[*v])).for_each(|v| found.extend(embedded.holding(v)));
         }
         found
     }
+}
+
+/// Reads a surface that is to be embedded in a solid.
+///
+/// # Errors
+/// When the file is a solid itself, or cannot be read.
+pub(crate) fn read_embedded(path: &Path) -> Result<TriMesh, SimError> {
+    if is_solid(path) {
+        let cause = "only a surface (.obj, .off, .ply, .stl) can be embedded in another solid";
+        return Err(SimError::refused("it is a solid itself", cause));
+    }
+    Ok(read_mesh(path)?)
 }

@@ -1,8 +1,8 @@
 //! Models with certificates: computed once, then read from the cache.
 
-use sscc::{CertifyOptions, ReducedModel};
+use sscc::{CertifyOptions, Modes, ReducedModel};
 use sscc_io::{ModelInfo, read_model, write_model};
-use sscc_solid::Elasticity;
+use sscc_solid::{Elasticity, MassData};
 
 use super::cache::Cache;
 use super::loaded_recipe::LoadedRecipe;
@@ -22,6 +22,8 @@ pub struct CertifiedModel {
     pub model: ReducedModel,
     /// Its stiffness and forces.
     pub elasticity: Elasticity,
+    /// Its mass and support.
+    pub mass: MassData,
     /// Certificates of the default budget.
     pub full: TimedCertificates,
     /// Certificates as in the paper (one radius for each node), for benches that compare them.
@@ -35,11 +37,14 @@ impl CertifiedModel {
     /// When the modes or certificates cannot be computed or written, or `watch` cancels.
     pub fn get(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<Self, SimError> {
         let recipe @ Recipe { name, modes, .. } = loaded.recipe();
-        let (model, elasticity) = recipe_modes(loaded, *modes, cache, watch)?;
+        let (model, elasticity, mass) = match loaded.given() {
+            Some(given) => (given.model.clone(), given.elasticity.clone(), given.mass.clone()),
+            None => recipe_modes(loaded, *modes, cache, watch)?,
+        };
         let (metric, budget) = (recipe.metric(&model)?, CertifyOptions::DEFAULT_BUDGET);
         let full = TimedCertificates::get(cache, name, &model, &metric, &loaded.source, budget, watch)?;
         let (source, note) = (loaded.source.clone(), loaded.note.clone());
-        Ok(Self { name: name.clone(), source, note, model, elasticity, full, paper: None })
+        Ok(Self { name: name.clone(), source, note, model, elasticity, mass, full, paper: None })
     }
 
     /// Returns the model with certificates as in the paper, too.
@@ -59,27 +64,41 @@ impl CertifiedModel {
     }
 }
 
-/// Returns the modes of a shape with their stiffness, from the cache or computed.
-pub(crate) fn recipe_modes(
+/// Returns at most `count` vibrations of a shape with their eigenvalues (1/s^2), from the cache or computed; of a model
+/// file, those of its modes.
+pub(crate) fn vibrations(
+    loaded: &LoadedRecipe<'_>,
+    count: usize,
+    cache: &Cache,
+    watch: &dyn Watch,
+) -> Result<(Modes, Vec<f64>), SimError> {
+    if let Some(given) = loaded.given() {
+        return given.vibrations(count);
+    }
+    let (model, elasticity, _) = recipe_modes(loaded, ModesSpec::Linear(count), cache, watch)?;
+    Ok((model.modes().clone(), elasticity.stiffness().diagonal().collect()))
+}
+
+/// Returns the modes of a shape with their forces and mass, from the cache or computed.
+fn recipe_modes(
     loaded: &LoadedRecipe<'_>,
     modes: ModesSpec,
     cache: &Cache,
     watch: &dyn Watch,
-) -> Result<(ReducedModel, Elasticity), SimError> {
-    let key = loaded.key("model").text(&format!("{modes:?}"));
+) -> Result<(ReducedModel, Elasticity, MassData), SimError> {
+    let key = loaded.key("model with mass").text(&format!("{modes:?}"));
     let name = format!("{}-{key}.model.safetensors", loaded.recipe().name);
-    let (model, info) = cache.get(
+    let (model, ModelInfo { elasticity, mass, .. }) = cache.get(
         &name,
         watch,
         |path| Ok(read_model(path)?),
         || loaded.modes(modes, watch),
         |path, (model, info): &(ReducedModel, ModelInfo)| Ok(write_model(path, model, info)?),
     )?;
-    let elasticity = info.elasticity.ok_or_else(|| {
-        SimError::refused(
-            cache.folder().join(name).display(),
-            "this model of the cache has no stiffness; remove the file",
-        )
-    })?;
-    Ok((model, elasticity))
+    let (Some(elasticity), Some(mass)) = (elasticity, mass) else {
+        let place = cache.folder().join(name);
+        let cause = "this model of the cache has no stiffness or no mass; remove the file";
+        return Err(SimError::refused(place.display(), cause));
+    };
+    Ok((model, elasticity, mass))
 }

@@ -4,15 +4,16 @@ use std::cell::OnceCell;
 use std::path::Path;
 
 use glam::DQuat;
-use sscc::{ReducedModel, TriMesh};
+use sscc::ReducedModel;
 use sscc_io::ModelInfo;
 use sscc_solid::Material;
 
+use super::given_model::GivenModel;
 use super::key::Key;
 use super::recipe::{ModesSpec, Recipe};
 use super::shape::{LoadedShape, Matter, Shape};
 use crate::error::At;
-use crate::models::{ElasticModes, ModesKind, SolidSource};
+use crate::models::{ElasticModes, Fix, ModesKind, SolidSource};
 use crate::{SimError, Stage, Watch};
 
 /// A recipe with its shape; modes are not computed yet.
@@ -21,6 +22,8 @@ pub struct LoadedRecipe<'a> {
     /// Material of elements whose file names none.
     material: Material,
     matter: Matter,
+    /// Factor on the lengths of its files.
+    factor: f64,
     /// Where the shape comes from.
     pub source: String,
     /// A note for people: the file that an embedded shape replaces, or the numbers of a file that the material
@@ -37,25 +40,16 @@ impl<'a> LoadedRecipe<'a> {
     /// them.
     ///
     /// # Errors
-    /// When a file cannot be read, a size or resolution is given for a solid, the material is out of range, or `watch`
-    /// cancels.
+    /// When a file cannot be read, a resolution is given for a solid, the material is out of range, a surface leaves its
+    /// solid, a model has no forces, mass or other units, or `watch` cancels.
     pub fn load(recipe: &'a Recipe, models: Option<&Path>, watch: &dyn Watch) -> Result<Self, SimError> {
         watch.begin(Stage::Solid);
-        let LoadedShape { mut matter, source, note } = recipe.shape.load(models, &recipe.material, watch)?;
+        let loaded = recipe.shape.load(models, &recipe.material, recipe.resize, watch)?;
+        let LoadedShape { matter, source, note, factor } = loaded;
         if let Matter::Solid(solid) = &matter {
-            solid.note().into_iter().for_each(|note| watch.note(&note));
+            solid.note().into_iter().for_each(|note| watch.note(&format!("{source}: {note}")));
         }
-        match (&mut matter, recipe.size) {
-            (Matter::Surface(mesh), Some(size)) => *mesh = resized(mesh, size)?,
-            (Matter::Solid(_), Some(_)) => {
-                return Err(SimError::refused(
-                    source,
-                    "size is for surfaces; the file of a solid has its own size",
-                ));
-            }
-            (_, None) => {}
-        }
-        if recipe.cells.is_some() && matches!(matter, Matter::Solid(_)) {
+        if recipe.cells.is_some() && !matches!(matter, Matter::Surface(_)) {
             let cause = "resolution is for surfaces; the file of a solid has its own elements";
             return Err(SimError::refused(source, cause));
         }
@@ -64,7 +58,7 @@ impl<'a> LoadedRecipe<'a> {
         let upright =
             if is_turned { DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
         let material = Material::new(&recipe.material).at(|| source.clone())?;
-        Ok(Self { recipe, material, matter, source, note, upright, around: OnceCell::new() })
+        Ok(Self { recipe, material, matter, factor, source, note, upright, around: OnceCell::new() })
     }
 
     /// Returns the recipe.
@@ -72,20 +66,35 @@ impl<'a> LoadedRecipe<'a> {
         self.recipe
     }
 
+    /// Returns the model of a recipe that has its modes already.
+    pub(crate) fn given(&self) -> Option<&GivenModel> {
+        if let Matter::Model(given) = &self.matter { Some(given) } else { None }
+    }
+
     /// Returns the key of a cached file that depends on this solid.
     pub(crate) fn key(&self, kind: &str) -> Key {
-        let key = Key::new(kind).text(&format!("{:?} {:?}", self.material, self.recipe.cells()));
+        let fix = self.fix();
+        let key = Key::new(kind).text(&format!("{:?} {:?} {fix:?}", self.material, self.recipe.cells()));
         match &self.matter {
             Matter::Surface(mesh) => key.mesh(mesh),
-            Matter::Solid(source) => key.text(&format!("{:?}", source.solid())),
+            Matter::Solid(source) => key.text(&format!("{:?}", source.solid())).mesh(source.mesh()),
+            Matter::Model(given) => key.model(&given.model),
         }
     }
 
+    /// Returns the selection of fixed vertices, at the scale of the body.
+    fn fix(&self) -> Option<Fix> {
+        self.recipe.fix.as_ref().map(|fix| fix.scaled(self.factor))
+    }
+
     /// Returns the solid with its surface; builds the lattice at the first call.
-    pub(crate) fn solid(&self, watch: &dyn Watch) -> Result<&SolidSource, SimError> {
+    fn solid(&self, watch: &dyn Watch) -> Result<&SolidSource, SimError> {
         let mesh = match &self.matter {
             Matter::Solid(source) => return Ok(source),
             Matter::Surface(mesh) => mesh,
+            Matter::Model(_) => {
+                return Err(SimError::refused(&self.source, "a model with modes has no solid of its own"));
+            }
         };
         if let Some(source) = self.around.get() {
             return Ok(source);
@@ -104,32 +113,23 @@ impl<'a> LoadedRecipe<'a> {
         watch: &dyn Watch,
     ) -> Result<(ReducedModel, ModelInfo), SimError> {
         let source = self.solid(watch)?;
+        let fixed = match self.fix() {
+            Some(fix) => fix.vertices(source).at(|| format!("{}: fix", self.recipe.name))?,
+            None => Vec::new(),
+        };
         watch.begin(Stage::Modes);
         let (kind, rank) = match modes {
             ModesSpec::Linear(rank) => (ModesKind::Linear, Some(rank)),
             ModesSpec::Nonlinear(rank) => (ModesKind::Nonlinear, Some(rank)),
             ModesSpec::Polynomial => (ModesKind::Polynomial, None),
+            ModesSpec::Given => return Err(SimError::refused(&self.source, "this file has no modes")),
         };
-        let ElasticModes { solid, on_surface } = ElasticModes::new(source, kind, rank, &[], watch)?;
+        let ElasticModes { solid, on_surface, mass } =
+            ElasticModes::new(source, kind, rank, &fixed, watch).at(|| self.source.clone())?;
         let model = ReducedModel::with_metric(source.mesh().clone(), on_surface, solid.energy_metric()?)?;
-        let info =
-            ModelInfo::new("", format!("{}, {modes:?}", self.source)).with_elasticity(solid.elasticity);
-        Ok((model, info))
+        let info = ModelInfo::new("", format!("{}, {modes:?}", self.source));
+        Ok((model, info.with_elasticity(solid.elasticity).with_mass(mass)))
     }
-}
-
-/// Returns the shape, scaled so that the longest side of its AABB is `size`.
-fn resized(mesh: &TriMesh, size: f64) -> Result<TriMesh, SimError> {
-    let rest = mesh.rest_positions();
-    let (lower, upper) = rest.iter().fold((rest[0], rest[0]), |(a, b), p| (a.min(*p), b.max(*p)));
-    let scale = size / (upper - lower).max_element();
-    if !scale.is_finite() || scale <= 0.0 {
-        return Err(SimError::refused(
-            "size",
-            format!("this shape cannot be scaled to {size:e}: it has no extent"),
-        ));
-    }
-    Ok(TriMesh::new(rest.iter().map(|p| p * scale).collect(), mesh.faces().to_vec())?)
 }
 
 #[cfg(test)]

@@ -3,11 +3,13 @@
 use sscc::{Metric, MetricKind, ReducedModel};
 use sscc_solid::PartialMaterial;
 
+use super::resize::Resize;
 use super::shape::Shape;
 use crate::SimError;
 use crate::error::At;
+use crate::models::Fix;
 
-/// A free elastic body with modes.
+/// An elastic body with modes.
 #[derive(Clone, Debug)]
 pub struct Recipe {
     /// The name of the model.
@@ -20,13 +22,15 @@ pub struct Recipe {
     pub material: PartialMaterial,
     /// Cubes along the longest side of the lattice around a surface; none: the default of the shape.
     pub cells: Option<usize>,
-    /// Longest side of the AABB of a surface; none: not scaled.
-    pub size: Option<f64>,
+    /// Size of the body; the default is that of its files.
+    pub resize: Resize,
+    /// Vertices that do not move; none: a free body.
+    pub fix: Option<Fix>,
     /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
     pub amplitudes: Option<Vec<f64>>,
 }
 
-/// Modes of a free elastic body.
+/// Modes of an elastic body.
 #[derive(Clone, Copy, Debug)]
 pub enum ModesSpec {
     /// This number of natural vibrations.
@@ -35,14 +39,17 @@ pub enum ModesSpec {
     Nonlinear(usize),
     /// The 24 quadratic polynomials.
     Polynomial,
+    /// Those of a model file.
+    Given,
 }
 
 impl ModesSpec {
-    /// Number of modes r.
-    pub fn rank(self) -> usize {
+    /// Returns the number of modes r; None if a file that is not yet read has them.
+    pub fn rank(self) -> Option<usize> {
         match self {
-            Self::Linear(rank) | Self::Nonlinear(rank) => rank,
-            Self::Polynomial => 24,
+            Self::Linear(rank) | Self::Nonlinear(rank) => Some(rank),
+            Self::Polynomial => Some(24),
+            Self::Given => None,
         }
     }
 }
@@ -59,7 +66,8 @@ impl Recipe {
             modes,
             material: PartialMaterial::default(),
             cells: None,
-            size: None,
+            resize: Resize::default(),
+            fix: None,
             amplitudes: None,
         }
     }
@@ -73,9 +81,13 @@ impl Recipe {
     /// Returns the metric for the certificates of its model.
     ///
     /// # Errors
-    /// When an amplitude is out of range.
+    /// When there is not one amplitude for each mode, or one is out of range.
     pub fn metric(&self, model: &ReducedModel) -> Result<Metric, SimError> {
         let Some(amplitudes) = &self.amplitudes else { return Ok(model.metric().clone()) };
+        if amplitudes.len() != model.rank() {
+            let cause = format!("{} numbers for {} modes", amplitudes.len(), model.rank());
+            return Err(SimError::refused(format_args!("{}: amplitudes", self.name), cause));
+        }
         let scales = amplitudes.iter().map(|amplitude| 1.0 / amplitude).collect();
         Metric::from_scales(MetricKind::Given, scales).at(|| format!("{}: amplitudes", self.name))
     }

@@ -4,13 +4,15 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use sscc::{Progress, TriMesh};
-use sscc_io::read_mesh;
+use sscc_io::{read_mesh, read_volume_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
+use super::given_model::{GivenModel, ModelFiles};
+use super::resize::{Resize, scaled};
 use crate::SimError;
 use crate::error::At;
-use crate::models::{SolidSource, is_solid};
+use crate::models::{SolidSource, is_solid, read_embedded};
 
 /// Rings of the embedded spring, and vertices of each.
 pub const SPRING_RINGS: [usize; 2] = [500, 16];
@@ -31,14 +33,25 @@ pub enum Shape {
     Dragon,
     /// A surface or a solid.
     File(PathBuf),
+    /// A surface embedded in a solid.
+    Embedded {
+        /// The surface.
+        surface: PathBuf,
+        /// The solid.
+        solid: PathBuf,
+    },
+    /// A model that has its modes.
+    Model(ModelFiles),
 }
 
 /// Content of a loaded shape.
 pub(super) enum Matter {
     /// A surface, without a lattice.
     Surface(TriMesh),
-    /// A solid from a file.
+    /// A solid from a file, with or without a surface of its own.
     Solid(Box<SolidSource>),
+    /// A model that has its modes.
+    Model(Box<GivenModel>),
 }
 
 /// A shape with its origin.
@@ -47,6 +60,8 @@ pub(super) struct LoadedShape {
     pub source: String,
     /// A note for people.
     pub note: Option<String>,
+    /// Factor on the lengths of its files.
+    pub factor: f64,
 }
 
 impl Shape {
@@ -60,37 +75,60 @@ impl Shape {
         &self,
         models: Option<&Path>,
         material: &PartialMaterial,
+        resize: Resize,
         progress: &dyn Progress,
     ) -> Result<LoadedShape, SimError> {
-        let surface =
-            |mesh, source: String, note| LoadedShape { matter: Matter::Surface(mesh), source, note };
+        let surface = |mesh: TriMesh, source: String, note| -> Result<LoadedShape, SimError> {
+            let factor = resize.factor(mesh.rest_positions()).at(|| source.clone())?;
+            let matter = Matter::Surface(scaled(mesh, factor)?);
+            Ok(LoadedShape { matter, source, note, factor })
+        };
+        let solid = |solid: SolidSource, source: String, factor| -> Result<LoadedShape, SimError> {
+            let replaced = solid.material().replaced.as_ref();
+            let note = replaced
+                .map(|replaced| format!("the scene's material overrides numbers of {source}: {replaced}"));
+            Ok(LoadedShape { matter: Matter::Solid(Box::new(solid)), source, note, factor })
+        };
         let (file, name, embedded): (_, _, fn() -> TriMesh) = match self {
             Self::Spring { rings, around } => {
-                return Ok(surface(spring_of(*rings, *around), "embedded spring".into(), None));
+                return surface(spring_of(*rings, *around), "embedded spring".into(), None);
             }
+            Self::File(path) if !is_solid(path) => return surface(read_mesh(path)?, file_name(path), None),
             Self::File(path) => {
-                let name: String = path.file_name().unwrap_or_default().to_string_lossy().into();
-                if !is_solid(path) {
-                    return Ok(surface(read_mesh(path)?, name, None));
-                }
-                let solid = SolidSource::read(path, None, material, progress).in_file(path)?;
-                let replaced = solid.material().replaced.as_ref();
-                let note = replaced
-                    .map(|replaced| format!("the scene's material overrides numbers of {name}: {replaced}"));
-                return Ok(LoadedShape { matter: Matter::Solid(Box::new(solid)), source: name, note });
+                let file = read_volume_mesh(path)?;
+                let factor = resize.factor(file.vertices()).in_file(path)?;
+                let file = file.scaled(factor).in_file(path)?;
+                return solid(SolidSource::whole(&file, material).in_file(path)?, file_name(path), factor);
+            }
+            Self::Embedded { surface, solid: path } => {
+                let mesh = read_embedded(surface).in_file(surface)?;
+                let factor = resize.factor(mesh.rest_positions()).in_file(surface)?;
+                let file = read_volume_mesh(path)?.scaled(factor).in_file(path)?;
+                let found = SolidSource::embedded(scaled(mesh, factor)?, &file, material, progress);
+                let source = format!("{} in {}", file_name(surface), file_name(path));
+                return solid(found.in_file(path)?, source, factor);
+            }
+            Self::Model(files) => {
+                let given = GivenModel::load(files, material, resize)?;
+                let (source, note) = (file_name(&files.path), given.assumed.clone());
+                return Ok(LoadedShape { matter: Matter::Model(Box::new(given)), source, note, factor: 1.0 });
             }
             Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
             Self::Dragon => ("dragon_77202_closed.ply", "serpent", serpent),
         };
-        Ok(match models {
+        match models {
             Some(folder) => surface(read_mesh(&folder.join(file))?, file.into(), None),
             None => surface(
                 embedded(),
                 format!("embedded {name}"),
                 Some(format!("the embedded {name} stands in for {file}: no --models given")),
             ),
-        })
+        }
     }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into()
 }
 
 /// Returns the folder of real models: `wanted`, else that of the environment variable `SSCC_MODELS`, else None.

@@ -36,6 +36,7 @@ pub struct CertificateCost {
 
 impl TimedCertificates {
     /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle).
+    /// They ignore pairs that collide at rest.
     /// `source` names the origin of the model in errors.
     pub(crate) fn get(
         cache: &Cache,
@@ -46,7 +47,7 @@ impl TimedCertificates {
         budget: usize,
         watch: &dyn Watch,
     ) -> Result<Self, SimError> {
-        let options = format!("{budget} {metric:?}");
+        let options = format!("{budget} ignore-rest {metric:?}");
         let key = Key::new("certificates").text(cache.program()?).text(&options).model(model);
         cache.get(
             &format!("{name}-{key}.sscc.safetensors"),
@@ -64,7 +65,13 @@ impl TimedCertificates {
         watch: &dyn Watch,
     ) -> Result<Self, SimError> {
         let (metric, threads) = (Some(metric.clone()), available_threads());
-        let options = CertifyOptions { metric, budget, threads: Some(threads), ..CertifyOptions::default() };
+        let options = CertifyOptions {
+            metric,
+            budget,
+            ignore_rest: true,
+            threads: Some(threads),
+            ..CertifyOptions::default()
+        };
         watch.begin(Stage::Certificates);
         let peak = PeakMemory::start();
         let start = Instant::now();

@@ -1,5 +1,6 @@
 //! Runs simulations of scenes: preparation, steps, the log of states, costs and a summary.
 
+mod announcement;
 mod clock;
 mod finished;
 mod history;
@@ -11,6 +12,7 @@ mod summary;
 mod traditional;
 mod world;
 
+pub use announcement::announcement;
 pub use finished::FinishedRun;
 pub use history::{BodyRecord, History, STEP_PARTS, StateLayout, StepRecord};
 pub use log::StateLog;

@@ -1,15 +1,14 @@
 //! Models of a scene with certificates, masses and sounds: computed once, then read from the cache.
 
-use std::f64::consts::TAU;
 use std::path::Path;
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 use sscc_dynamics::{Shape, SoundBank};
-use sscc_io::{read_whole, write_whole};
-use sscc_solid::{Elasticity, MassProperties};
+use sscc_modes::natural_frequencies;
+use sscc_solid::{Elasticity, MassData};
 
-use crate::error::{Result, SimError};
-use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, recipe_modes};
+use crate::error::{At, Result, SimError};
+use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, vibrations};
 use crate::scenes::{ModelSpec, Scene};
 use crate::watch::Watch;
 
@@ -85,8 +84,9 @@ impl PreparedScene {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.program.as_bytes()).update(scene.digest.as_bytes());
         for model in &self.models {
-            let model = &model.certified.model;
-            hasher.update(&sscc::Digest::of(model, &sscc::Scope::of(model)).0);
+            let certified = &model.certified;
+            hasher.update(&sscc::Digest::of(&certified.model, &sscc::Scope::of(&certified.model)).0);
+            add_forces(&mut hasher, certified);
         }
         *hasher.finalize().as_bytes()
     }
@@ -101,12 +101,11 @@ impl PreparedModel {
         watch: &dyn Watch,
     ) -> Result<Self> {
         let loaded = LoadedRecipe::load(&spec.recipe, models, watch)?;
-        let mass = mass(&loaded, cache, watch)?;
         let certified = CertifiedModel::get(&loaded, cache, watch)?;
-        let elasticity = elasticity(&certified, spec.is_linear)?;
-        let eigenvalues = certified.elasticity.stiffness().diagonal();
-        let first = eigenvalues.fold(f64::INFINITY, f64::min).sqrt();
-        let period = TAU / first;
+        let elasticity = elasticity(&certified, spec)?;
+        let frequencies =
+            natural_frequencies(certified.elasticity.stiffness()).at(|| certified.name.clone())?;
+        let period = 1.0 / frequencies.iter().copied().fold(f64::INFINITY, f64::min);
         // NaN must fail this test, too.
         let is_resolved = 2.0 * scene.step < period;
         if !is_resolved {
@@ -119,15 +118,23 @@ impl PreparedModel {
         }
         let sound = scene.sound.as_ref().map(|sound| -> Result<SoundBank> {
             let rate = 1.0 / scene.step;
-            let (model, elasticity) = recipe_modes(&loaded, ModesSpec::Linear(sound.modes), cache, watch)?;
+            let (modes, eigenvalues) =
+                vibrations(&loaded, sound.modes, cache, watch).at(|| "sound: modes".into())?;
             let damping = sound.damping.unwrap_or(spec.damping);
             let square = sound.pitch * sound.pitch;
-            let eigenvalues: Vec<f64> = elasticity.stiffness().diagonal().map(|x| x * square).collect();
-            Ok(SoundBank::new(model.mesh(), model.modes(), &eigenvalues, damping, rate)?)
+            let eigenvalues: Vec<f64> = eigenvalues.iter().map(|x| x * square).collect();
+            Ok(SoundBank::new(certified.model.mesh(), &modes, &eigenvalues, damping, rate)?)
         });
-        let shape =
-            Shape::new(certified.model.clone(), certified.full.certificates.clone(), elasticity, mass)?;
+        let MassData { properties, moments, .. } = certified.mass.clone();
+        let certificates = certified.full.certificates.clone();
+        let shape = Shape::new(certified.model.clone(), certificates, elasticity, properties)?;
+        let shape = shape.with_moments(moments)?;
         Ok(Self { certified, shape, upright: loaded.upright, sound: sound.transpose()? })
+    }
+
+    /// Whether vertices of the model are fixed, so that its bodies have no rigid motion.
+    pub fn is_held(&self) -> bool {
+        self.certified.mass.is_held
     }
 
     /// Returns the centre of mass, about which its bodies rotate.
@@ -137,9 +144,11 @@ impl PreparedModel {
 }
 
 /// Returns the elastic forces on a model's bodies.
-fn elasticity(certified: &CertifiedModel, is_linear: bool) -> Result<Elasticity> {
+fn elasticity(certified: &CertifiedModel, spec: &ModelSpec) -> Result<Elasticity> {
     match &certified.elasticity {
-        known if is_linear => Ok(known.linearized()),
+        // Those of a file with modes already follow the scene.
+        known if matches!(spec.recipe.modes, ModesSpec::Given) => Ok(known.clone()),
+        known if spec.is_linear => Ok(known.linearized()),
         Elasticity::Linear(_) => {
             let cause = format!(
                 "the {} modes have no forces of large deformations; use linear dynamics",
@@ -151,25 +160,21 @@ fn elasticity(certified: &CertifiedModel, is_linear: bool) -> Result<Elasticity>
     }
 }
 
-/// Returns mass, centre and inertia of a solid. The cached file has 1, 3 and 9 numbers.
-fn mass(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<MassProperties> {
-    let name = format!("{}-{}.mass.json", loaded.recipe().name, loaded.key("mass"));
-    let read = |path: &Path| {
-        let damaged = |cause: String| SimError::refused(path.display(), cause);
-        let numbers: Vec<f64> =
-            serde_json::from_slice(&read_whole(path)?).map_err(|error| damaged(error.to_string()))?;
-        let [mass, x, y, z, inertia @ ..] = &numbers[..] else { return Err(damaged("too short".into())) };
-        let inertia = <[f64; 9]>::try_from(inertia).map_err(|error| damaged(error.to_string()))?;
-        let (center, inertia) = (DVec3::new(*x, *y, *z), DMat3::from_cols_array(&inertia));
-        Ok(MassProperties { mass: *mass, center, inertia })
+/// Adds forces and mass to a hash; the digest of a model has only its surface and its modes.
+fn add_forces(hasher: &mut blake3::Hasher, certified: &CertifiedModel) {
+    let mut add = |numbers: &[f64]| {
+        numbers.iter().for_each(|x| {
+            hasher.update(&x.to_le_bytes());
+        });
     };
-    let write = |path: &Path, mass: &MassProperties| {
-        let mut numbers = vec![mass.mass];
-        numbers.extend(mass.center.to_array());
-        numbers.extend(mass.inertia.to_cols_array());
-        let json = serde_json::to_vec(&numbers);
-        let json = json.map_err(|error| SimError::refused(path.display(), error.to_string()))?;
-        Ok(write_whole(path, &json)?)
-    };
-    cache.get(&name, watch, read, || Ok(loaded.solid(watch)?.solid().mass_properties()), write)
+    add(certified.elasticity.stiffness().entries());
+    if let Elasticity::Nonlinear(forces) = &certified.elasticity {
+        add(forces.quadratic());
+        add(forces.cubic());
+    }
+    let MassData { properties, moments, is_held } = &certified.mass;
+    add(&[properties.mass, f64::from(u8::from(*is_held))]);
+    add(&properties.center.to_array());
+    add(&properties.inertia.to_cols_array());
+    moments.iter().for_each(|moment| add(&moment.to_array()));
 }

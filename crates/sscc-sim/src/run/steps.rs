@@ -36,7 +36,8 @@ pub struct RunOutcome {
     pub failure: Option<SimError>,
 }
 
-/// Simulates a scene up to a number of steps. Continues from the checkpoint in the folder, unless `again` is set.
+/// Simulates a scene up to a number of steps. Continues from the checkpoint in the folder, unless `again` is set. `watch`
+/// receives the lines of the announcement before the first step.
 ///
 /// # Errors
 /// When bodies penetrate each other, themselves or the ground at the start, or the folder cannot be written to.
@@ -47,6 +48,7 @@ pub fn run(
     folder: &Path,
     steps: usize,
     again: bool,
+    announcement: &[String],
     watch: &dyn Watch,
 ) -> Result<RunOutcome, SimError> {
     let mut world = world(scene, prepared)?;
@@ -66,6 +68,7 @@ pub fn run(
     if let Some(checkpoint) = checkpoint {
         restore(&mut world, &mut sounds, checkpoint.states, &checkpoint.memory)?;
     }
+    announcement.iter().for_each(|line| watch.inform(line));
     // The calling thread alone tests and moves a single body.
     let is_one_thread = scene.bodies.len() == 1 || rayon::current_num_threads() == 1;
     let mut stepper = Stepper::new(world, sounds, layout, SystemClocks::new(is_one_thread));

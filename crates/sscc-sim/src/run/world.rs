@@ -1,5 +1,6 @@
 //! Creates the world of a scene at its beginning, or restores it from a checkpoint.
 
+use glam::DVec3;
 use sscc_dynamics::{SoundBank, Start, State, World};
 
 use super::prepared::PreparedScene;
@@ -10,12 +11,19 @@ use crate::scenes::{BodySpec, Scene};
 pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>> {
     let mut world = World::new(scene.options())?;
     for (number, body) in scene.bodies.iter().enumerate() {
+        let at = || format!("body {number} (counted from 0)");
         let BodySpec { model, position, orientation, velocity, angular_velocity, shake } = body;
         let model = &prepared.models[*model];
-        let mut v = shake.clone();
-        v.resize(model.certified.model.rank(), 0.0);
+        let is_free = !model.is_held();
+        if !is_free && (*velocity != DVec3::ZERO || *angular_velocity != DVec3::ZERO) {
+            let cause = "vertices of its model are fixed, so it does not move as a whole: leave out velocity and \
+                         angular_velocity";
+            return Err(SimError::refused(at(), cause));
+        }
+        let v = shake.rates(model.shape.reach()).at(at)?;
         let start = Start {
-            position: Some(*position),
+            is_free,
+            position: position.or_else(|| is_free.then_some(DVec3::ZERO)),
             orientation: *orientation * model.upright,
             velocity: *velocity,
             spin: *angular_velocity,
@@ -24,7 +32,7 @@ pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>
             detection: scene.detection,
             ..Start::default()
         };
-        world.add(&model.shape, &start).at(|| format!("body {number} (counted from 0)"))?;
+        world.add(&model.shape, &start).at(at)?;
     }
     world.check_start()?;
     Ok(world)

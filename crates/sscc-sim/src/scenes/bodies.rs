@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::models::ModelSpec;
 use super::section::Section;
+use super::shake::Shake;
 use crate::error::Result;
 use crate::nearest::nearest;
 
@@ -15,16 +16,16 @@ const MAX_BODIES: usize = 4096;
 pub struct BodySpec {
     /// Index of its model.
     pub model: usize,
-    /// Position of its centre of mass (m).
-    pub position: DVec3,
+    /// Position of its centre of mass (m); none: the origin, for a held body its place in the file.
+    pub position: Option<DVec3>,
     /// Rotation from the axes of its model to those of the world.
     pub orientation: DQuat,
     /// Velocity (m/s).
     pub velocity: DVec3,
     /// Angular velocity (rad/s), in axes of the world.
     pub angular_velocity: DVec3,
-    /// Rates of the first modes (1/s); the other modes rest.
-    pub shake: Vec<f64>,
+    /// Rates of the first modes.
+    pub shake: Shake,
 }
 
 const KEYS: [&str; 9] =
@@ -58,14 +59,10 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         };
         return Err(section.refused("model", cause));
     };
-    let shake = section.numbers("shake")?.unwrap_or_default();
-    let rank = models[model].recipe.modes.rank();
-    if shake.len() > rank {
-        return Err(section.refused("shake", format!("{} numbers for {rank} modes", shake.len())));
-    }
+    let shake = Shake::read(section, models[model].recipe.modes.rank())?;
     let first = BodySpec {
         model,
-        position: section.vector("position")?.unwrap_or(DVec3::ZERO),
+        position: section.vector("position")?,
         orientation: rotation(section)?,
         velocity: section.vector("velocity")?.unwrap_or(DVec3::ZERO),
         angular_velocity: section.vector("angular_velocity")?.unwrap_or(DVec3::ZERO),
@@ -88,11 +85,12 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         return Err(section.refused("grid", cause));
     }
     let spacing = section.require("spacing", spacing)?;
+    let corner = first.position.unwrap_or(DVec3::ZERO);
     let [nx, ny, nz] = grid.to_array().map(|x| x as usize);
     for (k, j, i) in (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i)))) {
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
-            position: first.position + spacing * DVec3::new(i as f64, j as f64, k as f64),
+            position: Some(corner + spacing * DVec3::new(i as f64, j as f64, k as f64)),
             // Rotates about the body's own upright axis. After a rotation about the vertical, all bodies would fall
             // alike.
             orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),

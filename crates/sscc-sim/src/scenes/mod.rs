@@ -4,6 +4,7 @@ mod bodies;
 mod models;
 mod scene;
 mod section;
+mod shake;
 mod shipped;
 #[cfg(test)]
 mod tests;
@@ -11,4 +12,5 @@ mod tests;
 pub use bodies::BodySpec;
 pub use models::ModelSpec;
 pub use scene::{Scene, Sound};
+pub use shake::{Shake, ShakeUnit};
 pub use shipped::{SHIPPED, read_scene};

@@ -1,13 +1,14 @@
 //! Reads the models of a scene: `[models.NAME]`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sscc_dynamics::{Damping, MATERIALS};
 use sscc_solid::PartialMaterial;
 
 use super::section::Section;
 use crate::error::Result;
-use crate::recipes::{ModesSpec, Recipe, Shape};
+use crate::models::Fix;
+use crate::recipes::{ModelFiles, ModesSpec, Recipe, Resize, Shape};
 
 /// Maximum number of modes of a body.
 pub const MAX_RANK: usize = 500;
@@ -20,7 +21,7 @@ const MAX_CELLS: usize = 2000;
 pub struct ModelSpec {
     /// Shape, material and modes.
     pub recipe: Recipe,
-    /// Whether the dynamics are linear: the stiffness is that at rest.
+    /// Whether the dynamics are linear: the stiffness is that at rest. Of a model file, its forces decide.
     pub is_linear: bool,
     /// Damping of its modes.
     pub damping: Damping,
@@ -37,26 +38,34 @@ impl ModelSpec {
 
     /// Replaces the model by the small spring.
     pub fn quicken(&mut self) {
-        let Recipe { shape, modes, cells, amplitudes, .. } = &mut self.recipe;
+        let Recipe { shape, modes, cells, fix, amplitudes, .. } = &mut self.recipe;
         (*shape, *modes, *cells) = (Shape::SMALL_SPRING, ModesSpec::Linear(QUICK_RANK), None);
-        *amplitudes = None;
+        (*fix, *amplitudes) = (None, None);
         self.is_linear = true;
     }
 }
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 16] = [
     "shape",
     "file",
+    "solid",
+    "modes",
+    "forces",
     "size",
+    "scale",
     "resolution",
     "kind",
     "rank",
+    "fix",
     "material",
     "damping",
     "dynamics",
     "amplitudes",
     "spread",
 ];
+
+/// Keys for modes that are computed, which a file with modes does not take.
+const COMPUTED: [&str; 5] = ["kind", "rank", "resolution", "solid", "fix"];
 
 /// The names of the key of the amplitudes of modes.
 const AMPLITUDES: [&str; 2] = ["amplitudes", "spread"];
@@ -83,35 +92,22 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
     if name.is_empty() || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') {
         return Err(model.refused("models", "the name of a model may have letters, digits, _ and - only"));
     }
-    let shape = match (model.word("shape", &SHAPES.map(|name| (name, name)))?, model.text("file")?) {
-        (Some(_), Some(_)) => {
-            return Err(model.refused("file", "the model has both shape and file: leave one of them out"));
-        }
-        (None, None) => {
-            return Err(model.refused("shape", "it is missing: give shape = \"NAME\" or file = \"PATH\""));
-        }
-        (None, Some(file)) => Shape::File(folder.join(file)),
-        (Some("spring"), _) => Shape::SPRING,
-        (Some("spring-4k"), _) => Shape::SMALL_SPRING,
-        (Some("bunny"), _) => Shape::Bunny,
-        (Some(_), _) => Shape::Dragon,
-    };
-    let rank = model.count("rank", MAX_RANK)?;
-    let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
-    let (modes, is_linear) = match model.require("kind", word)? {
-        "linear" => (ModesSpec::Linear(rank.unwrap_or(20)), true),
-        "nonlinear" => (ModesSpec::Nonlinear(rank.unwrap_or(30)), false),
-        _ if rank.is_some_and(|rank| rank != 24) => {
-            return Err(model.refused("rank", "polynomial modes are always 24: leave rank out"));
-        }
-        _ => (ModesSpec::Polynomial, true),
-    };
     let dynamics = model.word("dynamics", &[("linear", true), ("nonlinear", false)])?;
+    let shape = shape(model, folder, dynamics)?;
+    let is_given = matches!(shape, Shape::Model(_));
+    if let (true, Some(key)) = (is_given, COMPUTED.into_iter().find(|key| model.has(key))) {
+        return Err(model.refused(key, "the file has its modes already: leave this key out"));
+    }
+    let (modes, is_linear) = if is_given { (ModesSpec::Given, false) } else { modes(model)? };
     if let (ModesSpec::Linear(_), Some(false)) = (modes, dynamics) {
         return Err(model.refused(
             "dynamics",
             "linear modes have no nonlinear forces: use dynamics = \"linear\", or kind = \"nonlinear\"",
         ));
+    }
+    let fix = fix(model, folder)?;
+    if matches!(modes, ModesSpec::Polynomial) && fix.is_some() {
+        return Err(model.refused("fix", "polynomial modes have no fixed vertices: use another kind"));
     }
     let (material, default_damping) = material(model)?;
     let recipe = Recipe {
@@ -120,18 +116,103 @@ fn one(name: &str, model: &Section<'_>, folder: &Path) -> Result<ModelSpec> {
         modes,
         material,
         cells: model.count("resolution", MAX_CELLS)?,
-        size: model.positive("size")?,
+        resize: resize(model)?,
+        fix,
         amplitudes: amplitudes(model, modes.rank())?,
     };
     let damping = damping(model)?.unwrap_or(default_damping);
     Ok(ModelSpec { recipe, is_linear: dynamics.unwrap_or(is_linear), damping })
 }
 
+/// Reads `shape`, or `file` with the files beside it.
+fn shape(model: &Section<'_>, folder: &Path, is_linear: Option<bool>) -> Result<Shape> {
+    let (shape, file) = (model.word("shape", &SHAPES.map(|name| (name, name)))?, model.text("file")?);
+    let path = |key: &str| -> Result<Option<PathBuf>> { Ok(model.text(key)?.map(|file| folder.join(file))) };
+    let (solid, modes, forces) = (path("solid")?, path("modes")?, path("forces")?);
+    let beside = ["solid", "modes", "forces"].into_iter().find(|key| model.has(key));
+    let file = match (shape, file) {
+        (Some(_), Some(_)) => {
+            return Err(model.refused("file", "the model has both shape and file: leave one of them out"));
+        }
+        (None, None) => {
+            return Err(model.refused("shape", "it is missing: give shape = \"NAME\" or file = \"PATH\""));
+        }
+        (Some(shape), None) => {
+            if let Some(key) = beside {
+                return Err(model.refused(key, "this key needs file = \"PATH\""));
+            }
+            return Ok(match shape {
+                "spring" => Shape::SPRING,
+                "spring-4k" => Shape::SMALL_SPRING,
+                "bunny" => Shape::Bunny,
+                _ => Shape::Dragon,
+            });
+        }
+        (None, Some(file)) => folder.join(file),
+    };
+    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let has_modes = modes.is_some() || ["safetensors", "glb", "gltf", "npz"].contains(&ending.as_str());
+    match (has_modes, solid) {
+        (true, None) => Ok(Shape::Model(ModelFiles { path: file, modes, forces, is_linear })),
+        (true, Some(_)) => Err(model.refused("solid", "the file has its modes already: leave this key out")),
+        (false, _) if forces.is_some() => Err(model.refused(
+            "forces",
+            "forces belong to modes: give the file of the modes, too: modes = \"FILE.U\"",
+        )),
+        (false, None) => Ok(Shape::File(file)),
+        (false, Some(solid)) => Ok(Shape::Embedded { surface: file, solid }),
+    }
+}
+
+/// Reads `kind` and `rank`: the modes to compute, and whether their dynamics are linear.
+fn modes(model: &Section<'_>) -> Result<(ModesSpec, bool)> {
+    let rank = model.count("rank", MAX_RANK)?;
+    let word = model.word("kind", &["linear", "nonlinear", "polynomial"].map(|name| (name, name)))?;
+    match model.require("kind", word)? {
+        "linear" => Ok((ModesSpec::Linear(rank.unwrap_or(20)), true)),
+        "nonlinear" => Ok((ModesSpec::Nonlinear(rank.unwrap_or(30)), false)),
+        _ if rank.is_some_and(|rank| rank != 24) => {
+            Err(model.refused("rank", "polynomial modes are always 24: leave rank out"))
+        }
+        _ => Ok((ModesSpec::Polynomial, true)),
+    }
+}
+
+/// Reads `size` or `scale`.
+fn resize(model: &Section<'_>) -> Result<Resize> {
+    match (model.positive("size")?, model.positive("scale")?) {
+        (Some(_), Some(_)) => {
+            Err(model.refused("scale", "the model has both size and scale: leave one of them out"))
+        }
+        (Some(size), None) => Ok(Resize::LongestSide(size)),
+        (None, Some(factor)) => Ok(Resize::Factor(factor)),
+        (None, None) => Ok(Resize::Keep),
+    }
+}
+
+/// Reads `fix`: a list of vertices, a box, or a file.
+fn fix(model: &Section<'_>, folder: &Path) -> Result<Option<Fix>> {
+    if !model.has("fix") {
+        return Ok(None);
+    }
+    if model.is_text("fix") {
+        let text = model.text("fix")?.unwrap_or_default();
+        let fix = Fix::parse(text, folder, "the value");
+        return fix.map(Some).map_err(|error| model.refused("fix", error));
+    }
+    let numbers = model.numbers("fix")?.unwrap_or_default();
+    let whole = |x: &f64| *x >= 0.0 && *x <= f64::from(u32::MAX) && x.fract() == 0.0;
+    if !numbers.iter().all(whole) {
+        return Err(model.refused("fix", "vertex numbers, counted from 0, were expected"));
+    }
+    Ok(Some(Fix::Numbers(numbers.into_iter().map(|x| x as u32).collect())))
+}
+
 /// Reads `amplitudes = [...]`, one of each mode.
-fn amplitudes(model: &Section<'_>, rank: usize) -> Result<Option<Vec<f64>>> {
+fn amplitudes(model: &Section<'_>, rank: Option<usize>) -> Result<Option<Vec<f64>>> {
     let key = model.either(AMPLITUDES)?;
     let Some(amplitudes) = model.numbers(key)? else { return Ok(None) };
-    if amplitudes.len() != rank {
+    if let Some(rank) = rank.filter(|rank| amplitudes.len() != *rank) {
         return Err(model.refused(key, format!("{} numbers for {rank} modes", amplitudes.len())));
     }
     if amplitudes.iter().any(|amplitude| *amplitude <= 0.0) {

@@ -106,8 +106,7 @@ impl Scene {
             model.quicken();
         }
         for body in &mut self.bodies {
-            body.shake.truncate(models::QUICK_RANK);
-            body.shake.iter_mut().for_each(|speed| *speed *= QUICK_SHAKE);
+            body.shake.quicken(QUICK_SHAKE, models::QUICK_RANK);
         }
         self.steps = self.steps.min((0.5 / self.step).ceil() as usize);
         self.digest += " quick";

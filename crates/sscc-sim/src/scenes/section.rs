@@ -145,6 +145,11 @@ impl<'a> Section<'a> {
         self.value(key).is_some_and(|value| value.get_ref().is_str())
     }
 
+    /// Whether the value of the key is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        self.value(key).is_some_and(|value| matches!(value.get_ref(), DeValue::Table(_)))
+    }
+
     /// Reads one of some words, and returns its meaning.
     pub fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
         let Some(typed) = self.text(key)? else { return Ok(None) };

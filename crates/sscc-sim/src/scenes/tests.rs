@@ -4,6 +4,8 @@ use glam::DVec3;
 
 use super::*;
 use crate::error::Result;
+use crate::models::Fix;
+use crate::recipes::{ModesSpec, Resize, Shape};
 
 const GOOD: &str = r#"
 about = "two soft springs"
@@ -43,7 +45,10 @@ fn a_scene_has_the_values_of_its_file() {
     assert_eq!((scene.name.as_str(), scene.steps, scene.step, scene.bodies.len()), ("good", 250, 0.001, 7));
     assert_eq!((scene.gravity, scene.ground.unwrap().friction), (DVec3::new(0.0, 0.0, -9.81), 0.3));
     let model = &scene.models[0];
-    assert_eq!((model.recipe.name.as_str(), model.recipe.size, model.damping.mass), ("soft", Some(0.3), 0.5));
+    assert_eq!(
+        (model.recipe.name.as_str(), model.recipe.resize, model.damping.mass),
+        ("soft", Resize::LongestSide(0.3), 0.5)
+    );
     let material = model.recipe.material;
     assert_eq!(
         (material.youngs_modulus, material.poisson_ratio, material.density),
@@ -51,8 +56,11 @@ fn a_scene_has_the_values_of_its_file() {
     );
     assert!(model.is_linear && scene.sound.is_none());
     let [one, .., last] = &scene.bodies[..] else { panic!() };
-    assert!((one.orientation * DVec3::X - DVec3::Y).length() < 1e-15 && one.shake == [0.1, -2.0]);
-    assert_eq!((last.position, scene.bodies[1].position), (DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO));
+    assert!((one.orientation * DVec3::X - DVec3::Y).length() < 1e-15 && one.shake.values == [0.1, -2.0]);
+    assert_eq!(
+        (last.position, scene.bodies[1].position),
+        (Some(DVec3::new(1.0, 0.0, 1.0)), Some(DVec3::ZERO))
+    );
     assert!((last.orientation.to_axis_angle().1.to_degrees() - 50.0).abs() < 1e-12);
 }
 
@@ -115,6 +123,25 @@ fn errors_name_the_line_and_the_cause() {
         ),
         ("[ground]", "[ground", "line 6: "),
         ("{ youngs = 1e5, density = 900 }", "\"stel\"", "line 14: material: one of steel, "),
+        ("[0.1, -2]", "{ speed = [1], energy = [1] }", "line 21: shake: one of energy (J) and speed (m/s)"),
+        ("[0.1, -2]", "{ force = [1] }", "line 21: unknown key 'force'"),
+        ("rank = 12", "rank = 1", "line 21: shake: 2 numbers for 1 modes"),
+        ("size = 0.3", "size = 0.3\nscale = 2", "line 14: scale: the model has both size and scale"),
+        ("size = 0.3", "scale = 0", "line 13: scale: a positive number was expected"),
+        ("size = 0.3", "fix = [0, 1.5]", "line 13: fix: vertex numbers, counted from 0, were expected"),
+        ("size = 0.3", "fix = \"box:0,1\"", "line 13: fix: the value box: six numbers were expected"),
+        ("size = 0.3", "fix = \"none.bou\"", "none.bou: not found"),
+        ("size = 0.3", "forces = \"a.cub\"", "line 13: forces: this key needs file"),
+        (
+            "shape = \"spring-4k\"",
+            "file = \"a.obj\"\nforces = \"a.cub\"",
+            "line 11: forces: forces belong to modes",
+        ),
+        (
+            "shape = \"spring-4k\"",
+            "file = \"a.obj\"\nmodes = \"a.U\"",
+            "line 12: kind: the file has its modes already: leave this key out",
+        ),
         ("duration", "detection = \"magic\"\nduration", "line 4: detection: one of certified, kinetic, "),
         ("duration", "response = \"no\"\nduration", "line 4: response: one of contact, constrain, ignore"),
     ] {
@@ -135,6 +162,32 @@ fn errors_name_the_line_and_the_cause() {
 }
 
 #[test]
+fn models_are_surfaces_solids_or_files_with_modes() {
+    let model = |keys: &str| {
+        let bodies = "[[bodies]]\nmodel = \"m\"\nshake = { energy = [1, 2, 3] }\n";
+        let text = format!("steps_per_second = 1000\nduration = 1\n[models.m]\n{keys}\n{bodies}");
+        let scene = parse(&text).unwrap();
+        (scene.models[0].recipe.clone(), scene.bodies[0].shake.clone())
+    };
+    let (recipe, shake) = model("file = \"x.model.safetensors\"\ndynamics = \"linear\"\nscale = 0.01");
+    let Shape::Model(files) = recipe.shape else { panic!("{recipe:?}") };
+    assert_eq!(
+        (files.path.as_path(), files.is_linear),
+        (Path::new("scenes/x.model.safetensors"), Some(true))
+    );
+    assert!(matches!(recipe.modes, ModesSpec::Given) && recipe.resize == Resize::Factor(0.01));
+    assert_eq!((shake.values, shake.unit), (vec![1.0, 2.0, 3.0], ShakeUnit::Energy));
+    let (recipe, _) = model("file = \"a.obj\"\nmodes = \"a.U\"\nforces = \"a.cub\"\namplitudes = [1]");
+    let Shape::Model(files) = recipe.shape else { panic!("{recipe:?}") };
+    assert_eq!(files.forces.as_deref(), Some(Path::new("scenes/a.cub")));
+    let (recipe, _) = model("file = \"a.obj\"\nsolid = \"a.veg\"\nkind = \"linear\"\nfix = [3, 0]");
+    assert!(matches!(recipe.shape, Shape::Embedded { .. }));
+    assert_eq!(recipe.fix, Some(Fix::Numbers(vec![3, 0])));
+    let (recipe, _) = model("file = \"a.veg\"\nkind = \"linear\"\nfix = \"box:0,0,0,1,2,3\"");
+    assert_eq!(recipe.fix, Some(Fix::Box([DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)])));
+}
+
+#[test]
 fn shipped_scenes_have_the_sizes_of_the_paper() {
     let scenes = SHIPPED.map(|(name, text)| Scene::parse(Path::new(name), text).unwrap());
     let facts = scenes.each_ref().map(|scene| {
@@ -142,11 +195,11 @@ fn shipped_scenes_have_the_sizes_of_the_paper() {
         (scene.name.as_str(), model.recipe.modes.rank(), scene.bodies.len(), model.is_linear)
     });
     let expected = [
-        ("spring", 20, 1, true),
-        ("bunny16", 30, 16, false),
-        ("bunny128", 30, 128, false),
-        ("dragon-nonlinear", 30, 1, false),
-        ("dragon-polynomial", 24, 1, true),
+        ("spring", Some(20), 1, true),
+        ("bunny16", Some(30), 16, false),
+        ("bunny128", Some(30), 128, false),
+        ("dragon-nonlinear", Some(30), 1, false),
+        ("dragon-polynomial", Some(24), 1, true),
     ];
     assert_eq!(facts, expected);
     let [spring, ..] = &scenes;

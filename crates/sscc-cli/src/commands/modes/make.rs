@@ -1,13 +1,14 @@
 //! Makes the model of `sscc modes` by the kind of its modes.
 
+use std::path::Path;
+
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::{read_frames, read_mesh};
 use sscc_sim::{
-    ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
+    Fix, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
     polynomial_model,
 };
 
-use super::fix::Fix;
 use super::material;
 use crate::args;
 use crate::load::in_file;
@@ -31,22 +32,32 @@ fn elastic(args: &args::Modes, kind: ModesKind) -> Result<NewModel> {
         refuse_rank_and_fix(args)?;
     }
     let material = args.material.as_deref().map(material::parse).transpose()?.unwrap_or_default();
-    let fix = args.fix.as_deref().map(Fix::parse).transpose()?;
+    let fix = args.fix.as_deref().map(|typed| Fix::parse(typed, Path::new(""), "--fix")).transpose()?;
     let bar = Bar::new("modes");
-    let source =
-        SolidSource::read(&args.source, args.resolution.map(|cells| cells as usize), &material, &bar)?;
+    let source = match &args.solid {
+        Some(solid) => SolidSource::read_within(&args.source, solid, &material, &bar)?,
+        None => {
+            SolidSource::read(&args.source, args.resolution.map(|cells| cells as usize), &material, &bar)?
+        }
+    };
     source.note().into_iter().for_each(note);
     if let Some(replaced) = &source.material().replaced {
         note(format_args!("--material overrides the file's materials: {replaced}"));
     }
-    let fixed = fix.map_or_else(|| Ok(Vec::new()), |fix| fix.vertices(&source))?;
+    let typed = args.fix.as_deref().unwrap_or_default();
+    let fixed = fix.map(|fix| fix.vertices(&source).map_err(|error| error.at(format!("--fix {typed}"))));
+    let fixed = fixed.transpose()?.unwrap_or_default();
     let rank = args.rank.map(|rank| rank as usize);
-    Ok(elastic_model(kind, rank, source, &fixed, &file_name(&args.source), &bar)?)
+    let name = match &args.solid {
+        Some(solid) => format!("{} in {}", file_name(&args.source), file_name(solid)),
+        None => file_name(&args.source),
+    };
+    Ok(elastic_model(kind, rank, source, &fixed, &name, &bar)?)
 }
 
 /// Whether polynomial modes need a solid, for its stiffness.
 fn needs_solid(args: &args::Modes) -> bool {
-    args.resolution.is_some() || args.material.is_some() || is_solid(&args.source)
+    args.solid.is_some() || args.resolution.is_some() || args.material.is_some() || is_solid(&args.source)
 }
 
 fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
@@ -66,8 +77,8 @@ fn refuse_rank_and_fix(args: &args::Modes) -> Result<()> {
 fn principal_components(args: &args::Modes) -> Result<NewModel> {
     let shown = args.source.display();
     ensure!(
-        args.fix.is_none() && args.material.is_none() && args.resolution.is_none(),
-        "--fix, --material and --resolution: principal components need no solid; leave these flags out"
+        args.fix.is_none() && args.material.is_none() && args.resolution.is_none() && args.solid.is_none(),
+        "--fix, --material, --resolution and --solid: principal components need no solid; leave these flags out"
     );
     ensure!(!args.source.is_file(), "{shown}: is a file; --kind pca needs a folder of meshes (the frames)");
     let frames = read_frames(&args.source)?;

@@ -1,8 +1,9 @@
 //! `sscc modes`: makes a model from a surface, a solid or the frames of an animation.
 
-mod fix;
 mod make;
 mod material;
+
+use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
@@ -32,7 +33,9 @@ struct Report {
 }
 
 pub fn run(args: &args::Modes) -> Result<Outcome> {
-    load::check_output(&args.output, ".model.safetensors", &[&args.source])?;
+    let inputs: Vec<&Path> =
+        [&args.source].into_iter().chain(&args.solid).map(|path| path.as_path()).collect();
+    load::check_output(&args.output, ".model.safetensors", &inputs)?;
     let made = make(args)?;
     interrupt::check()?;
     let model = &made.model;

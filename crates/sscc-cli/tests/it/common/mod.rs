@@ -1,5 +1,7 @@
 //! Runs the command as a child process, on small files.
 
+pub mod solids;
+
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};

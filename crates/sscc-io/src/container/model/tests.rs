@@ -1,5 +1,7 @@
 use super::*;
+use glam::DMat3;
 use sscc::{Metric, MetricKind};
+use sscc_solid::MassProperties;
 
 /// Two triangles, three modes, numbers of all sizes and signs.
 fn model() -> ReducedModel {
@@ -39,6 +41,50 @@ fn round_trip_is_exact() {
     let bits = |m: &ReducedModel| m.mesh().rest_positions().iter().map(|p| p.y.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&read), bits(&model), "-0 stays -0");
     assert_eq!(model_to_bytes(&read, &info).unwrap(), sample());
+}
+
+fn mass() -> MassData {
+    let inertia = DMat3::from_cols_array(&[2.0, 0.1, 0.0, 0.1, 3.0, 0.2, 0.0, 0.2, 4.0]);
+    let properties = MassProperties { mass: 0.5, center: DVec3::new(0.1, -0.0, 7.0), inertia };
+    MassData { properties, moments: [1.0, 0.1, -2.0].map(DVec3::splat).to_vec(), is_held: true }
+}
+
+#[test]
+fn mass_and_support_are_kept_in_a_version_of_their_own() {
+    let version = |bytes: &[u8]| Container::parse(bytes, MODEL).unwrap().version();
+    assert_eq!(version(&sample()), 1);
+    for is_held in [true, false] {
+        let mass = MassData { is_held, ..mass() };
+        let bytes = model_to_bytes(&model(), &ModelInfo::new("m", "").with_mass(mass.clone())).unwrap();
+        assert_eq!((version(&bytes), model_from_bytes(&bytes).unwrap().1.mass), (2, Some(mass)));
+        assert!((0..bytes.len()).all(|length| model_from_bytes(&bytes[..length]).is_err()));
+    }
+    let few = MassData { moments: vec![DVec3::X], ..mass() };
+    let refused = model_to_bytes(&model(), &ModelInfo::new("m", "").with_mass(few)).unwrap_err();
+    assert_eq!(refused.to_string(), "tensor 'mode_moments': 1 moments, the model has 3 modes");
+}
+
+#[test]
+fn invalid_mass_data_are_rejected() {
+    let message = |mass: f64, moment: f64, support: &str, moments: usize| {
+        let mut writer = ContainerWriter::new(MODEL);
+        let mut properties = [1.0; 13];
+        properties[0] = mass;
+        writer.text("support", support).f64("mass_properties", &[13], &properties);
+        writer.f64("mode_moments", &[moments, 3], &vec![moment; 3 * moments]);
+        let bytes = writer.finish().unwrap();
+        let read = mass_data::read(&Container::parse(&bytes, MODEL).unwrap(), 2);
+        read.map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    assert_eq!(message(1.0, 0.0, "free", 2), "");
+    assert_eq!(
+        message(0.0, 0.0, "free", 2),
+        "tensor 'mass_properties': the mass is 0e0: it must be positive"
+    );
+    assert!(message(f64::NAN, 0.0, "free", 2).starts_with("tensor 'mass_properties': a number is NaN"));
+    assert!(message(1.0, f64::INFINITY, "free", 2).starts_with("tensor 'mode_moments': a number is inf"));
+    assert!(message(1.0, 0.0, "loose", 2).starts_with("metadata 'support': unknown support 'loose'"));
+    assert!(message(1.0, 0.0, "free", 3).starts_with("tensor 'mode_moments': it has the shape [3, 3]"));
 }
 
 #[test]

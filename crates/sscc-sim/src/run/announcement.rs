@@ -1,0 +1,151 @@
+//! Lines about models and bodies before a simulation begins: sizes, collisions at rest, and the effect of shakes.
+
+use sscc::{Modes, ReducedModel};
+use sscc_dynamics::{Damping, LinearOscillator};
+use sscc_modes::{diagonalize, natural_frequencies};
+use sscc_solid::Stiffness;
+
+use super::prepared::{PreparedModel, PreparedScene};
+use crate::error::{At, Result};
+use crate::recipes::{ModesSpec, longest_side};
+use crate::scenes::{Scene, Shake};
+use crate::text::{counted, length};
+
+/// Time of the free vibration that a line describes (s).
+const FIRST: f64 = 1.0;
+
+/// Returns the lines of a scene.
+pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<String>> {
+    let mut lines = Vec::new();
+    for (spec, model) in scene.models.iter().zip(&prepared.models) {
+        let name = &model.certified.name;
+        if matches!(spec.recipe.modes, ModesSpec::Given) {
+            lines.push(format!("{name}: {}", facts(model)?));
+        }
+        match model.certified.full.certificates.rest_collisions() {
+            0 => {}
+            count => {
+                let pairs = counted(count, "pair");
+                lines.push(format!("{name}: {pairs} of triangles collide at rest; they make no contact"));
+            }
+        }
+    }
+    let mut shaken: Vec<(usize, &Shake, Vec<usize>)> = Vec::new();
+    for (number, body) in scene.bodies.iter().enumerate().filter(|(_, body)| !body.shake.values.is_empty()) {
+        match shaken.iter_mut().find(|(model, shake, _)| (*model, *shake) == (body.model, &body.shake)) {
+            Some((_, _, bodies)) => bodies.push(number),
+            None => shaken.push((body.model, &body.shake, vec![number])),
+        }
+    }
+    for (model, shake, bodies) in shaken {
+        let PreparedModel { certified, shape, .. } = &prepared.models[model];
+        let rates = shake.rates(shape.reach())?;
+        let seconds = FIRST.min(scene.steps as f64 * scene.step);
+        let damping = scene.models[model].damping;
+        let stiffness = shape.elasticity().stiffness();
+        let farthest = farthest(shape.model(), stiffness, &rates, damping, scene.step, seconds)?;
+        let energy: f64 = rates.iter().map(|v| v * v / 2.0).sum();
+        let share = 100.0 * farthest / longest_side(shape.model().mesh().rest_positions());
+        let who = match bodies[..] {
+            [one] => format!("body {one}"),
+            _ => format!("{} bodies from {}", bodies.len(), bodies[0]),
+        };
+        lines.push(format!(
+            "{who} ({}): shake gives {} J; alone it moves vertices by at most {} m in the first {} s ({share:.1}% of \
+             the longest side)",
+            certified.name,
+            length(energy),
+            length(farthest),
+            length(seconds)
+        ));
+    }
+    Ok(lines)
+}
+
+/// Returns size, mass and first frequency of a model, which show wrong units.
+fn facts(model: &PreparedModel) -> Result<String> {
+    let side = longest_side(model.shape.model().mesh().rest_positions());
+    let stiffness = model.shape.elasticity().stiffness();
+    let first = natural_frequencies(stiffness)?.into_iter().fold(f64::INFINITY, f64::min);
+    let mass =
+        if model.is_held() { "held".into() } else { format!("{} kg", length(model.shape.mass().mass)) };
+    Ok(format!("longest side {} m, {mass}, first mode {} Hz", length(side), length(first)))
+}
+
+/// Returns an upper bound of the displacement of a vertex by the free vibration with these rates at the beginning, in the
+/// stiffness at rest.
+fn farthest(
+    model: &ReducedModel,
+    stiffness: &Stiffness,
+    rates: &[f64],
+    damping: Damping,
+    step: f64,
+    seconds: f64,
+) -> Result<f64> {
+    if stiffness.is_diagonal() {
+        let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
+        return of_vibrations(model.modes(), &eigenvalues, rates, damping, step, seconds);
+    }
+    let found = diagonalize(model.modes(), stiffness)?;
+    let rank = rates.len();
+    let rotated: Vec<f64> =
+        (0..rank).map(|k| (0..rank).map(|i| found.rotation[i * rank + k] * rates[i]).sum()).collect();
+    of_vibrations(&found.modes, &found.eigenvalues, &rotated, damping, step, seconds)
+}
+
+fn of_vibrations(
+    modes: &Modes,
+    eigenvalues: &[f64],
+    rates: &[f64],
+    damping: Damping,
+    step: f64,
+    seconds: f64,
+) -> Result<f64> {
+    let rank = rates.len();
+    let oscillator = LinearOscillator::new(eigenvalues, damping, step).at(|| "shake".into())?;
+    let (mut q, mut v, mut peaks) = (vec![0.0; rank], rates.to_vec(), vec![0.0_f64; rank]);
+    let no_forces = vec![0.0; rank];
+    for _ in 0..(seconds / step).ceil() as usize {
+        oscillator.advance(&mut q, &mut v, &no_forces);
+        peaks.iter_mut().zip(&q).for_each(|(peak, q)| *peak = peak.max(q.abs()));
+    }
+    let displacement =
+        |of: &[glam::DVec3]| -> f64 { of.iter().zip(&peaks).map(|(u, peak)| u.length() * peak).sum() };
+    Ok(modes.displacements().chunks_exact(rank).map(displacement).fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn the_displacement_is_the_peak_of_the_vibration() {
+        // One vertex moves by 2 along x for a unit of the mode of 3 Hz.
+        let u = [DVec3::ZERO, 2.0 * DVec3::X, DVec3::ZERO];
+        let (modes, rate) = (Modes::new(1, u.to_vec()).unwrap(), 6.0 * std::f64::consts::PI);
+        let of = |damping: f64, seconds: f64| {
+            let damping = Damping { mass: damping, stiffness: 0.0 };
+            of_vibrations(&modes, &[rate * rate], &[0.1], damping, 1e-4, seconds).unwrap()
+        };
+        assert!((of(0.0, 1.0) / (0.2 / rate) - 1.0).abs() < 1e-6);
+        assert!(of(20.0, 1.0) < 0.7 * of(0.0, 1.0));
+        // A quarter of the way to the peak.
+        let early = 0.2 / rate * (rate * 0.01).sin();
+        assert!((of(0.0, 0.01) / early - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn coupled_modes_are_separated() {
+        // Two vertices on two coupled springs: rates along the eigenvector of eigenvalue 1.
+        let mut u = vec![DVec3::ZERO; 6];
+        (u[0], u[3]) = (DVec3::X, DVec3::X);
+        let mesh =
+            sscc::TriMesh::new([0.0, 1.0, 2.0].map(|x| DVec3::new(x, x * x, 0.0)).to_vec(), vec![[0, 1, 2]]);
+        let model = ReducedModel::new(mesh.unwrap(), Modes::new(2, u).unwrap()).unwrap();
+        let stiffness = Stiffness::new(2, vec![2.0, -1.0, -1.0, 2.0]).unwrap();
+        let found = farthest(&model, &stiffness, &[0.1, 0.1], Damping::default(), 1e-3, 10.0).unwrap();
+        assert!((found - 0.1).abs() < 1e-6, "{found}");
+    }
+}
