@@ -28,6 +28,7 @@ from sscc._sscc import (
     __version__,
     self_intersections,
 )
+from sscc._resolve import FreeSamples, Resolved
 from sscc._simulate import Simulation, simulate
 
 __all__ = [
@@ -39,10 +40,12 @@ __all__ = [
     "DetectorAnswer",
     "DetectorBatch",
     "DetectorImpacts",
+    "FreeSamples",
     "Hierarchy",
     "Impacts",
     "KineticQuery",
     "Model",
+    "Resolved",
     "Simulation",
     "__version__",
     "modes",

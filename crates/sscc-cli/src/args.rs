@@ -52,6 +52,8 @@ pub enum Command {
     /// Check whether a model collides with itself at q, or a mesh as it is, in frames, in an animation or against another
     /// mesh, and list the colliding triangle pairs
     Check(Box<Check>),
+    /// Find a free q near each colliding q of a model
+    Resolve(Box<Resolve>),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
     /// Show the contents of a model, certificate, mesh or solid file
@@ -432,6 +434,38 @@ pub enum Method {
     NormalCones,
     /// A test of every triangle pair
     BruteForce,
+}
+
+/// `sscc resolve`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc resolve spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy --json"
+        "sscc resolve head.glb --q=1,0,0 --from=0,0,0"
+    ),
+    after_help = "\
+The result is a free q as near to the given one in the metric as the search finds, on a free way from the start. Pairs \
+that collide at the centre (exceptions) are left as they are, unless --all is given.\n\
+Exit codes: 0 every q is resolved, 1 some q is not, 2 error."
+)]
+pub struct Resolve {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    #[command(flatten)]
+    pub at: At,
+    /// A free q from which the search begins: r numbers, or a file (.npy or text) [default: the centre]
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    pub from: Option<String>,
+    /// Exceptions must be free as well
+    #[arg(long)]
+    pub all: bool,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
 }
 
 /// `sscc audit`

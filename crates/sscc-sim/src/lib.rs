@@ -33,7 +33,7 @@ pub mod text;
 mod watch;
 mod zero_radius;
 
-pub use certification::{CertificateRequest, Scheme};
+pub use certification::{CertificateRequest, Scheme, configuration};
 pub use detection::{
     AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries,
     ShapeInMotion, Times, check_rows, detect,

@@ -289,4 +289,4 @@ pub use geometry::{
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};
 pub use progress::Progress;
-pub use query::{Answer, KineticQuery, Method, Query, Statistics};
+pub use query::{Answer, FreeSamples, KineticQuery, Method, Query, ResolveOptions, Resolved, Statistics};

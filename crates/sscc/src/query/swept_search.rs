@@ -21,7 +21,7 @@ impl SweptSearch {
         Self { certified: CertifiedSearch::new(context), narrow: SweptHits::default() }
     }
 
-    /// Finds all impacts, sorted by pair. `norm`: the larger one of start and end.
+    /// Finds at most `limit` impacts, sorted by pair. `norm`: the larger one of start and end.
     ///
     /// # Errors
     /// When it was cancelled.
@@ -30,10 +30,11 @@ impl SweptSearch {
         context: &QueryContext<'_>,
         [t0, t1]: [Configuration<'_>; 2],
         norm: f64,
+        limit: usize,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
-        narrow.0.begin(usize::MAX);
+        narrow.0.begin(limit);
         certified.broad.begin();
         statistics.root_certified = context.is_root_certified(norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {

@@ -86,7 +86,7 @@ fn method(typed: args::Method) -> Method {
 }
 
 /// Returns every configuration. All are validated before the first query.
-fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
+pub fn coordinates(at: &At, model: &ReducedModel) -> Result<Rows> {
     match (&at.trajectory, &at.q) {
         (Some(path), _) => {
             let rows = read_rows(path)?;
