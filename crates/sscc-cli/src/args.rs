@@ -440,12 +440,10 @@ pub enum Method {
 #[derive(Debug, Args)]
 #[command(
     help_template = with_examples!(
-        "sscc resolve spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy --json"
-        "sscc resolve head.glb --q=1,0,0 --from=0,0,0"
+        "sscc resolve spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy"
+        "sscc resolve head.glb --q=1,0,0 --json"
     ),
     after_help = "\
-The result is a free q as near to the given one in the metric as the search finds, on a free way from the start. Pairs \
-that collide at the centre (exceptions) are left as they are, unless --all is given.\n\
 Exit codes: 0 every q is resolved, 1 some q is not, 2 error."
 )]
 pub struct Resolve {
@@ -456,10 +454,10 @@ pub struct Resolve {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
-    /// A free q from which the search begins: r numbers, or a file (.npy or text) [default: the centre]
+    /// The free q from which the search begins: r numbers, or a file (.npy or text) [default: the centre]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub from: Option<String>,
-    /// Exceptions must be free as well
+    /// Exceptions, the pairs that collide at the centre, must be free as well
     #[arg(long)]
     pub all: bool,
     #[command(flatten)]

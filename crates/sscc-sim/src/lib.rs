@@ -26,6 +26,7 @@ mod models;
 mod nearest;
 mod outputs;
 mod recipes;
+mod resolve;
 mod run;
 mod scenes;
 mod simulate;
@@ -51,6 +52,7 @@ pub use recipes::{
     Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, SPRING_RINGS, Shape,
     TimedCertificates, models_folder,
 };
+pub use resolve::{ResolveReport, resolve_rows};
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
     StateLayout, StateLog, StepRecord, Summary, run,

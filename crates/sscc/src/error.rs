@@ -57,7 +57,7 @@ pub enum Error {
         triangles: usize,
     },
     /// A search for a free configuration from a colliding one.
-    #[error("the start collides: a search for a free q begins at a free one")]
+    #[error("the start collides; give a free q, or leave it out")]
     ResolveStart,
     /// No modes.
     #[error("the model has no modes (rank 0): at least one is needed")]

@@ -1,24 +1,15 @@
 //! `sscc resolve`: finds a free q near each colliding q.
 
-use anyhow::{Result, ensure};
-use serde::Serialize;
-use sscc::{Query, ResolveOptions};
-use sscc_sim::configuration;
+use anyhow::{Context, Result, ensure};
+use sscc::ResolveOptions;
+use sscc_sim::{configuration, resolve_rows};
 
 use super::check::coordinates;
 use crate::args::Resolve;
 use crate::outcome::Outcome;
-use crate::output::{Output, length, note};
+use crate::output::{Output, note};
 use crate::progress::Bar;
 use crate::{interrupt, load};
-
-#[derive(Serialize)]
-struct Report {
-    resolved: bool,
-    q: Option<Vec<f64>>,
-    change: f64,
-    safe_scale_change: f64,
-}
 
 pub fn run(args: &Resolve) -> Result<Outcome> {
     ensure!(args.at.q.is_some() || args.at.trajectory.is_some(), "--q or --trajectory is needed");
@@ -30,38 +21,19 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
         None => load::certificates_now(&model, &args.model, &args.options)?,
     };
     let options = ResolveOptions { start, all: args.all };
-    let threads = Some(load::threads(&args.options.threads));
-    let rows: Vec<&[f64]> = rows.iter().collect();
-    let bar = Bar::new("resolving");
-    let found = Query::new(&model, &certificates)?.resolve_batch(&rows, &options, threads, &bar);
-    drop(bar);
+    let threads = load::threads(&args.options.threads);
+    let found = resolve_rows(&model, &certificates, &rows, &options, threads, &Bar::new("resolving"));
     interrupt::check()?;
-    let (mut out, mut unresolved) = (Output::new(), 0);
-    for found in found? {
-        let report = Report {
-            resolved: found.is_resolved(),
-            q: found.q,
-            change: found.change,
-            safe_scale_change: found.safe_scale_change,
-        };
-        unresolved += usize::from(!report.resolved);
-        if args.json.json {
-            out.json(&report)?;
-            continue;
-        }
-        out.line(match &report.q {
-            None => "NOT RESOLVED".to_owned(),
-            Some(_) if report.change == 0.0 => "free as it is".to_owned(),
-            Some(q) => format!(
-                "resolved  change |z| {}, stepping back {}  q = {q:?}",
-                length(report.change),
-                length(report.safe_scale_change)
-            ),
-        })?;
+    // All else was checked before.
+    let found = found.context("--from")?;
+    let mut out = Output::new();
+    for report in &found {
+        if args.json.json { out.json(report)? } else { out.line(report)? }
     }
     out.finish()?;
-    if unresolved > 0 {
-        note("the centre collides: give a free start by --from, or certificates about a free centre");
+    let is_done = found.iter().all(|report| report.resolved);
+    if !is_done {
+        note("give a free start by --from, or certificates about a free centre");
     }
-    Ok(if unresolved == 0 { Outcome::Done } else { Outcome::Finding })
+    Ok(if is_done { Outcome::Done } else { Outcome::Finding })
 }

@@ -16,6 +16,7 @@ mod modes;
 mod picture;
 mod readme;
 mod real_data;
+mod resolve;
 mod scopes;
 mod simulate;
 mod view;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Method, Metric, Modes, Progress, Query, ReducedModel,
+    Certificates, CertifyOptions, Error, Method, Metric, Modes, Pair, Progress, Query, ReducedModel,
     ResolveOptions, Resolved, TriMesh,
 };
 use sscc_testing::{cases, threshold};
@@ -34,7 +34,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let all = seed % 3 == 0;
         let options = ResolveOptions { start: None, all };
-        let counts = |pair| all || scope.exceptions.binary_search(pair).is_err();
+        let counts = |pair: &Pair| all || scope.exceptions.binary_search(pair).is_err();
         for _ in 0..2 {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 1.0)).collect();
             let q = at(scope, &z);

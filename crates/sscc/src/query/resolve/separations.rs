@@ -149,14 +149,15 @@ impl Separations {
         violated.into_iter().map(half_space).collect()
     }
 
-    /// The largest share of a displacement, at most 1, that stays in all half-spaces.
+    /// The largest share of a displacement, at most 1, that stays in all half-spaces, but for twice the tolerance.
     pub(super) fn allowed_share(&self, displacement: &[f64]) -> f64 {
         let mut share = 1.0_f64;
         for (at, separation) in self.list.iter().enumerate() {
             let rates: [f64; CORNERS] = std::array::from_fn(|corner| dot(self.row(at, corner), displacement));
             for ij in 0..9 {
                 let (i, j) = (ij / 3, 3 + ij % 3);
-                let room = separation.positions[j] - separation.positions[i] - separation.margin;
+                let margin = separation.margin * (1.0 - 2.0 * TOLERANCE);
+                let room = separation.positions[j] - separation.positions[i] - margin;
                 let closing = rates[i] - rates[j];
                 if closing > 0.0 {
                     share = share.min(room.max(0.0) / closing);

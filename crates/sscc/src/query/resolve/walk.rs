@@ -23,11 +23,11 @@ const PARTIAL: f64 = 0.9;
 
 /// The state of a walk: a free configuration, and the pairs that are near there.
 pub(super) struct Walk<'w, 'a> {
-    pub(super) query: &'w mut Query<'a>,
+    query: &'w mut Query<'a>,
     target: &'w [f64],
     counted: Counted<'a>,
     /// The current configuration: free.
-    pub(super) q: Vec<f64>,
+    q: Vec<f64>,
     separations: Separations,
     offset: Vec<f64>,
 }
@@ -57,26 +57,39 @@ impl<'w, 'a> Walk<'w, 'a> {
         self.counted.is_free(self.query, q)
     }
 
-    /// Goes straight towards the target up to a share of the way to the first impact. Returns the distance of the target
-    /// from the last free configuration on this way.
-    pub(super) fn approach(&mut self, share: f64) -> Result<f64, Error> {
-        let target = self.target.to_vec();
+    /// Whether the current configuration is free of pairs that count.
+    pub(super) fn is_here_free(&mut self) -> Result<bool, Error> {
+        self.counted.is_free(self.query, &self.q)
+    }
+
+    /// The current configuration.
+    pub(super) fn into_configuration(self) -> Vec<f64> {
+        self.q
+    }
+
+    /// An upper bound of the displacement of a vertex from here to the target, along each axis.
+    pub(super) fn displacement(&self) -> f64 {
+        let way: Vec<f64> = self.target.iter().zip(&self.q).map(|(t, q)| t - q).collect();
+        self.query.context.model.displacement_bound(&way)
+    }
+
+    /// Goes straight towards the target up to a share of the way to the first impact. Returns the last free configuration
+    /// on this way and its distance from the target.
+    pub(super) fn approach(&mut self, share: f64) -> Result<(Vec<f64>, f64), Error> {
+        let (start, target) = (self.q.clone(), self.target.to_vec());
         let (time, _) = self.impacts(&target)?;
-        let from = self.q.clone();
         self.go_part(&target, time)?;
-        let distance = self.distance();
-        self.q = from;
+        let (last, distance) = (self.q.clone(), self.distance());
+        self.q = start;
         self.go_part(&target, time * share)?;
-        Ok(distance)
+        Ok((last, distance))
     }
 
     /// Steps as near to the target as the half-spaces of near pairs allow, with this margin: pairs keep at least this gap,
-    /// or the smaller one that they have. Returns the length of the step.
-    pub(super) fn step(&mut self, margin: f64) -> Result<f64, Error> {
-        let before = self.distance();
-        self.update(margin, before);
-        let from = self.q.clone();
-        for projections in 1.. {
+    /// or the smaller one that they have.
+    pub(super) fn step(&mut self, margin: f64) -> Result<(), Error> {
+        self.update(margin);
+        for projections in 1..=MAX_PROJECTIONS {
             if self.query.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
@@ -91,18 +104,19 @@ impl<'w, 'a> Walk<'w, 'a> {
                 is_new |= !self.separations.contains(impact.pair)
                     && self.separations.add(&self.query.context, &self.q, impact.pair, margin);
             }
-            if !is_new || projections >= MAX_PROJECTIONS {
+            if !is_new || projections == MAX_PROJECTIONS {
                 self.go_part(&there, time * PARTIAL)?;
                 break;
             }
         }
-        let Self { query, q, offset, .. } = self;
-        Ok(query.context.scope.metric.norm_from(q, &from, offset))
+        Ok(())
     }
 
     /// Computes the separating directions of near pairs at the current configuration.
-    fn update(&mut self, margin: f64, distance: f64) {
-        // No projection is farther from here than twice the distance of the target.
+    fn update(&mut self, margin: f64) {
+        // No projection is farther from here than twice the distance of the target. A pair that is forgotten here comes
+        // back as an impact.
+        let distance = self.distance();
         for pair in self.separations.take_near(2.0 * distance) {
             self.separations.add(&self.query.context, &self.q, pair, margin);
         }
@@ -129,7 +143,9 @@ impl<'w, 'a> Walk<'w, 'a> {
         let displacement = projection.point();
         let share = self.separations.allowed_share(displacement);
         let displacement: Vec<f64> = displacement.iter().map(|s| s * share).collect();
-        self.q.iter().zip(metric.unscaled(&displacement)).map(|(q, d)| q + d).collect()
+        let there: Vec<f64> = self.q.iter().zip(metric.unscaled(&displacement)).map(|(q, d)| q + d).collect();
+        // Extreme numbers can overflow.
+        if self.query.context.model.check_coordinates(&there).is_ok() { there } else { self.q.clone() }
     }
 
     /// The impacts that count between the current configuration and another one, and a time before which there is none.
