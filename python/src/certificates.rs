@@ -135,7 +135,7 @@ impl Certificates {
     }
 
     #[pyo3(signature = (draws, *, resolve=None, start=None, all=None, threads=None, progress=None))]
-    #[expect(clippy::too_many_arguments, reason = "arguments by name")]
+    #[allow(clippy::too_many_arguments)]
     fn free_samples<'py>(
         &self,
         py: Python<'py>,

@@ -47,7 +47,7 @@ pub fn resolve<'py>(
 }
 
 /// Returns a `sscc.FreeSamples`.
-#[expect(clippy::too_many_arguments, reason = "the arguments of the Python method")]
+#[allow(clippy::too_many_arguments)]
 pub fn free_samples<'py>(
     py: Python<'py>,
     pool: &Pool,

@@ -55,6 +55,8 @@
 //! | Which collide between one q and another, and when? | [`Query::continuous`], [`Query::time_of_impact`] |
 //! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
 //! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
+//! | Which free q is near a colliding one? | [`Query::resolve`], [`Query::resolve_batch`] |
+//! | Which free q are near the draws of a distribution? | [`Query::free_samples`] |
 //! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
 //! | Which positions do vertices have at q? | [`ReducedModel::positions`] |
 //! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |

@@ -21,8 +21,8 @@ impl Progress for Budget {
 
 #[test]
 fn answers_are_free_and_no_farther_than_stepping_back() {
-    let (mut resolved, mut nearer, mut none, mut with_exceptions) = (0, 0, 0, 0);
-    for seed in 0..cases(250) {
+    let (mut resolved, mut nearer, mut none, mut left) = (0, 0, 0, 0);
+    for seed in 0..cases(120) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 5_000_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
@@ -46,6 +46,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
                 continue;
             };
             assert!(!oracle.discrete(free).unwrap().iter().any(counts), "model {seed}: {q:?} {free:?}");
+            left += usize::from(!oracle.discrete(free).unwrap().is_empty());
             let is_free = !oracle.discrete(&q).unwrap().iter().any(counts);
             assert_eq!(is_free, *free == q && found.change == 0.0, "model {seed}");
             if is_free {
@@ -64,12 +65,11 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
             }
             resolved += 1;
             nearer += usize::from(found.change < 0.7 * found.safe_scale_change);
-            with_exceptions += usize::from(!all && !scope.exceptions.is_empty());
         }
     }
-    let seen = (resolved, nearer, none, with_exceptions);
+    let seen = (resolved, nearer, none, left);
     assert!(
-        resolved > threshold(60) && nearer > threshold(15) && none > threshold(3) && with_exceptions > 0,
+        resolved > threshold(60) && nearer > threshold(20) && none > threshold(8) && left >= threshold(4),
         "{seen:?}"
     );
 }

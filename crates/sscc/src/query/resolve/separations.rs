@@ -191,3 +191,6 @@ fn smallest_gap(positions: &[f64; CORNERS]) -> f64 {
     let (i, j) = nearest_corners(positions);
     positions[j] - positions[i]
 }
+
+#[cfg(test)]
+mod tests;
