@@ -19,6 +19,7 @@ use crate::kinetic::KineticQuery;
 use crate::metric::factor;
 use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
+use crate::resolve;
 use crate::sweeps::SweepArguments;
 
 #[pyclass(frozen, module = "sscc", name = "Certificates")]
@@ -134,6 +135,32 @@ impl Certificates {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyList>> {
         SweepArguments { range, q, modes, threads }.run(py, &self.pool, progress)
+    }
+
+    #[pyo3(signature = (q, start=None, *, all=None))]
+    fn resolve<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        start: Option<&Bound<'py, PyAny>>,
+        all: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        resolve::resolve(py, &self.pool, q, start, all)
+    }
+
+    #[pyo3(signature = (draws, *, resolve=None, start=None, all=None, threads=None, progress=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn free_samples<'py>(
+        &self,
+        py: Python<'py>,
+        draws: &Bound<'py, PyAny>,
+        resolve: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
+        all: Option<&Bound<'py, PyAny>>,
+        threads: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        resolve::free_samples(py, &self.pool, draws, resolve, start, all, threads, progress)
     }
 
     fn clamp<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {

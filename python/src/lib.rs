@@ -25,6 +25,7 @@ mod model_methods;
 mod modes;
 mod pool;
 mod positions;
+mod resolve;
 mod shards;
 mod simulate;
 mod sweeps;

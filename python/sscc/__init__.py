@@ -28,6 +28,7 @@ from sscc._sscc import (
     __version__,
     self_intersections,
 )
+from sscc._resolve import FreeSamples, Resolved
 from sscc._simulate import Simulation, simulate
 from sscc._sweep import Sweep
 
@@ -40,10 +41,12 @@ __all__ = [
     "DetectorAnswer",
     "DetectorBatch",
     "DetectorImpacts",
+    "FreeSamples",
     "Hierarchy",
     "Impacts",
     "KineticQuery",
     "Model",
+    "Resolved",
     "Simulation",
     "Sweep",
     "__version__",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sscc._curve import Curve
+from sscc._resolve import FreeSamples, Resolved
 from sscc._sweep import Sweep
 
 __version__: str
@@ -162,6 +163,21 @@ class Certificates:
         modes: numbers or names; None: all.
         threads, progress: as in ``Model.certify``.
         """
+    def resolve(self, q: ArrayLike, start: ArrayLike | None = None, *, all: bool | None = None) -> Resolved:
+        """A free q near q, on a free way from ``start`` (None: the centre), which must be free. Exceptions are left as they
+        are, unless ``all``."""
+    def free_samples(
+        self,
+        draws: ArrayLike,
+        *,
+        resolve: bool | None = None,
+        start: ArrayLike | None = None,
+        all: bool | None = None,
+        threads: int | None = None,
+        progress: _Progress = None,
+    ) -> FreeSamples:
+        """Free configurations from the rows of draws (n, r) of any distribution. Colliding draws are resolved, as by
+        ``resolve``; ``resolve=False``: they are rejected, also where only exceptions collide."""
     def clamp(self, q: ArrayLike) -> _F64 | None:
         """q, or the last point on the line from the centre to q that the root's certificate proves free. None if its
         radius is 0 or there are exceptions."""

@@ -54,6 +54,8 @@ pub enum Command {
     Check(Box<Check>),
     /// Find for each mode or morph target the first weight at which the shape touches itself
     Sweep(Box<Sweep>),
+    /// Find a free q near each colliding q of a model
+    Resolve(Box<Resolve>),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
     /// Show the contents of a model, certificate, mesh or solid file
@@ -468,6 +470,36 @@ pub struct Sweep {
     /// Also write the shape at each hit (.ply), its colliding triangles red, to this folder
     #[arg(long, value_name = "DIR")]
     pub pose: Option<PathBuf>,
+    #[command(flatten)]
+    pub options: Options,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc resolve`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc resolve spring.model.safetensors --certificates spring.sscc.safetensors --trajectory q.npy"
+        "sscc resolve head.glb --q=1,0,0 --json"
+    ),
+    after_help = "\
+Exit codes: 0 every q is resolved, 1 some q is not, 2 error."
+)]
+pub struct Resolve {
+    #[command(flatten)]
+    pub model: Model,
+    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    #[arg(long, value_name = "FILE")]
+    pub certificates: Option<PathBuf>,
+    #[command(flatten)]
+    pub at: At,
+    /// The free q from which the search begins: r numbers, or a file (.npy or text) [default: the centre]
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    pub from: Option<String>,
+    /// Exceptions, the pairs that collide at the centre, must be free as well
+    #[arg(long)]
+    pub all: bool,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

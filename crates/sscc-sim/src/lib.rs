@@ -26,6 +26,7 @@ mod models;
 mod nearest;
 mod outputs;
 mod recipes;
+mod resolve;
 mod run;
 mod scenes;
 mod simulate;
@@ -34,7 +35,7 @@ pub mod text;
 mod watch;
 mod zero_radius;
 
-pub use certification::{CertificateRequest, Scheme};
+pub use certification::{CertificateRequest, Scheme, configuration};
 pub use detection::{
     AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries,
     ShapeInMotion, Times, check_rows, detect,
@@ -52,6 +53,7 @@ pub use recipes::{
     Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, Resize,
     SPRING_RINGS, Shape, TimedCertificates, models_folder,
 };
+pub use resolve::{ResolveReport, resolve_rows};
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
     StateLayout, StateLog, StepRecord, Summary, run,

@@ -56,6 +56,9 @@ pub enum Error {
         /// How many triangles there are.
         triangles: usize,
     },
+    /// A search for a free configuration from a colliding one.
+    #[error("the start collides; give a free q, or leave it out")]
+    ResolveStart,
     /// No modes.
     #[error("the model has no modes (rank 0): at least one is needed")]
     RankZero,

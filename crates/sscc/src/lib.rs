@@ -56,6 +56,8 @@
 //! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
 //! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
 //! | How far can the weight of a mode go until the shape touches itself? | [`Query::sweep`], [`Query::sweep_modes`] |
+//! | Which free q is near a colliding one? | [`Query::resolve`], [`Query::resolve_batch`] |
+//! | Which free q are near the draws of a distribution? | [`Query::free_samples`] |
 //! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
 //! | Which positions do vertices have at q? | [`ReducedModel::positions`] |
 //! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |
@@ -290,4 +292,7 @@ pub use geometry::{
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape};
 pub use progress::Progress;
-pub use query::{Answer, KineticQuery, Method, Query, Statistics, Sweep, SweepOutcome};
+pub use query::{
+    Answer, FreeSamples, KineticQuery, Method, Query, ResolveOptions, Resolved, Statistics, Sweep,
+    SweepOutcome,
+};

@@ -7,6 +7,7 @@ mod check;
 mod demo;
 mod info;
 mod modes;
+mod resolve;
 mod simulate;
 mod sweep;
 mod view;
@@ -22,6 +23,7 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Certify(args) => certify::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Resolve(args) => resolve::run(&args),
         Command::Audit(args) => audit::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),

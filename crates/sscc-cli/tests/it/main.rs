@@ -17,6 +17,7 @@ mod modes;
 mod picture;
 mod readme;
 mod real_data;
+mod resolve;
 mod scopes;
 mod simulate;
 mod sweep;

@@ -7,7 +7,7 @@ use sscc::{Certificates, ContactFilter, ReducedModel};
 use sscc_io::read_certificates;
 
 use super::certificate_request::{CertificateRequest, Scheme};
-use super::metric::{center, metric};
+use super::metric::metric;
 use crate::SimError;
 use crate::error::{At, Result};
 
@@ -55,7 +55,7 @@ impl CertificateRequest {
                 known.kind().name()
             )));
         }
-        let center = self.center.as_deref().map(|typed| center(model, typed)).transpose()?;
+        let center = self.center(model)?;
         if center.is_some_and(|typed| typed != certificates.center()) {
             let cause = "certified about another centre than --center; leave the flag out, or certify anew";
             return Ok(Some(cause.into()));

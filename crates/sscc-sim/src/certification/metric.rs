@@ -48,14 +48,17 @@ fn from_file(model: &ReducedModel, file: &Path) -> Result<Metric> {
     made.in_file(file)
 }
 
-/// Returns the centre: numbers with commas, or a file of numbers.
-pub(super) fn center(model: &ReducedModel, typed: &str) -> Result<Vec<f64>> {
+/// Returns the configuration that a flag states: numbers with commas, or a file of numbers.
+///
+/// # Errors
+/// When the file cannot be read, or the numbers are no configuration of the model.
+pub fn configuration(model: &ReducedModel, flag: &str, typed: &str) -> Result<Vec<f64>> {
     let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
-    let center = match numbers {
+    let q = match numbers {
         Ok(numbers) => numbers,
         Err(_) => read_vector(Path::new(typed))
-            .at(|| "--center is not a list of numbers, so it must be a file".into())?,
+            .at(|| format!("{flag} is not a list of numbers, so it must be a file"))?,
     };
-    model.check_coordinates(&center).at(|| format!("--center {typed}"))?;
-    Ok(center)
+    model.check_coordinates(&q).at(|| format!("{flag} {typed}"))?;
+    Ok(q)
 }

@@ -6,3 +6,4 @@ mod matching;
 mod metric;
 
 pub use certificate_request::{CertificateRequest, Scheme};
+pub use metric::configuration;

@@ -23,6 +23,17 @@ impl Query<'_> {
     /// # Errors
     /// As [`Query::discrete`], for start and end.
     pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
+        self.continuous_at_most(q_t0, q_t1, usize::MAX)
+    }
+
+    /// As [`Query::continuous`], at most `limit` impacts; which ones is not fixed. Where the limit stopped the query,
+    /// [`Statistics::complete`] is false.
+    pub(super) fn continuous_at_most(
+        &mut self,
+        q_t0: &[f64],
+        q_t1: &[f64],
+        limit: usize,
+    ) -> Result<&[Impact], Error> {
         self.forget();
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
         self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
@@ -31,7 +42,7 @@ impl Query<'_> {
             return Ok(&[]);
         }
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
-        swept.find(&self.context, [t0, t1], self.norm, usize::MAX, &mut self.statistics)?;
+        swept.find(&self.context, [t0, t1], self.norm, limit, &mut self.statistics)?;
         let impacts = &mut swept.narrow.0.list;
         impacts.sort_unstable_by_key(|impact| impact.pair);
         self.discrete.narrow.0.list.extend(impacts.iter().map(|impact| impact.pair));

@@ -22,6 +22,7 @@ mod normal_cones;
 mod pair_tree;
 mod pair_tree_traversal;
 mod penetration;
+mod resolve;
 mod rounding;
 mod safe_scale;
 mod sweep;

@@ -87,7 +87,7 @@ fn method(typed: args::Method) -> Method {
 }
 
 /// Returns every configuration. All are validated before the first query.
-fn coordinates(at: &At, loaded: &LoadedModel) -> Result<Rows> {
+pub fn coordinates(at: &At, loaded: &LoadedModel) -> Result<Rows> {
     match (&at.trajectory, &at.q) {
         (Some(path), _) => {
             let rows = read_rows(path)?;

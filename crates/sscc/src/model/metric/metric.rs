@@ -116,6 +116,14 @@ impl Metric {
         }
     }
 
+    /// `z = S q`, rounded to nearest.
+    pub(crate) fn scaled(&self, q: &[f64]) -> Vec<f64> {
+        match &self.factor {
+            Factor::Diagonal(scales) => q.iter().zip(scales).map(|(q, s)| q * s).collect(),
+            Factor::Triangular(factor) => factor.product(q),
+        }
+    }
+
     /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within
     /// `gamma_r |A||S||S^-1|`.
     pub(crate) fn scaled_modes(&self, modes: &[DVec3], out: &mut [DVec3]) {

@@ -109,6 +109,12 @@ impl Triangular {
         largest * column().map(|s| (s / largest) * (s / largest)).sum::<f64>().sqrt()
     }
 
+    /// `S q`, rounded to nearest.
+    pub(super) fn product(&self, q: &[f64]) -> Vec<f64> {
+        let row = |i: usize| self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x).sum();
+        (0..self.rank).map(row).collect()
+    }
+
     /// `S^-1 z` by back substitution, rounded to nearest.
     pub(super) fn solve(&self, z: &[f64]) -> Vec<f64> {
         let mut q = z.to_vec();

@@ -1,0 +1,64 @@
+//! Free configurations near colliding ones, as the command reports them.
+
+use std::fmt;
+
+use serde::Serialize;
+use sscc::{Certificates, Progress, Query, ReducedModel, ResolveOptions, Resolved};
+use sscc_io::Rows;
+
+use crate::error::Result;
+use crate::text::length;
+
+/// The free configuration near one q. Its JSON has these keys; an infinite number is `null`.
+#[derive(Clone, Debug, Serialize)]
+pub struct ResolveReport {
+    /// Whether a free configuration was found.
+    pub resolved: bool,
+    /// The free configuration.
+    pub q: Option<Vec<f64>>,
+    /// Its distance from q in the metric.
+    pub change: f64,
+    /// The distance from q of the last free configuration on the straight way from the start.
+    pub safe_scale_change: f64,
+}
+
+impl From<Resolved> for ResolveReport {
+    fn from(found: Resolved) -> Self {
+        let resolved = found.is_resolved();
+        let Resolved { q, change, safe_scale_change } = found;
+        Self { resolved, q, change, safe_scale_change }
+    }
+}
+
+impl fmt::Display for ResolveReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { q, change, safe_scale_change, .. } = self;
+        match q {
+            None => f.write_str("NOT RESOLVED: the centre collides"),
+            Some(_) if *change == 0.0 => f.write_str("free as it is"),
+            Some(q) => {
+                let numbers: Vec<String> = q.iter().map(f64::to_string).collect();
+                let (change, back) = (length(*change), length(*safe_scale_change));
+                write!(f, "resolved  change {change} (stepping back: {back})  --q={}", numbers.join(","))
+            }
+        }
+    }
+}
+
+/// Resolves every row on so many threads, in order. `progress` may cancel it.
+///
+/// # Errors
+/// When the certificates are of another model, a row is no configuration of it, or the start of the options is none or
+/// collides.
+pub fn resolve_rows(
+    model: &ReducedModel,
+    certificates: &Certificates,
+    rows: &Rows,
+    options: &ResolveOptions,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<ResolveReport>> {
+    let rows: Vec<&[f64]> = rows.iter().collect();
+    let found = Query::new(model, certificates)?.resolve_batch(&rows, options, Some(threads), progress)?;
+    Ok(found.into_iter().map(ResolveReport::from).collect())
+}

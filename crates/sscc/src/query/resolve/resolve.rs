@@ -1,0 +1,72 @@
+//! `Query::resolve`: a free configuration near a colliding one.
+//!
+//! The search begins at the last free configuration on the straight way from a free start to q, and steps back towards q.
+//! Pairs that intersect have no separating direction. But at a free configuration every near pair has one, and the
+//! configurations at which this direction separates the pair are those in a few half-spaces
+//! ([`separations`](super::separations)). A step goes to the nearest point to q within the half-spaces of all pairs that
+//! are in the way ([`projection`](super::projection)). These pairs come from a continuous query from here to there: its
+//! impacts add half-spaces, until there are none. Then the step is free, and a discrete query checks its end. There the
+//! directions are those of other closest points, so another step can come nearer to q. The search ends when no step does.
+
+use super::answer::{ResolveOptions, Resolved};
+use super::walk::Walk;
+use crate::Error;
+use crate::query::query::Query;
+
+/// The walk begins at this share of the way to the first contact, where near pairs have gaps to compute directions from.
+const START: f64 = 0.99;
+
+/// The gaps that pairs keep, as shares of the displacement from the first contact to q: a larger one at first, because
+/// directions turn less where gaps are larger.
+const MARGINS: [f64; 2] = [1e-3, 1e-5];
+
+/// Steps for each margin at most.
+const MAX_STEPS: usize = 32;
+
+/// The search ends when a step comes nearer to q by less than this share.
+const MIN_GAIN: f64 = 1e-3;
+
+impl Query<'_> {
+    /// A free configuration near q, in the metric of the scope: q itself where it is free. Else it is the end of a free
+    /// way from the start, and no farther from q than the last free configuration on the straight way from there. The
+    /// search is local: a nearer one may exist. `docs/guarantees.md` has the promise in full.
+    ///
+    /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
+    /// number of steps. The last answer of the query is forgotten.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`], for q and the start; when a given start collides.
+    pub fn resolve(&mut self, q: &[f64], options: &ResolveOptions) -> Result<Resolved, Error> {
+        let (model, center) = (self.context.model, self.context.scope.center.clone());
+        model.check_coordinates(q)?;
+        if let Some(start) = &options.start {
+            model.check_coordinates(start)?;
+        }
+        let mut walk = Walk::new(self, q, options.start.clone().unwrap_or(center), options.all);
+        let is_start_free = walk.is_here_free()?;
+        if !is_start_free && options.start.is_some() {
+            return Err(Error::ResolveStart);
+        }
+        if walk.is_free(q)? {
+            return Ok(Resolved::free(q));
+        }
+        if !is_start_free {
+            return Ok(Resolved::NONE);
+        }
+        let (last, safe_scale_change) = walk.approach(START)?;
+        let displacement = walk.displacement();
+        for margin in MARGINS {
+            for _ in 0..MAX_STEPS {
+                let before = walk.distance();
+                walk.step(margin * displacement)?;
+                if walk.distance() >= before * (1.0 - MIN_GAIN) {
+                    break;
+                }
+            }
+        }
+        let change = walk.distance();
+        let is_nearer = change < safe_scale_change;
+        let q = Some(if is_nearer { walk.into_configuration() } else { last });
+        Ok(Resolved { q, change: change.min(safe_scale_change), safe_scale_change })
+    }
+}

@@ -1,0 +1,196 @@
+//! Separating directions of near triangle pairs, and the half-spaces in q-space in which they separate.
+//!
+//! At the current q the direction n between the closest points of two hulls separates them. With the scaled modes A of
+//! their corners, the gap of corners i and j after a displacement s in z is `n.d_ij + (A_j - A_i)'n . s`, which is linear
+//! in s. So within the nine half-spaces "gap at least the margin" n separates the pair: these are its half-spaces. The
+//! rounding of positions is not covered, so every q must be checked.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+
+use super::projection::{dot, length};
+use crate::Pair;
+use crate::geometry::nearest_to_origin;
+use crate::query::context::QueryContext;
+
+/// Corners of the two hulls of a pair: three of each.
+const CORNERS: usize = 6;
+
+/// Memory for the half-spaces of all pairs (bytes), and the largest number of hull pairs.
+const MAX_BYTES: usize = 1 << 26;
+const MAX_SEPARATIONS: usize = 1 << 14;
+
+/// The separating direction of one pair of hulls.
+struct Separation {
+    pair: Pair,
+    /// Positions of the six corners along the direction, relative to the first one.
+    positions: [f64; CORNERS],
+    /// The smallest gap that the half-spaces allow.
+    margin: f64,
+}
+
+/// Separating directions of all pairs that are known to be near.
+pub(super) struct Separations {
+    list: Vec<Separation>,
+    known: HashSet<Pair>,
+    /// Six rows of each separation: the rates of its corners along the direction.
+    rates: Vec<f64>,
+    rank: usize,
+    /// Scratch: the scaled modes of a vertex.
+    modes: Vec<DVec3>,
+}
+
+impl Separations {
+    pub(super) fn new(rank: usize) -> Self {
+        Self {
+            list: Vec::new(),
+            known: HashSet::new(),
+            rates: Vec::new(),
+            rank,
+            modes: vec![DVec3::ZERO; rank],
+        }
+    }
+
+    /// Adds a pair with its directions at q. `margin`: the smallest gap to keep, where it is not smaller already. False if
+    /// no direction separates it, as far as rounding tells, or there is no more room.
+    pub(super) fn add(&mut self, context: &QueryContext<'_>, q: &[f64], pair: Pair, margin: f64) -> bool {
+        let count = self.list.len();
+        for hulls in context.detect.filter.hulls(pair.0, pair.1) {
+            let vertices: [u32; CORNERS] =
+                std::array::from_fn(|i| if i < 3 { hulls.a[i] } else { hulls.b[i - 3] });
+            if !self.add_hulls(context, q, pair, vertices, margin) {
+                self.list.truncate(count);
+                self.rates.truncate(count * CORNERS * self.rank);
+                return false;
+            }
+        }
+        self.known.insert(pair);
+        self.list.len() > count
+    }
+
+    fn add_hulls(
+        &mut self,
+        context: &QueryContext<'_>,
+        q: &[f64],
+        pair: Pair,
+        vertices: [u32; CORNERS],
+        margin: f64,
+    ) -> bool {
+        let bytes = self.rates.len() * size_of::<f64>();
+        if self.list.len() >= MAX_SEPARATIONS || (bytes >= MAX_BYTES && !self.list.is_empty()) {
+            return false;
+        }
+        let model = context.model;
+        let corners = vertices.map(|v| model.position(v, q));
+        let differences: [DVec3; 9] = std::array::from_fn(|ij| corners[3 + ij % 3] - corners[ij / 3]);
+        let dir = nearest_to_origin(&differences).point;
+        let dir = dir / length(&dir.to_array());
+        let positions = corners.map(|x| dir.dot(x - corners[0]));
+        let gap = smallest_gap(&positions);
+        // NaN must fail this test, too.
+        if !(gap > 0.0 && gap.is_finite()) {
+            return false;
+        }
+        for v in vertices {
+            context.scope.metric.scaled_modes(model.modes().of_vertex(v), &mut self.modes);
+            self.rates.extend(self.modes.iter().map(|mode| dir.dot(*mode)));
+        }
+        self.list.push(Separation { pair, positions, margin: margin.min(gap) });
+        true
+    }
+
+    /// Whether the pair is known.
+    pub(super) fn contains(&self, pair: Pair) -> bool {
+        self.known.contains(&pair)
+    }
+
+    /// Removes all pairs, and returns those that a displacement of this length could bring together.
+    pub(super) fn take_near(&mut self, reach: f64) -> Vec<Pair> {
+        let is_near = |at: &usize| {
+            let separation = &self.list[*at];
+            let gap = smallest_gap(&separation.positions);
+            let rates: [&[f64]; CORNERS] = std::array::from_fn(|corner| self.row(*at, corner));
+            // Each corner by itself: a bound of the rate of the gap.
+            let largest = |rows: &[&[f64]]| rows.iter().map(|row| length(row)).fold(0.0, f64::max);
+            let relative = largest(&rates[..3]) + largest(&rates[3..]);
+            gap <= relative * reach
+        };
+        let mut pairs: Vec<Pair> =
+            (0..self.list.len()).filter(is_near).map(|at| self.list[at].pair).collect();
+        pairs.dedup();
+        self.list.clear();
+        self.known.clear();
+        self.rates.clear();
+        pairs
+    }
+
+    /// The half-spaces `normal . s >= offset` that a displacement violates by more than a share of the margin: at most
+    /// `count`, the most violated ones, relative to the lengths of their normals, in that order.
+    pub(super) fn most_violated(&self, displacement: &[f64], count: usize) -> Vec<(Vec<f64>, f64)> {
+        let mut violated = Vec::new();
+        for (at, separation) in self.list.iter().enumerate() {
+            let positions: [f64; CORNERS] = std::array::from_fn(|corner| {
+                separation.positions[corner] + dot(self.row(at, corner), displacement)
+            });
+            let (i, j) = nearest_corners(&positions);
+            let violation = separation.margin - (positions[j] - positions[i]);
+            if violation > TOLERANCE * separation.margin {
+                let depth = violation / length(&self.normal(at, i, j)).max(f64::MIN_POSITIVE);
+                violated.push((depth, at, i, j));
+            }
+        }
+        violated.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+        violated.truncate(count);
+        let half_space = |(_, at, i, j): (f64, usize, usize, usize)| {
+            let Separation { positions, margin, .. } = &self.list[at];
+            (self.normal(at, i, j), margin - (positions[j] - positions[i]))
+        };
+        violated.into_iter().map(half_space).collect()
+    }
+
+    /// The largest share of a displacement, at most 1, that stays in all half-spaces, but for twice the tolerance.
+    pub(super) fn allowed_share(&self, displacement: &[f64]) -> f64 {
+        let mut share = 1.0_f64;
+        for (at, separation) in self.list.iter().enumerate() {
+            let rates: [f64; CORNERS] = std::array::from_fn(|corner| dot(self.row(at, corner), displacement));
+            for ij in 0..9 {
+                let (i, j) = (ij / 3, 3 + ij % 3);
+                let margin = separation.margin * (1.0 - 2.0 * TOLERANCE);
+                let room = separation.positions[j] - separation.positions[i] - margin;
+                let closing = rates[i] - rates[j];
+                if closing > 0.0 {
+                    share = share.min(room.max(0.0) / closing);
+                }
+            }
+        }
+        share
+    }
+
+    fn row(&self, separation: usize, corner: usize) -> &[f64] {
+        &self.rates[(separation * CORNERS + corner) * self.rank..][..self.rank]
+    }
+
+    /// The rate of the gap of two corners.
+    fn normal(&self, separation: usize, i: usize, j: usize) -> Vec<f64> {
+        self.row(separation, j).iter().zip(self.row(separation, i)).map(|(b, a)| b - a).collect()
+    }
+}
+
+/// A half-space counts as violated beyond this share of the margin.
+const TOLERANCE: f64 = 1e-3;
+
+/// The corner of the first hull that is farthest along the direction, and the nearest one of the second hull.
+fn nearest_corners(positions: &[f64; CORNERS]) -> (usize, usize) {
+    let i = (1..3).fold(0, |i, k| if positions[k] > positions[i] { k } else { i });
+    let j = (4..6).fold(3, |j, k| if positions[k] < positions[j] { k } else { j });
+    (i, j)
+}
+
+fn smallest_gap(positions: &[f64; CORNERS]) -> f64 {
+    let (i, j) = nearest_corners(positions);
+    positions[j] - positions[i]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,190 @@
+//! A walk in q-space from a free configuration towards a colliding one, in steps that stay free.
+
+use super::counted::Counted;
+use super::projection::Projection;
+use super::separations::Separations;
+use crate::query::query::Query;
+use crate::{Error, Impact};
+
+/// A continuous query lists at most this many impacts, exceptions apart; where there are more, the step is halved.
+const MAX_IMPACTS: usize = 1 << 12;
+
+/// A step is halved at most this many times.
+const MAX_HALVINGS: usize = 64;
+
+/// Projections for one step: each has the impacts of the one before as further half-spaces.
+const MAX_PROJECTIONS: usize = 24;
+
+/// Scans of all half-spaces for one projection.
+const MAX_SCANS: usize = 64;
+
+/// Where a step cannot be made free, the walk goes up to this share of the time of impact.
+const PARTIAL: f64 = 0.9;
+
+/// The state of a walk: a free configuration, and the pairs that are near there.
+pub(super) struct Walk<'w, 'a> {
+    query: &'w mut Query<'a>,
+    target: &'w [f64],
+    counted: Counted<'a>,
+    /// The current configuration: free.
+    q: Vec<f64>,
+    separations: Separations,
+    offset: Vec<f64>,
+}
+
+impl<'w, 'a> Walk<'w, 'a> {
+    pub(super) fn new(query: &'w mut Query<'a>, target: &'w [f64], start: Vec<f64>, all: bool) -> Self {
+        let rank = target.len();
+        let counted = Counted::new(query, all);
+        Self {
+            query,
+            target,
+            counted,
+            q: start,
+            separations: Separations::new(rank),
+            offset: vec![0.0; rank],
+        }
+    }
+
+    /// The distance to the target in the metric, rounded up.
+    pub(super) fn distance(&mut self) -> f64 {
+        let Self { query, target, q, offset, .. } = self;
+        query.context.scope.metric.norm_from(target, q, offset)
+    }
+
+    /// Whether a configuration is free of pairs that count.
+    pub(super) fn is_free(&mut self, q: &[f64]) -> Result<bool, Error> {
+        self.counted.is_free(self.query, q)
+    }
+
+    /// Whether the current configuration is free of pairs that count.
+    pub(super) fn is_here_free(&mut self) -> Result<bool, Error> {
+        self.counted.is_free(self.query, &self.q)
+    }
+
+    /// The current configuration.
+    pub(super) fn into_configuration(self) -> Vec<f64> {
+        self.q
+    }
+
+    /// An upper bound of the displacement of a vertex from here to the target, along each axis.
+    pub(super) fn displacement(&self) -> f64 {
+        let way: Vec<f64> = self.target.iter().zip(&self.q).map(|(t, q)| t - q).collect();
+        self.query.context.model.displacement_bound(&way)
+    }
+
+    /// Goes straight towards the target up to a share of the way to the first impact. Returns the last free configuration
+    /// on this way and its distance from the target.
+    pub(super) fn approach(&mut self, share: f64) -> Result<(Vec<f64>, f64), Error> {
+        let (start, target) = (self.q.clone(), self.target.to_vec());
+        let (time, _) = self.impacts(&target)?;
+        self.go_part(&target, time)?;
+        let (last, distance) = (self.q.clone(), self.distance());
+        self.q = start;
+        self.go_part(&target, time * share)?;
+        Ok((last, distance))
+    }
+
+    /// Steps as near to the target as the half-spaces of near pairs allow, with this margin: pairs keep at least this gap,
+    /// or the smaller one that they have.
+    pub(super) fn step(&mut self, margin: f64) -> Result<(), Error> {
+        self.update(margin);
+        for projections in 1..=MAX_PROJECTIONS {
+            if self.query.context.detect.progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let there = self.nearest();
+            let (time, impacts) = self.impacts(&there)?;
+            if impacts.is_empty() && time >= 1.0 && self.is_free(&there)? {
+                self.q = there;
+                break;
+            }
+            let mut is_new = false;
+            for impact in impacts {
+                is_new |= !self.separations.contains(impact.pair)
+                    && self.separations.add(&self.query.context, &self.q, impact.pair, margin);
+            }
+            if !is_new || projections == MAX_PROJECTIONS {
+                self.go_part(&there, time * PARTIAL)?;
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Computes the separating directions of near pairs at the current configuration.
+    fn update(&mut self, margin: f64) {
+        // No projection is farther from here than twice the distance of the target. A pair that is forgotten here comes
+        // back as an impact.
+        let distance = self.distance();
+        for pair in self.separations.take_near(2.0 * distance) {
+            self.separations.add(&self.query.context, &self.q, pair, margin);
+        }
+    }
+
+    /// The configuration nearest to the target within the half-spaces.
+    fn nearest(&self) -> Vec<f64> {
+        let metric = &self.query.context.scope.metric;
+        let way: Vec<f64> = self.target.iter().zip(&self.q).map(|(t, q)| t - q).collect();
+        let rank = way.len();
+        let mut projection = Projection::new(metric.scaled(&way));
+        'scans: for _ in 0..MAX_SCANS {
+            let violated = self.separations.most_violated(projection.point(), rank);
+            if violated.is_empty() {
+                break;
+            }
+            for (normal, offset) in violated {
+                if projection.add(&normal, offset).is_err() {
+                    break 'scans;
+                }
+            }
+        }
+        // No displacement violates no half-space. So a share of this one does not, either.
+        let displacement = projection.point();
+        let share = self.separations.allowed_share(displacement);
+        let displacement: Vec<f64> = displacement.iter().map(|s| s * share).collect();
+        let there: Vec<f64> = self.q.iter().zip(metric.unscaled(&displacement)).map(|(q, d)| q + d).collect();
+        // Extreme numbers can overflow.
+        if self.query.context.model.check_coordinates(&there).is_ok() { there } else { self.q.clone() }
+    }
+
+    /// The impacts that count between the current configuration and another one, and a time before which there is none.
+    fn impacts(&mut self, there: &[f64]) -> Result<(f64, Vec<Impact>), Error> {
+        let most = MAX_IMPACTS + self.counted.others();
+        let mut length = 1.0;
+        for _ in 0..MAX_HALVINGS {
+            let end = self.between(there, length);
+            let mut impacts = self.query.continuous_at_most(&self.q, &end, most)?.to_vec();
+            if self.query.statistics().complete {
+                impacts.retain(|impact| self.counted.contains(impact.pair));
+                let first = impacts.iter().map(|impact| impact.time).fold(1.0, f64::min);
+                return Ok((first * length, impacts));
+            }
+            length *= 0.5;
+        }
+        Ok((0.0, Vec::new()))
+    }
+
+    /// The configuration at a share of the way to another one.
+    fn between(&self, there: &[f64], share: f64) -> Vec<f64> {
+        if share >= 1.0 {
+            return there.to_vec();
+        }
+        self.q.iter().zip(there).map(|(q, t)| q + share * (t - q)).collect()
+    }
+
+    /// Goes a part of a straight way that is free before this time, or less where rounding makes its end collide.
+    fn go_part(&mut self, there: &[f64], mut time: f64) -> Result<(), Error> {
+        let mut back = f64::EPSILON;
+        for _ in 0..MAX_HALVINGS {
+            let end = self.between(there, time);
+            if self.is_free(&end)? {
+                self.q = end;
+                break;
+            }
+            time -= time * back;
+            back = (back * 8.0).min(0.5);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,41 @@
+"""Free configurations near colliding ones, and free samples."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Resolved(NamedTuple):
+    """A free q near a colliding one, from ``Certificates.resolve``."""
+
+    resolved: bool
+    """Whether a free q was found."""
+    q: NDArray[np.float64] | None
+    """The free q (r,): the given one where that is free. None if none was found."""
+    change: float
+    """Its distance from the given q in the metric, ``|S (resolved q - q)|``; infinite if none was found."""
+    safe_scale_change: float
+    """The distance of the last free q on the straight way from the start; 0 where q is free."""
+
+
+class FreeSamples(NamedTuple):
+    """Free configurations from draws, from ``Certificates.free_samples``."""
+
+    q: NDArray[np.float64]
+    """The free configurations (n, r), in the order of their draws."""
+    draws: NDArray[np.int64]
+    """The row of the draw of each (n,)."""
+    changes: NDArray[np.float64]
+    """The distance of each from its draw in the metric (n,): 0 where the draw was free."""
+    drawn: int
+    """Number of draws."""
+    free: int
+    """Number of draws that were free."""
+
+    @property
+    def acceptance(self) -> float:
+        """The share of draws that were free; NaN without draws."""
+        return self.free / self.drawn if self.drawn else float("nan")
