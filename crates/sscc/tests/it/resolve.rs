@@ -22,7 +22,7 @@ impl Progress for Budget {
 #[test]
 fn answers_are_free_and_no_farther_than_stepping_back() {
     let (mut resolved, mut nearer, mut none, mut left) = (0, 0, 0, 0);
-    for seed in 0..cases(120) {
+    for seed in 0..cases(240) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 5_000_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
