@@ -292,7 +292,9 @@ fn a_diverging_motion_is_named_and_kept() {
     let folder = folder(&text);
     let run = simulate(folder.path(), &["scene.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
-    let message = run.stderr.strip_suffix('\n').unwrap();
+    // The first line states what the shake does.
+    let (note, message) = run.stderr.strip_suffix('\n').unwrap().split_once('\n').unwrap();
+    assert!(note.starts_with("note: body 0 (spring): shake gives "), "{note}");
     assert!(message.starts_with("error: step "), "{message}");
     for part in [
         "the motion of body 0 (counted from 0) diverges (energy ",

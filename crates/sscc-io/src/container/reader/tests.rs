@@ -50,7 +50,7 @@ const TEXTS: &str = r#","format":"sscc.model","version":"1""#;
 fn round_trip() {
     let bytes = sample();
     let file = Container::parse(&bytes, MODEL).unwrap();
-    assert_eq!(file.version(), 1);
+    assert_eq!(file.version(), MODEL.version);
     assert_eq!(file.text("units").unwrap(), "metres \"\u{e9}\"\n");
     assert_eq!(file.names(), ["big", "bytes", "faces", "none", "points"]);
     let points = file.f64("points").unwrap();
