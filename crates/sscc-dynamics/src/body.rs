@@ -71,7 +71,7 @@ pub struct Body<'a> {
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// Undamped acceleration of q after the last step (r numbers); empty for linear forces.
+    /// Undamped acceleration of q after the last step, and its change (2 r numbers); empty for linear forces.
     pub(crate) a: Vec<f64>,
     /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,

@@ -8,7 +8,7 @@ use crate::body::Body;
 use crate::contact::{ModalInverseMass, displacement};
 use crate::contact_constraint::{ContactConstraint, GROUND, Source};
 use crate::contact_set::adapt_preload;
-use crate::{DynamicsError, Ground};
+use crate::{DynamicsError, Ground, Shape};
 
 /// Number of steps for which a search for near vertices is meant to serve.
 const SEARCH_STEPS: f64 = 64.0;
@@ -21,16 +21,19 @@ const TRAVEL_ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Contacts of one body with the ground.
 ///
-/// In a step, no vertex approaches the plane by more than the travel `|n . dx| + |da| (radius + sum_k u_k |q_k|) +
-/// sum_k u_k |dq_k|`. Here a is the plane's normal in axes of the body, dx the displacement of the body, and u_k the
-/// reach of mode k. A vertex whose gap exceeds the skin by d is outside the skin until the sum of travels has grown by
-/// d, less the rounding errors.
+/// In a step, the gap of a vertex falls by at most its travel `|n . dx| + |da| |p + U q| + sum_k |a . U_k| |dq_k|`. Here
+/// a is the plane's normal in axes of the body at the start of the step, da its change, and dx the displacement of the
+/// body. [`Reach`] bounds these terms for many vertices together. A vertex whose gap exceeds the skin by d is outside the
+/// skin until the sum of travels has grown by d, less the rounding errors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GroundContacts {
-    /// Travel at which the next search is needed; None before the first search.
+    /// Travel of the body at which the next search is needed; None before the first search.
     search_limit: Option<f64>,
-    /// Sum of the travels of all steps since the last search.
+    /// Sum of the travels of all steps since the last search, for all vertices of the body.
     travel: f64,
+    /// The same for the vertices that the last search found.
+    near_travel: f64,
+    near_reach: Reach,
     /// Position of the body in the last step.
     position: DVec3,
     /// Normal of the ground in the last step, in axes of the body.
@@ -39,7 +42,7 @@ pub(crate) struct GroundContacts {
     q: Vec<f64>,
     /// Numbers of the vertices that the last search found, ascending.
     vertices: Vec<u32>,
-    /// Travel up to which each of them is outside the skin.
+    /// The `near_travel` up to which each of them is outside the skin.
     limits: Vec<f64>,
     /// Modal inverse mass of each vertex that was within the skin since the last search.
     modal_inverse_masses: Vec<Option<Box<ModalInverseMass>>>,
@@ -47,6 +50,50 @@ pub(crate) struct GroundContacts {
     pub(crate) constraints: Vec<ContactConstraint>,
     /// Length by which the springs of the ground exceed the skin: see [`adapt_preload`].
     pub(crate) preload: f64,
+}
+
+/// Bounds on the motion of some vertices of a body.
+#[derive(Clone, Debug, Default)]
+struct Reach {
+    /// Maximum distance from the centre of mass, at rest.
+    radius: f64,
+    /// Maximum displacement by a unit of each mode.
+    modes: Vec<f64>,
+    /// Normal of the ground at the time of the search, in axes of the body.
+    normal: DVec3,
+    /// Maximum displacement along this normal by a unit of each mode.
+    along: Vec<f64>,
+}
+
+impl Reach {
+    /// Computes the bounds of these vertices.
+    fn set(&mut self, shape: &Shape, vertices: &[u32], normal: DVec3) {
+        let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
+        (self.radius, self.normal) = (0.0, normal);
+        for bounds in [&mut self.modes, &mut self.along] {
+            bounds.clear();
+            bounds.resize(modes.rank(), 0.0);
+        }
+        for v in vertices {
+            self.radius = self.radius.max(rest[*v as usize].distance(shape.mass().center));
+            for ((u, modes), along) in modes.of_vertex(*v).iter().zip(&mut self.modes).zip(&mut self.along) {
+                *modes = modes.max(u.length());
+                *along = along.max(normal.dot(*u).abs());
+            }
+        }
+    }
+
+    /// Returns a bound of the travel in a step, without the displacement of the body. `normals` and `q` are those before
+    /// and after the step.
+    fn travel(&self, normals: [DVec3; 2], q: [&[f64]; 2]) -> f64 {
+        let turned = (normals[0] - self.normal).length();
+        let (mut distance, mut travel) = (self.radius, 0.0);
+        for (((q0, q1), modes), along) in q[0].iter().zip(q[1]).zip(&self.modes).zip(&self.along) {
+            distance += modes * q1.abs();
+            travel += (along + turned * modes) * (q1 - q0).abs();
+        }
+        travel + (normals[1] - normals[0]).length() * distance
+    }
 }
 
 /// Options of the contacts of all bodies with the ground.
@@ -70,8 +117,11 @@ impl GroundContacts {
         let rotation = body.rotation();
         let local = rotation.transpose() * ground.normal;
         let shape = body.shape();
-        let mut reach = shape.radius();
-        let mut travel = ground.normal.dot(body.rigid.position - self.position).abs();
+        let displacement_travel = ground.normal.dot(body.rigid.position - self.position).abs();
+        let near_travel =
+            displacement_travel + self.near_reach.travel([self.normal, local], [&self.q, &body.q]);
+        self.near_travel += near_travel * TRAVEL_ROUNDING;
+        let (mut reach, mut travel) = (shape.radius(), displacement_travel);
         for ((u, q), before) in shape.reach().iter().zip(&body.q).zip(&self.q) {
             reach += u * q.abs();
             travel += u * (q - before).abs();
@@ -94,7 +144,7 @@ impl GroundContacts {
         let mut min_gap = skin;
         let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
         for (n, limit) in self.limits.iter_mut().enumerate() {
-            if *limit > self.travel {
+            if *limit > self.near_travel {
                 continue;
             }
             let v = self.vertices[n];
@@ -102,7 +152,7 @@ impl GroundContacts {
             let point = rest[v as usize] - shape.mass().center + displacement(modes, &body.q);
             let gap = height + local.dot(point);
             if gap >= skin {
-                *limit = self.travel + (gap - skin - rounding);
+                *limit = self.near_travel + (gap - skin - rounding);
                 continue;
             }
             min_gap = min_gap.min(gap);
@@ -143,7 +193,8 @@ impl GroundContacts {
             body.posed.vertices_below(ground.normal, ground.height + skin + near, &mut self.vertices);
         }
         self.search_limit = Some(near.max(clear) - rounding);
-        self.travel = 0.0;
+        (self.travel, self.near_travel) = (0.0, 0.0);
+        self.near_reach.set(body.shape(), &self.vertices, body.rotation().transpose() * ground.normal);
         self.limits.clear();
         self.limits.resize(self.vertices.len(), f64::NEG_INFINITY);
         self.modal_inverse_masses.clear();
@@ -154,6 +205,5 @@ impl GroundContacts {
     /// Discards the list of near vertices; needed after the body was moved to another state.
     pub(crate) fn reset(&mut self) {
         self.search_limit = None;
-        self.travel = 0.0;
     }
 }

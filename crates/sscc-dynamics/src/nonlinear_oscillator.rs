@@ -94,14 +94,17 @@ impl<'a> NonlinearOscillator<'a> {
         Ok(Self { energy, damping, step })
     }
 
-    /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each); the first step needs it.
+    /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each), then r zeros: the first step
+    /// needs it.
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
         self.energy.evaluate_forces(q, &mut buffers.evaluation);
-        g.iter().zip(buffers.evaluation.forces()).map(|(g, f)| g - f).collect()
+        let undamped = g.iter().zip(buffers.evaluation.forces()).map(|(g, f)| g - f);
+        undamped.chain(q.iter().map(|_| 0.0)).collect()
     }
 
-    /// Advances q, v and the undamped acceleration by one step under the forces g (r numbers each). The undamped
-    /// acceleration depends on q alone, so impulses may change v between steps.
+    /// Advances q, v and the undamped acceleration by one step under the forces g (r numbers each). `undamped` has 2 r
+    /// numbers: the undamped acceleration and its change in the last step. Both depend on q alone, so impulses may change
+    /// v between steps.
     ///
     /// # Errors
     /// When Newton's method does not converge; then q, v and the undamped acceleration are unchanged.
@@ -174,8 +177,8 @@ impl<'a> NonlinearOscillator<'a> {
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
 
-    /// Chooses the first trial, and evaluates the stiffness at its q: the trial has the last acceleration, or it keeps
-    /// q. With modes much faster than the step, the last acceleration is a bad guess.
+    /// Chooses the first trial, and evaluates the stiffness at its q: the trial has an acceleration extrapolated from the
+    /// last step, or it keeps q. With modes much faster than the step, the extrapolation is a bad guess.
     fn begin(
         &self,
         start: Start<'_>,
@@ -183,8 +186,11 @@ impl<'a> NonlinearOscillator<'a> {
         evaluation: &mut Evaluation,
         [trial, still]: [&mut Trial; 2],
     ) {
+        let (undamped, change) = undamped.split_at(start.q.len());
+        self.set_damping_forces(start.acceleration, &mut trial.damping_forces);
         trial.acceleration.clear();
-        trial.acceleration.extend_from_slice(start.acceleration);
+        let extrapolated = start.acceleration.iter().zip(change).zip(&trial.damping_forces);
+        trial.acceleration.extend(extrapolated.map(|((a, change), c)| a + change - self.step * c));
         self.place(start, trial);
         self.energy.evaluate_stiffness(&trial.q, evaluation);
         trial.weigh(evaluation.forces().iter().copied(), start.g);
@@ -256,8 +262,11 @@ impl Trial {
     fn finish(&self, q: &mut [f64], v: &mut [f64], undamped: &mut [f64]) {
         q.copy_from_slice(&self.q);
         v.copy_from_slice(&self.v);
+        let (undamped, change) = undamped.split_at_mut(q.len());
         let accelerations = self.acceleration.iter().zip(&self.damping_forces);
-        undamped.iter_mut().zip(accelerations).for_each(|(e, (b, damping))| *e = b + damping);
+        for ((e, change), (b, damping)) in undamped.iter_mut().zip(change).zip(accelerations) {
+            (*change, *e) = (b + damping - *e, b + damping);
+        }
     }
 }
 
@@ -330,7 +339,8 @@ mod tests {
         let energy = ElasticEnergy::new(&forces).unwrap();
         let oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 1e-2).unwrap();
         let buffers = &mut NewmarkBuffers::default();
-        let (mut q, mut v, mut a) = (vec![0.0; 2], vec![0.0; 2], force.clone());
+        let (mut q, mut v) = (vec![0.0; 2], vec![0.0; 2]);
+        let mut a = oscillator.undamped_acceleration(&q, &force, buffers);
         for _ in 0..2000 {
             oscillator.advance(&mut q, &mut v, &mut a, &force, buffers).unwrap();
         }
@@ -365,7 +375,7 @@ mod tests {
         assert!(matches!(new(wrong, 1.0), Err(DynamicsError::Damping { .. })));
         let oscillator = new(NONE, 1.0).unwrap();
         let (mut q, mut v) = (vec![1e200, 0.0], vec![0.0, 0.0]);
-        let mut a = vec![0.0; 2];
+        let mut a = vec![0.0; 4];
         let (before, buffers) = (q.clone(), &mut NewmarkBuffers::default());
         let answer = oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2], buffers);
         assert!(matches!(answer, Err(DynamicsError::Unsolved { .. })));
