@@ -202,6 +202,8 @@ impl<'a> NonlinearOscillator<'a> {
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
             self.energy.evaluate_stiffness(&trial.q, evaluation);
+            // The given acceleration may belong to another q.
+            trial.weigh(evaluation.forces().iter().copied(), start.g);
         }
     }
 
