@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
-use sscc_solid::Elasticity;
 
+use crate::nonlinear_oscillator::NewmarkBuffers;
 use crate::{
     Damping, DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions,
 };
@@ -71,7 +71,7 @@ pub struct Body<'a> {
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// Acceleration of q after the last step (r numbers); empty for linear forces.
+    /// Undamped acceleration of q after the last step, and its change (2 r numbers); empty for linear forces.
     pub(crate) a: Vec<f64>,
     /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,
@@ -85,8 +85,8 @@ pub struct Body<'a> {
     pub(crate) pairs: Vec<Pair>,
     /// Whether q was outside the certificate of the root in the last detection.
     pub(crate) root_failed: bool,
-    /// Whether an impulse has changed q or v since the last step.
-    pub(crate) has_impulse: bool,
+    /// Whether q was moved since the last step.
+    pub(crate) has_moved: bool,
     /// Energy budget: the body's share of the energy that contacts have dissipated, less the energy that they have
     /// returned.
     pub(crate) energy_budget: f64,
@@ -152,22 +152,21 @@ impl<'a> Body<'a> {
         } else {
             shape.moments().iter().map(|m| m.dot(orientation.inverse() * gravity)).collect()
         };
-        let oscillator = match shape.elasticity() {
-            Elasticity::Linear(stiffness) => {
+        let stiffness = shape.elasticity().stiffness();
+        let (oscillator, a) = match shape.elastic_energy() {
+            None => {
                 let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
-                Oscillator::Linear(LinearOscillator::new(&eigenvalues, start.damping, step)?)
+                let oscillator = LinearOscillator::new(&eigenvalues, start.damping, step)?;
+                (Oscillator::Linear(oscillator), Vec::new())
             }
-            Elasticity::Nonlinear(forces) => {
-                Oscillator::Nonlinear(NonlinearOscillator::new(forces, start.damping, step)?)
+            Some(energy) => {
+                let oscillator = NonlinearOscillator::new(energy, stiffness, start.damping, step)?;
+                let a = oscillator.undamped_acceleration(&q, &load, &mut NewmarkBuffers::default());
+                (Oscillator::Nonlinear(oscillator), a)
             }
-        };
-        let a = match &oscillator {
-            Oscillator::Linear(_) => Vec::new(),
-            Oscillator::Nonlinear(oscillator) => oscillator.acceleration(&q, &v, &load),
         };
         let square = contact.rate() * contact.rate();
-        let stiffness = shape.elasticity().stiffness().diagonal();
-        let slow_weights = stiffness.map(|lambda| square / (square + lambda)).collect();
+        let slow_weights = stiffness.diagonal().map(|lambda| square / (square + lambda)).collect();
         let method = match start.detection {
             Detection::Method(method) => method,
             _ => Method::Certified,
@@ -199,7 +198,7 @@ impl<'a> Body<'a> {
             posed,
             pairs: Vec::new(),
             root_failed: false,
-            has_impulse: false,
+            has_moved: false,
             energy_budget: 0.0,
         })
     }
@@ -297,16 +296,21 @@ impl<'a> Body<'a> {
 
     /// Advances the body by one step without contacts. Half of the impulse of the weight acts before and half after the
     /// displacement, which is exact for the position of the centre of mass.
-    pub(crate) fn advance(&mut self, gravity: DVec3, step: f64) -> Result<(), DynamicsError> {
-        let had_impulse = std::mem::take(&mut self.has_impulse);
+    pub(crate) fn advance(
+        &mut self,
+        gravity: DVec3,
+        step: f64,
+        buffers: &mut NewmarkBuffers,
+    ) -> Result<(), DynamicsError> {
+        let has_moved = std::mem::take(&mut self.has_moved);
         match &self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.advance(&mut self.q, &mut self.v, &self.load),
             Oscillator::Nonlinear(oscillator) => {
-                if had_impulse {
-                    // The stored acceleration belongs to the old v.
-                    self.a = oscillator.acceleration(&self.q, &self.v, &self.load);
+                if has_moved {
+                    // The stored acceleration belongs to the old q.
+                    self.a = oscillator.undamped_acceleration(&self.q, &self.load, buffers);
                 }
-                oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load)?;
+                oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load, buffers)?;
             }
         }
         if self.is_free {
@@ -318,8 +322,8 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Records that q or v was changed between steps. The next step then computes the acceleration again.
-    pub(crate) fn mark_impulse(&mut self) {
-        self.has_impulse = true;
+    /// Records that q was moved between steps. The next step then computes the acceleration again.
+    pub(crate) fn mark_moved(&mut self) {
+        self.has_moved = true;
     }
 }

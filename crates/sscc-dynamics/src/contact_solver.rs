@@ -216,7 +216,6 @@ impl ContactSolver {
                 }
                 local = rigid.rotation.transpose() * impulse;
             }
-            body.mark_impulse();
             let modes = constraint.modes(n, body, contacts);
             body.v.iter_mut().zip(modes).for_each(|(v, u)| *v += u.dot(local));
         }

@@ -31,6 +31,16 @@ pub enum DynamicsError {
     /// The stiffness of linear modes is not diagonal.
     #[error("the stiffness of linear modes is not diagonal: diagonalize it first")]
     Coupled,
+    /// Nonlinear forces are not the gradient of an energy.
+    #[error(
+        "the forces of degree {degree} are not the gradient of an energy (asymmetry {asymmetry:e}): check the order of the coefficients"
+    )]
+    Asymmetric {
+        /// Degree of the forces in q.
+        degree: usize,
+        /// Difference between two values for one coefficient of the energy, relative to the largest coefficient.
+        asymmetry: f64,
+    },
     /// Mass or inertia is not positive and finite.
     #[error(
         "the mass is {mass:e} and the smallest minor of the inertia tensor is {inertia:e}: both must be positive and finite; check the density and the volume of the body"

@@ -1,4 +1,5 @@
-//! Contacts of a body's vertices with the ground, from a list of near vertices that serves many steps.
+//! Contacts of a body's vertices with the ground: a list of near vertices serves many steps, and each of them is tested
+//! again only when it can have come within the skin.
 
 use glam::DVec3;
 use sscc::Aabb;
@@ -7,7 +8,7 @@ use crate::body::Body;
 use crate::contact::{ModalInverseMass, displacement};
 use crate::contact_constraint::{ContactConstraint, GROUND, Source};
 use crate::contact_set::adapt_preload;
-use crate::{DynamicsError, Ground};
+use crate::{DynamicsError, Ground, Shape};
 
 /// Number of steps for which a search for near vertices is meant to serve.
 const SEARCH_STEPS: f64 = 64.0;
@@ -15,59 +16,174 @@ const SEARCH_STEPS: f64 = 64.0;
 /// Minimum margin of a search, as a share of the body's radius.
 const MIN_MARGIN: f64 = 1e-3;
 
-/// Vertices of one body that can reach the ground within the margin of the last search.
+/// Factor on the travel in a step. It covers the rounding errors of a million additions.
+const TRAVEL_ROUNDING: f64 = 1.0 + 1e-9;
+
+/// Contacts of one body with the ground.
 ///
-/// Since the search, no vertex has approached the plane by more than `|n . dx| + |da| (radius + sum_k u_k |q_k|) +
-/// sum_k u_k |dq_k|`. Here a is the plane's normal in axes of the body, and dx the displacement of the body. While this
-/// bound is below the margin, no other vertex is within the skin.
+/// In a step, the gap of a vertex falls by at most its travel `|n . dx| + |da| |p + U q| + sum_k |a . U_k| |dq_k|`. Here
+/// a is the plane's normal in axes of the body at the start of the step, da its change, and dx the displacement of the
+/// body. [`Reach`] bounds these terms for many vertices together. A vertex whose gap exceeds the skin by d is outside the
+/// skin until the sum of travels has grown by d, less the rounding errors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GroundContacts {
-    /// Distance beyond the skin that the last search covered; None before the first search.
-    margin: Option<f64>,
-    /// Position of the body at the last search.
+    /// Travel of the body at which the next search is needed; None before the first search.
+    search_limit: Option<f64>,
+    /// Sum of the travels of all steps since the last search, for all vertices of the body.
+    travel: f64,
+    /// The same for the vertices that the last search found.
+    near_travel: f64,
+    near_reach: Reach,
+    /// Position of the body in the last step.
     position: DVec3,
-    /// Normal of the ground at the last search, in axes of the body.
+    /// Normal of the ground in the last step, in axes of the body.
     normal: DVec3,
-    /// Coordinates q at the last search.
+    /// Coordinates q in the last step.
     q: Vec<f64>,
-    /// Bound on the approach since the search, as of the last step.
-    approach: f64,
-    /// Numbers of the vertices, ascending.
+    /// Numbers of the vertices that the last search found, ascending.
     vertices: Vec<u32>,
-    /// Modal inverse mass of each vertex.
-    modal_inverse_masses: Vec<ModalInverseMass>,
+    /// The `near_travel` up to which each of them is outside the skin.
+    limits: Vec<f64>,
+    /// Modal inverse mass of each vertex that was within the skin since the last search.
+    modal_inverse_masses: Vec<Option<Box<ModalInverseMass>>>,
+    /// Constraints of this step: one for each vertex within the skin, ascending.
+    pub(crate) constraints: Vec<ContactConstraint>,
     /// Length by which the springs of the ground exceed the skin: see [`adapt_preload`].
     pub(crate) preload: f64,
 }
 
+/// Bounds on the motion of some vertices of a body.
+#[derive(Clone, Debug, Default)]
+struct Reach {
+    /// Maximum distance from the centre of mass, at rest.
+    radius: f64,
+    /// Maximum displacement by a unit of each mode.
+    modes: Vec<f64>,
+    /// Normal of the ground at the time of the search, in axes of the body.
+    normal: DVec3,
+    /// Maximum displacement along this normal by a unit of each mode.
+    along: Vec<f64>,
+}
+
+impl Reach {
+    /// Computes the bounds of these vertices.
+    fn set(&mut self, shape: &Shape, vertices: &[u32], normal: DVec3) {
+        let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
+        (self.radius, self.normal) = (0.0, normal);
+        for bounds in [&mut self.modes, &mut self.along] {
+            bounds.clear();
+            bounds.resize(modes.rank(), 0.0);
+        }
+        for v in vertices {
+            self.radius = self.radius.max(rest[*v as usize].distance(shape.mass().center));
+            for ((u, modes), along) in modes.of_vertex(*v).iter().zip(&mut self.modes).zip(&mut self.along) {
+                *modes = modes.max(u.length());
+                *along = along.max(normal.dot(*u).abs());
+            }
+        }
+    }
+
+    /// Returns a bound of the travel in a step, without the displacement of the body. `normals` and `q` are those before
+    /// and after the step.
+    fn travel(&self, normals: [DVec3; 2], q: [&[f64]; 2]) -> f64 {
+        let turned = (normals[0] - self.normal).length();
+        let (mut distance, mut travel) = (self.radius, 0.0);
+        for (((q0, q1), modes), along) in q[0].iter().zip(q[1]).zip(&self.modes).zip(&self.along) {
+            distance += modes * q1.abs();
+            travel += (along + turned * modes) * (q1 - q0).abs();
+        }
+        travel + (normals[1] - normals[0]).length() * distance
+    }
+}
+
+/// Options of the contacts of all bodies with the ground.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GroundOptions {
+    pub ground: Ground,
+    pub skin: f64,
+    /// See [`adapt_preload`].
+    pub preload_rate: f64,
+}
+
 impl GroundContacts {
-    /// Updates the list. Afterwards it holds every vertex below `ground.height + skin`.
+    /// Computes the constraints of the body with this number, and updates the preload.
     pub(crate) fn update(
+        &mut self,
+        number: usize,
+        body: &mut Body<'_>,
+        options: &GroundOptions,
+    ) -> Result<(), DynamicsError> {
+        let GroundOptions { ground, skin, preload_rate } = *options;
+        let rotation = body.rotation();
+        let local = rotation.transpose() * ground.normal;
+        let shape = body.shape();
+        let displacement_travel = ground.normal.dot(body.rigid.position - self.position).abs();
+        let near_travel =
+            displacement_travel + self.near_reach.travel([self.normal, local], [&self.q, &body.q]);
+        self.near_travel += near_travel * TRAVEL_ROUNDING;
+        let (mut reach, mut travel) = (shape.radius(), displacement_travel);
+        for ((u, q), before) in shape.reach().iter().zip(&body.q).zip(&self.q) {
+            reach += u * q.abs();
+            travel += u * (q - before).abs();
+        }
+        travel = (travel + (local - self.normal).length() * reach) * TRAVEL_ROUNDING;
+        (self.position, self.normal) = (body.rigid.position, local);
+        self.q.clear();
+        self.q.extend_from_slice(&body.q);
+        self.travel += travel;
+        let height = ground.normal.dot(body.rigid.position) - ground.height;
+        // Products and sums of a gap round by less than this, now and when the vertex is tested again.
+        let size = body.rigid.position.abs().max_element() + ground.height.abs() + reach;
+        let rounding = 8.0 * (shape.reach().len() + 16) as f64 * f64::EPSILON * size;
+        if !self.search_limit.is_some_and(|limit| self.travel < limit) {
+            // The travel is unknown in the first search.
+            let near = self.search_limit.map_or(0.0, |_| SEARCH_STEPS * travel);
+            self.search(body, &ground, skin, near.max(MIN_MARGIN * shape.radius()), rounding)?;
+        }
+        self.constraints.clear();
+        let mut min_gap = skin;
+        let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
+        for (n, limit) in self.limits.iter_mut().enumerate() {
+            if *limit > self.near_travel {
+                continue;
+            }
+            let v = self.vertices[n];
+            let modes = modes.of_vertex(v);
+            let point = rest[v as usize] - shape.mass().center + displacement(modes, &body.q);
+            let gap = height + local.dot(point);
+            if gap >= skin {
+                *limit = self.near_travel + (gap - skin - rounding);
+                continue;
+            }
+            min_gap = min_gap.min(gap);
+            let own = self.modal_inverse_masses[n]
+                .get_or_insert_with(|| Box::new(ModalInverseMass::of(modes, &body.slow_weights)));
+            self.constraints.push(ContactConstraint {
+                bodies: [number as u32, GROUND],
+                source: Source::Vertex(v),
+                normal: ground.normal,
+                arms: [rotation * point, DVec3::ZERO],
+                compression: skin - gap,
+                modal_inverse_mass: [**own, ModalInverseMass::default()],
+                friction: ground.friction,
+                normal_impulse: 0.0,
+                friction_impulse: DVec3::ZERO,
+            });
+        }
+        self.preload = adapt_preload(self.preload, min_gap, skin, preload_rate);
+        self.constraints.iter_mut().for_each(|constraint| constraint.compression += self.preload);
+        Ok(())
+    }
+
+    /// Lists all vertices below `ground.height + skin + near`, or none if the body's AABB is above.
+    fn search(
         &mut self,
         body: &mut Body<'_>,
         ground: &Ground,
         skin: f64,
+        near: f64,
+        rounding: f64,
     ) -> Result<(), DynamicsError> {
-        let local = body.rotation().transpose() * ground.normal;
-        let shape = body.shape();
-        let mut approach = f64::INFINITY;
-        if self.margin.is_some() {
-            let mut reach = shape.radius();
-            approach = ground.normal.dot(body.rigid.position - self.position).abs();
-            for ((u, q), before) in shape.reach().iter().zip(&body.q).zip(&self.q) {
-                reach += u * q.abs();
-                approach += u * (q - before).abs();
-            }
-            approach += (local - self.normal).length() * reach;
-        }
-        let step = approach - self.approach;
-        if self.margin.is_some_and(|margin| approach < margin) {
-            self.approach = approach;
-            return Ok(());
-        }
-        // The speed is unknown before the first search.
-        let step = if step.is_finite() { step } else { 0.0 };
-        let near = (SEARCH_STEPS * step).max(MIN_MARGIN * shape.radius());
         self.vertices.clear();
         let Aabb { lower, upper } = body.place()?;
         let lowest =
@@ -76,59 +192,18 @@ impl GroundContacts {
         if clear < near {
             body.posed.vertices_below(ground.normal, ground.height + skin + near, &mut self.vertices);
         }
-        self.margin = Some(near.max(clear));
+        self.search_limit = Some(near.max(clear) - rounding);
+        (self.travel, self.near_travel) = (0.0, 0.0);
+        self.near_reach.set(body.shape(), &self.vertices, body.rotation().transpose() * ground.normal);
+        self.limits.clear();
+        self.limits.resize(self.vertices.len(), f64::NEG_INFINITY);
         self.modal_inverse_masses.clear();
-        let modes = shape.model().modes();
-        self.modal_inverse_masses.extend(
-            self.vertices.iter().map(|v| ModalInverseMass::of(modes.of_vertex(*v), &body.slow_weights)),
-        );
-        (self.position, self.normal, self.approach) = (body.rigid.position, local, 0.0);
-        self.q.clear();
-        self.q.extend_from_slice(&body.q);
+        self.modal_inverse_masses.resize(self.vertices.len(), None);
         Ok(())
-    }
-
-    /// Updates the preload, and appends a constraint for each vertex within the skin to `constraints`.
-    pub(crate) fn add_constraints(
-        &mut self,
-        number: u32,
-        body: &Body<'_>,
-        ground: &Ground,
-        skin: f64,
-        preload_rate: f64,
-        constraints: &mut Vec<ContactConstraint>,
-    ) {
-        let (first, mut min_gap) = (constraints.len(), skin);
-        let rotation = body.rotation();
-        let local = rotation.transpose() * ground.normal;
-        let shape = body.shape();
-        let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
-        let height = ground.normal.dot(body.rigid.position) - ground.height;
-        for (&v, modal_inverse_mass) in self.vertices.iter().zip(&self.modal_inverse_masses) {
-            let point = rest[v as usize] - shape.mass().center + displacement(modes.of_vertex(v), &body.q);
-            let gap = height + local.dot(point);
-            if gap < skin {
-                min_gap = min_gap.min(gap);
-                constraints.push(ContactConstraint {
-                    bodies: [number, GROUND],
-                    source: Source::Vertex(v),
-                    normal: ground.normal,
-                    arms: [rotation * point, DVec3::ZERO],
-                    compression: skin - gap,
-                    modal_inverse_mass: [*modal_inverse_mass, ModalInverseMass::default()],
-                    friction: ground.friction,
-                    normal_impulse: 0.0,
-                    friction_impulse: DVec3::ZERO,
-                });
-            }
-        }
-        self.preload = adapt_preload(self.preload, min_gap, skin, preload_rate);
-        constraints[first..].iter_mut().for_each(|constraint| constraint.compression += self.preload);
     }
 
     /// Discards the list of near vertices; needed after the body was moved to another state.
     pub(crate) fn reset(&mut self) {
-        self.margin = None;
-        self.approach = 0.0;
+        self.search_limit = None;
     }
 }

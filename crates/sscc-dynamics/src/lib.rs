@@ -6,7 +6,8 @@
 //!   measures time implements [`Observer`], whose method runs at the start of each phase of a step;
 //! - [`State`]: the state of a world as plain numbers. A restored world continues with the same bits;
 //! - [`SoundBank`]: sound of modes that contact impulses excite, computed sample by sample;
-//! - [`LinearOscillator`], [`NonlinearOscillator`] and [`RigidMotion`]: the integrators of a body.
+//! - [`LinearOscillator`], [`NonlinearOscillator`] and [`RigidMotion`]: the integrators of a body; [`ElasticEnergy`]:
+//!   the polynomial whose gradient the nonlinear forces are.
 //!
 //! ```
 //! use glam::DVec3;
@@ -65,6 +66,7 @@ mod contact_geometry;
 mod contact_set;
 mod contact_solver;
 mod depth_field;
+mod elastic_energy;
 mod error;
 mod ground;
 mod ground_contacts;
@@ -85,11 +87,12 @@ mod world;
 pub use body::{Body, Detection, Start};
 pub use body_collisions::BodyPairs;
 pub use depth_field::{DepthField, SignedDistance};
+pub use elastic_energy::{ElasticEnergy, Evaluation};
 pub use error::{DynamicsError, Obstacle};
 pub use ground::Ground;
 pub use linear_oscillator::{Damping, LinearOscillator};
 pub use materials::{MATERIALS, SoundMaterial};
-pub use nonlinear_oscillator::NonlinearOscillator;
+pub use nonlinear_oscillator::{NewmarkBuffers, NonlinearOscillator};
 pub use options::{ContactOptions, Response, WorldOptions};
 pub use rigid_motion::RigidMotion;
 pub use shape::Shape;

@@ -25,7 +25,7 @@ pub(crate) fn constrain_to_root(body: &mut Body<'_>) -> Result<(), DynamicsError
     if along > 0.0 && square > 0.0 {
         body.v.iter_mut().zip(&outwards).for_each(|(v, x)| *v -= x * (along / square));
     }
-    body.mark_impulse();
+    body.mark_moved();
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
 use sscc_solid::{Elasticity, MassProperties};
 
-use crate::{DepthField, DynamicsError};
+use crate::{DepthField, DynamicsError, ElasticEnergy};
 
 /// A model with its certificates and the data of its motion, shared by any number of bodies. The modes must be
 /// mass-orthonormal; those of free bodies must also be orthogonal to rigid motions. The crate `sscc-modes` computes
@@ -14,6 +14,8 @@ pub struct Shape {
     model: ReducedModel,
     certificates: Certificates,
     elasticity: Elasticity,
+    /// The energy of nonlinear forces.
+    elastic_energy: Option<ElasticEnergy>,
     mass: MassProperties,
     moments: Vec<DVec3>,
     depth: DepthField,
@@ -28,7 +30,8 @@ impl Shape {
     /// for the cost.
     ///
     /// # Errors
-    /// When certificates or elasticity do not belong to this model, or linear forces couple modes.
+    /// When certificates or elasticity do not belong to this model, linear forces couple modes, or nonlinear forces are
+    /// not the gradient of an energy.
     pub fn new(
         model: ReducedModel,
         certificates: Certificates,
@@ -43,6 +46,10 @@ impl Shape {
         if matches!(&elasticity, Elasticity::Linear(stiffness) if !stiffness.is_diagonal()) {
             return Err(DynamicsError::Coupled);
         }
+        let elastic_energy = match &elasticity {
+            Elasticity::Linear(_) => None,
+            Elasticity::Nonlinear(forces) => Some(ElasticEnergy::new(forces)?),
+        };
         let depth = DepthField::new(model.mesh());
         let rest = model.mesh().rest_positions();
         let radius = rest.iter().map(|p| p.distance(mass.center)).fold(0.0, f64::max);
@@ -54,6 +61,7 @@ impl Shape {
             model,
             certificates,
             elasticity,
+            elastic_energy,
             mass,
             moments: vec![DVec3::ZERO; r],
             depth,
@@ -88,6 +96,11 @@ impl Shape {
     /// Returns the elastic forces.
     pub fn elasticity(&self) -> &Elasticity {
         &self.elasticity
+    }
+
+    /// Returns the energy of nonlinear forces; None for linear forces.
+    pub fn elastic_energy(&self) -> Option<&ElasticEnergy> {
+        self.elastic_energy.as_ref()
     }
 
     /// Returns the mass properties at rest.

@@ -15,7 +15,7 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground, whether an impulse acted, energy
+/// Position, orientation, momentum, angular momentum, preload of the ground, whether q was moved, energy
 /// budget.
 const RIGID: usize = 13 + 3;
 
@@ -33,7 +33,7 @@ impl World<'_> {
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
-            numbers.extend([ground.preload, f64::from(u8::from(body.has_impulse)), body.energy_budget]);
+            numbers.extend([ground.preload, f64::from(u8::from(body.has_moved)), body.energy_budget]);
         }
         for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
@@ -77,7 +77,7 @@ impl World<'_> {
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
             ground.reset();
             ground.preload = next();
-            body.has_impulse = next() != 0.0;
+            body.has_moved = next() != 0.0;
             body.energy_budget = next();
         }
         for contact in &mut contacts {

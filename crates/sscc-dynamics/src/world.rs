@@ -7,7 +7,8 @@ use crate::body_collisions::BodyCollisions;
 use crate::contact_constraint::{GROUND, Source};
 use crate::contact_set::ContactSet;
 use crate::contact_solver::{ContactSolver, Spring};
-use crate::ground_contacts::GroundContacts;
+use crate::ground_contacts::{GroundContacts, GroundOptions};
+use crate::nonlinear_oscillator::NewmarkBuffers;
 use crate::root_constraint::constrain_to_root;
 use crate::{
     BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions,
@@ -23,6 +24,8 @@ pub struct World<'a> {
     body_collisions: BodyCollisions,
     pub(crate) contacts: ContactSet,
     solver: ContactSolver,
+    /// Buffers of the integration of a single body.
+    buffers: NewmarkBuffers,
     start: StartEnergy,
     pub(crate) step: u64,
     pub(crate) impulses: Vec<Impulse>,
@@ -56,6 +59,7 @@ impl<'a> World<'a> {
             body_collisions: BodyCollisions::default(),
             contacts: ContactSet::default(),
             solver: ContactSolver::default(),
+            buffers: NewmarkBuffers::default(),
             start: StartEnergy::default(),
             step: 0,
             impulses: Vec::new(),
@@ -214,11 +218,19 @@ impl<'a> World<'a> {
     /// Appends the constraints of contacts with the ground.
     fn add_ground_constraints(&mut self) -> Result<(), DynamicsError> {
         let Some(ground) = self.options.ground else { return Ok(()) };
-        let (skin, preload_rate) = (self.skin(), self.preload_rate());
-        for (n, (body, contacts)) in self.bodies.iter_mut().zip(&mut self.ground_contacts).enumerate() {
-            contacts.update(body, &ground, skin)?;
-            let constraints = &mut self.solver.constraints;
-            contacts.add_constraints(n as u32, body, &ground, skin, preload_rate, constraints);
+        let options = GroundOptions { ground, skin: self.skin(), preload_rate: self.preload_rate() };
+        match (&mut self.bodies[..], &mut self.ground_contacts[..]) {
+            ([body], [contacts]) => contacts.update(0, body, &options)?,
+            (bodies, contacts) => {
+                let all = bodies.par_iter_mut().zip(contacts).enumerate();
+                let update = |(n, (body, contacts)): (usize, (_, &mut GroundContacts))| {
+                    contacts.update(n, body, &options)
+                };
+                first_error(all.map(update).collect())?;
+            }
+        }
+        for contacts in &self.ground_contacts {
+            self.solver.constraints.extend_from_slice(&contacts.constraints);
         }
         Ok(())
     }
@@ -268,8 +280,8 @@ impl<'a> World<'a> {
     /// Integrates the motion of all bodies over one step, and checks that it does not diverge.
     fn integrate(&mut self) -> Result<(), DynamicsError> {
         let WorldOptions { gravity, step, response, .. } = self.options;
-        let advance = |body: &mut Body<'a>| {
-            body.advance(gravity, step)?;
+        let advance = |buffers: &mut NewmarkBuffers, body: &mut Body<'a>| {
+            body.advance(gravity, step, buffers)?;
             if response == Response::Constrain { constrain_to_root(body) } else { Ok(()) }
         };
         let number = self.step;
@@ -281,9 +293,10 @@ impl<'a> World<'a> {
             })
         };
         match &mut self.bodies[..] {
-            [body] => named((0, advance(body)))?,
+            [body] => named((0, advance(&mut self.buffers, body)))?,
             bodies => {
-                let results: Vec<_> = bodies.par_iter_mut().map(advance).collect();
+                let all = bodies.par_iter_mut().map_init(NewmarkBuffers::default, advance);
+                let results: Vec<_> = all.collect();
                 results.into_iter().enumerate().try_for_each(named)?;
             }
         }
