@@ -28,6 +28,7 @@ pub(crate) struct ReducedFacts {
     center: Vec<f64>,
     default_q: Vec<f64>,
     limits: Vec<f64>,
+    ranges: Vec<[f64; 2]>,
     root_radius: f64,
     global_radius: f64,
     /// The limit of the pair tree: below it the pair tree contains every node pair that can collide. `None` if the pair
@@ -49,14 +50,16 @@ impl ReducedFacts {
         diagonal: f64,
     ) -> Self {
         let metric = certificates.metric();
+        let (limits, center) = (limits(model, diagonal), certificates.center());
         Self {
             rank: model.rank(),
             frequencies: details.frequencies,
+            ranges: ranges(&limits, center, &details.mode_names),
             mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
             scales: metric.dense_factor().is_none().then(|| metric.scales()),
-            center: certificates.center().to_vec(),
-            default_q: details.default_q.unwrap_or_else(|| certificates.center().to_vec()),
-            limits: limits(model, diagonal),
+            center: center.to_vec(),
+            default_q: details.default_q.unwrap_or_else(|| center.to_vec()),
+            limits,
             root_radius: certificates.root_radius(),
             global_radius: certificates.global_radius(),
             resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
@@ -75,8 +78,17 @@ impl ReducedFacts {
     }
 }
 
-/// For each mode the range of its slider. At its end the vertex that moves farthest has moved by half the diagonal of
-/// the AABB. It is 1 for a mode without displacement.
+/// The ranges of the sliders: 0 to 1 for morph targets, whose modes have names; else as far as the limits on both sides of the
+/// centre.
+fn ranges(limits: &[f64], center: &[f64], mode_names: &[String]) -> Vec<[f64; 2]> {
+    let range = |(limit, center): (&f64, &f64)| match mode_names.is_empty() {
+        true => [center - limit, center + limit],
+        false => [0.0, 1.0],
+    };
+    limits.iter().zip(center).map(range).collect()
+}
+
+/// For each mode the weight at which the vertex that moves farthest has moved by half the diagonal of the AABB. It is 1 for a mode without displacement.
 fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
     let mut fastest = vec![0.0_f64; model.rank()];
     for (i, u) in model.modes().displacements().iter().enumerate() {
