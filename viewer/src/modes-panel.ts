@@ -32,8 +32,15 @@ export class ModesPanel {
         this.names = this.rows.map((_, k) => shape.modeName(k).toLowerCase());
         this.shown = new Float64Array(shape.model.rank).fill(Number.NaN);
         this.list = h("div", { class: "mode-list" }, ...this.rows.map((row) => row.element));
-        this.sweeps = app.checker ? new Sweeps(app, this.rows, this.list, () => this.visible()) : null;
-        this.sweeps?.onlyHits.addEventListener("change", () => this.refilter());
+        this.sweeps = app.checker
+            ? new Sweeps(
+                  app,
+                  this.rows,
+                  this.list,
+                  () => this.named(),
+                  () => this.refilter(),
+              )
+            : null;
         this.filter = h("input", {
             type: "search",
             placeholder: "filter by name",
@@ -102,22 +109,23 @@ export class ModesPanel {
         return at < 0 ? null : at;
     }
 
-    /** The modes that the filter shows. */
+    /** The modes whose names have all words of the filter. */
+    private named(): number[] {
+        const words = this.filter.value.toLowerCase().split(/\s+/);
+        return [...this.names.keys()].filter((k) => words.every((word) => this.names[k].includes(word)));
+    }
+
+    /** The displayed modes. */
     private visible(): number[] {
         return [...this.rows.keys()].filter((k) => !this.rows[k].element.hidden);
     }
 
     private refilter(): void {
-        const words = this.filter.value.toLowerCase().split(/\s+/);
         const { sweeps } = this;
-        let shown = 0;
-        for (const [k, { element }] of this.rows.entries()) {
-            const isShown =
-                words.every((word) => this.names[k].includes(word)) &&
-                (!sweeps?.onlyHits.checked || sweeps.hasHit(k));
-            if (element.hidden === isShown) element.hidden = !isShown;
-            if (isShown) shown++;
-        }
+        const visible = new Set(this.named().filter((k) => !sweeps?.onlyHits.checked || sweeps.hasHit(k)));
+        for (const [k, { element }] of this.rows.entries())
+            if (element.hidden === visible.has(k)) element.hidden = !visible.has(k);
+        const shown = visible.size;
         const { length } = this.rows;
         this.found.textContent =
             shown === length ? count(length, "mode") : `${shown.toLocaleString("en")} of ${count(length, "mode")}`;

@@ -23,8 +23,12 @@ export class Sweeps {
         private readonly app: App,
         private readonly rows: ModeRow[],
         private readonly list: HTMLElement,
-        private readonly visible: () => number[],
+        /** The modes to search. */
+        private readonly listed: () => number[],
+        /** Called when `hasHit` has changed. */
+        private readonly changed: () => void,
     ) {
+        this.onlyHits.addEventListener("change", changed);
         this.base = app.pose.q.slice();
         app.pose.onChange(() => this.compare());
         this.showState("");
@@ -51,7 +55,7 @@ export class Sweeps {
         if (app.pose.q.some((weight, k) => weight !== this.base[k])) this.clear();
         this.base = app.pose.q.slice();
         this.compare();
-        const modes = this.visible().filter((mode) => !this.results.has(mode));
+        const modes = this.listed().filter((mode) => !this.results.has(mode));
         const running = new AbortController();
         this.running = running;
         this.only.hidden = false;
@@ -88,6 +92,7 @@ export class Sweeps {
             cells = [h("span", { title: error.message }, "no result")];
         }
         this.rows[mode].first.replaceChildren(...cells);
+        this.changed();
     }
 
     private cell(mode: number, sweep: Sweep): HTMLElement {
@@ -122,6 +127,7 @@ export class Sweeps {
     private clear(): void {
         this.results.clear();
         for (const row of this.rows) row.first.replaceChildren();
+        this.changed();
     }
 
     /** Results hold where all weights but that of their mode are those of the search. Others are shown pale. */

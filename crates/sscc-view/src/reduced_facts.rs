@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
+use sscc_sim::default_ranges;
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
@@ -27,7 +28,9 @@ pub(crate) struct ReducedFacts {
     scales: Option<Vec<f64>>,
     center: Vec<f64>,
     default_q: Vec<f64>,
+    /// The weight of each mode at which it has moved some vertex by half the diagonal of the AABB.
     limits: Vec<f64>,
+    /// The ranges of the sliders, and of sweeps.
     ranges: Vec<[f64; 2]>,
     root_radius: f64,
     global_radius: f64,
@@ -42,24 +45,18 @@ pub(crate) struct ReducedFacts {
 }
 
 impl ReducedFacts {
-    /// `diagonal`: length of the diagonal of the AABB at rest.
-    pub(crate) fn new(
-        model: &ReducedModel,
-        certificates: &Certificates,
-        details: ModelDetails,
-        diagonal: f64,
-    ) -> Self {
+    pub(crate) fn new(model: &ReducedModel, certificates: &Certificates, details: ModelDetails) -> Self {
         let metric = certificates.metric();
-        let (limits, center) = (limits(model, diagonal), certificates.center());
+        let center = certificates.center();
         Self {
             rank: model.rank(),
             frequencies: details.frequencies,
-            ranges: ranges(&limits, center, &details.mode_names),
+            limits: (0..model.rank()).map(|k| model.weight_limit(k)).collect(),
+            ranges: default_ranges(model, &details.mode_names, center),
             mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
             scales: metric.dense_factor().is_none().then(|| metric.scales()),
             center: center.to_vec(),
             default_q: details.default_q.unwrap_or_else(|| center.to_vec()),
-            limits,
             root_radius: certificates.root_radius(),
             global_radius: certificates.global_radius(),
             resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
@@ -76,27 +73,6 @@ impl ReducedFacts {
         let farthest = self.limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * MAX_SLIDER_SCALE;
         farthest <= f64::from(f32::MAX)
     }
-}
-
-/// The ranges of the sliders: 0 to 1 for morph targets, whose modes have names; else as far as the limits on both sides of the
-/// centre.
-fn ranges(limits: &[f64], center: &[f64], mode_names: &[String]) -> Vec<[f64; 2]> {
-    let range = |(limit, center): (&f64, &f64)| match mode_names.is_empty() {
-        true => [center - limit, center + limit],
-        false => [0.0, 1.0],
-    };
-    limits.iter().zip(center).map(range).collect()
-}
-
-/// For each mode the weight at which the vertex that moves farthest has moved by half the diagonal of the AABB. It is 1 for a mode without displacement.
-fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
-    let mut fastest = vec![0.0_f64; model.rank()];
-    for (i, u) in model.modes().displacements().iter().enumerate() {
-        let fastest = &mut fastest[i % model.rank()];
-        *fastest = fastest.max(u.length());
-    }
-    let limit = |fastest: f64| 0.5 * diagonal / fastest;
-    fastest.into_iter().map(limit).map(|x| if x.is_finite() && x > 0.0 { x } else { 1.0 }).collect()
 }
 
 /// The page may show displacements up to this multiple of its sliders' range.
