@@ -60,10 +60,10 @@ export function rig(bulges) {
         [BEHIND, blade(moving[0], GAP / 0.5)],
         [WITHIN, blade(moving[1], GAP / 0.25)],
         ...Array.from({ length: bulges }, (_, k) => {
-            const ball = (x, v) => v < inBall && v % (k + 2) === 0;
+            const moves = (v) => v < inBall && v % (k + 2) === 0;
             return [
                 `bulge_number_${k + 1}_of_the_ball`,
-                positions.map((x, v) => (ball(x, v) ? x.map((c) => 0.01 * c) : [0, 0, 0])),
+                positions.map((x, v) => (moves(v) ? x.map((c) => 0.01 * c) : [0, 0, 0])),
             ];
         }),
     ];
