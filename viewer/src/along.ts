@@ -7,8 +7,13 @@ import type { SafeScale } from "./protocol";
 const MAX_PERIOD = 2.4;
 const MIN_PERIOD = 0.7;
 
+export function vibrationName(app: App, mode: number): string {
+    return `vibrating ${app.shape.modeName(mode)}`;
+}
+
+/** Vibrates a mode about its centre; a morph target between the ends of its range. */
 export function vibrate(app: App, mode: number): void {
-    const name = `vibrating ${app.shape.modeName(mode)}`;
+    const name = vibrationName(app, mode);
     if (app.motion.name === name) {
         app.motion.stop();
         return;
@@ -16,14 +21,18 @@ export function vibrate(app: App, mode: number): void {
     const { center, limits, frequencies } = app.shape.model;
     const q = app.pose.q.slice();
     const out = q[mode] - center[mode];
-    const amplitude = Math.abs(out) > limits[mode] * 0.01 ? Math.abs(out) : limits[mode] * 0.3;
+    const isOneSided = app.shape.isOneSided(mode);
+    const [low, high] = app.shape.range(mode);
+    const usual = isOneSided ? low + high - 2 * center[mode] : limits[mode] * 0.3;
+    const amplitude = Math.abs(out) > Math.abs(usual) * 0.01 ? (isOneSided ? out : Math.abs(out)) : usual;
     const known = (frequencies ?? []).filter((f): f is number => f !== null && f > 0);
     const own = frequencies?.[mode] ?? null;
     const ratio = own && known.length > 0 ? own / Math.min(...known) : 1;
     const period = Math.max(MIN_PERIOD, MAX_PERIOD / ratio);
     const path = (t: number): Float64Array => {
         const at = q.slice();
-        at[mode] = center[mode] + amplitude * Math.sin((2 * Math.PI * t) / period);
+        const phase = (2 * Math.PI * t) / period;
+        at[mode] = center[mode] + amplitude * (isOneSided ? 0.5 - 0.5 * Math.cos(phase) : Math.sin(phase));
         return at;
     };
     app.motion.start(name, path, Number.POSITIVE_INFINITY, period);

@@ -103,6 +103,7 @@ export class Body {
             hitDark: { value: new THREE.Vector3() },
             chosen: { value: new THREE.Vector3() },
             stripe: { value: 9 },
+            cut: { value: new THREE.Vector4() },
         };
         this.material = new THREE.ShaderMaterial({
             glslVersion: THREE.GLSL3,
@@ -141,6 +142,11 @@ export class Body {
         uniforms.hitDark.value.set(...colours.hitDark);
         uniforms.chosen.value.set(...colours.chosen);
         uniforms.stripe.value = 9 * pixels;
+    }
+
+    /** Cuts away what hides a disc of the world from the eye (middle and radius); radius 0: nothing. */
+    setCut(cut: THREE.Vector4): void {
+        this.material.uniforms.cut.value.copy(cut);
     }
 
     setQ(instance: number, q: ArrayLike<number>): void {

@@ -31,6 +31,7 @@ export class CollisionsPanel {
             this.counters,
             h("label", { class: "check" }, this.compare, "also measure the traditional method"),
             this.heading,
+            h("p", { class: "hint" }, "N flies to the next pair, H shows what is cut away in front of it."),
             this.list,
         );
         app.checker!.onAnswer(() => this.answered());
@@ -53,6 +54,7 @@ export class CollisionsPanel {
 
     private changed(): void {
         this.app.chosen = null;
+        this.app.stage?.endCut();
         this.at = -1;
         this.rows = FIRST_ROWS;
         clearTimeout(this.timer);
@@ -72,8 +74,12 @@ export class CollisionsPanel {
     private go(pair: [number, number]): void {
         const { app } = this;
         app.chosen = pair;
-        const { middle, reach } = app.shape.around(pair, app.pose.q);
-        app.stage?.flyTo(middle, reach);
+        const { shape, pose } = app;
+        const surface = { positions: shape.deformed(pose.q), faces: shape.faces, own: pair };
+        app.stage?.flyTo(
+            pair.map((t) => shape.corners(t, pose.q)),
+            [surface],
+        );
         app.refreshMarks();
         this.showPairs(this.current());
     }

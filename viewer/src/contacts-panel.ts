@@ -40,7 +40,7 @@ export class ContactsPanel {
         const names = meshes.data.bodies.map((body) => body.name);
         const of = isBetween ? `Triangles of ${names[0]} – triangles of ${names[1]}. ` : "";
         const times = isContinuous ? "With the time of impact in the step, from 0 to 1. " : "";
-        this.hint.textContent = `${of}${times}N flies to the next pair.`;
+        this.hint.textContent = `${of}${times}N flies to the next pair, H shows what is cut away in front of it.`;
         this.show();
     }
 

@@ -51,6 +51,11 @@ export class Layout {
         if (!wrong) this.timer = window.setTimeout(() => this.say(""), 7000);
     }
 
+    /** Shows the tab of this name. */
+    select(name: string): void {
+        for (const tab of this.tabs.children) if (tab.textContent === name) (tab as HTMLElement).click();
+    }
+
     setTabs(tabs: Tab[]): void {
         const buttons: HTMLButtonElement[] = [];
         const select = (at: number): void => {

@@ -1,81 +1,70 @@
-/** A slider for each mode, and motions along the mode. */
+/** The sliders of all modes, with a filter by name, and motions along the modes. */
 
-import { toFirstCollision, vibrate } from "./along";
+import { toFirstCollision, vibrate, vibrationName } from "./along";
 import { type App, attempt } from "./app";
-import { digits, h } from "./dom";
+import { count, h } from "./dom";
 import { loadQ } from "./load-q";
-
-interface Row {
-    slider: HTMLInputElement;
-    number: HTMLInputElement;
-    vibrate: HTMLButtonElement;
-}
+import { ModeRow } from "./mode-row";
+import { randomDirection } from "./random-direction";
+import { Sweeps } from "./sweeps";
 
 export class ModesPanel {
     readonly element: HTMLElement;
-    private readonly rows: Row[];
+    private readonly rows: ModeRow[];
+    private readonly list: HTMLElement;
+    /** The displayed weights. */
+    private shown: Float64Array;
+    private vibrating: string | null = null;
+    private readonly sweeps: Sweeps | null;
+    private readonly filter: HTMLInputElement;
+    private readonly found = h("output", { class: "found" });
+    private readonly names: string[];
     private randoms = 0;
 
     constructor(private readonly app: App) {
-        const { model } = app.shape;
-        this.rows = Array.from({ length: model.rank }, (_, k) => this.row(k));
-        const list = this.rows.map((row, k) => this.line(row, k));
+        const { shape, pose } = app;
+        const actions = {
+            set: (mode: number, value: number) => this.set(mode, value),
+            vibrate: (mode: number) => this.vibrate(mode),
+            toCollision: app.checker ? (mode: number) => this.toCollision(mode) : null,
+        };
+        this.rows = Array.from({ length: shape.model.rank }, (_, k) => new ModeRow(shape, k, actions));
+        this.names = this.rows.map((_, k) => shape.modeName(k).toLowerCase());
+        this.shown = new Float64Array(shape.model.rank).fill(Number.NaN);
+        this.list = h("div", { class: "mode-list" }, ...this.rows.map((row) => row.element));
+        this.sweeps = app.checker
+            ? new Sweeps(
+                  app,
+                  this.rows,
+                  this.list,
+                  () => this.named(),
+                  () => this.refilter(),
+              )
+            : null;
+        this.filter = h("input", {
+            type: "search",
+            placeholder: "filter by name",
+            "aria-label": "filter by name",
+            title: "show only modes whose names have all of these words (/)",
+            oninput: () => this.refilter(),
+        });
         this.element = h(
             "div",
             { class: "modes" },
-            h(
-                "div",
-                { class: "actions" },
-                h(
-                    "button",
-                    {
-                        type: "button",
-                        onclick: () => this.reset(),
-                        title: "reset q to the centre of the certificates (R)",
-                    },
-                    "Reset",
-                ),
-                h(
-                    "button",
-                    {
-                        type: "button",
-                        onclick: () => this.random(),
-                        title: "show a random q (X)",
-                    },
-                    "Random",
-                ),
-                app.checker &&
-                    h(
-                        "button",
-                        {
-                            type: "button",
-                            id: "random-collision",
-                            onclick: () => this.randomCollision(),
-                            title: "move along a random direction to the first self-collision (C)",
-                        },
-                        "To a collision",
-                    ),
-                h(
-                    "button",
-                    {
-                        type: "button",
-                        onclick: () => loadQ(app),
-                        title: "paste numbers, or load a text or .npy file (L)",
-                    },
-                    "Load q…",
-                ),
-            ),
+            this.actions(),
             h(
                 "p",
                 { class: "hint" },
-                "Drag a slider; a double click resets it. ~ vibrates the mode",
+                "Drag a slider, or type any weight; a double click resets it. ~ vibrates the mode",
                 app.checker ? ", ⇥ moves along it to the first self-collision." : ".",
             ),
-            h("div", { class: "mode-list" }, ...list),
+            h("div", { class: "find" }, this.filter, this.found, this.sweeps?.element ?? null),
+            this.list,
         );
-        app.pose.onChange(() => this.update());
-        app.motion.onChange(() => this.update());
+        pose.onChange(() => this.update());
+        app.motion.onChange(() => this.updateVibrating());
         this.update();
+        this.refilter();
     }
 
     reset(): void {
@@ -86,12 +75,12 @@ export class ModesPanel {
     random(): void {
         const { app } = this;
         app.motion.stop();
-        const direction = this.direction();
+        const direction = randomDirection(app.shape, ++this.randoms);
         app.pose.show(direction.map((d, k) => app.shape.model.center[k] + d));
     }
 
     randomCollision(): void {
-        const direction = this.direction();
+        const direction = randomDirection(this.app.shape, ++this.randoms);
         void attempt(this.app, () => toFirstCollision(this.app, direction, `random direction ${this.randoms}`));
     }
 
@@ -99,32 +88,47 @@ export class ModesPanel {
         vibrate(this.app, mode);
     }
 
-    focus(mode: number): void {
-        this.rows[mode]?.slider.focus();
+    /** Moves the focus to the next or previous slider that the filter shows. */
+    step(by: number): void {
+        const visible = this.visible();
+        const focused = this.focused();
+        const at = focused === null ? -1 : visible.indexOf(focused);
+        const to = at < 0 ? 0 : Math.min(Math.max(at + by, 0), visible.length - 1);
+        this.rows[visible[to]]?.slider.focus();
+    }
+
+    /** Moves the focus to the filter. */
+    find(): void {
+        this.filter.focus();
+        this.filter.select();
     }
 
     /** The mode with the focus; null if none has it. */
     focused(): number | null {
-        const at = this.rows.findIndex(
-            (row) => row.slider === document.activeElement || row.number === document.activeElement,
-        );
+        const at = this.rows.findIndex((row) => row.hasFocus);
         return at < 0 ? null : at;
     }
 
-    /** The next of a fixed sequence of random directions. Lower modes have larger entries, as in usual motions. */
-    private direction(): number[] {
-        let state = ++this.randoms * 0x9e3779b9;
-        const uniform = (): number => {
-            state = (state + 0x6d2b79f5) | 0;
-            let t = Math.imul(state ^ (state >>> 15), 1 | state);
-            t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-            return (((t ^ (t >>> 14)) >>> 0) + 0.5) / 4294967296;
-        };
-        const { limits } = this.app.shape.model;
-        return limits.map((limit, k) => {
-            const normal = Math.sqrt(-2 * Math.log(uniform())) * Math.cos(2 * Math.PI * uniform());
-            return (limit * 0.25 * normal) / (1 + k / 2);
-        });
+    /** The modes whose names have all words of the filter. */
+    private named(): number[] {
+        const words = this.filter.value.toLowerCase().split(/\s+/);
+        return [...this.names.keys()].filter((k) => words.every((word) => this.names[k].includes(word)));
+    }
+
+    /** The displayed modes. */
+    private visible(): number[] {
+        return [...this.rows.keys()].filter((k) => !this.rows[k].element.hidden);
+    }
+
+    private refilter(): void {
+        const { sweeps } = this;
+        const visible = new Set(this.named().filter((k) => !sweeps?.onlyHits.checked || sweeps.hasHit(k)));
+        for (const [k, { element }] of this.rows.entries())
+            if (element.hidden === visible.has(k)) element.hidden = !visible.has(k);
+        const shown = visible.size;
+        const { length } = this.rows;
+        this.found.textContent =
+            shown === length ? count(length, "mode") : `${shown.toLocaleString("en")} of ${count(length, "mode")}`;
     }
 
     private set(mode: number, value: number): void {
@@ -133,88 +137,43 @@ export class ModesPanel {
         this.app.pose.change(mode, value);
     }
 
-    private row(k: number): Row {
-        const { model } = this.app.shape;
-        const limit = model.limits[k];
-        const name = this.app.shape.modeName(k);
-        const low = model.center[k] - limit;
-        const high = model.center[k] + limit;
-        const slider = h("input", {
-            type: "range",
-            min: low,
-            max: high,
-            step: limit / 500,
-            "aria-label": `${name}, ${this.app.shape.frequency(k) || "weight"}`,
-            oninput: () => this.set(k, slider.valueAsNumber),
-            ondblclick: () => this.set(k, model.center[k]),
-        });
-        const number = h("input", {
-            type: "number",
-            step: "any",
-            "aria-label": `${name}, exact value`,
-            onchange: () => this.set(k, number.valueAsNumber),
-        });
-        const button = h(
-            "button",
-            {
-                type: "button",
-                class: "small",
-                "aria-label": `vibrate ${name}`,
-                title: "vibrate (V)",
-                onclick: () => this.vibrate(k),
-            },
-            "~",
-        );
-        return { slider, number, vibrate: button };
-    }
-
-    private line({ slider, number, vibrate }: Row, k: number): HTMLElement {
+    /** Moves from the centre along a mode, to the side on which its slider is. */
+    private toCollision(mode: number): void {
         const { app } = this;
-        const direction = (): number[] => app.shape.model.limits.map((_, i) => (i === k ? 1 : 0));
-        const name = app.shape.modeName(k);
-        return h(
-            "div",
-            { class: "mode" },
-            h(
-                "div",
-                { class: "mode-name" },
-                h("span", { title: name }, name),
-                h("span", { class: "hertz" }, app.shape.frequency(k)),
-            ),
-            slider,
-            number,
-            vibrate,
-            app.checker &&
-                h(
-                    "button",
-                    {
-                        type: "button",
-                        class: "small",
-                        "aria-label": `${name} to the first self-collision`,
-                        title: "move to the first self-collision",
-                        onclick: () =>
-                            void attempt(app, () => toFirstCollision(app, this.toward(k, direction()), name)),
-                    },
-                    "⇥",
-                ),
-        );
+        const { center } = app.shape.model;
+        const sign = app.pose.q[mode] < center[mode] ? -1 : 1;
+        const direction = center.map((_, k) => (k === mode ? sign : 0));
+        void attempt(app, () => toFirstCollision(app, direction, app.shape.modeName(mode)));
     }
 
-    /** The direction to the side of the centre on which the slider is. */
-    private toward(k: number, direction: number[]): number[] {
-        return this.app.pose.q[k] < this.app.shape.model.center[k] ? direction.map((d) => -d) : direction;
-    }
-
+    /** Updates the rows whose weights have changed. */
     private update(): void {
         const { q } = this.app.pose;
-        this.rows.forEach((row, k) => {
-            row.slider.value = String(q[k]);
-            if (document.activeElement !== row.number)
-                row.number.value = q[k] === 0 ? "0" : digits(q[k]).replaceAll(",", "");
-            row.vibrate.setAttribute(
-                "aria-pressed",
-                String(this.app.motion.name === `vibrating ${this.app.shape.modeName(k)}`),
-            );
-        });
+        for (const [k, row] of this.rows.entries()) if (q[k] !== this.shown[k]) row.show(q[k]);
+        this.shown = q.slice();
+    }
+
+    private updateVibrating(): void {
+        const { name } = this.app.motion;
+        if (name === this.vibrating) return;
+        this.vibrating = name;
+        for (const [k, row] of this.rows.entries()) row.showVibrating(name === vibrationName(this.app, k));
+    }
+
+    private actions(): HTMLElement {
+        const { app } = this;
+        const button = (text: string, title: string, onclick: () => void): HTMLElement =>
+            h("button", { type: "button", title, onclick }, text);
+        return h(
+            "div",
+            { class: "actions" },
+            button("Reset", "reset q to the centre of the certificates (R)", () => this.reset()),
+            button("Random", "show a random q (X)", () => this.random()),
+            app.checker &&
+                button("To a collision", "move along a random direction to the first self-collision (C)", () =>
+                    this.randomCollision(),
+                ),
+            button("Load q…", "paste numbers, or load a text or .npy file (L)", () => loadQ(app)),
+        );
     }
 }

@@ -123,14 +123,19 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         n: () => (collisions ?? contacts)?.next(1),
         N: () => (collisions ?? contacts)?.next(-1),
         f: () => stage?.flyHome(),
+        h: () => stage?.toggleCut(),
         u: () => player.turnUp(),
         p: actions.png,
         g: actions.glb,
         t: actions.theme,
         "?": keys,
         ...(modes && {
-            "[": () => modes.focus(Math.max(0, (modes.focused() ?? 1) - 1)),
-            "]": () => modes.focus(Math.min(shape.model.rank - 1, (modes.focused() ?? -1) + 1)),
+            "[": () => modes.step(-1),
+            "]": () => modes.step(1),
+            "/": () => {
+                layout.select("Modes");
+                modes.find();
+            },
             v: () => modes.vibrate(modes.focused() ?? 0),
             c: checker ? () => modes.randomCollision() : undefined,
             x: () => modes.random(),

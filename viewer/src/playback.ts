@@ -6,9 +6,10 @@ import * as THREE from "three";
 import type { App } from "./app";
 import type { Body } from "./body";
 import { type Contact, Contacts } from "./contacts";
+import { type Ball, ballAround, ballOfPoints, Framing } from "./framing";
 import type { MovingBody } from "./glb";
 import type { PlaybackData } from "./protocol";
-import type { Shape } from "./shape";
+import type { Shape, Vector } from "./shape";
 import type { Source } from "./source";
 
 interface Track {
@@ -35,6 +36,7 @@ interface Colliding {
 export class Playback {
     private bodies: StagedBody[] = [];
     private marked = false;
+    private framing: Framing | null = null;
 
     private constructor(
         private readonly app: App,
@@ -142,14 +144,15 @@ export class Playback {
             center: b.center,
             pairs: b.pairs,
         }));
-        stage.setGround(this.data.ground, this.extent().radius * 4);
+        this.framing = new Framing(this.frames, (frame) => this.ball(frame));
+        const { flight, radius } = this.framing;
+        stage.setGround(this.data.ground, flight.middle.toArray(), 6 * radius + 2 * flight.length, radius / 4);
         this.look(this.given ? up : "z");
     }
 
-    /** Points the camera at all bodies. */
+    /** Points the camera at the bodies. */
     look(up: "y" | "z"): void {
-        const { middle, radius } = this.extent();
-        this.app.stage?.frame(middle, radius, up);
+        if (this.framing) this.app.stage?.frame(this.framing.middle, this.framing.radius, up);
     }
 
     /** Displays one frame as recorded. */
@@ -173,6 +176,9 @@ export class Playback {
             else b.body?.setQ(b.instance, this.row(i, frame));
             b.body?.setMatrix(b.instance, this.matrix(b, frame));
         });
+        const moved = this.framing?.follow(frame);
+        if (moved) app.stage?.follow(moved);
+        app.stage?.endCut();
         this.mark(frame);
         if (this.contacts) app.stage?.curves.show(this.contacts.curves(frame));
         app.frames.invalidate();
@@ -193,18 +199,21 @@ export class Playback {
 
     /** Marks the pair of a frame, and flies to it. */
     choose(contact: Contact, frame: number): void {
-        const corners = contact.bodies.flatMap((body, side) => {
+        const faces = (body: number): Uint32Array => this.shapes.get(this.data.bodies[body].model)!.faces;
+        const triangles = contact.bodies.map((body, side) => {
             const x = this.positions(body, frame)!;
-            const { faces } = this.shapes.get(this.data.bodies[body].model)!;
-            return [0, 1, 2].map((c) => {
-                const v = 3 * faces[3 * contact.pair[side] + c];
-                return new THREE.Vector3(x[v], x[v + 1], x[v + 2]);
+            return [0, 1, 2].map((c): Vector => {
+                const v = 3 * faces(body)[3 * contact.pair[side] + c];
+                return [x[v], x[v + 1], x[v + 2]];
             });
         });
-        const middle = corners.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(corners.length);
-        const reach = Math.max(...corners.map((p) => p.distanceTo(middle)));
+        const surfaces = this.data.bodies.map((_, body) => ({
+            positions: this.positions(body, frame)!,
+            faces: faces(body),
+            own: contact.pair.filter((_, side) => contact.bodies[side] === body),
+        }));
         this.mark(frame, contact);
-        this.app.stage?.flyTo(middle.toArray(), reach);
+        this.app.stage?.flyTo(triangles, surfaces);
         this.app.frames.invalidate();
     }
 
@@ -238,23 +247,16 @@ export class Playback {
             .multiply(new THREE.Matrix4().makeTranslation(-cx, -cy, -cz));
     }
 
-    /** A ball around all bodies at all times, without bodies that fall far below the ground. */
-    private extent(): { middle: [number, number, number]; radius: number } {
-        const box = new THREE.Box3();
-        for (const b of this.bodies) {
-            if (b.positions) {
-                const { min, max } = b.shape.model.box;
-                box.union(new THREE.Box3(new THREE.Vector3(...min), new THREE.Vector3(...max)));
-                continue;
-            }
-            for (let f = 0; f < this.frames; f += Math.max(1, Math.floor(this.frames / 12))) {
-                const at = new THREE.Vector3(...b.shape.middle).applyMatrix4(this.matrix(b, f));
-                const size = b.shape.radius * 0.8;
-                if (this.data.ground !== null && at.z < this.data.ground - 4 * b.shape.radius) continue;
-                box.expandByPoint(at.clone().addScalar(size)).expandByPoint(at.clone().addScalar(-size));
-            }
-        }
-        const middle = box.getCenter(new THREE.Vector3());
-        return { middle: [middle.x, middle.y, middle.z], radius: box.getSize(new THREE.Vector3()).length() / 2 || 1 };
+    /** A ball around all bodies in a frame, without bodies that have fallen far below the ground; null if none is left. */
+    private ball(frame: number): Ball | null {
+        const { ground } = this.data;
+        const balls = this.bodies.map((b, i): Ball | null => {
+            const { middle, radius } = b.shape;
+            const given = this.positions(i, frame);
+            if (given) return ballOfPoints(given);
+            const at = new THREE.Vector3(...middle).applyMatrix4(this.matrix(b, frame));
+            return ground !== null && at.z < ground - 4 * radius ? null : { middle: at, radius };
+        });
+        return ballAround(balls.filter((ball) => ball !== null));
     }
 }

@@ -125,7 +125,7 @@ export class Player {
         const { stage, shape } = app;
         if (!stage) return;
         stage.removeBodies();
-        stage.setGround(null, 1);
+        stage.setGround(null);
         app.body = stage.addBody(shape, 1);
         app.body.setQ(0, app.pose.q);
         stage.frame(shape.middle, shape.radius, this.up);

@@ -26,7 +26,10 @@ export interface Model {
     scales: number[] | null;
     center: number[];
     default_q: number[];
+    /** The weight at which a mode has moved some vertex by half the diagonal of the AABB. */
     limits: number[];
+    /** The ranges of the sliders; reports of earlier versions have none, and their ranges are center +- limits. */
+    ranges?: [number, number][];
     root_radius: number | null;
     global_radius: number | null;
     resolved_up_to: number | null;
@@ -139,6 +142,20 @@ export interface SafeScale {
     searched: number | null;
     /** Whether the search ended before its time limit. */
     complete: boolean;
+}
+
+/** How far the weight of one mode can go in one direction. */
+export interface Sweep {
+    from: number;
+    to: number;
+    /** Proven free from `from` up to this weight; null: it collides at `from`. */
+    first_free: number | null;
+    /** The first weight at which it collides; null: none. */
+    first_hit: number | null;
+    pairs: [number, number][];
+    count: number;
+    /** What is unusual about the result. */
+    note: string | null;
 }
 
 export interface Nodes {

@@ -32,6 +32,20 @@ void main() {
     gl_Position = projectionMatrix * view;
 }`;
 
+/**
+ * What hides the chosen pair is cut away: the parts of the surface that are nearer to the eye than the pair, in the cone from
+ * the eye to a disc around the pair. `cut` has the middle of the disc in the world, and its radius; 0: nothing is cut.
+ */
+const cutAway = /* glsl */ `
+uniform vec4 cut;
+
+bool isCutAway() {
+    if (cut.w <= 0.0) return false;
+    vec3 middle = (viewMatrix * vec4(cut.xyz, 1.0)).xyz;
+    float share = dot(seen, middle) / dot(middle, middle);
+    return share < 1.0 && length(seen - share * middle) < share * cut.w;
+}`;
+
 /** The visible surface. Colliding triangles are striped, so they are distinct without colour vision. */
 export const fragmentShader = /* glsl */ `
 precision highp float;
@@ -53,6 +67,7 @@ uniform vec3 hitDark;
 uniform vec3 chosen;
 uniform float stripe;
 out vec4 colour;
+${cutAway}
 
 float mark() {
     int at = instance * triangles + triangle;
@@ -72,6 +87,7 @@ void main() {
         own = texelFetch(palette, ivec2(int(tint + 0.5), 0), 0).rgb;
     }
     float kind = plain ? 0.0 : mark();
+    if (!plain && kind < 1.5 && isCutAway()) discard;
     if (kind > 0.5) {
         vec3 strong = kind > 1.5 ? chosen : hit;
         bool dark = fract((gl_FragCoord.x + gl_FragCoord.y) / stripe) < 0.33;

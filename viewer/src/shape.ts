@@ -2,6 +2,8 @@
 import type { Model } from "./protocol";
 import type { Source } from "./source";
 
+export type Vector = [number, number, number];
+
 /** Larger than the rounding error of |z|, here and in the certificates. */
 const ROUNDING = 1 + 1e-12;
 
@@ -37,12 +39,12 @@ export class Shape {
         return Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2 || 1;
     }
 
-    get middle(): [number, number, number] {
+    get middle(): Vector {
         const { min, max } = this.model.box;
         return [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
     }
 
-    vertex(v: number, q: ArrayLike<number>): [number, number, number] {
+    vertex(v: number, q: ArrayLike<number>): Vector {
         const { positions, modes } = this;
         let x = positions[3 * v];
         let y = positions[3 * v + 1];
@@ -69,12 +71,13 @@ export class Shape {
     }
 
     /** The middle of triangles, and the largest distance of their corners from it. */
-    around(triangles: number[], q: ArrayLike<number>): { middle: [number, number, number]; reach: number } {
-        const corners = triangles.flatMap((t) => [0, 1, 2].map((c) => this.vertex(this.faces[3 * t + c], q)));
-        const middle: [number, number, number] = [0, 0, 0];
-        for (const corner of corners) for (let c = 0; c < 3; c++) middle[c] += corner[c] / corners.length;
-        const reach = Math.max(...corners.map((x) => Math.hypot(...x.map((v, c) => v - middle[c]))));
-        return { middle, reach };
+    around(triangles: number[], q: ArrayLike<number>): { middle: Vector; reach: number } {
+        return around(triangles.map((t) => this.corners(t, q)));
+    }
+
+    /** The corners of a triangle. */
+    corners(t: number, q: ArrayLike<number>): Vector[] {
+        return [0, 1, 2].map((c) => this.vertex(this.faces[3 * t + c], q));
     }
 
     /** |z|; null if the metric is not diagonal. */
@@ -99,9 +102,29 @@ export class Shape {
         return this.model.mode_names?.[k] || `mode ${k + 1}`;
     }
 
+    /** The range of a mode's slider: 0 to 1 for morph targets. */
+    range(k: number): readonly [number, number] {
+        const { center, limits, ranges } = this.model;
+        return ranges?.[k] ?? [center[k] - limits[k], center[k] + limits[k]];
+    }
+
+    /** Whether the range of a mode begins at its centre, as that of a morph target. */
+    isOneSided(k: number): boolean {
+        return this.range(k).includes(this.model.center[k]);
+    }
+
     frequency(k: number): string {
         const hertz = this.model.frequencies?.[k];
         if (hertz === null || hertz === undefined) return "";
         return hertz >= 1000 ? `${(hertz / 1000).toPrecision(3)} kHz` : `${hertz.toPrecision(3)} Hz`;
     }
+}
+
+/** The middle of triangles, given by their corners, and the largest distance of a corner from it. */
+export function around(triangles: Vector[][]): { middle: Vector; reach: number } {
+    const corners = triangles.flat();
+    const middle: Vector = [0, 0, 0];
+    for (const corner of corners) for (let c = 0; c < 3; c++) middle[c] += corner[c] / corners.length;
+    const reach = Math.max(...corners.map((x) => Math.hypot(...x.map((v, c) => v - middle[c]))));
+    return { middle, reach };
 }

@@ -13,7 +13,7 @@ export interface Source {
     readonly scene: Scene;
     array(name: string): Promise<ArrayBuffer>;
     /** Sends a request to the server; a report has no server, and throws. */
-    ask<T>(path: string, body?: unknown): Promise<T>;
+    ask<T>(path: string, body?: unknown, signal?: AbortSignal): Promise<T>;
     bytes(path: string, body?: unknown): Promise<ArrayBuffer>;
 }
 
@@ -68,8 +68,8 @@ class LiveSource implements Source {
         return this.bytes(`/api/array/${encodeURIComponent(name)}`);
     }
 
-    async ask<T>(path: string, body?: unknown): Promise<T> {
-        const response = await this.fetch(path, body);
+    async ask<T>(path: string, body?: unknown, signal?: AbortSignal): Promise<T> {
+        const response = await this.fetch(path, body, signal);
         return (await response.json()) as T;
     }
 
@@ -77,9 +77,9 @@ class LiveSource implements Source {
         return (await this.fetch(path, body)).arrayBuffer();
     }
 
-    private async fetch(path: string, body?: unknown): Promise<Response> {
+    private async fetch(path: string, body?: unknown, signal?: AbortSignal): Promise<Response> {
         const headers: Record<string, string> = { "X-Sscc-Token": this.token };
-        const init: RequestInit = { headers, cache: "no-store" };
+        const init: RequestInit = { headers, cache: "no-store", signal: signal ?? null };
         if (body !== undefined) {
             headers["Content-Type"] = "application/json";
             init.method = "POST";
@@ -88,7 +88,8 @@ class LiveSource implements Source {
         let response: Response;
         try {
             response = await fetch(path, init);
-        } catch {
+        } catch (error) {
+            if (signal?.aborted) throw error;
             throw new ConnectionError(
                 "The server does not answer: is 'sscc view' still running? Start it again and open its new address.",
             );

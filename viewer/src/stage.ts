@@ -4,11 +4,25 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Body } from "./body";
 import { Curves } from "./curves";
 import type { Frames } from "./frames";
-import type { Shape } from "./shape";
+import { around, type Shape, type Vector } from "./shape";
 import { colours } from "./theme";
+import { bestView, type Surface } from "./view-of-pair";
 
 /** Duration of a flight of the camera (ms). */
 const FLIGHT = 450;
+
+/** Largest number of cells along a side of the ground. */
+const MAX_CELLS = 100;
+
+/** The picture of a pair shows this multiple of its size. */
+const FRAME_REACH = 5;
+
+/** The smallest distance to a pair, as a share of the radius of the whole. */
+const CLOSEST = 0.06;
+
+/** What hides a disc around a pair is cut away: its radius as a multiple of the pair's, and at least as a share of the distance. */
+const CUT_REACH = 2;
+const CUT_SHARE = 0.08;
 
 export class Stage {
     readonly scene = new THREE.Scene();
@@ -20,6 +34,12 @@ export class Stage {
     private home = { middle: new THREE.Vector3(), radius: 1 };
     private ground: THREE.GridHelper | null = null;
     private boxes: THREE.LineSegments | null = null;
+    /** The disc around the chosen pair: its middle and radius; radius 0: none. */
+    private readonly cut = new THREE.Vector4();
+    private isCutting = true;
+    /** How far `follow` has moved the view in all. */
+    private readonly followed = new THREE.Vector3();
+    private flights = 0;
 
     /** Throws if WebGL 2 is missing. */
     constructor(
@@ -85,30 +105,62 @@ export class Stage {
         this.frames.invalidate();
     }
 
-    /** Flies to a point of the shape, to a distance that suits the size of the part. */
-    flyTo(middle: number[], reach: number): void {
-        const target = new THREE.Vector3(...middle);
-        const away = this.camera.position.clone().sub(this.controls.target).normalize();
+    /** The unit vector from the middle of the picture to the eye. */
+    get toEye(): Vector {
+        return this.camera.position.clone().sub(this.controls.target).normalize().toArray();
+    }
+
+    /** Flies to a pair of triangles, given by their corners, so that it is in front; cuts away what hides it. */
+    flyTo(triangles: Vector[][], surfaces: Surface[]): void {
+        const { middle, reach } = around(triangles);
+        const normals = triangles.map(normal);
+        const away = bestView(surfaces, middle, normals, this.toEye, this.camera.up.toArray());
+        const closest = this.home.radius * CLOSEST;
         const distance = Math.min(
-            Math.max(this.distance(reach * 8), this.home.radius * 0.2),
+            Math.max(this.distance(reach * FRAME_REACH), closest),
             this.distance(this.home.radius),
         );
-        this.fly(target, target.clone().addScaledVector(away, distance));
+        this.cut.set(...middle, Math.max(reach * CUT_REACH, distance * CUT_SHARE));
+        this.applyCut(true);
+        this.fly(new THREE.Vector3(...middle), new THREE.Vector3(...away), distance);
+    }
+
+    /** Cuts nothing away. */
+    endCut(): void {
+        if (this.cut.w === 0) return;
+        this.cut.w = 0;
+        this.applyCut(true);
+    }
+
+    /** Shows what is cut away, or hides it again. */
+    toggleCut(): void {
+        this.applyCut(!this.isCutting);
+    }
+
+    /** Moves camera and view by a vector. */
+    follow(by: Vector): void {
+        const shift = new THREE.Vector3(...by);
+        for (const point of [this.camera.position, this.controls.target, this.home.middle, this.followed])
+            point.add(shift);
+        this.controls.update();
+        this.frames.invalidate();
     }
 
     flyHome(): void {
-        const away = this.camera.position.clone().sub(this.controls.target).normalize();
         const { middle, radius } = this.home;
-        this.fly(middle, middle.clone().addScaledVector(away, this.distance(radius)));
+        this.endCut();
+        this.fly(middle.clone(), new THREE.Vector3(...this.toEye), this.distance(radius));
     }
 
-    setGround(height: number | null, size: number): void {
+    /** Shows a grid at a height, about the point below `middle`; null: none. `cell`: the size of its cells, at least. */
+    setGround(height: number | null, middle: Vector = [0, 0, 0], size = 1, cell = 1): void {
         if (this.ground) this.scene.remove(this.ground);
         this.ground = null;
         if (height !== null) {
-            this.ground = new THREE.GridHelper(size, 24, 0xffffff, 0xffffff);
+            const cells = 2 * Math.ceil(Math.min(size / cell, MAX_CELLS) / 2);
+            this.ground = new THREE.GridHelper(size, cells, 0xffffff, 0xffffff);
             this.ground.rotation.x = Math.PI / 2;
-            this.ground.position.z = height;
+            this.ground.position.set(middle[0], middle[1], height);
             this.scene.add(this.ground);
         }
         this.recolour();
@@ -171,6 +223,7 @@ export class Stage {
         return controls;
     }
 
+    /** The distance from which a ball fills the picture; adapts the near and far planes to it. */
     private distance(radius: number): number {
         const narrow = Math.min(1, this.camera.aspect);
         const distance = (radius * 1.08) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
@@ -180,20 +233,37 @@ export class Stage {
         return distance;
     }
 
-    private fly(target: THREE.Vector3, position: THREE.Vector3): void {
-        const from = { target: this.controls.target.clone(), position: this.camera.position.clone() };
+    /** Flies until the camera looks at the target from this direction and distance. */
+    private fly(target: THREE.Vector3, away: THREE.Vector3, distance: number): void {
+        const from = this.controls.target.clone();
+        const offset = this.camera.position.clone().sub(from);
+        const [farther, begun] = [offset.length(), this.followed.clone()];
+        const turn = new THREE.Quaternion().setFromUnitVectors(offset.clone().normalize(), away);
         const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+        const flight = ++this.flights;
         let begin: number | null = null;
         this.frames.run((now) => {
+            if (flight !== this.flights) return false;
             begin ??= now;
             const t = still ? 1 : Math.min(1, (now - begin) / FLIGHT);
             const s = t * t * (3 - 2 * t);
-            this.controls.target.lerpVectors(from.target, target, s);
-            this.camera.position.lerpVectors(from.position, position, s);
+            const direction = offset.clone().normalize().applyQuaternion(new THREE.Quaternion().slerp(turn, s));
+            // The body may move meanwhile.
+            const moved = this.followed.clone().sub(begun);
+            this.controls.target.lerpVectors(from, target, s).add(moved);
+            this.camera.position
+                .copy(this.controls.target)
+                .addScaledVector(direction, farther * (distance / farther) ** s);
             this.controls.update();
             this.frames.invalidate();
             return t < 1;
         });
+    }
+
+    private applyCut(isCutting: boolean): void {
+        this.isCutting = isCutting;
+        for (const body of this.bodies) body.setCut(isCutting ? this.cut : new THREE.Vector4());
+        this.frames.invalidate();
     }
 
     private resize(): void {
@@ -231,6 +301,12 @@ export class Stage {
         this.controls.update();
         this.frames.invalidate();
     }
+}
+
+/** The normal of a triangle; its length is twice the area. */
+function normal(corners: Vector[]): Vector {
+    const [a, b, c] = corners.map((corner) => new THREE.Vector3(...corner));
+    return b.sub(a).cross(c.sub(a)).toArray();
 }
 
 /** The twelve edges of each AABB. */

@@ -7,6 +7,8 @@ const HEIGHT = 108;
 
 export function thumbnails(app: App): HTMLElement {
     const { extremal } = app.shape.model;
+    // "mode 3 +", with the name of the mode.
+    const named = (text: string): string => text.replace(/^mode (\d+)/, (_, k) => app.shape.modeName(Number(k) - 1));
     const pictures = extremal.map(({ name, q }) => {
         const canvas = h("canvas", { width: 2 * WIDTH, height: 2 * HEIGHT, "aria-hidden": "true" });
         const show = (): void => {
@@ -17,7 +19,7 @@ export function thumbnails(app: App): HTMLElement {
             "button",
             { type: "button", class: "thumbnail", onclick: show },
             canvas,
-            h("span", {}, name),
+            h("span", {}, named(name)),
         );
         return { button, canvas, q };
     });

@@ -61,8 +61,8 @@ function tone(seconds, rate = 8000) {
 const FRAMES = 60;
 const BODIES = 3;
 
-/** A report; `change` may modify its scene. */
-export function report({ sound = false, playback = true, change = () => {} } = {}) {
+/** A report; `change` may modify its scene and arrays. With `flight` the bodies fly as many times as far. */
+export function report({ sound = false, playback = true, flight = 1, change = () => {} } = {}) {
     const { positions, faces, modes } = tube();
     const times = Array.from({ length: FRAMES }, (_, t) => t / 30);
     const arrays = { p: base64(positions), f: base64(faces), u: base64(modes) };
@@ -76,7 +76,8 @@ export function report({ sound = false, playback = true, change = () => {} } = {
         times.forEach((time, t) => {
             q.push(0.4 * Math.sin(6 * time + b), 0, 0.2 * Math.cos(5 * time), 0);
             const turn = time * (0.4 + 0.2 * b);
-            rigid.push(1.2 * (b - 1), 0, 1.6 - 0.35 * time * time, 0, 0, Math.sin(turn / 2), Math.cos(turn / 2));
+            const height = 1.6 - 0.35 * flight * time * time;
+            rigid.push(1.2 * (b - 1) + (flight - 1) * time, 0, height, 0, 0, Math.sin(turn / 2), Math.cos(turn / 2));
             pairs.push(b === 1 && t >= 20 && t < 30 ? t - 15 : 0);
         });
         arrays[`q${b}`] = base64(new Float32Array(q));
@@ -165,7 +166,7 @@ export function report({ sound = false, playback = true, change = () => {} } = {
             ["frames", String(FRAMES)],
         ],
     };
-    change(scene);
+    change(scene, arrays);
     return { scene, arrays };
 }
 

@@ -76,6 +76,9 @@ export const white = (picture) => count(picture, (r, g, b) => Math.min(r, g, b) 
 /** Number of pixels in the yellow of deep nodes. */
 export const yellow = (picture) => count(picture, (r, g, b) => r > 1.3 * b && r < 1.5 * g);
 
+/** Number of pixels in the yellow of the chosen pair, which nothing else has. */
+export const yellowMarks = (picture) => count(picture, (r, g, b) => r > 120 && r < 1.5 * g && g > 2.5 * b);
+
 /** Waits until the next frame is drawn. */
 export function settled(page) {
     return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));

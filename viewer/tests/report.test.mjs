@@ -164,7 +164,168 @@ function npy(values, shape) {
     return Buffer.concat([head, Buffer.from(header, "latin1"), Buffer.from(new Float64Array(values).buffer)]);
 }
 
+/** Gives the model morph targets with these names, which move nothing but the first ones. */
+const targets = (names) => (scene, arrays) => {
+    const [model] = scene.models;
+    const { rank } = model;
+    const none = (value) => Array.from({ length: names.length - rank }, () => value);
+    const zeros = Buffer.alloc(4 * 3 * model.vertices * (names.length - rank));
+    arrays.u = Buffer.concat([Buffer.from(arrays.u, "base64"), zeros]).toString("base64");
+    Object.assign(model, {
+        rank: names.length,
+        mode_names: names,
+        frequencies: null,
+        ranges: names.map(() => [0, 1]),
+        extremal: [],
+    });
+    for (const key of ["center", "default_q"]) model[key].push(...none(0));
+    for (const key of ["scales", "limits"]) model[key].push(...none(1));
+};
+
+describe("morph targets", () => {
+    const long = "the_corner_of_the_mouth_is_pulled_up_and_back_towards_the_ear_by_the_zygomaticus_major_on_the_left";
+    const names = ["jawOpen", long, "mouthSmile_L", "mouthSmile_R"];
+    const many = [...names, ...Array.from({ length: 596 }, (_, k) => `corrective_${k}_of_jawOpen`)];
+    const shown = (page) => page.locator(".mode:visible .mode-name").allInnerTexts();
+
+    test("have whole names, and sliders from 0 to 1", async () => {
+        for (const width of [900, 390]) {
+            await look({ playback: false, width, change: targets(names) }, async (page) => {
+                assert.deepEqual(await shown(page), names);
+                const cut = await page.locator(".mode-name").evaluateAll((elements) =>
+                    elements.filter((e) => {
+                        const [box, row] = [e.getBoundingClientRect(), e.closest(".mode").getBoundingClientRect()];
+                        return e.scrollWidth > e.clientWidth + 1 || box.bottom > row.bottom || box.right > row.right;
+                    }),
+                );
+                assert.equal(cut.length, 0);
+                const slider = page.locator('.mode input[type="range"]').first();
+                assert.deepEqual([await slider.getAttribute("min"), await slider.getAttribute("max")], ["0", "1"]);
+                assert.equal(await slider.inputValue(), "0");
+                await slider.press("End");
+                assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), 1);
+            });
+        }
+    });
+
+    test("have weights beyond the slider by typing", () =>
+        look({ playback: false, change: targets(names) }, async (page) => {
+            const row = page.locator(".mode").first();
+            const number = row.locator('input[type="number"]');
+            const q = () => page.evaluate(() => globalThis.sscc.pose.q[0]);
+            for (const weight of [1.5, -0.25]) {
+                await number.fill(String(weight));
+                await number.press("Enter");
+                assert.equal(await q(), weight);
+                assert.equal(await row.locator('input[type="range"]').inputValue(), weight > 1 ? "1" : "0");
+                assert.match(await row.getAttribute("class"), /beyond/);
+                await number.blur();
+                assert.equal(Number(await number.inputValue()), weight);
+            }
+            await row.locator('input[type="range"]').fill("0.5");
+            assert.equal(await q(), 0.5);
+            assert.doesNotMatch(await row.getAttribute("class"), /beyond/);
+        }));
+
+    test("vibrate within their range", () =>
+        look({ playback: false, change: targets(names) }, async (page) => {
+            const seen = await page.evaluate(async () => {
+                const { pose } = globalThis.sscc;
+                document.querySelector(".mode button").click();
+                const seen = [];
+                const start = performance.now();
+                while (performance.now() - start < 2500) {
+                    await new Promise((done) => requestAnimationFrame(done));
+                    seen.push(pose.q[0]);
+                }
+                return [Math.min(...seen), Math.max(...seen)];
+            });
+            assert.ok(seen[0] >= 0 && seen[0] < 0.1 && seen[1] > 0.9 && seen[1] <= 1, seen.join());
+        }));
+
+    test("are filtered by the words of their names, also hundreds", () =>
+        look({ playback: false, change: targets(many) }, async (page) => {
+            const found = page.locator(".found");
+            assert.equal(await found.innerText(), "600 modes");
+            await page.keyboard.press("/");
+            await page.keyboard.type("SMILE mouth");
+            assert.deepEqual(await shown(page), ["mouthSmile_L", "mouthSmile_R"]);
+            assert.equal(await found.innerText(), "2 of 600 modes");
+            // The keys for the next and the previous slider skip hidden ones.
+            await page.locator(".hint").first().click();
+            for (const [key, mode] of [
+                ["]", 2],
+                ["]", 3],
+                ["]", 3],
+                ["[", 2],
+            ]) {
+                await page.keyboard.press(key);
+                const focused = await page.evaluate(() =>
+                    [...document.querySelectorAll(".mode")].indexOf(document.activeElement.closest(".mode")),
+                );
+                assert.equal(focused, mode, key);
+            }
+            await page.getByRole("searchbox", { name: "filter by name" }).fill("nothing has this name");
+            assert.deepEqual(await shown(page), []);
+            await page.getByRole("searchbox", { name: "filter by name" }).fill("");
+            assert.equal(await page.locator(".mode:not([hidden])").count(), 600);
+        }));
+
+    test("hundreds: a change of one weight updates one row", () =>
+        look({ playback: false, change: targets(many) }, async (page) => {
+            const writes = await page.evaluate(() => {
+                const { prototype } = HTMLInputElement;
+                const own = Object.getOwnPropertyDescriptor(prototype, "value");
+                let writes = 0;
+                Object.defineProperty(prototype, "value", {
+                    ...own,
+                    set(value) {
+                        writes++;
+                        own.set.call(this, value);
+                    },
+                });
+                globalThis.sscc.pose.change(300, 0.5);
+                return writes;
+            });
+            assert.ok(writes >= 2 && writes <= 4, `${writes} writes`);
+            assert.equal(await page.locator('.mode input[type="number"]').nth(300).inputValue(), "0.5000");
+        }));
+});
+
 describe("playback", () => {
+    test("frames the bodies, not their flight, and follows them", () =>
+        look({ flight: 30, change: (scene) => (scene.playback.ground = null) }, async (page) => {
+            for (const frame of [0, 30, 59, 10]) {
+                await page.getByRole("slider", { name: "frame" }).fill(String(frame));
+                await settled(page);
+                const picture = await pixels(page);
+                const box = drawnBox(picture);
+                const width = box.right - box.left;
+                assert.ok(width > 0.3 * picture.width, `frame ${frame}: ${width} of ${picture.width} pixels`);
+                assert.ok(box.left > 0 && box.right < picture.width - 1, `frame ${frame}`);
+                assert.ok(box.top > 0 && box.bottom < picture.height - 1, `frame ${frame}`);
+            }
+            // A view that a person has moved stays moved, and follows.
+            const place = () =>
+                page.evaluate(() => {
+                    const mesh = globalThis.sscc.stage.bodies[0].group.children[0];
+                    const matrix = globalThis.sscc.stage.camera.matrix.clone();
+                    mesh.getMatrixAt(1, matrix);
+                    const body = matrix.elements.slice(12, 15);
+                    return globalThis.sscc.stage.camera.position.toArray().map((x, i) => x - body[i]);
+                });
+            await page.focus(".stage canvas");
+            await page.keyboard.press("-");
+            await page.keyboard.press("ArrowLeft");
+            await settled(page);
+            const before = await place();
+            await page.getByRole("slider", { name: "frame" }).fill("59");
+            await settled(page);
+            const after = await place();
+            const moved = Math.hypot(...after.map((x, i) => x - before[i]));
+            assert.ok(moved < 0.3 * Math.hypot(...before), `${moved}`);
+        }));
+
     test("plays by a clock, marks self-contacts, and shows the recorded answers", () =>
         look({}, async (page) => {
             const slider = page.getByRole("slider", { name: "frame" });

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
+use sscc_sim::default_ranges;
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
@@ -27,7 +28,10 @@ pub(crate) struct ReducedFacts {
     scales: Option<Vec<f64>>,
     center: Vec<f64>,
     default_q: Vec<f64>,
+    /// The weight of each mode at which it has moved some vertex by half the diagonal of the AABB.
     limits: Vec<f64>,
+    /// The ranges of the sliders, and of sweeps.
+    ranges: Vec<[f64; 2]>,
     root_radius: f64,
     global_radius: f64,
     /// The limit of the pair tree: below it the pair tree contains every node pair that can collide. `None` if the pair
@@ -41,22 +45,18 @@ pub(crate) struct ReducedFacts {
 }
 
 impl ReducedFacts {
-    /// `diagonal`: length of the diagonal of the AABB at rest.
-    pub(crate) fn new(
-        model: &ReducedModel,
-        certificates: &Certificates,
-        details: ModelDetails,
-        diagonal: f64,
-    ) -> Self {
+    pub(crate) fn new(model: &ReducedModel, certificates: &Certificates, details: ModelDetails) -> Self {
         let metric = certificates.metric();
+        let center = certificates.center();
         Self {
             rank: model.rank(),
             frequencies: details.frequencies,
+            limits: (0..model.rank()).map(|k| model.weight_limit(k)).collect(),
+            ranges: default_ranges(model, &details.mode_names, center),
             mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
             scales: metric.dense_factor().is_none().then(|| metric.scales()),
-            center: certificates.center().to_vec(),
-            default_q: details.default_q.unwrap_or_else(|| certificates.center().to_vec()),
-            limits: limits(model, diagonal),
+            center: center.to_vec(),
+            default_q: details.default_q.unwrap_or_else(|| center.to_vec()),
             root_radius: certificates.root_radius(),
             global_radius: certificates.global_radius(),
             resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
@@ -73,18 +73,6 @@ impl ReducedFacts {
         let farthest = self.limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * MAX_SLIDER_SCALE;
         farthest <= f64::from(f32::MAX)
     }
-}
-
-/// For each mode the range of its slider. At its end the vertex that moves farthest has moved by half the diagonal of
-/// the AABB. It is 1 for a mode without displacement.
-fn limits(model: &ReducedModel, diagonal: f64) -> Vec<f64> {
-    let mut fastest = vec![0.0_f64; model.rank()];
-    for (i, u) in model.modes().displacements().iter().enumerate() {
-        let fastest = &mut fastest[i % model.rank()];
-        *fastest = fastest.max(u.length());
-    }
-    let limit = |fastest: f64| 0.5 * diagonal / fastest;
-    fastest.into_iter().map(limit).map(|x| if x.is_finite() && x > 0.0 { x } else { 1.0 }).collect()
 }
 
 /// The page may show displacements up to this multiple of its sliders' range.

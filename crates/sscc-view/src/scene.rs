@@ -90,7 +90,7 @@ impl ModelScene {
         certificates.check_model(model)?;
         let rest = model.mesh().rest_positions();
         let (min, max) = bounds(rest);
-        let reduced = ReducedFacts::new(model, certificates, details, (max - min).length());
+        let reduced = ReducedFacts::new(model, certificates, details);
         let modes = model.modes().displacements();
         if !rest.iter().chain(modes).all(|v| fits(*v)) || !reduced.fits() {
             return Err(ViewError::Range);

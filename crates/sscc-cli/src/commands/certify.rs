@@ -1,6 +1,6 @@
 //! `sscc certify`: computes the certificates of a model, and writes them to a file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Context;
@@ -43,17 +43,18 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     if let Some(path) = &args.picture {
         load::check_output(path, ".png", &inputs)?;
     }
-    let model = load::model(&args.model)?.model;
-    let options = load::request(&args.model, &args.options).options(&model)?;
+    let loaded = load::model(&args.model)?;
+    let model = &loaded.model;
+    let options = load::request(&args.model, &args.options).options(model)?;
     let start = Instant::now();
-    let certificates = load::certify(&model, &args.model.path, &options)?;
+    let certificates = load::certify(model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();
     let bytes = certificates_to_bytes(&certificates).context("certificates")?;
-    let picture = args
-        .picture
-        .as_ref()
-        .map(|path| Picture::draw(&model, &certificates).with_context(|| path.display().to_string()));
-    let picture = picture.transpose()?;
+    let draw = |path: &PathBuf| {
+        let drawn = Picture::draw(model, &certificates, &loaded.mode_names);
+        drawn.with_context(|| path.display().to_string())
+    };
+    let picture = args.picture.as_ref().map(draw).transpose()?;
     interrupt::check()?;
     if let (Some(path), Some(picture)) = (&args.picture, &picture) {
         write_whole(path, &picture.png)?;
@@ -75,7 +76,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
-    let zero_radius = ZeroRadius::find(&model, &certificates, &options, &Interrupt)?;
+    let zero_radius = ZeroRadius::find(model, &certificates, &options, &Interrupt)?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;

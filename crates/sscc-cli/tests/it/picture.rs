@@ -8,6 +8,9 @@ use crate::common::{files, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 
+/// Height of a line of text (pixels).
+const LINE: usize = 20;
+
 /// Returns width, height and RGB pixels of a PNG file.
 fn decode(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
     let mut reader = png::Decoder::new(std::io::Cursor::new(fs::read(path).unwrap())).read_info().unwrap();
@@ -26,14 +29,28 @@ fn views_in_both_directions_of_each_mode() {
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
     assert!(run.stdout.ends_with("picture        x.png\n"), "{}", run.stdout);
     let (width, height, pixels) = decode(&folder.join("x.png"));
-    // The shape at rest and two modes; the longer side of a view has 400 pixels.
-    let [w, h] = [width / 3, height / 2];
-    assert_eq!((3 * w, 2 * h, w.max(h)), (width, height, 400));
+    // The shape at rest and two modes; the longer side of a view has 400 pixels. Names are above the views, weights below
+    // each, and the radius is below all.
+    let [w, h] = [width / 3, (height - 4 * LINE) / 2];
+    assert_eq!((3 * w, 2 * h + 4 * LINE, w.max(h)), (width, height, 400));
     let view = |left: usize, top: usize| -> Vec<[u8; 3]> {
         (top..top + h).flat_map(|y| pixels[y * width + left..][..w].to_vec()).collect()
     };
-    let rest = view(0, h / 2);
-    let along = [(w, 0), (w, h), (2 * w, 0), (2 * w, h)].map(|(left, top)| view(left, top));
+    let rest = view(0, LINE + (h + LINE) / 2);
+    let [upper, lower] = [LINE, h + 2 * LINE];
+    let along = [(w, upper), (w, lower), (2 * w, upper), (2 * w, lower)].map(|(left, top)| view(left, top));
+    let label = |left: usize, top: usize| -> Vec<[u8; 3]> {
+        (top..top + LINE).flat_map(|y| pixels[y * width + left..][..w].to_vec()).collect()
+    };
+    let labels = [(w, 0), (2 * w, 0), (w, h + LINE), (w, 2 * h + 2 * LINE), (0, LINE + (h + LINE) / 2 + h)]
+        .map(|(left, top)| label(left, top));
+    for text in &labels {
+        let ink = text.iter().filter(|pixel| pixel.iter().all(|byte| *byte < 100)).count();
+        assert!((50..text.len() / 4).contains(&ink), "{ink} pixels of ink");
+    }
+    assert_eq!(labels.iter().collect::<BTreeSet<_>>().len(), labels.len(), "all labels differ");
+    // No label beside the names of modes.
+    assert!(label(0, 0).iter().all(|pixel| *pixel == pixels[0]));
     for shown in along.iter().chain([&rest]) {
         let colors: BTreeSet<[u8; 3]> = shown.iter().copied().collect();
         assert!(colors.len() > 5, "{} colours", colors.len());
@@ -67,7 +84,7 @@ fn without_a_finite_radius_the_picture_shows_the_centre() {
             format!("note: the root radius is {radius}: the picture shows the shape at the centre alone\n");
         assert!(run.stderr.ends_with(&note), "{}", run.stderr);
         let (width, height, pixels) = decode(&folder.join("x.png"));
-        assert_eq!(width.max(height), 400);
+        assert_eq!(width.max(height - LINE), 400);
         assert!(pixels.iter().any(|pixel| *pixel != pixels[0]));
     }
 }

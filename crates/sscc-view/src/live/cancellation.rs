@@ -4,7 +4,7 @@ use sscc::{Error, Progress};
 
 use crate::ViewError;
 
-/// Time limit of a search along a direction (s). The search then ends with its result until then.
+/// Time limit of a search along a direction (s), which then ends with its result until then, and of a sweep, which has none.
 pub(super) const MAX_SECONDS: u64 = 10;
 
 /// Cancels work at its time limit, if its client has left or has sent a newer request, or if the server ends. Each of

@@ -5,6 +5,7 @@ mod cancellation;
 mod check;
 mod collision;
 mod nodes;
+mod sweep;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -21,6 +22,7 @@ pub use animation::AnimationRequest;
 pub use check::{CheckAnswer, CheckRequest};
 pub use collision::{DirectionAnswer, DirectionRequest};
 pub use nodes::{BoxesAnswer, BoxesRequest, NodesAnswer};
+pub use sweep::{SweepAnswer, SweepRequest};
 
 /// A live page of one model, for any number of threads. Short requests wait only for short ones, long requests only for
 /// long ones.
@@ -32,9 +34,14 @@ pub struct Live<'a> {
     checks: Mutex<Query<'a>>,
     long: Mutex<Long<'a>>,
     progress: &'a dyn Progress,
-    /// The number of the newest search along a direction; older searches are cancelled.
-    latest: AtomicU64,
+    sweeps: Mutex<Query<'a>>,
+    searches: Newest,
+    newest_sweep: Newest,
 }
+
+/// The number of the newest request of a kind; older ones are cancelled.
+#[derive(Default)]
+struct Newest(AtomicU64);
 
 /// Queries for requests that may take seconds.
 struct Long<'a> {
@@ -71,8 +78,20 @@ impl<'a> Live<'a> {
         arrays.add_u32(ORDER, certificates.hierarchy().order().iter().copied());
         let query = Query::new(model, certificates)?.cancelled_by(progress);
         let long = Mutex::new(Long { certified: query.clone(), traditional: None });
-        let (checks, latest) = (Mutex::new(query), AtomicU64::new(0));
-        Ok(Self { model, certificates, scene, arrays, checks, long, progress, latest })
+        let [checks, sweeps] = [query.clone(), query].map(Mutex::new);
+        let [searches, newest_sweep] = [Newest::default(), Newest::default()];
+        Ok(Self {
+            model,
+            certificates,
+            scene,
+            arrays,
+            checks,
+            long,
+            progress,
+            sweeps,
+            searches,
+            newest_sweep,
+        })
     }
 
     /// The scene.
@@ -122,14 +141,43 @@ impl<'a> Live<'a> {
         request: &DirectionRequest,
         is_gone: &(dyn Fn() -> bool + Sync),
     ) -> Result<DirectionAnswer, ViewError> {
-        let number = self.latest.fetch_add(1, Ordering::Relaxed) + 1;
-        let long = lock(&self.long);
-        let is_wanted = || self.latest.load(Ordering::Relaxed) == number && !is_gone();
+        self.newest(&self.searches, &self.long, is_gone, |long, cancellation| {
+            let query = long.certified.clone().cancelled_by(cancellation);
+            collision::along(query, self.model, self.certificates, request, cancellation)
+        })
+    }
+
+    /// Returns how far the weight of one mode can go upwards and downwards until the shape touches itself. The sweep ends as
+    /// [`Live::safe_scale`], but without a result; searches along directions do not end it.
+    ///
+    /// # Errors
+    /// If q is not a configuration of the model, the mode does not exist, or the range is empty; if the sweep ended
+    /// before its result.
+    pub fn sweep(
+        &self,
+        request: &SweepRequest,
+        is_gone: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<SweepAnswer>, ViewError> {
+        self.newest(&self.newest_sweep, &self.sweeps, is_gone, |query, cancellation| {
+            sweep::sweep(query, request, cancellation)
+        })
+    }
+
+    /// Does work that ends early at the time limit, after a newer request of its kind, and when the client has left.
+    fn newest<Q, T>(
+        &self,
+        Newest(newest): &Newest,
+        queries: &Mutex<Q>,
+        is_gone: &(dyn Fn() -> bool + Sync),
+        work: impl FnOnce(&Q, &Cancellation<'_>) -> Result<T, ViewError>,
+    ) -> Result<T, ViewError> {
+        let number = newest.fetch_add(1, Ordering::Relaxed) + 1;
+        let queries = lock(queries);
+        let is_wanted = || newest.load(Ordering::Relaxed) == number && !is_gone();
         let end = Instant::now() + Duration::from_secs(MAX_SECONDS);
         let cancellation =
             Cancellation { server: self.progress, is_over: &|| Instant::now() >= end, is_wanted: &is_wanted };
-        let query = long.certified.clone().cancelled_by(&cancellation);
-        collision::along(query, self.model, self.certificates, request, &cancellation)
+        work(&queries, &cancellation)
     }
 
     /// Returns the hierarchy.

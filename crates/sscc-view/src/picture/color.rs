@@ -5,6 +5,9 @@ use glam::{DVec3, Vec3};
 /// The background (sRGB).
 pub const BACKGROUND: [u8; 3] = [246, 246, 244];
 
+/// The colour of text (sRGB).
+pub const INK: [u8; 3] = [40, 46, 54];
+
 /// Colours of vertices with the smallest and the largest displacement (sRGB).
 const STILL_COLOR: [u8; 3] = [176, 186, 198];
 const MOVED_COLOR: [u8; 3] = [216, 130, 72];

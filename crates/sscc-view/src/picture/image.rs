@@ -1,6 +1,6 @@
 //! An image, and its PNG file.
 
-use super::color::BACKGROUND;
+use super::color::{BACKGROUND, INK};
 
 /// An RGB image with eight bits per channel, row by row from the top.
 pub struct Image {
@@ -21,6 +21,23 @@ impl Image {
             let at = 3 * ((top + row) * self.width + left);
             self.bytes[at..at + from.len()].copy_from_slice(from);
         }
+    }
+
+    /// Covers a share of a pixel with the colour of text; nothing beyond the image.
+    pub fn ink(&mut self, x: usize, y: usize, share: f64) {
+        if x < self.width && 3 * (y * self.width + x) < self.bytes.len() {
+            let at = 3 * (y * self.width + x);
+            for (byte, ink) in self.bytes[at..at + 3].iter_mut().zip(INK) {
+                *byte = (f64::from(*byte) * (1.0 - share) + f64::from(ink) * share).round() as u8;
+            }
+        }
+    }
+
+    /// The colour of a pixel.
+    #[cfg(test)]
+    pub fn at(&self, x: usize, y: usize) -> [u8; 3] {
+        let at = 3 * (y * self.width + x);
+        [self.bytes[at], self.bytes[at + 1], self.bytes[at + 2]]
     }
 
     /// Returns the bytes of a PNG file.

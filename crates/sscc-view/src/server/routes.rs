@@ -87,6 +87,9 @@ impl<'a> Content<'a, '_> {
             "/api/safe_scale" => post(MAX_BODY_BYTES, |request, is_gone| {
                 Ok(Response::json(&live.safe_scale(&request, is_gone)?))
             }),
+            "/api/sweep" => {
+                post(MAX_BODY_BYTES, |request, is_gone| Ok(Response::json(&live.sweep(&request, is_gone)?)))
+            }
             "/api/boxes" => post(MAX_BODY_BYTES, |request, _| Ok(Response::json(&live.boxes(&request)?))),
             "/api/glb" => {
                 post(MAX_MOTION_BYTES, |request, _| Ok(Response::binary(live.animation(&request)?)))

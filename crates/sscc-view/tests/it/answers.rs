@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use sscc::{Method, Query};
+use sscc_view::{Arrays, ModelDetails, ModelScene};
 
 use crate::common::{Client, scene, strips, with_server};
 
@@ -81,6 +82,53 @@ fn a_search_finds_the_first_collision() {
             assert_eq!((&answer["first"], &answer["complete"]), (&Value::Null, &json!(true)));
         }
     });
+}
+
+#[test]
+fn sweeps_of_modes_are_those_of_the_core() {
+    let (model, certificates) = strips();
+    let query = Query::new(&model, &certificates).unwrap();
+    let q = [0.25, 0.5, 0.0];
+    with_server(|client| {
+        // Mode 0 lowers the upper strip through the lower one, mode 1 shifts it, mode 2 bends its end down.
+        for (mode, range, hits) in [
+            (0, [-1.0, 1.5], [true, false]),
+            (1, [0.0, 1.0], [false, false]),
+            (2, [-2.0, 2.0], [true, false]),
+            // From the nearer end of the range.
+            (0, [0.5, 1.5], [true, false]),
+        ] {
+            let request = json!({"q": q, "mode": mode, "range": range}).to_string();
+            let reply = client.post("/api/sweep", &request);
+            assert_eq!(reply.status, 200, "{reply:?}");
+            let answer = reply.json();
+            let sweeps = query.sweep_modes(&q, &[(mode, range)], None, &()).unwrap();
+            assert_eq!(answer.as_array().unwrap().len(), sweeps.len());
+            for ((answer, sweep), hit) in answer.as_array().unwrap().iter().zip(&sweeps).zip(hits) {
+                assert_eq!((&answer["from"], &answer["to"]), (&json!(sweep.from), &json!(sweep.to)));
+                assert_eq!(answer["first_free"], json!(sweep.first_free));
+                assert_eq!(answer["first_hit"], json!(sweep.first_hit));
+                assert_eq!(answer["pairs"], json!(sweep.pairs));
+                assert_eq!(answer["count"], json!(sweep.pairs.len()));
+                assert_eq!(answer["first_hit"].is_number(), hit, "{answer}");
+            }
+        }
+    });
+}
+
+#[test]
+fn sliders_of_named_modes_are_weights_from_0_to_1() {
+    let (model, certificates) = strips();
+    let ranges = |names: &[&str]| {
+        let mode_names = names.iter().map(|name| (*name).to_owned()).collect();
+        let details = ModelDetails { mode_names, ..ModelDetails::default() };
+        let mut arrays = Arrays::default();
+        let scene = ModelScene::new(0, "strips", &model, &certificates, details, &mut arrays).unwrap();
+        serde_json::to_value(&scene).unwrap()["ranges"].clone()
+    };
+    assert_eq!(ranges(&["jaw", "lip", "brow"]), json!([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]));
+    let limits = [0, 1, 2].map(|k| model.weight_limit(k));
+    assert_eq!(ranges(&[]), json!(limits.map(|limit| [-limit, limit])));
 }
 
 #[test]
@@ -166,6 +214,11 @@ fn invalid_requests_are_refused() {
             ("/api/traditional", r#"{"q":[0]}"#),
             ("/api/safe_scale", r#"{"direction":[0,1]}"#),
             ("/api/safe_scale", r#"{"direction":[0,1,1e300]}"#),
+            ("/api/sweep", r#"{"q":[0,1],"mode":0,"range":[0,1]}"#),
+            ("/api/sweep", r#"{"q":[0,0,0],"mode":3,"range":[0,1]}"#),
+            ("/api/sweep", r#"{"q":[0,0,0],"mode":0,"range":[1,1]}"#),
+            ("/api/sweep", r#"{"q":[0,0,0],"mode":0,"range":[-1e308,1e308]}"#),
+            ("/api/sweep", r#"{"q":[0,0,0],"mode":0,"range":[0,1e300]}"#),
             ("/api/boxes", r#"{"q":[0,1],"level":0}"#),
             ("/api/boxes", r#"{"q":[0,0,0],"level":-1}"#),
             ("/api/glb", r#"{"q":[[0,0,0]],"times":[]}"#),
