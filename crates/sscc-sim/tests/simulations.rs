@@ -183,14 +183,16 @@ fn a_damaged_model_is_made_anew_with_a_note() {
     simulate(&request, &first).unwrap();
     assert!(first.stages.lock().unwrap().contains(&Stage::Modes) && first.notes.lock().unwrap().is_empty());
     let files = fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path());
-    let mass = files.into_iter().find(|path| path.to_string_lossy().ends_with(".mass.json")).unwrap();
-    fs::write(&mass, "[1, 2]").unwrap();
+    let model =
+        files.into_iter().find(|path| path.to_string_lossy().ends_with(".model.safetensors")).unwrap();
+    let bytes = fs::read(&model).unwrap();
+    fs::write(&model, &bytes[..bytes.len() / 2]).unwrap();
     let second = Watched::cancelling_at(usize::MAX);
     simulate(&request, &second).unwrap();
     let notes = second.notes.into_inner().unwrap();
     let [note] = &notes[..] else { panic!("{notes:?}") };
-    assert_eq!(*note, format!("made anew: {}: too short", mass.display()));
-    assert_ne!(fs::read_to_string(&mass).unwrap(), "[1, 2]");
+    assert!(note.starts_with(&format!("made anew: {}: ", model.display())), "{note}");
+    assert_eq!(fs::read(&model).unwrap(), bytes);
 }
 
 #[test]
