@@ -88,7 +88,7 @@ fn a_search_finds_the_first_collision() {
 fn sweeps_of_modes_are_those_of_the_core() {
     let (model, certificates) = strips();
     let query = Query::new(&model, &certificates).unwrap();
-    let q = [0.25, 0.5, 0.0];
+    let q = [0.25, 0.5, 0.1];
     with_server(|client| {
         // Mode 0 lowers the upper strip through the lower one, mode 1 shifts it, mode 2 bends its end down.
         for (mode, range, hits) in [
