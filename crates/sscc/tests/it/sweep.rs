@@ -76,8 +76,8 @@ fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query<'_>,
             };
             assert!(sweep.pairs.iter().any(is_near), "{sweep:?}");
         }
-        (SweepOutcome::TooClose(_), None) => assert!(sweep.pairs.is_empty()),
-        (SweepOutcome::TooClose(_), Some(hit)) => {
+        (SweepOutcome::TooClose(_) | SweepOutcome::StepLimit, None) => assert!(sweep.pairs.is_empty()),
+        (SweepOutcome::TooClose(_) | SweepOutcome::StepLimit, Some(hit)) => {
             assert_eq!(oracle.discrete(&at(hit)).unwrap(), sweep.pairs, "{sweep:?}");
         }
         other => panic!("{other:?}: {sweep:?}"),
