@@ -6,7 +6,7 @@ use sscc_sim::{SweepRequest, sweep_model, sweep_table};
 
 use crate::args::Sweep;
 use crate::outcome::Outcome;
-use crate::output::Output;
+use crate::output::{Output, note};
 use crate::progress::Bar;
 use crate::{interrupt, load};
 
@@ -30,6 +30,9 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         false => sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?,
     }
     out.finish()?;
+    if rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
+        note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
+    }
     let is_free = rows.iter().all(|row| row.outcome == SweepOutcome::Free);
     Ok(if is_free { Outcome::Done } else { Outcome::Finding })
 }
