@@ -53,3 +53,16 @@ export function nameless(page) {
             .map((e) => e.outerHTML),
     );
 }
+
+/** Waits until the live page shows the answer for its shape. */
+export function answered(page) {
+    return page.waitForFunction(() => {
+        const { checker, pose } = globalThis.sscc;
+        const gauge = document.querySelector(".gauge").dataset;
+        return (
+            checker.answer?.serial === pose.serial &&
+            gauge.kind !== "checking" &&
+            gauge.serial === String(pose.serial)
+        );
+    });
+}

@@ -5,7 +5,7 @@ import { request } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { launch, nameless, open } from "./browser.mjs";
+import { answered, launch, nameless, open } from "./browser.mjs";
 import { readRows, run, view } from "./command.mjs";
 import { atTime, isBounded, parse } from "./glb.mjs";
 import { drawnBox, orange, pixels, settled, yellow } from "./picture.mjs";
@@ -55,16 +55,6 @@ async function look(steps, { allowed = [] } = {}) {
 
 const show = (page, q) => page.evaluate((q) => globalThis.sscc.pose.show(q), q);
 const verdict = (page) => page.locator(".verdict-text").innerText();
-const answered = (page) =>
-    page.waitForFunction(() => {
-        const { checker, pose } = globalThis.sscc;
-        const gauge = document.querySelector(".gauge").dataset;
-        return (
-            checker.answer?.serial === pose.serial &&
-            gauge.kind !== "checking" &&
-            gauge.serial === String(pose.serial)
-        );
-    });
 /** The first row whose answer satisfies the condition. */
 const row = (wanted) => {
     const index = answers.findIndex(wanted);
