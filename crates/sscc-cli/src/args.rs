@@ -188,7 +188,7 @@ pub struct Options {
     /// model's]
     #[arg(long, value_name = "METRIC")]
     pub metric: Option<PathBuf>,
-    /// The centre, the q from which |z| is measured: r numbers, or a file (.npy or text) [default: 0, the rest pose]
+    /// The centre, the q from which |z| is measured: r numbers, weights by name, or a file [default: 0, the rest pose]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub center: Option<String>,
     /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
@@ -370,7 +370,7 @@ pub struct At {
     /// Configurations, one q in each row: .npy of shape (T, r), or (r)
     #[arg(long, value_name = "FILE")]
     pub trajectory: Option<PathBuf>,
-    /// One configuration: r numbers, or weights by the names of modes, as in jawOpen=0.5,smile=0.2 (the others are 0)
+    /// One q: r numbers, weights by the names of modes, as in jawOpen=0.5,smile=0.2 (the others are 0), or a file
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub q: Option<String>,
 }
@@ -464,7 +464,7 @@ pub struct Sweep {
     /// The range of every weight [default: 0,1 for morph targets; else as far as moves a vertex by half the AABB's diagonal]
     #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub range: Option<String>,
-    /// The weights at the start: r numbers, or by name, as in jawOpen=0.5 (the others are 0) [default: the centre]
+    /// The weights at the start: r numbers, by name, as in jawOpen=0.5, or a file [default: the centre]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub q: Option<String>,
     /// Also write the shape at each hit (.ply), its colliding triangles red, to this folder
@@ -494,7 +494,7 @@ pub struct Resolve {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
-    /// The free q from which the search begins: r numbers, or a file (.npy or text) [default: the centre]
+    /// The free q from which the search begins: r numbers, weights by name, or a file [default: the centre]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub from: Option<String>,
     /// Exceptions, the pairs that collide at the centre, must be free as well

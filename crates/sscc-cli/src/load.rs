@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Error, Result, ensure};
 use sscc::{Certificates, CertifyOptions, Neighbours, ReducedModel};
 use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
-use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads};
+use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads, read_configuration};
 
 use crate::output::note;
 use crate::progress::Bar;
@@ -24,13 +24,19 @@ pub fn threads(typed: &args::Threads) -> usize {
 }
 
 /// Returns the options of certificates.
-pub fn request(files: &args::Model, typed: &args::Options) -> CertificateRequest {
-    CertificateRequest {
+pub fn request(
+    loaded: &LoadedModel,
+    files: &args::Model,
+    typed: &args::Options,
+) -> Result<CertificateRequest> {
+    let center =
+        typed.center.as_deref().map(|typed| read_configuration("--center", typed, loaded)).transpose()?;
+    Ok(CertificateRequest {
         model: files.path.clone(),
         mesh_name: files.mesh_name.clone(),
         epsilon: typed.epsilon,
         metric: typed.metric.clone(),
-        center: typed.center.clone(),
+        center,
         neighbours: typed.neighbours.map(neighbours),
         weld: typed.weld.map(|weld| weld == args::Switch::On),
         ignore_rest: typed.ignore_rest,
@@ -42,7 +48,7 @@ pub fn request(files: &args::Model, typed: &args::Options) -> CertificateRequest
         }),
         budget: typed.budget.map(|bytes| bytes as usize),
         threads: Some(threads(&typed.threads)),
-    }
+    })
 }
 
 /// Returns the value of `--neighbours`.
@@ -69,16 +75,16 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
 /// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree unless
 /// `--scheme` or `--budget` requests one: a few queries do not save the time that it takes to compute.
 pub fn certificates_now(
-    model: &ReducedModel,
+    loaded: &LoadedModel,
     files: &args::Model,
     typed: &args::Options,
 ) -> Result<Certificates> {
-    let mut options = request(files, typed).options(model)?;
+    let mut options = request(loaded, files, typed)?.options(&loaded.model)?;
     if (typed.scheme, typed.budget) == (None, None) {
         options.budget = 0;
     }
     note("no --certificates given: computing them first (sscc certify keeps them in a file)");
-    certify(model, &files.path, &options)
+    certify(&loaded.model, &files.path, &options)
 }
 
 /// Adds the file's name to an error. Errors of readers and writers contain it already.

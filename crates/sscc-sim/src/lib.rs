@@ -17,6 +17,7 @@
 //! ```
 
 mod certification;
+mod configuration;
 mod detection;
 mod error;
 mod files;
@@ -35,7 +36,8 @@ pub mod text;
 mod watch;
 mod zero_radius;
 
-pub use certification::{CertificateRequest, Scheme, configuration};
+pub use certification::{CertificateRequest, Scheme};
+pub use configuration::read_configuration;
 pub use detection::{
     AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries,
     ShapeInMotion, Times, check_rows, detect,
@@ -60,6 +62,6 @@ pub use run::{
 };
 pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
-pub use sweeps::{SweepRequest, SweepRow, default_ranges, read_q, sweep_model, sweep_table};
+pub use sweeps::{SweepRequest, SweepRow, default_ranges, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;

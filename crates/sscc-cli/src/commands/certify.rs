@@ -45,7 +45,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     }
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
-    let options = load::request(&args.model, &args.options).options(model)?;
+    let options = load::request(&loaded, &args.model, &args.options)?.options(model)?;
     let start = Instant::now();
     let certificates = load::certify(model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use sscc::ResolveOptions;
-use sscc_sim::{configuration, resolve_rows};
+use sscc_sim::{read_configuration, resolve_rows};
 
 use super::check::coordinates;
 use crate::args::Resolve;
@@ -16,10 +16,10 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let rows = coordinates(&args.at, &loaded)?;
-    let start = args.from.as_deref().map(|typed| configuration(model, "--from", typed)).transpose()?;
+    let start = args.from.as_deref().map(|typed| read_configuration("--from", typed, &loaded)).transpose()?;
     let certificates = match &args.certificates {
-        Some(path) => load::request(&args.model, &args.options).read(path, model)?,
-        None => load::certificates_now(model, &args.model, &args.options)?,
+        Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, model)?,
+        None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
     let options = ResolveOptions { start, all: args.all };
     let threads = load::threads(&args.options.threads);

@@ -18,8 +18,8 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     // Refused before certificates are computed.
     request.prepare(&loaded, &vec![0.0; loaded.model.rank()])?;
     let certificates = match &args.certificates {
-        Some(path) => load::request(&args.model, &args.options).read(path, &loaded.model)?,
-        None => load::certificates_now(&loaded.model, &args.model, &args.options)?,
+        Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, &loaded.model)?,
+        None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
     let swept = sweep_model(&loaded, &certificates, &request, &Bar::new("sweeping"));
     interrupt::check()?;

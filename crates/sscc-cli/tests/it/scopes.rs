@@ -154,7 +154,7 @@ fn centres() {
     assert_eq!(check("--q=1.5,0.5", &["--center", "c.npy"]).code, Some(0));
     assert!(check("--q=0,0", &["--center=0,0"]).refusal().contains("certified about another centre"));
     for (center, named) in [
-        ("--center=1", "--center 1: q has 1 entries, the model has 2 modes"),
+        ("--center=1", "--center: q has 1 entries, the model has 2 modes"),
         ("--center=1,nan", "q[1] is NaN"),
         ("--center=1e300,0", "beyond 2^200"),
         ("--center=none.npy", "none.npy: not found"),

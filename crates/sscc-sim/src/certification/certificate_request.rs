@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use sscc::{CertifyOptions, ContactFilter, Neighbours, ReducedModel, Scope};
 use sscc_io::splits_vertices;
 
-use super::metric::{configuration, metric};
+use super::metric::metric;
 use crate::error::{At, Result};
 use crate::{GroupRules, SimError, available_threads};
 
@@ -21,8 +21,8 @@ pub struct CertificateRequest {
     pub epsilon: Option<f64>,
     /// The metric (`--metric`): `energy`, `displacement`, `mass`, `identity` or a file.
     pub metric: Option<PathBuf>,
-    /// The centre (`--center`): numbers or a file.
-    pub center: Option<String>,
+    /// The centre (`--center`).
+    pub center: Option<Vec<f64>>,
     /// Which triangles that share a vertex count (`--neighbours`).
     pub neighbours: Option<Neighbours>,
     /// Whether to weld equal vertices (`--weld`); by default where the format splits vertices.
@@ -59,7 +59,7 @@ impl CertificateRequest {
         Ok(CertifyOptions {
             epsilon: self.epsilon.unwrap_or(CertifyOptions::default().epsilon),
             metric: self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?,
-            center: self.center(model)?,
+            center: self.center.clone(),
             filter: self.filter(model)?,
             ignore_rest: self.ignore_rest,
             max_exceptions: self.max_exceptions,
@@ -84,11 +84,6 @@ impl CertificateRequest {
             filter,
             exceptions: Vec::new(),
         })
-    }
-
-    /// Returns the centre; none where it is not stated.
-    pub(super) fn center(&self, model: &ReducedModel) -> Result<Option<Vec<f64>>> {
-        self.center.as_deref().map(|typed| configuration(model, "--center", typed)).transpose()
     }
 
     /// Returns the contact filter; but `ignore_rest` is not part of it.

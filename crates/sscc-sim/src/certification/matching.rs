@@ -55,8 +55,7 @@ impl CertificateRequest {
                 known.kind().name()
             )));
         }
-        let center = self.center(model)?;
-        if center.is_some_and(|typed| typed != certificates.center()) {
+        if self.center.as_deref().is_some_and(|typed| typed != certificates.center()) {
             let cause = "certified about another centre than --center; leave the flag out, or certify anew";
             return Ok(Some(cause.into()));
         }

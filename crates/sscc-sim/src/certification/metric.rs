@@ -1,9 +1,9 @@
-//! Metrics and centres by name, by their numbers, or from files.
+//! Metrics by name or from files.
 
 use std::path::Path;
 
 use sscc::{Metric, MetricKind, ReducedModel};
-use sscc_io::{read_matrix, read_vector};
+use sscc_io::read_matrix;
 
 use crate::SimError;
 use crate::error::{At, Result};
@@ -46,19 +46,4 @@ fn from_file(model: &ReducedModel, file: &Path) -> Result<Metric> {
         (n, m) => return refused(format!("the metric is {n} x {m}, the model has {rank} modes")),
     };
     made.in_file(file)
-}
-
-/// Returns the configuration that a flag states: numbers with commas, or a file of numbers.
-///
-/// # Errors
-/// When the file cannot be read, or the numbers are no configuration of the model.
-pub fn configuration(model: &ReducedModel, flag: &str, typed: &str) -> Result<Vec<f64>> {
-    let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
-    let q = match numbers {
-        Ok(numbers) => numbers,
-        Err(_) => read_vector(Path::new(typed))
-            .at(|| format!("{flag} is not a list of numbers, so it must be a file"))?,
-    };
-    model.check_coordinates(&q).at(|| format!("{flag} {typed}"))?;
-    Ok(q)
 }

@@ -6,4 +6,3 @@ mod matching;
 mod metric;
 
 pub use certificate_request::{CertificateRequest, Scheme};
-pub use metric::configuration;

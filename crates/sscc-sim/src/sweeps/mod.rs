@@ -1,10 +1,7 @@
-//! Weights of modes by name, and sweeps of a model from files: the first weight of each mode at which its shape touches
-//! itself.
+//! Sweeps of a model from files: the first weight of each mode at which its shape touches itself.
 
-mod named_weights;
 mod sweep_model;
 mod sweep_row;
 
-pub use named_weights::read_q;
 pub use sweep_model::{SweepRequest, default_ranges, sweep_model};
 pub use sweep_row::{SweepRow, sweep_table};

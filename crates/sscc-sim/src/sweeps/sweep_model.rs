@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use sscc::{Certificates, Pair, Progress, Query, ReducedModel};
 use sscc_io::{LoadedModel, write_ply_pose};
 
-use super::named_weights::read_q;
 use super::sweep_row::SweepRow;
 use crate::error::{At, Result};
-use crate::{SimError, make_folder};
+use crate::{SimError, make_folder, read_configuration};
 
 /// Options of [`sweep_model`].
 #[derive(Clone, Debug, Default)]
@@ -30,7 +29,10 @@ impl SweepRequest {
     /// # Errors
     /// When the q or the range is not one of the model, or the folder cannot be written to.
     pub fn prepare(&self, loaded: &LoadedModel, center: &[f64]) -> Result<(Vec<f64>, Vec<[f64; 2]>)> {
-        let q = self.q.as_deref().map_or_else(|| Ok(center.to_vec()), |typed| read_q(typed, loaded))?;
+        let q = self
+            .q
+            .as_deref()
+            .map_or_else(|| Ok(center.to_vec()), |typed| read_configuration("--q", typed, loaded))?;
         let ranges = match &self.range {
             Some(typed) => vec![range(typed)?; loaded.model.rank()],
             None => default_ranges(&loaded.model, &loaded.mode_names, &q),

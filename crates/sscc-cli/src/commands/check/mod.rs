@@ -9,7 +9,7 @@ mod text;
 use anyhow::{Context, Result, bail, ensure};
 use sscc::{Certificates, Method, Query};
 use sscc_io::{LoadedModel, Rows, read_rows};
-use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_q};
+use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_configuration};
 
 use crate::args::{self, At, Check};
 use crate::outcome::Outcome;
@@ -31,24 +31,24 @@ fn check_model(args: &Check) -> Result<bool> {
     let typed_method = args.method.unwrap_or(args::Method::Certified);
     let loaded = load::model(&args.model)?;
     let rows = coordinates(&args.at, &loaded)?;
-    let model = loaded.model;
+    let model = &loaded.model;
     ensure!(
         !args.continuous || rows.rows > 1,
         "--continuous: the trajectory has one row; a motion needs at least two"
     );
     shapes::check(args)?;
-    let request = load::request(&args.model, &args.options);
+    let request = load::request(&loaded, &args.model, &args.options)?;
     let certificates = match &args.certificates {
-        Some(path) => Some(request.read(path, &model)?),
+        Some(path) => Some(request.read(path, model)?),
         None if typed_method == args::Method::Certified => {
-            Some(load::certificates_now(&model, &args.model, &args.options)?)
+            Some(load::certificates_now(&loaded, &args.model, &args.options)?)
         }
         None => None,
     };
     let method = method(typed_method);
     let query = match &certificates {
-        Some(certificates) => Query::with_method(&model, certificates, method)?,
-        None => Query::without_certificates(&model, request.scope(&model)?, method)?,
+        Some(certificates) => Query::with_method(model, certificates, method)?,
+        None => Query::without_certificates(model, request.scope(model)?, method)?,
     };
     let noun = if args.continuous { "step" } else { "configuration" };
     let root_radius = certificates.as_ref().map(Certificates::root_radius);
@@ -61,7 +61,7 @@ fn check_model(args: &Check) -> Result<bool> {
         printer.answer(found)
     };
     let requests = RowQueries {
-        model: &model,
+        model,
         rows: &rows,
         is_continuous: args.continuous,
         limit: args.max_pairs(),
@@ -98,7 +98,7 @@ pub fn coordinates(at: &At, loaded: &LoadedModel) -> Result<Rows> {
             Ok(rows)
         }
         (None, q) => {
-            let q = read_q(q.as_deref().unwrap_or_default(), loaded)?;
+            let q = read_configuration("--q", q.as_deref().unwrap_or_default(), loaded)?;
             Ok(Rows { rows: 1, columns: q.len(), data: q })
         }
     }

@@ -29,8 +29,8 @@ pub fn run(args: &View) -> Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let certificates = match &args.certificates {
-        Some(path) => load::request(&args.model, &args.options).read(path, model)?,
-        None => load::certificates_now(model, &args.model, &args.options)?,
+        Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, model)?,
+        None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
     let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
     let server = bind(args)?;
