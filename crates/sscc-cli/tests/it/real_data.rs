@@ -106,16 +106,11 @@ fn random(i: usize) -> f64 {
     (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// The face, its cases and certificates with loose radii: tests are about the pairs that these cover.
+/// The face, its cases and its certificates.
 struct Face {
     model: ReducedModel,
     cases: Vec<Case>,
     with_exceptions: Certificates,
-}
-
-fn certify_face(model: &ReducedModel, ignore_rest: bool) -> Certificates {
-    let options = CertifyOptions { ignore_rest, epsilon: 0.9, ..CertifyOptions::default() };
-    Certificates::compute(model, &options, &()).unwrap()
 }
 
 /// Returns the face, which two tests share; none without real models.
@@ -124,7 +119,7 @@ fn face_of(test: &str) -> Option<&'static Face> {
     let file = models(test)?.join("ict_face/ict_face_selfcollision_cases.json");
     Some(FACE.get_or_init(|| {
         let (model, cases) = cases(&file);
-        let with_exceptions = certify_face(&model, false);
+        let with_exceptions = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         Face { model, cases, with_exceptions }
     }))
 }
@@ -141,7 +136,9 @@ fn face() {
 fn face_with_exceptions() {
     let Some(Face { model, cases, with_exceptions: with }) = face_of("face_with_exceptions") else { return };
     let rest = &cases[0].pairs;
-    let ignoring = certify_face(model, true);
+    // Loose radii suffice for the pairs.
+    let options = CertifyOptions { ignore_rest: true, epsilon: 0.9, ..CertifyOptions::default() };
+    let ignoring = Certificates::compute(model, &options, &()).unwrap();
     assert_eq!((with.exceptions(), ignoring.filter().ignored()), (&rest[..], &rest[..]));
     assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
     let mut query = Query::new(model, with).unwrap();
