@@ -51,12 +51,13 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
             _ => format!("{} bodies from {}", bodies.len(), bodies[0]),
         };
         lines.push(format!(
-            "{who} ({}): shake gives {} J; alone it moves vertices by at most {} m in the first {} s ({share:.1}% of \
+            "{who} ({}): shake gives {} J; alone it moves vertices by at most {} m in the first {} s ({}% of \
              the longest side)",
             certified.name,
             length(energy),
             length(farthest),
-            length(seconds)
+            length(seconds),
+            length(share)
         ));
     }
     Ok(lines)
