@@ -103,7 +103,7 @@ export class Body {
             hitDark: { value: new THREE.Vector3() },
             chosen: { value: new THREE.Vector3() },
             stripe: { value: 9 },
-            cut: { value: new THREE.Vector4() },
+            cut: { value: new THREE.Vector4(0, 0, 0, 0) },
         };
         this.material = new THREE.ShaderMaterial({
             glslVersion: THREE.GLSL3,

@@ -35,7 +35,7 @@ export class Stage {
     private ground: THREE.GridHelper | null = null;
     private boxes: THREE.LineSegments | null = null;
     /** The disc around the chosen pair: its middle and radius; radius 0: none. */
-    private readonly cut = new THREE.Vector4();
+    private readonly cut = new THREE.Vector4(0, 0, 0, 0);
     private isCutting = true;
     /** How far `follow` has moved the view in all. */
     private readonly followed = new THREE.Vector3();
@@ -262,7 +262,7 @@ export class Stage {
 
     private applyCut(isCutting: boolean): void {
         this.isCutting = isCutting;
-        for (const body of this.bodies) body.setCut(isCutting ? this.cut : new THREE.Vector4());
+        for (const body of this.bodies) body.setCut(isCutting ? this.cut : new THREE.Vector4(0, 0, 0, 0));
         this.frames.invalidate();
     }
 
