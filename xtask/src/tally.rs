@@ -3,7 +3,7 @@
 use std::env;
 use std::fs;
 use std::io::Write;
-use std::ops::AddAssign;
+use std::ops::{Add, AddAssign};
 use std::path::{Path, PathBuf};
 use std::process::{self, ExitCode};
 
@@ -39,10 +39,17 @@ impl Tally {
     }
 }
 
+impl Add for Tally {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { passed: self.passed + other.passed, failed: self.failed + other.failed }
+    }
+}
+
 impl AddAssign for Tally {
     fn add_assign(&mut self, other: Self) {
-        self.passed += other.passed;
-        self.failed += other.failed;
+        *self = *self + other;
     }
 }
 

@@ -1,11 +1,13 @@
 //! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
-//! package and of the page. With arguments for `cargo test` it runs the tests of the crates only.
+//! package and of the page, both at the same time: neither keeps two cores busy. With arguments for `cargo test` it runs the
+//! tests of the crates only.
 //!
 //! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
 //! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::thread;
 
 use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
@@ -16,8 +18,12 @@ pub fn run(arguments: Vec<String>) -> ExitCode {
     let log = SkipLog::new();
     let mut tally = cargo_test(&arguments, log.path());
     if arguments.is_empty() {
-        tally += python::test(&[], log.path(), true);
-        tally += page::test(log.path(), true);
+        let path = log.path();
+        tally += thread::scope(|scope| {
+            let page = scope.spawn(|| page::test(path, true));
+            let python = python::test(&[], path, true);
+            python + page.join().unwrap_or(Tally::BROKEN)
+        });
     }
     log.conclude(tally)
 }
