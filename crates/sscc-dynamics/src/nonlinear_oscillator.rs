@@ -1,7 +1,6 @@
 //! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
 
 use faer::Mat;
-use faer::linalg::solvers::PartialPivLu;
 use faer::prelude::Solve;
 use sscc_solid::Stiffness;
 
@@ -11,9 +10,8 @@ use crate::{Damping, DynamicsError};
 /// Maximum number of Newton iterations in one step.
 const MAX_ITERATIONS: usize = 60;
 
-/// An iteration that leaves a larger share of the residual converges slowly; the next one computes the derivative at the
-/// trial. Iterations otherwise use the derivative of earlier ones, the first that at rest: in a step that is short beside
-/// the periods of the modes, it hardly depends on q.
+/// An iteration that leaves a larger share of the residual converges slowly; the next one computes a new derivative.
+/// Iterations otherwise reuse the derivative, which changes little within a step.
 const SLOW_CONVERGENCE: f64 = 0.2;
 
 /// Minimum share of a Newton step in the line search.
@@ -32,8 +30,6 @@ pub struct NonlinearOscillator<'a> {
     /// Damping matrix C, r x r, row after row.
     damping: Vec<f64>,
     step: f64,
-    /// The factorised derivative of the residual at rest.
-    at_rest: PartialPivLu<f64>,
 }
 
 /// Buffers of a step. All oscillators of a thread can share them.
@@ -91,8 +87,7 @@ impl<'a> NonlinearOscillator<'a> {
         }
         let mut damping: Vec<f64> = stiffness.entries().iter().map(|k| given.stiffness * k).collect();
         (0..r).for_each(|k| damping[k * (r + 1)] += given.mass);
-        let at_rest = derivative(&damping, step, |i, j| stiffness.entries()[i * r + j]).partial_piv_lu();
-        Ok(Self { energy, damping, step, at_rest })
+        Ok(Self { energy, damping, step })
     }
 
     /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each), then r zeros: the first step
@@ -122,8 +117,9 @@ impl<'a> NonlinearOscillator<'a> {
         acceleration.iter_mut().zip(&*undamped).for_each(|(a, e)| *a = e - *a);
         let start = Start { q, v, acceleration, g };
         self.begin(start, undamped, evaluation, [&mut *trial, &mut *next]);
-        let mut factor = None;
-        let mut is_slow = false;
+        let mut factor = Some(self.derivative(evaluation).partial_piv_lu());
+        // Whether the derivative is that at the trial.
+        let mut is_fresh = true;
         for _ in 0..MAX_ITERATIONS {
             let limit = RELATIVE_TOLERANCE * trial.term_sum;
             if !limit.is_finite() {
@@ -133,13 +129,12 @@ impl<'a> NonlinearOscillator<'a> {
                 trial.finish(q, v, undamped);
                 return Ok(());
             }
-            // An iteration with the derivative at the trial is Newton's.
-            if is_slow {
-                self.energy.evaluate_stiffness(&trial.q, evaluation);
-                factor = Some(self.derivative(evaluation).partial_piv_lu());
-            }
-            let residual = Mat::from_fn(q.len(), 1, |i, _| trial.residual[i]);
-            let change = factor.as_ref().unwrap_or(&self.at_rest).solve(residual);
+            let change = factor
+                .get_or_insert_with(|| {
+                    self.energy.evaluate_stiffness(&trial.q, evaluation);
+                    self.derivative(evaluation).partial_piv_lu()
+                })
+                .solve(Mat::from_fn(q.len(), 1, |i, _| trial.residual[i]));
             let mut step = |share: f64| {
                 next.acceleration.clear();
                 let moved = |(k, b): (usize, &f64)| b - share * change[(k, 0)];
@@ -152,23 +147,26 @@ impl<'a> NonlinearOscillator<'a> {
             let mut residual_sum = step(1.0);
             // A shorter step in Newton's direction may lower the residual where the full step does not.
             let mut share = 1.0;
-            while is_slow && residual_sum >= trial.residual_sum && share > MIN_STEP_SHARE {
+            while is_fresh && residual_sum >= trial.residual_sum && share > MIN_STEP_SHARE {
                 share /= 2.0;
                 residual_sum = step(share);
             }
             let left = residual_sum / trial.residual_sum;
             if left < 1.0 {
                 std::mem::swap(trial, next);
-            } else if is_slow {
+            } else if is_fresh {
                 break;
             }
-            is_slow = left >= SLOW_CONVERGENCE;
+            is_fresh = left >= SLOW_CONVERGENCE;
+            if is_fresh {
+                factor = None;
+            }
         }
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
 
-    /// Chooses the first trial: it has an acceleration extrapolated from the last step, or it keeps q. With modes much
-    /// faster than the step, the extrapolation is a bad guess.
+    /// Chooses the first trial, and evaluates the stiffness at its q: the trial has an acceleration extrapolated from the
+    /// last step, or it keeps q. With modes much faster than the step, the extrapolation is a bad guess.
     fn begin(
         &self,
         start: Start<'_>,
@@ -182,7 +180,7 @@ impl<'a> NonlinearOscillator<'a> {
         let extrapolated = start.acceleration.iter().zip(change).zip(&trial.damping_forces);
         trial.acceleration.extend(extrapolated.map(|((a, change), c)| a + change - self.step * c));
         self.place(start, trial);
-        self.energy.evaluate_forces(&trial.q, evaluation);
+        self.energy.evaluate_stiffness(&trial.q, evaluation);
         trial.weigh(evaluation.forces().iter().copied(), start.g);
         still.acceleration.clear();
         let keeping_q = start.acceleration.iter().zip(start.v).map(|(a, v)| -a - 4.0 * v / self.step);
@@ -191,7 +189,7 @@ impl<'a> NonlinearOscillator<'a> {
         still.weigh(start.g.iter().zip(undamped).map(|(g, e)| g - e), start.g);
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
-            self.energy.evaluate_forces(&trial.q, evaluation);
+            self.energy.evaluate_stiffness(&trial.q, evaluation);
             // The given acceleration may belong to another q.
             trial.weigh(evaluation.forces().iter().copied(), start.g);
         }
@@ -211,9 +209,14 @@ impl<'a> NonlinearOscillator<'a> {
         self.set_damping_forces(v, damping_forces);
     }
 
-    /// Returns the derivative of the residual with respect to the acceleration (r x r) at the evaluated stiffness.
+    /// Returns the derivative of the residual with respect to the acceleration (r x r).
     fn derivative(&self, evaluation: &Evaluation) -> Mat<f64> {
-        derivative(&self.damping, self.step, |i, j| evaluation.stiffness(i)[j])
+        let (r, h) = (self.energy.rank(), self.step);
+        Mat::from_fn(r, r, |i, j| {
+            f64::from(u8::from(i == j))
+                + h / 2.0 * self.damping[i * r + j]
+                + h * h / 4.0 * evaluation.stiffness(i)[j]
+        })
     }
 
     /// Returns kinetic and elastic energy.
@@ -227,14 +230,6 @@ impl<'a> NonlinearOscillator<'a> {
         let row = |row: &[f64]| row.iter().zip(v).map(|(c, v)| c * v).sum::<f64>();
         forces.extend(self.damping.chunks_exact(v.len()).map(row));
     }
-}
-
-/// Returns the matrix `1 + h / 2 C + h^2 / 4 K` (r x r).
-fn derivative(damping: &[f64], h: f64, stiffness: impl Fn(usize, usize) -> f64) -> Mat<f64> {
-    let r = damping.len().isqrt();
-    Mat::from_fn(r, r, |i, j| {
-        f64::from(u8::from(i == j)) + h / 2.0 * damping[i * r + j] + h * h / 4.0 * stiffness(i, j)
-    })
 }
 
 impl Trial {
