@@ -18,18 +18,20 @@ const MAX_SHOWN: usize = 60;
 /// When an entry is no number, a name is unknown (the error has the nearest one), ambiguous or repeated, the file cannot be
 /// read, or q is not a configuration of the model.
 pub fn read_configuration(flag: &str, typed: &str, loaded: &LoadedModel) -> Result<Vec<f64>> {
+    let mut place = flag.to_owned();
     let q = match typed.split(',').map(number).collect() {
         Ok(numbers) => numbers,
         Err(_) if Path::new(typed).exists() || !typed.contains(['=', ',']) => {
-            read_vector(Path::new(typed))
-                .at(|| format!("{flag} is not a list of numbers, so it must be a file"))?
+            place = format!("{flag} {typed}");
+            let cause = || format!("{flag} is not a list of numbers, so it must be a file");
+            read_vector(Path::new(typed)).at(cause)?
         }
         Err(_) if typed.contains('=') => {
             by_name(typed, loaded).map_err(|cause| SimError::refused(flag, cause))?
         }
         Err(cause) => return Err(SimError::refused(flag, cause)),
     };
-    loaded.model.check_coordinates(&q).at(|| flag.into())?;
+    loaded.model.check_coordinates(&q).at(|| place)?;
     Ok(q)
 }
 
