@@ -81,10 +81,11 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
         }
         Ok(tally)
     };
-    let mut tally = pytest(&python, arguments)?;
     if !arguments.is_empty() {
-        return Ok(tally);
+        return pytest(&python, arguments);
     }
+    // One process for each core.
+    let mut tally = pytest(&python, &["--numprocesses=auto".to_owned()])?;
     // A separate environment: Blender as a module needs one version of Python and of NumPy.
     tally += match environment(&package.join("blender")) {
         Ok(python) => {
