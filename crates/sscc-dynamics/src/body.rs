@@ -1,66 +1,15 @@
 //! Body: state, integrators and self-collision detection.
 
 use glam::{DMat3, DQuat, DVec3};
-use sscc::{KineticQuery, Method, Pair, Pose, PosedShape, Query};
+use sscc::{Aabb, KineticQuery, Method, Pair, Pose, PosedShape, Query, SweptShape};
 
+use crate::change::Change;
+use crate::displacement::displacement;
+use crate::kinematics::{Kinematics, pose};
 use crate::nonlinear_oscillator::NewmarkBuffers;
-use crate::{
-    Damping, DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions,
-};
-
-/// How a body detects self-collisions. All exact methods find the same pairs, hence give the same motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Detection {
-    /// Certified discrete query ([`Query`]) in each step.
-    #[default]
-    Certified,
-    /// Kinetic query ([`KineticQuery`]), which reuses safe distances of earlier steps.
-    Kinetic,
-    /// Discrete query with this method.
-    Method(Method),
-    /// No detection: the body can pass through itself.
-    Off,
-}
-
-/// Initial state and settings of a body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// Whether the body has rigid motion. A held body (false) keeps its pose, and its modes must be those of a held
-    /// shape.
-    pub is_free: bool,
-    /// Position of the centre of mass (model unit). None: that of the rest pose.
-    pub position: Option<DVec3>,
-    /// Rotation from axes of the rest pose to axes of the world.
-    pub orientation: DQuat,
-    /// Velocity of the centre of mass (model unit per s).
-    pub velocity: DVec3,
-    /// Angular velocity in axes of the world (rad/s).
-    pub spin: DVec3,
-    /// Initial q (r numbers). Empty: zeros.
-    pub q: Vec<f64>,
-    /// Initial rate of q (r numbers, 1/s). Empty: zeros.
-    pub v: Vec<f64>,
-    /// Damping of the modes.
-    pub damping: Damping,
-    /// Method of self-collision detection.
-    pub detection: Detection,
-}
-
-impl Default for Start {
-    fn default() -> Self {
-        Self {
-            is_free: true,
-            position: None,
-            orientation: DQuat::IDENTITY,
-            velocity: DVec3::ZERO,
-            spin: DVec3::ZERO,
-            q: Vec::new(),
-            v: Vec::new(),
-            damping: Damping::default(),
-            detection: Detection::default(),
-        }
-    }
-}
+use crate::rest::Rest;
+use crate::start::{Detection, Start};
+use crate::{DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions};
 
 /// A body of a [`World`](crate::World). The world position of a vertex is `R (p + U q - c) + x`, where c is the centre
 /// of mass of the rest pose, and R and x are the rigid motion. The equations neglect centrifugal forces on q and the
@@ -77,10 +26,14 @@ pub struct Body<'a> {
     load: Vec<f64>,
     /// Weight of each mode in [`ModalInverseMass::slow_modes`](crate::contact::ModalInverseMass::slow_modes).
     pub(crate) slow_weights: Vec<f64>,
+    /// Displacement at the end of a step, divided by the step, by a unit impulse on each mode at its beginning.
+    pub(crate) step_weights: Vec<f64>,
     oscillator: Oscillator<'a>,
     detection: Detection,
     detector: Detector<'a>,
     pub(crate) posed: PosedShape<'a>,
+    /// The motion of the last step; made when it is first needed.
+    pub(crate) swept: Option<Box<SweptShape<'a>>>,
     /// Colliding triangle pairs within the body, found by the last detection.
     pub(crate) pairs: Vec<Pair>,
     /// Whether q was outside the certificate of the root in the last detection.
@@ -90,6 +43,11 @@ pub struct Body<'a> {
     /// Energy budget: the body's share of the energy that contacts have dissipated, less the energy that they have
     /// returned.
     pub(crate) energy_budget: f64,
+    /// State at the beginning of this step.
+    pub(crate) start: Kinematics,
+    /// State at the end of this step before corrections.
+    pub(crate) trial: Kinematics,
+    pub(crate) rest: Rest,
 }
 
 /// Integrator of q.
@@ -167,6 +125,10 @@ impl<'a> Body<'a> {
         };
         let square = contact.rate() * contact.rate();
         let slow_weights = stiffness.diagonal().map(|lambda| square / (square + lambda)).collect();
+        // Newmark's method, linear about the rest pose.
+        let weight =
+            |lambda: f64| 1.0 / (1.0 + step / 2.0 * (start.damping.of(lambda) + lambda * step / 2.0));
+        let step_weights = stiffness.diagonal().map(weight).collect();
         let method = match start.detection {
             Detection::Method(method) => method,
             _ => Method::Certified,
@@ -183,6 +145,8 @@ impl<'a> Body<'a> {
             Some(other) => other.posed.clone(),
             None => PosedShape::new(model, certificates)?,
         };
+        let rest = Rest { is_asleep: false, time: 0.0, position, orientation, q: q.clone() };
+        let now = Kinematics { rigid, q: q.clone(), v: v.clone() };
         Ok(Self {
             shape,
             is_free: start.is_free,
@@ -192,14 +156,19 @@ impl<'a> Body<'a> {
             a,
             load,
             slow_weights,
+            step_weights,
             oscillator,
             detection: start.detection,
             detector,
             posed,
+            swept: None,
             pairs: Vec::new(),
             root_failed: false,
             has_moved: false,
             energy_budget: 0.0,
+            start: now.clone(),
+            trial: now,
+            rest,
         })
     }
 
@@ -230,8 +199,12 @@ impl<'a> Body<'a> {
 
     /// Returns the pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
     pub fn pose(&self) -> Pose {
-        let rotation = self.rotation();
-        Pose { rotation, translation: self.rigid.position - rotation * self.shape.mass().center }
+        pose(&self.rigid, self.shape)
+    }
+
+    /// Returns whether the body sleeps. Its motion is then zero until another body touches it.
+    pub fn is_asleep(&self) -> bool {
+        self.rest.is_asleep
     }
 
     /// Returns the pairs of the body's triangles that collided at the start of the last step.
@@ -259,10 +232,26 @@ impl<'a> Body<'a> {
         -self.shape.mass().mass * gravity.dot(self.rigid.position) - load
     }
 
+    /// Returns the world position of the point that is at `rest` from the centre of mass in the rest pose.
+    pub(crate) fn point(&self, rest: DVec3, modes: &[DVec3]) -> DVec3 {
+        self.rigid.position + self.rigid.orientation * (rest + displacement(modes, &self.q))
+    }
+
     /// Returns the positions of the corners of a triangle, in axes of the rest pose.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let model = self.shape.model();
         model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.q))
+    }
+
+    /// Returns the positions of the corners of a triangle in the world.
+    pub(crate) fn world_corners(&self, triangle: u32) -> [DVec3; 3] {
+        let pose = self.pose();
+        self.corners(triangle).map(|x| pose.apply(x))
+    }
+
+    /// Returns the positions of the corners of a triangle in the world at the beginning of the step.
+    pub(crate) fn start_corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.start.corners(self.shape, triangle)
     }
 
     /// Returns the rotation from axes of the rest pose to axes of the world.
@@ -320,6 +309,62 @@ impl<'a> Body<'a> {
             self.rigid.momentum += half;
         }
         Ok(())
+    }
+
+    /// Makes the current state the beginning of the step.
+    pub(crate) fn save_start(&mut self) {
+        self.start.set(&self.rigid, &self.q, &self.v);
+    }
+
+    /// Makes the current state the trial end of the step.
+    pub(crate) fn save_trial(&mut self) {
+        self.trial.set(&self.rigid, &self.q, &self.v);
+    }
+
+    /// Moves the body to the trial end of the step, changed by an impulse that acts during `step` seconds.
+    pub(crate) fn correct(&mut self, change: &Change, modes: &[f64], step: f64) {
+        self.rigid = self.trial.rigid;
+        if self.is_free {
+            let turn = DQuat::from_scaled_axis(change.angular_velocity * step);
+            self.rigid.position += change.velocity * step;
+            self.rigid.orientation = (turn * self.rigid.orientation).normalize();
+            self.rigid.momentum += change.impulse;
+            self.rigid.angular_momentum += change.angular_impulse;
+        }
+        for (k, change) in modes.iter().enumerate() {
+            self.q[k] = self.trial.q[k] + change * step;
+            self.v[k] = self.trial.v[k] + change;
+        }
+        self.mark_moved();
+    }
+
+    /// Moves the body back to a share of its way from the beginning of the step to its current state.
+    pub(crate) fn shorten(&mut self, share: f64) {
+        let before = &self.start.rigid;
+        self.rigid.position = before.position.lerp(self.rigid.position, share);
+        self.rigid.orientation = before.orientation.slerp(self.rigid.orientation, share).normalize();
+        self.q.iter_mut().zip(&self.start.q).for_each(|(q, before)| *q = before + (*q - before) * share);
+        if share == 0.0 {
+            (self.rigid.position, self.rigid.orientation) = (before.position, before.orientation);
+        }
+        self.mark_moved();
+    }
+
+    /// Multiplies all velocities by a factor.
+    pub(crate) fn scale_velocities(&mut self, factor: f64) {
+        self.rigid.momentum *= factor;
+        self.rigid.angular_momentum *= factor;
+        self.v.iter_mut().for_each(|v| *v *= factor);
+    }
+
+    /// Places the swept shape on the motion from the beginning of the step to the current state. Returns an AABB of this motion.
+    pub(crate) fn sweep(&mut self) -> Result<Aabb, DynamicsError> {
+        let (t0, t1) = (self.start.pose(self.shape), self.pose());
+        let swept = match &mut self.swept {
+            Some(swept) => swept,
+            none => none.insert(Box::new(SweptShape::new(&self.posed)?)),
+        };
+        Ok(swept.place((&self.start.q, &t0), (&self.q, &t1))?)
     }
 
     /// Records that q was moved between steps. The next step then computes the acceleration again.

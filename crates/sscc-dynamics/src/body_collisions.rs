@@ -1,10 +1,11 @@
 //! Collisions between different bodies: a sweep over the AABBs of bodies, then a traversal of two BVHs down to triangle
 //! pairs.
 
-use sscc::{Aabb, Pair};
+use sscc::{Aabb, Impact, Pair};
 
 use crate::DynamicsError;
 use crate::body::Body;
+use crate::sweep_and_prune::SweepAndPrune;
 
 /// Two bodies that collide, with their colliding triangle pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,77 +16,152 @@ pub struct BodyPairs<'a> {
     pub pairs: &'a [Pair],
 }
 
-/// Two colliding bodies, and the range of their triangle pairs in [`BodyCollisions::pairs`].
+/// Two bodies, and a range of their pairs or impacts in a list of all.
 #[derive(Clone, Copy, Debug)]
-struct CollidingBodies {
+struct Found {
     bodies: [usize; 2],
     first: usize,
     end: usize,
 }
 
-/// Collisions between bodies in the current step, and the buffers to find them.
+/// Collisions between bodies in the current state, impacts in the current step, and the buffers to find them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyCollisions {
-    boxes: Vec<Aabb>,
-    /// Bodies ordered by the lower end of their AABBs along x.
-    order: Vec<usize>,
-    candidates: Vec<[usize; 2]>,
-    colliding_bodies: Vec<CollidingBodies>,
+    discrete: SweepAndPrune,
+    swept: SweepAndPrune,
+    /// Whether the swept AABB of each body is that of its last motion.
+    is_placed: Vec<bool>,
+    /// AABB of all motions so far; searches in one frame share the volumes of bodies that do not move.
+    around: Option<Aabb>,
+    /// Number of bodies among which all others but [`Self::colliding`] are proven free by swept queries.
+    proven: usize,
+    colliding_bodies: Vec<Found>,
     pairs: Vec<Pair>,
+    impact_bodies: Vec<Found>,
+    impacts: Vec<Impact>,
 }
 
 impl BodyCollisions {
     /// Finds all pairs of triangles of different bodies that have a point in common: exactly those of the positions
-    /// [`Body::pose`] of `p + U q`.
+    /// [`Body::pose`] of `p + U q`. Bodies that swept queries have proven free since the last state are not tested.
     pub fn update(&mut self, bodies: &mut [Body<'_>]) -> Result<(), DynamicsError> {
+        let is_proven = self.proven == bodies.len();
+        if is_proven && self.colliding_bodies.is_empty() {
+            return Ok(());
+        }
+        let suspects: Option<Vec<[usize; 2]>> =
+            is_proven.then(|| self.colliding_bodies.iter().map(|found| found.bodies).collect());
         self.colliding_bodies.clear();
         self.pairs.clear();
-        if bodies.len() < 2 {
-            return Ok(());
-        }
-        self.boxes.clear();
+        self.proven = 0;
+        self.discrete.boxes.clear();
         for body in bodies.iter_mut() {
-            self.boxes.push(body.place()?);
+            self.discrete.boxes.push(body.place()?);
         }
-        self.sweep();
-        let Some(around) = self.boxes.iter().copied().reduce(|a, b| a.union(&b)) else {
+        self.discrete.find();
+        let Some(around) = self.discrete.boxes.iter().copied().reduce(|a, b| a.union(&b)) else {
             return Ok(());
         };
-        for &[a, b] in &self.candidates {
+        for &[a, b] in suspects.as_ref().unwrap_or(&self.discrete.candidates) {
             let first = self.pairs.len();
             let (left, right) = bodies.split_at_mut(b);
             left[a].posed.colliding(&mut right[0].posed, around, &mut self.pairs);
             if self.pairs.len() > first {
-                self.colliding_bodies.push(CollidingBodies { bodies: [a, b], first, end: self.pairs.len() });
+                self.colliding_bodies.push(Found { bodies: [a, b], first, end: self.pairs.len() });
+            }
+        }
+        self.proven = bodies.len();
+        Ok(())
+    }
+
+    /// Finds all impacts between bodies in the motion from their saved to their current states. Of bodies with `has_moved`
+    /// at least one must be in a pair. Bodies that collide in the saved state are not tested: they may pass through each
+    /// other until they are apart.
+    pub fn find_impacts(&mut self, bodies: &mut [Body<'_>], has_moved: &[bool]) -> Result<(), DynamicsError> {
+        self.impact_bodies.clear();
+        self.impacts.clear();
+        let boxes = &mut self.swept.boxes;
+        boxes.resize(bodies.len(), Aabb::EMPTY);
+        self.is_placed.resize(bodies.len(), false);
+        for (n, body) in bodies.iter_mut().enumerate() {
+            if has_moved[n] || !self.is_placed[n] {
+                boxes[n] = body.sweep()?;
+                self.is_placed[n] = true;
+            }
+        }
+        self.swept.find();
+        let all = boxes_union(&self.swept.boxes);
+        let around = match self.around {
+            Some(around) if around.union(&all) == around => around,
+            // The margin avoids a new frame in each step of a slow motion.
+            _ => widened(all),
+        };
+        self.around = Some(around);
+        for &[a, b] in &self.swept.candidates {
+            let is_colliding =
+                || self.colliding_bodies.binary_search_by_key(&[a, b], |found| found.bodies).is_ok();
+            if !(has_moved[a] || has_moved[b]) || is_colliding() {
+                continue;
+            }
+            let first = self.impacts.len();
+            let (left, right) = bodies.split_at_mut(b);
+            if let (Some(x), Some(y)) = (&mut left[a].swept, &mut right[0].swept) {
+                x.impacts(y, around, &mut self.impacts);
+            }
+            if self.impacts.len() > first {
+                self.impact_bodies.push(Found { bodies: [a, b], first, end: self.impacts.len() });
             }
         }
         Ok(())
     }
 
-    /// Finds the pairs of bodies whose AABBs overlap, sorted (sweep and prune along x).
-    fn sweep(&mut self) {
-        let boxes = &self.boxes;
-        // New bodies come last. The order of the last step is nearly sorted.
-        self.order.retain(|n| *n < boxes.len());
-        self.order.extend(self.order.len()..boxes.len());
-        self.order.sort_by(|a, b| boxes[*a].lower.x.total_cmp(&boxes[*b].lower.x).then(a.cmp(b)));
-        self.candidates.clear();
-        for (i, &a) in self.order.iter().enumerate() {
-            for &b in &self.order[i + 1..] {
-                if boxes[b].lower.x > boxes[a].upper.x {
-                    break;
-                }
-                if !boxes[a].is_disjoint(&boxes[b]) {
-                    self.candidates.push([a.min(b), a.max(b)]);
-                }
-            }
+    /// Appends the pairs of triangles of two bodies that come within a distance of each other in the motion of the last
+    /// [`BodyCollisions::find_impacts`], and some that do not.
+    pub fn find_near(
+        &self,
+        bodies: &mut [Body<'_>],
+        [a, b]: [usize; 2],
+        margin: f64,
+        found: &mut Vec<([usize; 2], Pair)>,
+    ) {
+        let mut pairs = Vec::new();
+        let (left, right) = bodies.split_at_mut(b);
+        if let (Some(x), Some(y)) = (&mut left[a].swept, &mut right[0].swept) {
+            x.near(y, self.around.unwrap_or_default(), margin, &mut pairs);
         }
-        self.candidates.sort_unstable();
+        found.extend(pairs.into_iter().map(|pair| ([a, b], pair)));
     }
 
     /// Returns the colliding bodies, sorted, with their triangle pairs.
     pub fn colliding(&self) -> impl Iterator<Item = BodyPairs<'_>> {
-        let pairs = |found: &CollidingBodies| &self.pairs[found.first..found.end];
+        let pairs = |found: &Found| &self.pairs[found.first..found.end];
         self.colliding_bodies.iter().map(move |found| BodyPairs { bodies: found.bodies, pairs: pairs(found) })
     }
+
+    /// Returns the bodies with impacts, sorted, with these.
+    pub fn impacts(&self) -> impl Iterator<Item = ([usize; 2], &[Impact])> {
+        self.impact_bodies.iter().map(|found| (found.bodies, &self.impacts[found.first..found.end]))
+    }
+
+    /// Forgets what swept queries have proven; needed after a body was moved to another state.
+    pub fn reset(&mut self) {
+        self.proven = 0;
+        self.is_placed.fill(false);
+    }
+
+    /// Forgets the motion of a body, which was changed since.
+    pub fn forget_motion(&mut self, body: usize) {
+        if let Some(is_placed) = self.is_placed.get_mut(body) {
+            *is_placed = false;
+        }
+    }
+}
+
+fn boxes_union(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one))
+}
+
+fn widened(Aabb { lower, upper }: Aabb) -> Aabb {
+    let margin = (upper - lower) * 0.1;
+    Aabb { lower: lower - margin, upper: upper + margin }
 }

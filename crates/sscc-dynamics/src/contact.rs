@@ -1,11 +1,19 @@
-//! Contact between two triangles: its geometry, which is kept over many steps.
+//! Contact between two triangles: its geometry.
+//!
+//! A contact is rigid or soft. Triangles of different bodies, which never intersect, make rigid contacts: a swept query
+//! finds them, and each step computes nearest points and normal anew. Triangles that intersect make soft contacts,
+//! springs whose material points and normal stay those of the beginning. A gap within one body is therefore a linear
+//! function of q, and a step costs O(r).
 
 use glam::{DMat3, DVec3};
 use sscc::Pair;
 
 use crate::Shape;
 use crate::body::Body;
-use crate::contact_geometry::{ContactGeometry, DeformedTriangle};
+use crate::contact_geometry::{ContactGeometry, DeformedTriangle, clamp_weights, weights};
+use crate::displacement::displacement;
+use crate::kinematics::Kinematics;
+use crate::nearest_triangles::Nearest;
 
 /// Material point of a body, as barycentric weights on a triangle.
 #[derive(Clone, Debug, Default)]
@@ -14,18 +22,31 @@ pub(crate) struct Anchor {
     pub weights: [f64; 3],
 }
 
-/// Contact between two triangles. It begins when they collide, and ends when their distance exceeds a multiple of the
-/// skin, so that resting triangles do not begin contacts again and again.
-///
-/// The material points and the normal stay those of the beginning. A gap within one body is therefore a linear function
-/// of q, and a step costs O(r).
+/// Contact between two triangles. It ends when their distance exceeds a multiple of the skin, so that resting triangles
+/// do not begin contacts again and again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contact {
     /// Numbers of the two bodies; equal for a contact within one body.
     pub bodies: [u32; 2],
+    pub is_rigid: bool,
+    /// Features of the triangles whose nearest points it holds apart (see [`Nearest`]); 0 for soft contacts.
+    pub features: u8,
+    /// Whether a contact of other triangles has the same points. It then makes no constraint.
+    pub is_duplicate: bool,
     pub anchors: [Anchor; 2],
     /// Unit normal, out of the second body, in axes of the second body.
     pub normal: DVec3,
+    /// The normal in axes of the world; of rigid contacts.
+    pub world_normal: DVec3,
+    /// Vectors from the centres of mass to the common point on which impulses act (axes of the world); of rigid contacts.
+    pub arms: [DVec3; 2],
+    /// Vector between the two points at the beginning of the step (axes of the world); of rigid contacts.
+    pub between: DVec3,
+    /// Minimum gap at the end of the step; of rigid contacts.
+    pub min_gap: f64,
+    /// Impulses along the normal and perpendicular to it (axes of the world); of rigid contacts.
+    pub normal_impulse: f64,
+    pub friction_impulse: DVec3,
     /// Difference between the distance of the points along the normal and the gap: the penetration depth at the
     /// beginning.
     pub offset: f64,
@@ -105,8 +126,13 @@ impl Contact {
     }
 
     /// Key that identifies the contact and orders the list of contacts.
-    pub fn key(&self) -> ([u32; 2], Pair) {
-        (self.bodies, (self.anchors[0].triangle, self.anchors[1].triangle))
+    pub fn key(&self) -> ([u32; 2], Pair, u8) {
+        (self.bodies, self.pair(), self.features)
+    }
+
+    /// Returns the two triangles.
+    pub fn pair(&self) -> Pair {
+        (self.anchors[0].triangle, self.anchors[1].triangle)
     }
 
     /// Computes the geometry of a new contact, in memory that another contact may have used. `corners` are the
@@ -134,6 +160,7 @@ impl Contact {
         self.max_slip = longest_edge(&corners[0]).max(longest_edge(&corners[1]));
         self.normal = geometry.normal;
         (self.gap, self.offset, self.age) = (-geometry.depth, geometry.depth, 0);
+        (self.is_rigid, self.features, self.is_duplicate) = (false, 0, false);
         let points: [DVec3; 2] = std::array::from_fn(|n| interpolate(&corners[n], geometry.weights[n]));
         self.offset += self.normal.dot(points[0] - points[1]);
         if indices[0] != indices[1] {
@@ -141,6 +168,56 @@ impl Contact {
         }
         self.attach(bodies);
         true
+    }
+
+    /// Begins a rigid contact of two triangles with these corners in the world, in memory that another contact may have
+    /// used. The geometry of a duplicate is not computed.
+    pub fn begin_rigid(
+        &mut self,
+        indices: [u32; 2],
+        (i, j): Pair,
+        bodies: [&Body<'_>; 2],
+        corners: &[[DVec3; 3]; 2],
+        nearest: &Nearest,
+        is_duplicate: bool,
+    ) {
+        let triangles = [i, j];
+        (self.bodies, self.is_rigid, self.features) = (indices, true, nearest.features);
+        self.anchors = std::array::from_fn(|n| {
+            let weights = clamp_weights(weights(nearest.points[n], &corners[n]));
+            Anchor { triangle: triangles[n], weights }
+        });
+        self.normal = bodies[1].start.rigid.orientation.inverse() * nearest.normal;
+        (self.offset, self.max_slip, self.preload, self.age) = (0.0, 0.0, 0.0, 0);
+        (self.normal_impulse, self.friction_impulse) = (0.0, DVec3::ZERO);
+        self.is_duplicate = is_duplicate;
+        if !is_duplicate {
+            self.attach(bodies);
+            self.locate(bodies);
+        }
+    }
+
+    /// Computes the normal, the gap and the arms of a rigid contact from its anchors at the beginning of the step.
+    pub fn locate(&mut self, bodies: [&Body<'_>; 2]) {
+        self.world_normal = bodies[1].start.rigid.orientation * self.normal;
+        let [x, y] = [0, 1].map(|n| bodies[n].start.point(self.rest[n], &self.modes[n]));
+        self.between = x - y;
+        self.gap = self.world_normal.dot(x - y);
+        let middle = (x + y) * 0.5;
+        self.arms = bodies.map(|body| middle - body.start.rigid.position);
+    }
+
+    /// Returns the velocity at which the points of a rigid contact approach each other along its normal at the beginning of
+    /// the step, by the rigid motion of the bodies. Modes are left out, because they bounce by themselves: with
+    /// restitution, the points of prestressed bodies would hammer at each other in every other step.
+    pub fn approach(&self, bodies: [&Body<'_>; 2]) -> f64 {
+        let [x, y] = [0, 1].map(|n| bodies[n].start.rigid.velocity_at(self.arms[n]));
+        self.world_normal.dot(y - x)
+    }
+
+    /// Returns the vector between the points of a rigid contact in some states of its bodies.
+    pub fn between(&self, states: [&Kinematics; 2]) -> DVec3 {
+        states[0].point(self.rest[0], &self.modes[0]) - states[1].point(self.rest[1], &self.modes[1])
     }
 
     /// Computes the fields that follow from bodies and anchors.
@@ -174,9 +251,4 @@ fn corners_at_rest(shape: &Shape, triangle: u32) -> [DVec3; 3] {
 /// Point of a triangle with these barycentric weights.
 fn interpolate(x: &[DVec3; 3], weights: [f64; 3]) -> DVec3 {
     x[0] * weights[0] + x[1] * weights[1] + x[2] * weights[2]
-}
-
-/// Returns `sum_k U_k q_k`.
-pub(crate) fn displacement(modes: &[DVec3], q: &[f64]) -> DVec3 {
-    modes.iter().zip(q).fold(DVec3::ZERO, |sum, (u, q)| sum + *u * *q)
 }

@@ -1,4 +1,4 @@
-//! Contact constraint of one step: a spring with a damper that can only push, and Coulomb friction.
+//! Contact constraint of one step, which can only push, with Coulomb friction.
 
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ pub(crate) struct ContactConstraint {
     pub normal: DVec3,
     /// Vectors from the centres of mass to the common point on which impulses act.
     pub arms: [DVec3; 2],
-    /// Compression of the spring: penetration depth beyond the skin; negative where the contact is open.
+    /// Length by which the spring is compressed: penetration depth beyond the skin; negative where the contact is open.
     pub compression: f64,
     /// Modal inverse masses of the two points.
     pub modal_inverse_mass: [ModalInverseMass; 2],
@@ -56,18 +56,34 @@ impl ContactConstraint {
         self.bodies[0] == self.bodies[1]
     }
 
+    /// Returns the impulse on the first body.
+    pub fn impulse(&self) -> DVec3 {
+        self.normal * self.normal_impulse + self.friction_impulse
+    }
+
     /// Returns the bodies of the constraint, each once, without the ground.
     pub fn sides(&self) -> impl Iterator<Item = Side> + use<> {
-        let (bodies, within) = (self.bodies, self.is_within());
-        let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || !within);
-        (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
+        sides(self.bodies)
     }
 
     /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
     pub fn modes<'s>(&self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
-        match self.source {
-            Source::Vertex(v) => body.shape().model().modes().of_vertex(v),
-            Source::Contact(contact) => &contacts[contact as usize].modes[n],
+        self.source.modes(n, body, contacts)
+    }
+}
+
+/// Returns the bodies of a pair, each once, without the ground.
+pub(crate) fn sides(bodies: [u32; 2]) -> impl Iterator<Item = Side> {
+    let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || bodies[0] != bodies[1]);
+    (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
+}
+
+impl Source {
+    /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
+    pub fn modes<'s>(self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
+        match self {
+            Self::Vertex(v) => body.shape().model().modes().of_vertex(v),
+            Self::Contact(contact) => &contacts[contact as usize].modes[n],
         }
     }
 }

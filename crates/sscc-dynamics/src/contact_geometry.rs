@@ -126,7 +126,7 @@ fn intersection_point(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
 
 /// Barycentric coordinates of the projection of a point onto the triangle's plane; 1/3 each for a triangle without
 /// area.
-fn weights(x: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
+pub(crate) fn weights(x: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
     let n = normal(corners);
     let square = n.length_squared();
     let of = |i: usize| {
@@ -138,7 +138,7 @@ fn weights(x: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
 }
 
 /// Clamps barycentric weights to the triangle: negative ones to 0, then scaled to the sum 1.
-fn clamp_weights(weights: [f64; 3]) -> [f64; 3] {
+pub(crate) fn clamp_weights(weights: [f64; 3]) -> [f64; 3] {
     let positive = weights.map(|w| w.max(0.0));
     let sum: f64 = positive.iter().sum();
     positive.map(|w| w / sum)

@@ -1,8 +1,8 @@
 //! Solver for contact impulses: projected Gauss-Seidel with an energy budget for each body.
 //!
-//! Springs and dampers are integrated implicitly. The solver visits one constraint after the other, several times. An
-//! impulse p changes the energy by exactly `p . (v + v') / 2`, where v and v' are the relative velocities before and
-//! after it.
+//! Contacts are springs and dampers, integrated implicitly. The solver visits one constraint after the other, several
+//! times. An impulse p changes the energy by exactly `p . (v + v') / 2`, where v and v' are the relative velocities before
+//! and after it.
 //!
 //! The energy budget of a body is the energy that its contacts have dissipated so far. An impulse may add at most the
 //! sum of the budgets of its bodies. Contacts therefore never add energy to that of the start, up to rounding, for
@@ -10,32 +10,34 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::RigidMotion;
 use crate::body::Body;
-use crate::contact::{Contact, ModalInverseMass, displacement};
+use crate::contact::{Contact, ModalInverseMass};
 use crate::contact_constraint::{ContactConstraint, Side};
+use crate::displacement::displacement;
 
 /// Constants of a constraint in the solver.
 #[derive(Clone, Copy, Debug)]
-struct Coefficients {
+pub(crate) struct Coefficients {
     /// Matrix from impulse to velocity change (inverse effective mass).
     inverse_mass: DMat3,
     /// Velocity change along the normal by a unit impulse along the normal.
     normal_inverse_mass: f64,
     /// Compliance of the implicit spring and damper (velocity by impulse). The constraint along the normal is
     /// `v + compliance * normal_impulse = target_velocity`.
-    compliance: f64,
+    pub compliance: f64,
     /// Velocity along the normal at which the spring separates the points.
     target_velocity: f64,
 }
 
 /// Velocities and inverse masses of a body, updated with each impulse.
 #[derive(Clone, Copy, Debug)]
-struct RigidVelocity {
+pub(crate) struct RigidVelocity {
     velocity: DVec3,
     angular_velocity: DVec3,
-    inverse_mass: f64,
-    inverse_inertia: DMat3,
-    rotation: DMat3,
+    pub inverse_mass: f64,
+    pub inverse_inertia: DMat3,
+    pub rotation: DMat3,
 }
 
 /// Constants of all contacts in a step.
@@ -61,15 +63,17 @@ const SELF_CONTACT_COMPLIANCE: f64 = 1e-2;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactSolver {
     pub constraints: Vec<ContactConstraint>,
-    coefficients: Vec<Coefficients>,
+    /// Those of the constraints of the last solution.
+    pub coefficients: Vec<Coefficients>,
     velocities: Vec<RigidVelocity>,
     /// Number of constraints of each body.
     counts: Vec<usize>,
 }
 
 impl ContactSolver {
-    /// Computes the impulses of all constraints and applies them to the bodies.
+    /// Computes the impulses of all constraints, and applies them to the bodies.
     pub fn solve(&mut self, bodies: &mut [Body<'_>], contacts: &[Contact], spring: &Spring) {
+        self.coefficients.clear();
         if self.constraints.is_empty() {
             return;
         }
@@ -127,6 +131,9 @@ impl ContactSolver {
         let v = self.relative_velocity(&constraint, bodies, contacts);
         let normal = constraint.normal;
         let approach = v.dot(normal);
+        if normal_inverse_mass <= 0.0 {
+            return 0.0;
+        }
         let mut change = (target_velocity - approach - compliance * constraint.normal_impulse)
             / (normal_inverse_mass + compliance);
         change = change.max(-constraint.normal_impulse);
@@ -158,13 +165,7 @@ impl ContactSolver {
                 friction_impulse = constraint.friction_impulse;
             }
         }
-        // Added energy is paid by the bodies in proportion to their budgets; dissipated energy is shared equally.
-        let count = constraint.sides().count() as f64;
-        for Side { body, .. } in constraint.sides() {
-            let own = &mut bodies[body].energy_budget;
-            let share = if work > 0.0 && budget > 0.0 { *own / budget } else { 1.0 / count };
-            *own = (*own - work * share).max(0.0);
-        }
+        account(&constraint, work, budget, bodies);
         self.constraints[n].normal_impulse = normal_impulse;
         self.constraints[n].friction_impulse = friction_impulse;
         self.apply_impulse(&constraint, impulse, bodies, contacts);
@@ -222,6 +223,17 @@ impl ContactSolver {
     }
 }
 
+/// Charges the work of an impulse to the energy budgets of the bodies, whose sum is `budget`.
+fn account(constraint: &ContactConstraint, work: f64, budget: f64, bodies: &mut [Body<'_>]) {
+    // Added energy is paid by the bodies in proportion to their budgets; dissipated energy is shared equally.
+    let count = constraint.sides().count() as f64;
+    for Side { body, .. } in constraint.sides() {
+        let own = &mut bodies[body].energy_budget;
+        let share = if work > 0.0 && budget > 0.0 { *own / budget } else { 1.0 / count };
+        *own = (*own - work * share).max(0.0);
+    }
+}
+
 impl Spring {
     /// Returns the implicit share of the spring force when `count` constraints act on one body. The frequency of
     /// `count` springs together is higher by the square root of `count`. A share of 0 conserves energy but is unstable
@@ -241,12 +253,13 @@ impl Coefficients {
         implicit: f64,
     ) -> Self {
         let normal = constraint.normal;
+        let normal_inverse_mass = normal.dot(all_modes * normal);
         // Per mass: stiffness w^2, damping 2 zeta w.
         let Spring { rate, damping, step, .. } = *spring;
         let divisor = 2.0 * damping + implicit * rate * step;
         Self {
             inverse_mass: all_modes,
-            normal_inverse_mass: normal.dot(all_modes * normal),
+            normal_inverse_mass,
             compliance: normal.dot(slow_modes * normal) / (step * rate * divisor),
             target_velocity: constraint.compression * rate / divisor,
         }
@@ -254,8 +267,13 @@ impl Coefficients {
 }
 
 impl RigidVelocity {
-    fn of(body: &Body<'_>) -> Self {
-        let rotation = body.rotation();
+    pub fn of(body: &Body<'_>) -> Self {
+        Self::at(body, &body.rigid)
+    }
+
+    /// Returns the velocities and inverse masses of a body with this motion.
+    pub fn at(body: &Body<'_>, rigid: &RigidMotion) -> Self {
+        let rotation = DMat3::from_quat(rigid.orientation);
         if !body.is_free() {
             return Self {
                 velocity: DVec3::ZERO,
@@ -267,27 +285,41 @@ impl RigidVelocity {
         }
         let inverse_mass = 1.0 / body.shape().mass().mass;
         Self {
-            velocity: body.rigid.momentum * inverse_mass,
-            angular_velocity: body.rigid.angular_velocity(),
+            velocity: rigid.momentum * inverse_mass,
+            angular_velocity: rigid.angular_velocity(),
             inverse_mass,
-            inverse_inertia: rotation * body.rigid.inverse_inertia() * rotation.transpose(),
+            inverse_inertia: rotation * rigid.inverse_inertia() * rotation.transpose(),
             rotation,
         }
     }
 
     /// Returns the matrices from impulse to velocity at a point: with all modes, and with slow modes only.
-    fn inverse_masses(&self, arm: DVec3, modal: &ModalInverseMass, within: bool) -> [DMat3; 2] {
+    pub fn inverse_masses(&self, arm: DVec3, modal: &ModalInverseMass, within: bool) -> [DMat3; 2] {
         if within {
             return [modal.all_modes, modal.slow_modes];
         }
+        let rigid = self.rigid_inverse_mass(arm);
+        let total = |x: DMat3| rigid + self.rotation * x * self.rotation.transpose();
+        [total(modal.all_modes), total(modal.slow_modes)]
+    }
+
+    /// Returns the matrix from impulse to velocity at a point that does not deform.
+    fn rigid_inverse_mass(&self, arm: DVec3) -> DMat3 {
         let cross = DMat3::from_cols(
             DVec3::new(0.0, arm.z, -arm.y),
             DVec3::new(-arm.z, 0.0, arm.x),
             DVec3::new(arm.y, -arm.x, 0.0),
         );
-        let rigid =
-            DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross;
-        let total = |x: DMat3| rigid + self.rotation * x * self.rotation.transpose();
-        [total(modal.all_modes), total(modal.slow_modes)]
+        DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross
+    }
+
+    /// Returns the matrix from impulse to velocity at a point with these modes, of which each has a weight.
+    pub fn inverse_mass_at(&self, arm: DVec3, modes: &[DVec3], weights: &[f64]) -> DMat3 {
+        let mut modal = DMat3::ZERO;
+        for (u, weight) in modes.iter().zip(weights) {
+            let x = *u * *weight;
+            modal += DMat3::from_cols(*u * x.x, *u * x.y, *u * x.z);
+        }
+        self.rigid_inverse_mass(arm) + self.rotation * modal * self.rotation.transpose()
     }
 }

@@ -5,9 +5,10 @@ use glam::DVec3;
 use sscc::Aabb;
 
 use crate::body::Body;
-use crate::contact::{ModalInverseMass, displacement};
+use crate::contact::ModalInverseMass;
 use crate::contact_constraint::{ContactConstraint, GROUND, Source};
 use crate::contact_set::adapt_preload;
+use crate::displacement::displacement;
 use crate::{DynamicsError, Ground, Shape};
 
 /// Number of steps for which a search for near vertices is meant to serve.
@@ -50,6 +51,8 @@ pub(crate) struct GroundContacts {
     pub(crate) constraints: Vec<ContactConstraint>,
     /// Length by which the springs of the ground exceed the skin: see [`adapt_preload`].
     pub(crate) preload: f64,
+    /// Number of vertices within the skin.
+    pub(crate) count: usize,
 }
 
 /// Bounds on the motion of some vertices of a body.
@@ -171,7 +174,10 @@ impl GroundContacts {
             });
         }
         self.preload = adapt_preload(self.preload, min_gap, skin, preload_rate);
-        self.constraints.iter_mut().for_each(|constraint| constraint.compression += self.preload);
+        for constraint in &mut self.constraints {
+            constraint.compression += self.preload;
+        }
+        self.count = self.constraints.len();
         Ok(())
     }
 

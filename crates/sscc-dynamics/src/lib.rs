@@ -46,45 +46,62 @@
 //! - **Contacts never add energy**, up to rounding: they return at most the energy that they have dissipated
 //!   ([`World::dissipated`]), for every stiffness and step. Linear modes and free flight conserve energy up to
 //!   rounding; tumbling and Newmark's method conserve it to second order in the step.
-//! - **Momenta** are conserved exactly between bodies and within them.
+//! - **No intersections between bodies** in any state, if there are none in the first one: a swept query proves each step.
+//! - **Momenta** are conserved exactly between bodies and within them, except where a body moves only a share of its way.
+//! - **Bodies at rest sleep** ([`SleepOptions`]), and cost nothing until a moving body touches them.
 //!
 //! # Limitations
 //!
 //! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia.
-//! The solver tests for contacts at the ends of steps only: a body that moves farther in a step than it is thick can
-//! pass through another one. A contact pushes along the direction that was computed when it began; where two bodies
-//! interlock, this direction may be wrong.
+//! Contacts within a body and with the ground are found at the ends of steps, so thin parts of a body can pass through
+//! each other in one step. Bodies that no correction keeps apart move only a share of their way in a step, which conserves
+//! no angular momentum ([`World::held_bodies`]).
 //!
 //! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
 //! mass-orthonormal, so generalised forces are accelerations of q.
 
 mod body;
 mod body_collisions;
+mod change;
 mod contact;
 mod contact_constraint;
 mod contact_geometry;
 mod contact_set;
 mod contact_solver;
+mod correction;
 mod depth_field;
+mod displacement;
 mod elastic_energy;
 mod error;
 mod ground;
 mod ground_contacts;
+mod island_energy;
+mod islands;
+mod kinematics;
+mod limited_step;
 mod linear_oscillator;
 mod materials;
 mod nearest_point;
+mod nearest_triangles;
 mod nonlinear_oscillator;
 mod options;
 mod pseudonormals;
+mod rest;
+mod rigid_contacts;
 mod rigid_motion;
+mod rolling;
 mod root_constraint;
 mod shape;
+mod sleep;
 mod sound;
+mod start;
 mod state;
 mod step;
+mod step_buffers;
+mod sweep_and_prune;
 mod world;
 
-pub use body::{Body, Detection, Start};
+pub use body::Body;
 pub use body_collisions::BodyPairs;
 pub use depth_field::{DepthField, SignedDistance};
 pub use elastic_energy::{ElasticEnergy, Evaluation};
@@ -93,10 +110,11 @@ pub use ground::Ground;
 pub use linear_oscillator::{Damping, LinearOscillator};
 pub use materials::{MATERIALS, SoundMaterial};
 pub use nonlinear_oscillator::{NewmarkBuffers, NonlinearOscillator};
-pub use options::{ContactOptions, Response, WorldOptions};
+pub use options::{ContactOptions, Response, SleepOptions, WorldOptions};
 pub use rigid_motion::RigidMotion;
 pub use shape::Shape;
 pub use sound::SoundBank;
+pub use start::{Detection, Start};
 pub use state::State;
 pub use step::{Counts, Impulse, Observer, Phase};
 pub use world::World;

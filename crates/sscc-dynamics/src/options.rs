@@ -55,6 +55,22 @@ impl ContactOptions {
     }
 }
 
+/// When bodies at rest sleep. Bodies sleep together with all that they touch, when none of them has moved for a while and
+/// one of them touches the ground or a held body. They wake when a moving body touches one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SleepOptions {
+    /// Time without motion after which bodies sleep (s); infinite: never.
+    pub time: f64,
+    /// Distance within which all points of a body stay in this time (model unit). None: 1/200 of the body's radius.
+    pub distance: Option<f64>,
+}
+
+impl Default for SleepOptions {
+    fn default() -> Self {
+        Self { time: 0.5, distance: None }
+    }
+}
+
 /// Response of bodies to self-collisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Response {
@@ -81,6 +97,8 @@ pub struct WorldOptions {
     pub contact: ContactOptions,
     /// Response of bodies to self-collisions.
     pub response: Response,
+    /// When bodies at rest sleep.
+    pub sleep: SleepOptions,
 }
 
 impl Default for WorldOptions {
@@ -92,6 +110,7 @@ impl Default for WorldOptions {
             ground: Some(Ground::default()),
             contact: ContactOptions::default(),
             response: Response::default(),
+            sleep: SleepOptions::default(),
         }
     }
 }
@@ -115,6 +134,12 @@ impl WorldOptions {
         check("the skin", skin, skin > 0.0, positive)?;
         let iterations = contact.iterations as f64;
         check("the number of iterations", iterations, iterations >= 1.0, "at least 1")?;
+        if self.sleep.time.is_nan() || self.sleep.time <= 0.0 {
+            let (what, value) = ("the time until bodies sleep", self.sleep.time);
+            return Err(DynamicsError::Option { what, value, range: "above 0; infinite: never" });
+        }
+        let distance = self.sleep.distance.unwrap_or(1.0);
+        check("the distance of sleep", distance, distance > 0.0, positive)?;
         if let Some(ground) = self.ground {
             let length = ground.normal.length();
             check("the length of the ground's normal", length, (length - 1.0).abs() < 1e-9, "1")?;

@@ -54,6 +54,11 @@ impl RigidMotion {
         })
     }
 
+    /// Returns the velocity of the point at `arm` from the centre of mass (axes of the world).
+    pub(crate) fn velocity_at(&self, arm: DVec3) -> DVec3 {
+        self.momentum / self.properties.mass + self.angular_velocity().cross(arm)
+    }
+
     /// Returns the angular velocity (rad/s), in axes of the world.
     pub fn angular_velocity(&self) -> DVec3 {
         self.spin(self.orientation)
@@ -62,6 +67,12 @@ impl RigidMotion {
     /// Returns the inverse of the inertia tensor, in axes of the rest pose.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
         self.inverse
+    }
+
+    /// Returns the inertia tensor, in axes of the world.
+    pub(crate) fn inertia(&self) -> DMat3 {
+        let rotation = DMat3::from_quat(self.orientation);
+        rotation * self.properties.inertia * rotation.transpose()
     }
 
     /// Returns the angular velocity (rad/s, axes of the world) at an orientation.

@@ -15,12 +15,13 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground, whether q was moved, energy
-/// budget.
-const RIGID: usize = 13 + 3;
+/// Position, orientation, momentum, angular momentum, preload of the ground, number of vertices on the ground, whether q
+/// was moved, whether the body sleeps, time at rest, reference position and orientation of the rest, energy budget.
+const RIGID: usize = 13 + 12 + 1;
 
-/// Bodies, triangles, weights, normal, offset, maximum slip, preload and age of a contact.
-const CONTACT: usize = 2 + 2 + 6 + 3 + 4;
+/// Bodies, triangles, weights, normal, offset, maximum slip, preload, age, whether it is rigid (2: a duplicate),
+/// features and impulses of a contact.
+const CONTACT: usize = 2 + 2 + 6 + 3 + 10;
 
 impl World<'_> {
     /// Returns the current state.
@@ -33,7 +34,14 @@ impl World<'_> {
             numbers.extend(rigid.orientation.to_array());
             numbers.extend(rigid.momentum.to_array());
             numbers.extend(rigid.angular_momentum.to_array());
-            numbers.extend([ground.preload, f64::from(u8::from(body.has_moved)), body.energy_budget]);
+            let flag = |x: bool| f64::from(u8::from(x));
+            let rest = &body.rest;
+            numbers.extend([ground.preload, ground.count as f64, flag(body.has_moved)]);
+            numbers.extend([flag(rest.is_asleep), rest.time]);
+            numbers.extend(rest.position.to_array());
+            numbers.extend(rest.orientation.to_array());
+            numbers.push(body.energy_budget);
+            numbers.extend(&rest.q);
         }
         for contact in &self.contacts.list {
             numbers.extend(contact.bodies.map(f64::from));
@@ -41,6 +49,9 @@ impl World<'_> {
             numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
             numbers.extend(contact.normal.to_array());
             numbers.extend([contact.offset, contact.max_slip, contact.preload, f64::from(contact.age)]);
+            let kind = u8::from(contact.is_rigid) + u8::from(contact.is_duplicate);
+            numbers.extend([f64::from(kind), f64::from(contact.features), contact.normal_impulse]);
+            numbers.extend(contact.friction_impulse.to_array());
         }
         State { step: self.step, numbers }
     }
@@ -50,7 +61,6 @@ impl World<'_> {
     /// # Errors
     /// When the state does not fit the bodies or holds an invalid number; then the world is unchanged.
     pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
-        let numbers_of = |body: &Body<'_>| body.q.len() + body.v.len() + body.a.len() + RIGID;
         let expected = self.bodies.iter().map(numbers_of).sum::<usize>();
         let found = state.numbers.len();
         let (motion, contacts) = state.numbers.split_at(expected.min(found));
@@ -77,13 +87,21 @@ impl World<'_> {
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
             ground.reset();
             ground.preload = next();
+            ground.count = next() as usize;
             body.has_moved = next() != 0.0;
+            let rest = &mut body.rest;
+            (rest.is_asleep, rest.time) = (next() != 0.0, next());
+            rest.position = DVec3::from_array([(); 3].map(|()| next()));
+            rest.orientation = DQuat::from_array([(); 4].map(|()| next()));
             body.energy_budget = next();
+            rest.q.iter_mut().for_each(|x| *x = next());
+            body.save_start();
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
         }
         self.contacts.list = contacts;
+        self.body_collisions.reset();
         self.impulses.clear();
         Ok(())
     }
@@ -93,7 +111,7 @@ impl World<'_> {
         let mut at = 0;
         self.bodies.iter().all(|body| {
             let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
-            at += body.q.len() + body.v.len() + body.a.len() + RIGID;
+            at += numbers_of(body);
             let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
             (length - 1.0).abs() < 1e-9 && rigid[RIGID - 1] >= 0.0
         })
@@ -120,7 +138,17 @@ impl World<'_> {
             max_slip: numbers[14],
             preload: numbers[15],
             age: index(numbers[16], u32::MAX as usize)?,
+            is_rigid: index(numbers[17], 3)? > 0 && bodies[0] != bodies[1],
+            is_duplicate: numbers[17] == 2.0 && bodies[0] != bodies[1],
+            features: index(numbers[18], 32)? as u8,
+            normal_impulse: numbers[19],
+            friction_impulse: DVec3::new(numbers[20], numbers[21], numbers[22]),
             ..Contact::default()
         })
     }
+}
+
+/// Returns the count of numbers of a body.
+fn numbers_of(body: &Body<'_>) -> usize {
+    2 * body.q.len() + body.v.len() + body.a.len() + RIGID
 }

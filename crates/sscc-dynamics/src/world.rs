@@ -1,31 +1,45 @@
 //! World of bodies, and its time step: detection, contacts, integration.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::body::{Body, Start};
+use crate::body::Body;
 use crate::body_collisions::BodyCollisions;
 use crate::contact_constraint::{GROUND, Source};
 use crate::contact_set::ContactSet;
 use crate::contact_solver::{ContactSolver, Spring};
+use crate::correction::CorrectionSolver;
 use crate::ground_contacts::{GroundContacts, GroundOptions};
+use crate::islands::Islands;
 use crate::nonlinear_oscillator::NewmarkBuffers;
+use crate::rigid_contacts::RigidContacts;
 use crate::root_constraint::constrain_to_root;
+use crate::step_buffers::StepBuffers;
 use crate::{
-    BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, WorldOptions,
+    BodyPairs, Counts, DynamicsError, Impulse, Observer, Obstacle, Phase, Response, Shape, Start,
+    WorldOptions,
 };
 
 /// Bodies with their ground, contacts and options. The same steps give the same bits in every run and for any number of
 /// threads.
 pub struct World<'a> {
-    options: WorldOptions,
+    pub(crate) options: WorldOptions,
     pub(crate) bodies: Vec<Body<'a>>,
     /// Contacts of each body with the ground.
     pub(crate) ground_contacts: Vec<GroundContacts>,
-    body_collisions: BodyCollisions,
+    pub(crate) body_collisions: BodyCollisions,
     pub(crate) contacts: ContactSet,
-    solver: ContactSolver,
+    pub(crate) rigid_contacts: RigidContacts,
+    pub(crate) solver: ContactSolver,
+    pub(crate) corrections: CorrectionSolver,
+    pub(crate) islands: Islands,
+    pub(crate) buffers: StepBuffers,
+    /// Number of contacts at the beginning of this step; the list is sorted up to here.
+    pub(crate) sorted_contacts: usize,
+    /// Number of bodies that moved only a share of their way in this step.
+    pub(crate) held_bodies: usize,
     /// Buffers of the integration of a single body.
-    buffers: NewmarkBuffers,
+    newmark: NewmarkBuffers,
     start: StartEnergy,
     pub(crate) step: u64,
     pub(crate) impulses: Vec<Impulse>,
@@ -58,8 +72,14 @@ impl<'a> World<'a> {
             ground_contacts: Vec::new(),
             body_collisions: BodyCollisions::default(),
             contacts: ContactSet::default(),
+            rigid_contacts: RigidContacts::new(&options, 0.0),
             solver: ContactSolver::default(),
-            buffers: NewmarkBuffers::default(),
+            corrections: CorrectionSolver::default(),
+            islands: Islands::default(),
+            buffers: StepBuffers::default(),
+            sorted_contacts: 0,
+            held_bodies: 0,
+            newmark: NewmarkBuffers::default(),
             start: StartEnergy::default(),
             step: 0,
             impulses: Vec::new(),
@@ -77,6 +97,7 @@ impl<'a> World<'a> {
         self.start.potential += body.potential(self.options.gravity);
         self.bodies.push(body);
         self.ground_contacts.push(GroundContacts::default());
+        self.rigid_contacts = RigidContacts::new(&self.options, self.skin());
         Ok(self.bodies.len() - 1)
     }
 
@@ -119,6 +140,12 @@ impl<'a> World<'a> {
     /// Returns the colliding bodies and their triangle pairs at the start of the last step.
     pub fn inter_pairs(&self) -> impl Iterator<Item = BodyPairs<'_>> {
         self.body_collisions.colliding()
+    }
+
+    /// Returns the number of bodies that moved only a share of their way in the last step, because no correction kept them
+    /// apart.
+    pub fn held_bodies(&self) -> usize {
+        self.held_bodies
     }
 
     /// Returns the skin: the distance that contacts keep between bodies (model unit).
@@ -165,6 +192,7 @@ impl<'a> World<'a> {
     /// When the motion diverges or a number is not finite. After an error the world can be read, but not advanced.
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
         let mut counts = Counts::default();
+        self.bodies.iter_mut().filter(|body| !body.is_asleep()).for_each(Body::save_start);
         observer.enter(Phase::SelfCollision);
         self.detect_self_collisions()?;
         for body in &self.bodies {
@@ -181,58 +209,77 @@ impl<'a> World<'a> {
         observer.enter(Phase::Ground);
         self.solver.constraints.clear();
         self.add_ground_constraints()?;
-        counts.ground = self.solver.constraints.len();
+        counts.ground = self.ground_contacts.iter().map(|contacts| contacts.count).sum();
         observer.enter(Phase::Penalty);
-        let (skin, preload_rate, friction) =
-            (self.skin(), self.preload_rate(), self.options.contact.friction);
         let within = self.options.response == Response::Contact;
         let max_age = 1.0 / (self.options.contact.frequency * self.options.step);
-        self.contacts.update(&self.bodies, within, &self.body_collisions, skin, max_age.max(2.0) as u32);
-        counts.contacts = self.contacts.list.len();
-        self.contacts.add_constraints(
-            &self.bodies,
-            skin,
-            preload_rate,
-            friction,
-            &mut self.solver.constraints,
-        );
+        let (skin, max_age) = (self.skin(), f64::max(max_age, 2.0) as u32);
+        self.contacts.update(&self.bodies, within, &self.body_collisions, skin, max_age);
+        counts.contacts = self.contacts.list.iter().filter(|contact| !contact.is_duplicate).count();
+        self.sorted_contacts = self.contacts.list.len();
+        self.join_islands();
+        let (preload_rate, friction) = (self.preload_rate(), self.options.contact.friction);
+        let constraints = &mut self.solver.constraints;
+        self.contacts.add_constraints(&self.bodies, skin, preload_rate, friction, constraints);
+        let mut buffers = std::mem::take(&mut self.buffers);
+        buffers.begin(&self.bodies);
         self.solve_contacts();
+        self.resist_rolling();
         observer.enter(Phase::Dynamics);
-        self.integrate()?;
+        self.advance_bodies()?;
+        self.held_bodies = 0;
+        self.corrections.list.clear();
+        if self.bodies.len() > 1 {
+            observer.enter(Phase::InterObject);
+            self.limit_step(&mut buffers)?;
+        }
+        self.buffers = buffers;
+        self.record_impulses();
+        self.contacts.end_step(self.sorted_contacts);
+        self.check_energy()?;
+        self.settle();
         observer.enter(Phase::Done);
         self.step += 1;
         Ok(counts)
     }
 
-    /// Detects self-collisions of all bodies.
+    /// Detects self-collisions of all bodies that are awake.
     fn detect_self_collisions(&mut self) -> Result<(), DynamicsError> {
         if self.options.response == Response::Constrain {
             return Ok(());
         }
+        let detect = |body: &mut Body<'_>| if body.is_asleep() { Ok(()) } else { body.detect() };
         match &mut self.bodies[..] {
-            [body] => body.detect(),
-            bodies => first_error(bodies.par_iter_mut().map(Body::detect).collect()),
+            [body] => detect(body),
+            bodies => first_error(bodies.par_iter_mut().map(detect).collect()),
         }
     }
 
-    /// Appends the constraints of contacts with the ground.
+    /// Updates the contacts of all bodies that are awake with the ground, and appends their constraints.
     fn add_ground_constraints(&mut self) -> Result<(), DynamicsError> {
-        let Some(ground) = self.options.ground else { return Ok(()) };
-        let options = GroundOptions { ground, skin: self.skin(), preload_rate: self.preload_rate() };
+        let Some(options) = self.ground_options() else { return Ok(()) };
+        let update = |(n, (body, contacts)): (usize, (&mut Body<'_>, &mut GroundContacts))| {
+            if body.is_asleep() { Ok(()) } else { contacts.update(n, body, &options) }
+        };
         match (&mut self.bodies[..], &mut self.ground_contacts[..]) {
-            ([body], [contacts]) => contacts.update(0, body, &options)?,
+            ([body], [contacts]) => update((0, (body, contacts)))?,
             (bodies, contacts) => {
                 let all = bodies.par_iter_mut().zip(contacts).enumerate();
-                let update = |(n, (body, contacts)): (usize, (_, &mut GroundContacts))| {
-                    contacts.update(n, body, &options)
-                };
                 first_error(all.map(update).collect())?;
             }
         }
-        for contacts in &self.ground_contacts {
-            self.solver.constraints.extend_from_slice(&contacts.constraints);
+        for (body, contacts) in self.bodies.iter().zip(&self.ground_contacts) {
+            if !body.is_asleep() {
+                self.solver.constraints.extend_from_slice(&contacts.constraints);
+            }
         }
         Ok(())
+    }
+
+    /// Returns the options of contacts with the ground, if there is a ground.
+    pub(crate) fn ground_options(&self) -> Option<GroundOptions> {
+        let ground = self.options.ground?;
+        Some(GroundOptions { ground, skin: self.skin(), preload_rate: self.preload_rate() })
     }
 
     /// Share of the difference between half the skin and the gap by which preloads change in a step.
@@ -240,31 +287,31 @@ impl<'a> World<'a> {
         (PRELOAD_ADAPTATION * self.options.contact.rate() * self.options.step).min(1.0)
     }
 
-    /// Solves all constraints, and stores the impulses on the bodies.
+    /// Solves the contact constraints.
     fn solve_contacts(&mut self) {
-        self.impulses.clear();
-        if self.solver.constraints.is_empty() {
-            return;
-        }
         let contact = &self.options.contact;
         let (rate, damping, max_iterations) = (contact.rate(), contact.damping, contact.iterations);
         let spring = Spring { rate, damping, step: self.options.step, max_iterations };
         self.solver.solve(&mut self.bodies, &self.contacts.list, &spring);
-        for constraint in &self.solver.constraints {
-            let impulse = constraint.normal * constraint.normal_impulse + constraint.friction_impulse;
+    }
+
+    /// Stores the impulses of the step.
+    fn record_impulses(&mut self) {
+        self.impulses.clear();
+        let soft = self.solver.constraints.iter().map(|one| (one.bodies, one.source, one.impulse()));
+        let rigid = self.corrections.list.iter().map(|one| (one.bodies, one.source, one.impulse()));
+        for (bodies, source, impulse) in soft.chain(rigid) {
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
-                if constraint.bodies[n] == GROUND {
+                if bodies[n] == GROUND || impulse == DVec3::ZERO {
                     continue;
                 }
                 // A contact within one body gives an impulse at each of its two points.
-                let number = constraint.bodies[n] as usize;
+                let number = bodies[n] as usize;
                 let body = &self.bodies[number];
-                let to_rest = if constraint.is_within() {
-                    glam::DQuat::IDENTITY
-                } else {
-                    body.rigid.orientation.inverse()
-                };
-                let (vertices, weights) = match constraint.source {
+                let is_within = bodies[0] == bodies[1];
+                let to_rest =
+                    if is_within { glam::DQuat::IDENTITY } else { body.rigid.orientation.inverse() };
+                let (vertices, weights) = match source {
                     Source::Vertex(v) => ([v; 3], [1.0, 0.0, 0.0]),
                     Source::Contact(contact) => {
                         let anchor = &self.contacts.list[contact as usize].anchors[n];
@@ -277,29 +324,41 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Integrates the motion of all bodies over one step, and checks that it does not diverge.
-    fn integrate(&mut self) -> Result<(), DynamicsError> {
+    /// Advances all bodies that are awake by one step, after their contacts are solved.
+    fn advance_bodies(&mut self) -> Result<(), DynamicsError> {
         let WorldOptions { gravity, step, response, .. } = self.options;
-        let advance = |buffers: &mut NewmarkBuffers, body: &mut Body<'a>| {
+        let advance = |buffers: &mut NewmarkBuffers, (_, body): (usize, &mut Body<'a>)| {
+            if body.is_asleep() {
+                return Ok(());
+            }
+            body.save_start();
             body.advance(gravity, step, buffers)?;
-            if response == Response::Constrain { constrain_to_root(body) } else { Ok(()) }
+            if response == Response::Constrain {
+                constrain_to_root(body)?;
+            }
+            body.save_trial();
+            Ok(())
         };
         let number = self.step;
-        let diverged = |body, energy| DynamicsError::Diverged { step: number, body, energy };
         let named = |(body, result): (usize, Result<(), DynamicsError>)| {
             result.map_err(|error| match error {
-                DynamicsError::Unsolved { energy } => diverged(body, energy),
+                DynamicsError::Unsolved { energy } => DynamicsError::Diverged { step: number, body, energy },
                 other => other,
             })
         };
         match &mut self.bodies[..] {
-            [body] => named((0, advance(&mut self.buffers, body)))?,
+            [body] => named((0, advance(&mut self.newmark, (0, body)))),
             bodies => {
-                let all = bodies.par_iter_mut().map_init(NewmarkBuffers::default, advance);
+                let all = bodies.par_iter_mut().enumerate().map_init(NewmarkBuffers::default, advance);
                 let results: Vec<_> = all.collect();
-                results.into_iter().enumerate().try_for_each(named)?;
+                results.into_iter().enumerate().try_for_each(named)
             }
         }
+    }
+
+    /// Checks that the motion does not diverge.
+    fn check_energy(&self) -> Result<(), DynamicsError> {
+        let gravity = self.options.gravity;
         let (mut kinetic, mut potential, mut fastest) = (0.0, 0.0, (0, 0.0));
         for (n, body) in self.bodies.iter().enumerate() {
             let own = body.kinetic_energy();
@@ -313,7 +372,7 @@ impl<'a> World<'a> {
         if kinetic.is_finite() && kinetic <= MAX_ENERGY_RATIO * available {
             Ok(())
         } else {
-            Err(diverged(fastest.0, fastest.1))
+            Err(DynamicsError::Diverged { step: self.step, body: fastest.0, energy: fastest.1 })
         }
     }
 }

@@ -96,15 +96,15 @@ fn colliding_bodies_conserve_momenta() {
         world.check_start().unwrap();
         let (linear, angular) = momenta(&world);
         let energy = world.energy();
-        let (mut pairs, mut most) = (0, 0.0_f64);
+        let (mut contacts, mut most) = (0, 0.0_f64);
         for _ in 0..1500 {
-            pairs += world.advance(&mut ()).unwrap().inter_pairs;
+            contacts += world.advance(&mut ()).unwrap().contacts;
             most = most.max(world.energy());
             let now = momenta(&world);
             assert!((now.0 - linear).length() < 1e-12 * linear.length());
             assert!((now.1 - angular).length() < 1e-12 * (angular.length() + linear.length()));
         }
-        assert!(pairs > 100, "{pairs}");
+        assert!(contacts > 3, "{contacts}");
         // The energy of Newmark's method oscillates where forces are nonlinear.
         assert!(most <= energy * if large { 1.002 } else { 1.0 + 1e-9 }, "{energy} to {most}");
         assert!(world.dissipated() > 0.02 * energy, "{} of {energy}", world.dissipated());
@@ -243,7 +243,7 @@ fn a_stack_comes_to_rest_without_interpenetration_and_gains_no_energy() {
     let first = world.energy();
     let (mut highest, mut met) = (first, 0);
     for _ in 0..6000 {
-        met += world.advance(&mut ()).unwrap().inter_pairs;
+        met += world.advance(&mut ()).unwrap().contacts;
         highest = highest.max(world.energy() + world.dissipated());
     }
     assert!(met > 100, "{met}");

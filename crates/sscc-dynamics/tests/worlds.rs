@@ -22,10 +22,15 @@ fn shapes() -> [Shape; 2] {
 
 /// A world of five bodies that fall onto each other.
 fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
+    pile(shapes, detection, 0.35)
+}
+
+/// A world of five bodies, each higher than the last by `rise`.
+fn pile<'a>(shapes: &'a [Shape; 2], detection: Detection, rise: f64) -> World<'a> {
     let mut world = World::new(WorldOptions { step: 2e-3, ..WorldOptions::default() }).unwrap();
     for n in 0..5 {
         let start = Start {
-            position: Some(DVec3::new(0.1 * f64::from(n % 2), 0.4 + 0.35 * f64::from(n), 0.05)),
+            position: Some(DVec3::new(0.1 * f64::from(n % 2), 0.4 + rise * f64::from(n), 0.05)),
             orientation: DQuat::from_scaled_axis(DVec3::new(0.4, 0.9, 0.2) * f64::from(n)),
             damping: Damping { mass: 0.5, stiffness: 1e-3 },
             detection,
@@ -39,7 +44,8 @@ fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
 #[test]
 fn pairs_between_bodies_equal_brute_force() {
     let shapes = shapes();
-    let mut world = heap(&shapes, Detection::Certified);
+    // Bodies that begin in each other collide until they are apart; then they never meet again.
+    let mut world = pile(&shapes, Detection::Certified, 0.2);
     let (mut met, mut apart) = (0, 0);
     for step in 0..600 {
         let placed: Vec<Vec<[DVec3; 3]>> = world
@@ -182,13 +188,13 @@ fn states_of_other_worlds_are_refused() {
         let mut damaged = state.clone();
         damaged.numbers.truncate(length);
         // A state with fewer contacts is valid.
-        let whole = length >= other.numbers.len() && (length - other.numbers.len()).is_multiple_of(17);
+        let whole = length >= other.numbers.len() && (length - other.numbers.len()).is_multiple_of(23);
         assert_eq!(world.restore(&damaged).is_ok(), whole, "{length}");
     }
     // Invalid states: a negative energy budget, an orientation that is not normalized, contacts out of order or
     // duplicated.
     let modes = shapes[0].model().rank();
-    let contact = &state.numbers[other.numbers.len()..][..17];
+    let contact = &state.numbers[other.numbers.len()..][..23];
     let mut earlier = contact.to_vec();
     earlier[2] = 0.0; // the first triangle of the first body
     let with = |change: &dyn Fn(&mut Vec<f64>)| {
@@ -197,7 +203,7 @@ fn states_of_other_worlds_are_refused() {
         damaged
     };
     for damaged in [
-        with(&|numbers| numbers[2 * modes + 15] = -1e-3),
+        with(&|numbers| numbers[2 * modes + 25] = -1e-3),
         with(&|numbers| numbers[2 * modes + 3] += 1.0),
         with(&|numbers| numbers.extend(contact)),
         with(&|numbers| numbers.extend(&earlier)),

@@ -63,7 +63,7 @@
 //! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |
 //! | Which triangles collide at q, by another method? | [`Query::with_method`], [`Method`], for comparison |
 //! | Do the certificates hold under attack, and how tight are they? | [`audit()`] |
-//! | Do shapes in the world collide with each other? | [`PosedShape`] |
+//! | Do shapes in the world collide with each other? | [`PosedShape`], [`SweptShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
 //! | Which points do two triangles have in common? | [`intersection_triangle_triangle`] |
 //! | What is the smallest translation that parts two triangles? | [`penetration_triangle_triangle`] |
@@ -290,7 +290,7 @@ pub use geometry::{
     intersection_triangle_triangle, penetration_triangle_triangle,
 };
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
-pub use posed::{Pose, PosedShape};
+pub use posed::{Pose, PosedShape, SweptShape};
 pub use progress::Progress;
 pub use query::{
     Answer, FreeSamples, KineticQuery, Method, Query, ResolveOptions, Resolved, Statistics, Sweep,

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 pub const STEP_PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
 
 /// Count of numbers of a step, without those of its bodies.
-const STEP_NUMBERS: usize = STEP_PARTS.len() + 4;
+const STEP_NUMBERS: usize = STEP_PARTS.len() + 5;
 
 /// Count of numbers of a body, without its q.
 const BODY_NUMBERS: usize = 8;
@@ -24,6 +24,8 @@ pub struct StepRecord {
     pub sound: f64,
     /// Number of colliding triangle pairs between bodies in the state.
     pub inter_pairs: usize,
+    /// Number of bodies that sleep in the state.
+    pub asleep: usize,
 }
 
 impl StepRecord {
@@ -43,6 +45,7 @@ impl StepRecord {
         numbers[STEP_PARTS.len() + 1] = self.sound;
         numbers[STEP_PARTS.len() + 2] = self.inter_pairs as f64;
         numbers[STEP_PARTS.len() + 3] = self.wall;
+        numbers[STEP_PARTS.len() + 4] = self.asleep as f64;
         numbers
     }
 }
@@ -168,8 +171,9 @@ impl History {
     pub fn step(&self, state: usize) -> StepRecord {
         let of = self.of(state);
         let seconds = std::array::from_fn(|part| of[part]);
-        let [energy, sound, inter_pairs, wall] = [0, 1, 2, 3].map(|n| of[STEP_PARTS.len() + n]);
-        StepRecord { seconds, wall, energy, sound, inter_pairs: inter_pairs as usize }
+        let [energy, sound, inter_pairs, wall, asleep] = [0, 1, 2, 3, 4].map(|n| of[STEP_PARTS.len() + n]);
+        let [inter_pairs, asleep] = [inter_pairs, asleep].map(|count| count as usize);
+        StepRecord { seconds, wall, energy, sound, inter_pairs, asleep }
     }
 
     /// Returns a body in a state.
@@ -212,6 +216,7 @@ mod tests {
             energy: x + 0.5,
             sound: -x,
             inter_pairs: x as usize + 2,
+            asleep: x as usize + 1,
         };
         let q = [[0.5, -1.0], [2.0, 3.0]];
         let body = |pairs: usize, q| BodyRecord {
@@ -223,9 +228,9 @@ mod tests {
         let mut numbers = Vec::new();
         layout.push(facts(0.0), [body(0, &q[0]), body(0, &[])], &mut numbers);
         layout.push(facts(0.0), [body(0, &q[1]), body(0, &[])], &mut numbers);
-        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[28..]);
+        layout.complete(facts(10.0), [3, 7].into_iter(), &mut numbers[29..]);
         let history = History::new(layout, numbers);
-        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 28, 2));
+        assert_eq!((history.len(), history.layout().width(), history.layout().rank(0)), (2, 29, 2));
         assert_eq!(
             (history.step(1), history.body(1, 0)),
             (facts(10.0), BodyRecord { position: body(0, &q[1]).position, ..body(3, &q[1]) })

@@ -216,9 +216,9 @@ mod tests {
         StateLog::open(folder, [digest; DIGEST], StateLayout::new([1]), false)
     }
 
-    /// A state of the layout, 19 numbers.
+    /// A state of the layout, 20 numbers.
     fn state(x: f64) -> Vec<f64> {
-        (0..19).map(|i| x + f64::from(i)).collect()
+        (0..20).map(|i| x + f64::from(i)).collect()
     }
 
     #[test]
@@ -239,10 +239,10 @@ mod tests {
         assert_eq!((states, log.len(), memory), (2, 2, vec![0.5, -1.0]));
         log.append(&state(300.0)).unwrap();
         let history = log.history().unwrap();
-        assert_eq!((history.len(), history.body(2, 0).q), (3, &[318.0][..]));
+        assert_eq!((history.len(), history.body(2, 0).q), (3, &[319.0][..]));
         // History leaves the log at its end.
         log.append(&state(400.0)).unwrap();
-        assert_eq!(log.history().unwrap().body(3, 0).q, [418.0]);
+        assert_eq!(log.history().unwrap().body(3, 0).q, [419.0]);
         log.write_checkpoint(&[]).unwrap();
         drop(log);
         assert_eq!(open(path, 1).unwrap().1.unwrap().states, 4);

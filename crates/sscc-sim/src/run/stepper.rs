@@ -53,6 +53,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
     pub fn step(&mut self) -> Result<(), DynamicsError> {
         let has_energy = self.world.steps().is_multiple_of(ENERGY_STEPS as u64);
         let energy = if has_energy { self.world.energy() } else { f64::NAN };
+        let asleep = self.world.bodies().iter().filter(|body| body.is_asleep()).count();
         let start = self.numbers.len();
         let bodies = self.world.bodies().iter().map(|body| BodyRecord {
             pairs: 0,
@@ -68,7 +69,7 @@ impl<'a, C: Clocks> Stepper<'a, C> {
         let sound = self.sample_sound();
         let StepTimes { parts: seconds, wall } = self.clock.end(begin);
         let inter_pairs = self.world.inter_pairs().map(|found| found.pairs.len()).sum();
-        let facts = StepRecord { seconds, wall, energy, sound, inter_pairs };
+        let facts = StepRecord { seconds, wall, energy, sound, inter_pairs, asleep };
         let pairs = self.world.bodies().iter().map(|body| body.pairs().len());
         self.layout.complete(facts, pairs, &mut self.numbers[start..]);
         if self.clock.is_due() {

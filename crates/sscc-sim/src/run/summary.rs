@@ -41,6 +41,8 @@ pub struct Summary {
     pub last_self_pairs: usize,
     /// Number of colliding triangle pairs between bodies in the last state.
     pub last_inter_pairs: usize,
+    /// Number of bodies that sleep in the last state.
+    pub last_asleep: usize,
     /// Share of self-collision detection in the processor time.
     pub self_collision_share: f64,
     /// Kinetic, elastic and potential energy of the first state (J).
@@ -114,6 +116,7 @@ impl Summary {
             colliding_body_steps: colliding.iter().sum(),
             last_self_pairs: steps.checked_sub(1).map_or(0, |last| history.self_pairs(last)),
             last_inter_pairs: steps.checked_sub(1).map_or(0, |last| history.step(last).inter_pairs),
+            last_asleep: steps.checked_sub(1).map_or(0, |last| history.step(last).asleep),
             self_collision_share: own / seconds,
             energy_first: energies().next().unwrap_or_default(),
             energy_largest: energies().fold(f64::NEG_INFINITY, f64::max),
@@ -184,9 +187,11 @@ impl Summary {
 
     fn end(&self) -> String {
         format!(
-            "{} of triangles within bodies and {} between them",
+            "{} of triangles within bodies and {} between them; {} of {} bodies asleep",
             counted(self.last_self_pairs as u64, "colliding pair"),
-            self.last_inter_pairs
+            self.last_inter_pairs,
+            self.last_asleep,
+            self.objects
         )
     }
 

@@ -96,7 +96,7 @@ impl Scene {
     /// Returns the options of its world.
     pub fn options(&self) -> WorldOptions {
         let Self { step, gravity, ground, contact, response, .. } = *self;
-        WorldOptions { step, gravity, ground, contact, response }
+        WorldOptions { step, gravity, ground, contact, response, ..WorldOptions::default() }
     }
 
     /// Shortens the scene for a quick run: half a second, with the small spring in place of each model, shaken harder

@@ -204,6 +204,8 @@ impl<const E: usize> NodeVolumes<E> {
         if self.is_coarse {
             coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
             by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
+        } else if motion.margin() > 0.0 {
+            by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
         }
         let mut whole = AabbF32::EMPTY;
         for (lane, packet) in buckets.packets(bucket).enumerate() {

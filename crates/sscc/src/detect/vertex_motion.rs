@@ -19,6 +19,11 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// An upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
     fn rounding(&self) -> f64;
 
+    /// The distance by which all AABBs are widened, to find near triangles. [`Self::rounding`] includes it.
+    fn margin(&self) -> f64 {
+        0.0
+    }
+
     /// The AABB that chooses the [`F32Frame`](super::f32_frame::F32Frame). It must contain the positions at
     /// [`Self::coarse_coordinates`], and all positions where [`Self::HAS_ERROR_BOUND`]: the error bounds assume that. For
     /// other sources any AABB is right, and affects speed only.

@@ -13,7 +13,7 @@ impl PosedShape<'_> {
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();
         let Layout { vertices, buckets, bd_tree, .. } = &*self.volumes.layout;
-        let PosedMotion { q, pose, .. } = &self.motion;
+        let PosedMotion { q: [q], pose: [pose], .. } = &self.motion;
         let local = pose.rotation.transpose() * normal;
         let height = height - normal.dot(pose.translation);
         let rounding = DVec3::splat(self.motion.rounding());

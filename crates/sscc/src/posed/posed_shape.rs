@@ -12,20 +12,19 @@ use crate::detect::layout::Needs;
 use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::two_meshes::{Side, traverse_two_meshes};
-use crate::detect::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::hierarchy::NodePair;
-use crate::{Certificates, Error, Pair, ReducedModel, limits};
+use crate::{Certificates, Error, Pair, ReducedModel};
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
 /// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
 /// repeated calls allocate nothing; clones share what does not change.
 #[derive(Clone)]
 pub struct PosedShape<'a> {
-    model: &'a ReducedModel,
+    pub(super) model: &'a ReducedModel,
     pub(super) context: Context<'a>,
     pub(super) volumes: NodeVolumes<1>,
-    pub(super) motion: PosedMotion,
+    pub(super) motion: PosedMotion<1>,
     /// Whether the volumes are those of this motion.
     is_current: bool,
     pub(super) stack: Vec<NodePair>,
@@ -42,9 +41,7 @@ impl<'a> PosedShape<'a> {
         let hierarchy = Cow::Borrowed(certificates.hierarchy());
         let context = Context::new(model, hierarchy, certificates.filter(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
-        let q = vec![0.0; model.rank()];
-        let reach = model.check_coordinates(&q)?;
-        let motion = PosedMotion { q, pose: Pose::default(), around: Aabb::default(), reach };
+        let motion = PosedMotion::new(model)?;
         Ok(Self {
             model,
             context,
@@ -61,19 +58,8 @@ impl<'a> PosedShape<'a> {
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
-        let reach = pose.reach(self.model.check_coordinates(q)?);
-        // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
-        let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
-        if !(is_finite && reach * 1.001 <= limits::LARGEST) {
-            return Err(Error::CoordinatesRange);
-        }
-        self.motion.q.copy_from_slice(q);
-        self.motion.pose = *pose;
-        self.motion.reach = reach;
         self.is_current = false;
-        let rounding = self.motion.rounding();
-        let whole = self.volumes.layout.bd_tree.root([q], DVec3::splat(rounding));
-        Ok(pose.apply_to_aabb(whole, rounding))
+        self.motion.place(self.model, &self.volumes.layout, [(q, pose)])
     }
 
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
@@ -96,7 +82,7 @@ impl<'a> PosedShape<'a> {
     /// The corners of a triangle in the world, bit for bit those of all answers.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let face = self.model.mesh().faces()[triangle as usize];
-        face.map(|v| self.motion.pose.apply(self.model.position(v, &self.motion.q)))
+        face.map(|v| self.motion.pose[0].apply(self.model.position(v, &self.motion.q[0])))
     }
 
     /// Starts a search in the frame of this box, unless the last one was the same.

@@ -1,9 +1,10 @@
-//! The narrow phase: the test of two triangles whose boxes overlap. There are three:
+//! The narrow phase: the test of two triangles whose boxes overlap. There are four:
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
 //! - ball ([`BallHits`]): whether their boxes, around all positions in a ball or on the way between two configurations,
-//!   overlap.
+//!   overlap;
+//! - near ([`NearHits`]): none; all pairs whose widened boxes overlap.
 
 mod ball;
 mod discrete;
@@ -11,6 +12,7 @@ mod hits;
 mod impact;
 #[allow(clippy::module_inception)] // named after its trait, as all files here
 mod narrow_phase;
+mod near;
 mod separating_axis;
 mod swept;
 
@@ -18,5 +20,6 @@ pub(crate) use ball::BallHits;
 pub(crate) use discrete::DiscreteHits;
 pub use impact::Impact;
 pub(crate) use narrow_phase::NarrowPhase;
+pub(crate) use near::NearHits;
 pub(crate) use separating_axis::are_separated;
 pub(crate) use swept::SweptHits;

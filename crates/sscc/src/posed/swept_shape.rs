@@ -1,0 +1,206 @@
+//! A shape that moves through the world, tested against others: continuous queries between objects.
+
+use glam::DVec3;
+
+use super::pose::Pose;
+use super::posed_motion::PosedMotion;
+use super::posed_shape::PosedShape;
+use crate::detect::broad_phase::Counters;
+use crate::detect::context::Context;
+use crate::detect::narrow_phase::{NearHits, SweptHits};
+use crate::detect::node_volumes::NodeVolumes;
+use crate::detect::two_meshes::{Side, traverse_two_meshes};
+use crate::geometry::Aabb;
+use crate::hierarchy::NodePair;
+use crate::{Error, Impact, Pair, ReducedModel};
+
+/// A shape whose vertices move on straight lines between two places in the world, to be tested against others. Its ends
+/// are the positions of a [`PosedShape`] at each place, bit for bit. It owns its memory, so that repeated calls allocate
+/// nothing; it shares what does not change with the posed shape.
+#[derive(Clone)]
+pub struct SweptShape<'a> {
+    model: &'a ReducedModel,
+    context: Context<'a>,
+    volumes: NodeVolumes<2>,
+    motion: PosedMotion<2>,
+    /// An AABB of the whole motion.
+    whole: Aabb,
+    /// Whether the volumes are those of this motion.
+    is_current: bool,
+    stack: Vec<NodePair>,
+    hits: SweptHits,
+    near: NearHits,
+}
+
+impl<'a> SweptShape<'a> {
+    /// A shape that rests at q = 0 in its own axes.
+    ///
+    /// # Errors
+    /// When the model is beyond the range of numbers.
+    pub fn new(shape: &PosedShape<'a>) -> Result<Self, Error> {
+        Ok(Self {
+            model: shape.model,
+            context: shape.context.clone(),
+            volumes: NodeVolumes::new(&shape.context.layout, true),
+            motion: PosedMotion::new(shape.model)?,
+            whole: Aabb::EMPTY,
+            is_current: false,
+            stack: Vec::new(),
+            hits: SweptHits::default(),
+            near: NearHits::default(),
+        })
+    }
+
+    /// Sets both ends of the motion, each a q and a pose. Returns an AABB of the whole motion in the world, at a cost of
+    /// O(r).
+    ///
+    /// # Errors
+    /// When a q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
+    pub fn place(&mut self, t0: (&[f64], &Pose), t1: (&[f64], &Pose)) -> Result<Aabb, Error> {
+        self.is_current = false;
+        self.whole = self.motion.place(self.model, &self.volumes.layout, [t0, t1])?;
+        Ok(self.whole)
+    }
+
+    /// Appends to `found` an impact for each pair (triangle of this shape, triangle of the other) that has a point in
+    /// common during the motion, sorted by pair: the same promise as [`Query::continuous`](crate::Query::continuous).
+    /// `around` is an AABB of all shapes compared. It affects speed only; while it stays the same, AABBs are computed
+    /// once after each [`SweptShape::place`].
+    pub fn impacts(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Impact>) {
+        let first = found.len();
+        // The error bound of positions in single precision holds within this AABB.
+        let around = around.union(&self.whole).union(&other.whole);
+        self.enter(around, 0.0);
+        other.enter(around, 0.0);
+        self.hits.0.begin(usize::MAX);
+        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
+        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        // Nobody cancels: the contexts have no progress.
+        let _ =
+            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
+        found.extend_from_slice(&self.hits.0.list);
+        found[first..].sort_unstable_by_key(|impact| impact.pair);
+    }
+
+    /// Appends to `found` pairs (triangle of this shape, triangle of the other), sorted: all that come within the distance
+    /// `margin` of each other during the motion, and some that do not. `around` is that of [`SweptShape::impacts`].
+    pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, found: &mut Vec<Pair>) {
+        let first = found.len();
+        let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
+        let around = around.union(&widened(self.whole)).union(&widened(other.whole));
+        self.enter(around, margin / 2.0);
+        other.enter(around, margin / 2.0);
+        self.near.0.begin(usize::MAX);
+        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
+        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        // Nobody cancels: the contexts have no progress.
+        let _ =
+            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.near);
+        found.extend_from_slice(&self.near.0.list);
+        found[first..].sort_unstable();
+    }
+
+    /// The corners of a triangle in the world at both ends.
+    pub fn corners(&self, triangle: u32) -> [[DVec3; 3]; 2] {
+        let face = self.model.mesh().faces()[triangle as usize];
+        let PosedMotion { q, pose, .. } = &self.motion;
+        std::array::from_fn(|end| face.map(|v| pose[end].apply(self.model.position(v, &q[end]))))
+    }
+
+    /// Starts a search in the frame of this box with this margin, unless the last one was the same.
+    fn enter(&mut self, around: Aabb, margin: f64) {
+        if !self.is_current || self.motion.around != around || self.motion.margin != margin {
+            (self.motion.around, self.motion.margin) = (around, margin);
+            self.is_current = true;
+            self.volumes.begin(&self.context.hierarchy, &self.motion);
+            self.volumes.update_node(0, &self.motion);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DQuat};
+
+    use super::*;
+    use crate::{Certificates, CertifyOptions, Modes, MovingTriangle, TriMesh, impact_triangle_triangle};
+
+    /// Fixed pseudo-random numbers in [-1, 1).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    /// A crumpled ball of loose triangles, with modes.
+    fn model(triangles: usize, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> = (0..triangles)
+            .flat_map(|_| {
+                let center = vector(state);
+                [(); 3].map(|()| center + vector(state) * 0.1)
+            })
+            .collect();
+        let faces = (0..triangles as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = positions.iter().flat_map(|p| [*p * 0.3, DVec3::new(p.y, -p.z, p.x * p.x)]).collect();
+        ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn impacts_are_those_of_all_triangles() {
+        let state = &mut 11;
+        let models = [model(200, state), model(90, state)];
+        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let certificates =
+            models.each_ref().map(|model| Certificates::compute(model, &options, &()).unwrap());
+        let mut shapes: Vec<SweptShape<'_>> = models
+            .iter()
+            .zip(&certificates)
+            .map(|(m, c)| SweptShape::new(&PosedShape::new(m, c).unwrap()).unwrap())
+            .collect();
+        let (mut found, mut between) = (0, 0);
+        for case in 0..12 {
+            let far = if case % 3 == 0 { DVec3::new(1e4, -3.0, 2e3) } else { DVec3::ZERO };
+            for shape in &mut shapes {
+                let rotation = vector(state) * 3.0;
+                let mut end = |turn: f64| {
+                    let rotation = DMat3::from_quat(DQuat::from_scaled_axis(rotation * turn));
+                    let translation = vector(state) * (0.3 * f64::from(case)) + far;
+                    ([random(state), random(state)], Pose { rotation, translation })
+                };
+                let [(q, t0), (r, t1)] = [end(1.0), end(1.1)];
+                let Aabb { lower, upper } = shape.place((&q, &t0), (&r, &t1)).unwrap();
+                for t in 0..shape.model.mesh().faces().len() as u32 {
+                    let corners = shape.corners(t);
+                    assert!(
+                        corners.as_flattened().iter().all(|x| x.cmpge(lower).all() && x.cmple(upper).all())
+                    );
+                }
+            }
+            let (left, right) = shapes.split_at_mut(1);
+            let (x, y) = (&mut left[0], &mut right[0]);
+            let mut expected = Vec::new();
+            for i in 0..x.model.mesh().faces().len() as u32 {
+                for j in 0..y.model.mesh().faces().len() as u32 {
+                    let [a, b] = [x.corners(i), y.corners(j)].map(|[t0, t1]| MovingTriangle { t0, t1 });
+                    if a.is_swept_aabb_overlapping(&b)
+                        && let Some(time) = impact_triangle_triangle(&a, &b, Impact::TOLERANCE)
+                    {
+                        expected.push(Impact { pair: (i, j), time });
+                    }
+                }
+            }
+            // Any box is right, also one that is too small.
+            for around in [Aabb::default(), Aabb { lower: far - 9.0, upper: far + 9.0 }] {
+                let mut impacts = Vec::new();
+                x.impacts(y, around, &mut impacts);
+                assert_eq!(impacts, expected, "case {case}");
+            }
+            found += expected.len();
+            between += expected.iter().filter(|impact| impact.time > 0.0).count();
+        }
+        assert!(found > 200 && between > 100, "{found} {between}");
+    }
+}
