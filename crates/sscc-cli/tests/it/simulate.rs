@@ -122,7 +122,7 @@ fn a_scene_is_simulated_and_written() {
     let [summary] = &run.json()[..] else { panic!("{run:?}") };
     let known = "scene, models, objects, steps, scene_steps, step, simulated_seconds, simulation_seconds, \
         real_time_factor, real_time_factor_processor, colliding_steps, body_steps, colliding_body_steps, last_self_pairs, last_inter_pairs, \
-        self_collision_share, energy_first, energy_largest, energy_last, machine";
+        last_asleep, self_collision_share, energy_first, energy_largest, energy_last, machine";
     assert_eq!(keys(summary), sorted(known));
     let number = |key: &str| summary[key].as_f64().unwrap();
     assert_eq!((number("steps"), number("scene_steps"), number("objects")), (800.0, 800.0, 1.0));
