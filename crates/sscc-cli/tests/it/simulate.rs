@@ -210,7 +210,7 @@ fn a_scene_is_simulated_and_written() {
         assert!(run.stdout.contains(part), "{run:?}");
     }
     assert_eq!(arrays(&out.join("trajectories.npz")), trajectories);
-    assert_eq!(fs::metadata(out.join("states.log")).unwrap().len(), 32 + 800 * 8 * (10 + 8 + 10));
+    assert_eq!(fs::metadata(out.join("states.log")).unwrap().len(), 32 + 800 * 8 * (10 + 8 + 11));
 }
 
 #[test]
