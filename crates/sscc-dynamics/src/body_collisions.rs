@@ -16,6 +16,10 @@ pub struct BodyPairs<'a> {
     pub pairs: &'a [Pair],
 }
 
+/// Maximum number of near pairs of two bodies: bounds the memory where the skin is large. Pairs that are left out are found
+/// as impacts, if they meet.
+const MAX_NEAR: usize = 1 << 14;
+
 /// Two bodies, and a range of their pairs or impacts in a list of all.
 #[derive(Clone, Copy, Debug)]
 struct Found {
@@ -74,9 +78,9 @@ impl BodyCollisions {
         Ok(())
     }
 
-    /// Finds all impacts between bodies in the motion from their saved to their current states. Of bodies with `has_moved`
-    /// at least one must be in a pair. Bodies that collide in the saved state are not tested: they may pass through each
-    /// other until they are apart.
+    /// Finds all impacts between bodies in the motion from the beginning of the step to their current states, where at least
+    /// one of the two has moved (`has_moved`). Bodies that collide at the beginning are not tested: they may pass through
+    /// each other until they are apart.
     pub fn find_impacts(&mut self, bodies: &mut [Body<'_>], has_moved: &[bool]) -> Result<(), DynamicsError> {
         self.impact_bodies.clear();
         self.impacts.clear();
@@ -116,7 +120,7 @@ impl BodyCollisions {
     }
 
     /// Appends the pairs of triangles of two bodies that come within a distance of each other in the motion of the last
-    /// [`BodyCollisions::find_impacts`], and some that do not.
+    /// [`BodyCollisions::find_impacts`], and some that do not; at most [`MAX_NEAR`].
     pub fn find_near(
         &self,
         bodies: &mut [Body<'_>],
@@ -127,7 +131,7 @@ impl BodyCollisions {
         let mut pairs = Vec::new();
         let (left, right) = bodies.split_at_mut(b);
         if let (Some(x), Some(y)) = (&mut left[a].swept, &mut right[0].swept) {
-            x.near(y, self.around.unwrap_or_default(), margin, &mut pairs);
+            x.near(y, self.around.unwrap_or_default(), margin, MAX_NEAR, &mut pairs);
         }
         found.extend(pairs.into_iter().map(|pair| ([a, b], pair)));
     }

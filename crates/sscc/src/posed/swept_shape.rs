@@ -83,14 +83,15 @@ impl<'a> SweptShape<'a> {
     }
 
     /// Appends to `found` pairs (triangle of this shape, triangle of the other), sorted: all that come within the distance
-    /// `margin` of each other during the motion, and some that do not. `around` is that of [`SweptShape::impacts`].
-    pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, found: &mut Vec<Pair>) {
+    /// `margin` of each other during the motion, and some that do not; but at most `limit`. `around` is that of
+    /// [`SweptShape::impacts`].
+    pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, limit: usize, found: &mut Vec<Pair>) {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
         let around = around.union(&widened(self.whole)).union(&widened(other.whole));
         self.enter(around, margin / 2.0);
         other.enter(around, margin / 2.0);
-        self.near.0.begin(usize::MAX);
+        self.near.0.begin(limit);
         let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
         // Nobody cancels: the contexts have no progress.
@@ -160,7 +161,7 @@ mod tests {
             .zip(&certificates)
             .map(|(m, c)| SweptShape::new(&PosedShape::new(m, c).unwrap()).unwrap())
             .collect();
-        let (mut found, mut between) = (0, 0);
+        let (mut found, mut between, mut close) = (0, 0, 0);
         for case in 0..12 {
             let far = if case % 3 == 0 { DVec3::new(1e4, -3.0, 2e3) } else { DVec3::ZERO };
             for shape in &mut shapes {
@@ -198,9 +199,25 @@ mod tests {
                 x.impacts(y, around, &mut impacts);
                 assert_eq!(impacts, expected, "case {case}");
             }
+            let margin = 0.1;
+            let mut near = Vec::new();
+            x.near(y, Aabb::default(), margin, usize::MAX, &mut near);
+            assert!(near.is_sorted() && expected.iter().all(|impact| near.contains(&impact.pair)));
+            let is_within = |(i, j): &(u32, u32)| {
+                let [a, b] = [x.corners(*i), y.corners(*j)];
+                (0..2).any(|end| a[end].iter().any(|p| b[end].iter().any(|q| p.distance(*q) < margin)))
+            };
+            let triangles = |shape: &SweptShape<'_>| shape.model.mesh().faces().len() as u32;
+            let all = (0..triangles(x)).flat_map(|i| (0..triangles(y)).map(move |j| (i, j)));
+            let within: Vec<(u32, u32)> = all.filter(is_within).collect();
+            assert!(within.iter().all(|pair| near.binary_search(pair).is_ok()), "case {case}");
+            close += within.len();
+            let mut some = Vec::new();
+            x.near(y, Aabb::default(), margin, 3, &mut some);
+            assert!(some.len() == near.len().min(3) && some.iter().all(|pair| near.contains(pair)));
             found += expected.len();
             between += expected.iter().filter(|impact| impact.time > 0.0).count();
         }
-        assert!(found > 200 && between > 100, "{found} {between}");
+        assert!(found > 200 && between > 100 && close > 100, "{found} {between} {close}");
     }
 }
