@@ -106,14 +106,16 @@ impl World<'_> {
         Ok(())
     }
 
-    /// Whether orientations have the length 1, and energy budgets are not negative.
+    /// Whether orientations have the length 1, vertices on the ground exist, and energy budgets are not negative.
     fn is_valid_motion(&self, motion: &[f64]) -> bool {
         let mut at = 0;
         self.bodies.iter().all(|body| {
             let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
             at += numbers_of(body);
             let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
-            (length - 1.0).abs() < 1e-9 && rigid[RIGID - 1] >= 0.0
+            let vertices = body.shape().model().mesh().rest_positions().len() as f64;
+            let is_count = (0.0..=vertices).contains(&rigid[14]);
+            (length - 1.0).abs() < 1e-9 && is_count && rigid[RIGID - 1] >= 0.0
         })
     }
 

@@ -204,6 +204,7 @@ fn states_of_other_worlds_are_refused() {
     };
     for damaged in [
         with(&|numbers| numbers[2 * modes + 25] = -1e-3),
+        with(&|numbers| numbers[2 * modes + 14] = 1e300),
         with(&|numbers| numbers[2 * modes + 3] += 1.0),
         with(&|numbers| numbers.extend(contact)),
         with(&|numbers| numbers.extend(&earlier)),
