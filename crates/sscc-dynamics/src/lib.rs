@@ -55,7 +55,7 @@
 //! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia.
 //! Contacts within a body and with the ground are found at the ends of steps, so thin parts of a body can pass through
 //! each other in one step. Bodies that no correction keeps apart move only a share of their way in a step, which conserves
-//! no angular momentum ([`World::held_bodies`]).
+//! no angular momentum ([`World::shortened_bodies`]).
 //!
 //! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
 //! mass-orthonormal, so generalised forces are accelerations of q.

@@ -182,7 +182,7 @@ impl World<'_> {
     /// Moves bodies with impacts a share of their way, until none are left.
     fn shorten(&mut self, buffers: &mut StepBuffers) -> Result<(), DynamicsError> {
         let mut shares = vec![1.0_f64; self.bodies.len()];
-        let mut is_held = vec![false; self.bodies.len()];
+        let mut is_shortened = vec![false; self.bodies.len()];
         for round in 0.. {
             let mut times = vec![f64::INFINITY; self.bodies.len()];
             for (bodies, impact) in &buffers.impacts {
@@ -197,7 +197,7 @@ impl World<'_> {
                     }
                     shares[n] *= share;
                     self.bodies[n].shorten(share);
-                    (buffers.moves[n], is_held[n]) = (true, true);
+                    (buffers.moves[n], is_shortened[n]) = (true, true);
                 }
             }
             if !buffers.moves.contains(&true) {
@@ -208,7 +208,7 @@ impl World<'_> {
                 break;
             }
         }
-        self.held_bodies += is_held.iter().filter(|is_held| **is_held).count();
+        self.shortened_bodies += is_shortened.iter().filter(|is_shortened| **is_shortened).count();
         Ok(())
     }
 }

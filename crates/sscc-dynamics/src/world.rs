@@ -37,7 +37,7 @@ pub struct World<'a> {
     /// Number of contacts at the beginning of this step; the list is sorted up to here.
     pub(crate) sorted_contacts: usize,
     /// Number of bodies that moved only a share of their way in this step.
-    pub(crate) held_bodies: usize,
+    pub(crate) shortened_bodies: usize,
     /// Buffers of the integration of a single body.
     newmark: NewmarkBuffers,
     start: StartEnergy,
@@ -78,7 +78,7 @@ impl<'a> World<'a> {
             islands: Islands::default(),
             buffers: StepBuffers::default(),
             sorted_contacts: 0,
-            held_bodies: 0,
+            shortened_bodies: 0,
             newmark: NewmarkBuffers::default(),
             start: StartEnergy::default(),
             step: 0,
@@ -144,8 +144,8 @@ impl<'a> World<'a> {
 
     /// Returns the number of bodies that moved only a share of their way in the last step, because no correction kept them
     /// apart.
-    pub fn held_bodies(&self) -> usize {
-        self.held_bodies
+    pub fn shortened_bodies(&self) -> usize {
+        self.shortened_bodies
     }
 
     /// Returns the skin: the distance that contacts keep between bodies (model unit).
@@ -227,7 +227,7 @@ impl<'a> World<'a> {
         self.resist_rolling();
         observer.enter(Phase::Dynamics);
         self.advance_bodies()?;
-        self.held_bodies = 0;
+        self.shortened_bodies = 0;
         self.corrections.list.clear();
         if self.bodies.len() > 1 {
             observer.enter(Phase::InterObject);
@@ -327,7 +327,7 @@ impl<'a> World<'a> {
     /// Advances all bodies that are awake by one step, after their contacts are solved.
     fn advance_bodies(&mut self) -> Result<(), DynamicsError> {
         let WorldOptions { gravity, step, response, .. } = self.options;
-        let advance = |buffers: &mut NewmarkBuffers, (_, body): (usize, &mut Body<'a>)| {
+        let advance = |buffers: &mut NewmarkBuffers, body: &mut Body<'a>| {
             if body.is_asleep() {
                 return Ok(());
             }
@@ -347,9 +347,9 @@ impl<'a> World<'a> {
             })
         };
         match &mut self.bodies[..] {
-            [body] => named((0, advance(&mut self.newmark, (0, body)))),
+            [body] => named((0, advance(&mut self.newmark, body))),
             bodies => {
-                let all = bodies.par_iter_mut().enumerate().map_init(NewmarkBuffers::default, advance);
+                let all = bodies.par_iter_mut().map_init(NewmarkBuffers::default, advance);
                 let results: Vec<_> = all.collect();
                 results.into_iter().enumerate().try_for_each(named)
             }

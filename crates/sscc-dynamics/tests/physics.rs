@@ -95,16 +95,22 @@ fn colliding_bodies_conserve_momenta() {
         world.add(&shape, &coming).unwrap();
         world.check_start().unwrap();
         let (linear, angular) = momenta(&world);
+        let before: Vec<DVec3> = world.bodies().iter().map(|body| body.rigid().momentum).collect();
         let energy = world.energy();
         let (mut contacts, mut most) = (0, 0.0_f64);
         for _ in 0..1500 {
-            contacts += world.advance(&mut ()).unwrap().contacts;
+            let counts = world.advance(&mut ()).unwrap();
+            assert_eq!(counts.inter_pairs, 0, "bodies that begin apart never intersect");
+            contacts += counts.contacts;
             most = most.max(world.energy());
             let now = momenta(&world);
             assert!((now.0 - linear).length() < 1e-12 * linear.length());
             assert!((now.1 - angular).length() < 1e-12 * (angular.length() + linear.length()));
         }
         assert!(contacts > 3, "{contacts}");
+        for (body, before) in world.bodies().iter().zip(&before) {
+            assert!((body.rigid().momentum - *before).length() > 0.1 * before.length(), "no impact");
+        }
         // The energy of Newmark's method oscillates where forces are nonlinear.
         assert!(most <= energy * if large { 1.002 } else { 1.0 + 1e-9 }, "{energy} to {most}");
         assert!(world.dissipated() > 0.02 * energy, "{} of {energy}", world.dissipated());

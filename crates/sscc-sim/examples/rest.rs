@@ -116,7 +116,7 @@ fn main() {
         });
         let counts = counts.unwrap();
         (contacts, ground) = (counts.contacts, counts.ground);
-        held += world.held_bodies();
+        held += world.shortened_bodies();
     }
     println!("largest energy / first {:.9}; most pairs {worst:?}, from 10 s on {late:?}", largest / first);
 }
