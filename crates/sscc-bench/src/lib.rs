@@ -26,7 +26,7 @@ pub use plots::BenchPage;
 pub use random::Random;
 pub use record::{Means, Record};
 pub use scenarios::{
-    AmplitudesModel, Exponents, GROWTH_RANK, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench,
-    KineticRecord, ListedScenario, SCENE_STEPS, Scenario, SceneMeasurement, amplitudes_models, measure_scene,
+    BenchModel, Exponents, GROWTH_RANK, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, KineticRecord,
+    ListedScenario, ModelsScenario, SCENE_STEPS, Scenario, SceneMeasurement, measure_scene,
 };
 pub use setup::Setup;

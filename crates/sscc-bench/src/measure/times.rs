@@ -2,7 +2,7 @@
 
 use super::timer::Milliseconds;
 use crate::methods::COLUMNS;
-use crate::sampling::{Strata, weighted_mean};
+use crate::sampling::{Strata, weighted_mean, weighted_median};
 
 /// Name of kinetic queries in tables and JSON. They depend on earlier steps, so they are not an interleaved column.
 const KINETIC: &str = "kinetic";
@@ -35,24 +35,40 @@ impl Times {
 
     /// Returns mean milliseconds over the scene, estimated from some steps, of the methods that ran on all of these.
     pub fn means(&self, steps: &[usize], strata: &Strata) -> Vec<(&'static str, f64)> {
-        let mut means: Vec<(&'static str, f64)> = Vec::new();
+        self.summarized(steps, strata, weighted_mean)
+    }
+
+    /// Returns median milliseconds over the scene, as [`Times::means`] does.
+    pub fn medians(&self, steps: &[usize], strata: &Strata) -> Vec<(&'static str, f64)> {
+        self.summarized(steps, strata, weighted_median)
+    }
+
+    /// Returns one number for each method that ran on all of these steps, from its times and their weights.
+    fn summarized(
+        &self,
+        steps: &[usize],
+        strata: &Strata,
+        summary: impl Fn(Vec<f64>, &[f64]) -> f64,
+    ) -> Vec<(&'static str, f64)> {
+        let mut summaries: Vec<(&'static str, f64)> = Vec::new();
         if steps.is_empty() {
-            return means;
+            return summaries;
         }
         let weights = strata.weights(steps);
         for (at, column) in COLUMNS.iter().enumerate() {
             let times: Option<Vec<f64>> = steps.iter().map(|&step| self.interleaved[step][at]).collect();
             let Some(times) = times else { continue };
-            let mean = weighted_mean(times, &weights);
-            match means.iter_mut().find(|(key, _)| *key == column.key) {
-                Some((_, known)) => *known = known.min(mean),
-                None => means.push((column.key, mean)),
+            let own = summary(times, &weights);
+            match summaries.iter_mut().find(|(key, _)| *key == column.key) {
+                Some((_, known)) => *known = known.min(own),
+                None => summaries.push((column.key, own)),
             }
         }
         if !self.kinetic.is_empty() {
-            means.push((KINETIC, weighted_mean(steps.iter().map(|step| self.kinetic[*step]), &weights)));
+            let times = steps.iter().map(|step| self.kinetic[*step]).collect();
+            summaries.push((KINETIC, summary(times, &weights)));
         }
-        means
+        summaries
     }
 }
 
@@ -85,7 +101,7 @@ mod tests {
         assert_eq!((of(&means, "parry"), of(&means, COLUMNS[0].key)), (Some(at as f64 + 2.0), Some(2.0)));
         assert_eq!(of(&times.means(&[0, 2], &strata), COLUMNS[0].key), None);
         assert_eq!(of(&means, "kinetic"), Some(2.0));
-        assert!(times.means(&[], &strata).is_empty());
+        assert!(times.means(&[], &strata).is_empty() && times.medians(&[], &strata).is_empty());
         // One step represents three of the scene, the other one itself.
         let strata = Strata::new(
             vec![Stratum::RootCertified, Stratum::Colliding, Stratum::Colliding],
@@ -93,6 +109,9 @@ mod tests {
         );
         let means = times.means(&[0, 1], &strata);
         assert_eq!((of(&means, COLUMNS[0].key), of(&means, "kinetic")), (Some(1.5), Some(1.5)));
+        // The median of times 1 and 3, of which the first has three quarters of the weight, is the first one.
+        let medians = times.medians(&[0, 1], &strata);
+        assert_eq!((of(&medians, COLUMNS[0].key), of(&medians, "kinetic")), (Some(1.0), Some(1.0)));
         // Each step on which the method ran, and no other.
         assert_eq!(times.of(COLUMNS[0].key), [(0, 1.0), (1, 3.0)]);
         assert_eq!(times.of("parry")[1], (1, at as f64 + 3.0));

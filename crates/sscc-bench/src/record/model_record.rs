@@ -23,6 +23,9 @@ pub struct Record {
     pub note: Option<String>,
     /// The largest displacement in percent of half the diagonal of the AABB.
     pub share: f64,
+    /// The largest `|z|` over the root's radius, where this is what scales the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub root_radii: Option<f64>,
     /// Triangles of one body.
     pub triangles: usize,
     /// Modes of one body.
@@ -80,6 +83,18 @@ pub struct Record {
     /// Mean milliseconds of discrete queries in the compared steps in which the root certificate fails.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub discrete_ms_root_failed: Means,
+    /// Mean milliseconds of discrete queries over the steps that are free, of the methods that ran on all of them.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub free_ms: Means,
+    /// Their median milliseconds.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub free_ms_median: Means,
+    /// Mean milliseconds of discrete queries over the colliding steps, of the methods that ran on all of them.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub colliding_ms: Means,
+    /// Their median milliseconds.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub colliding_ms_median: Means,
     /// Mean milliseconds over all steps, of the methods that ran on all; empty if all methods did.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub discrete_ms_all_steps: Means,
@@ -135,6 +150,9 @@ impl Record {
         let root_failed: Vec<usize> =
             compared.iter().copied().filter(|step| comparison.root_failed[*step]).collect();
         let all_steps = if compared.len() < steps { discrete.means(&all, strata) } else { Vec::new() };
+        let [free, colliding] = [false, true].map(|collides| -> Vec<usize> {
+            all.iter().copied().filter(|step| comparison.colliding[*step] == collides).collect()
+        });
         let discrete_ms = Means(discrete.means(compared, strata));
         Self {
             scenario,
@@ -142,6 +160,7 @@ impl Record {
             source: model.source.clone(),
             note: notes(model.note.clone(), strata.missing()),
             share,
+            root_radii: None,
             triangles: model.model.mesh().faces().len(),
             rank: model.model.rank(),
             objects,
@@ -171,6 +190,10 @@ impl Record {
             discrete_ms,
             continuous_ms: Means(continuous.means(&continuous.compared, strata)),
             discrete_ms_root_failed: Means(discrete.means(&root_failed, strata)),
+            free_ms: Means(discrete.means(&free, strata)),
+            free_ms_median: Means(discrete.medians(&free, strata)),
+            colliding_ms: Means(discrete.means(&colliding, strata)),
+            colliding_ms_median: Means(discrete.medians(&colliding, strata)),
             discrete_ms_all_steps: Means(all_steps),
             machine: sscc_sim::machine_description(),
         }

@@ -6,4 +6,4 @@ mod strata;
 
 pub use blocks::{blocks, evenly_spread};
 pub use directions::{directions, half_diagonal, largest_displacement, scaled, unit_displacements};
-pub use strata::{Counts, Strata, Stratum, weighted_mean};
+pub use strata::{Counts, Strata, Stratum, weighted_mean, weighted_median};

@@ -131,6 +131,19 @@ pub fn weighted_mean(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> 
     sum / weights.iter().sum::<f64>()
 }
 
+/// Returns the weighted median of values: the least one that, with all that are smaller, has half of the weight.
+pub fn weighted_median(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> f64 {
+    let mut values: Vec<(f64, f64)> = values.into_iter().zip(weights.iter().copied()).collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = weights.iter().sum::<f64>() / 2.0;
+    let mut below = 0.0;
+    let median = values.iter().find(|(_, weight)| {
+        below += weight;
+        below >= half
+    });
+    median.or(values.last()).map_or(f64::NAN, |(value, _)| *value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::Stratum::{Colliding, RootCertified, RootFailed};
@@ -216,5 +229,13 @@ mod tests {
              is measured: choose more with --steps"
         );
         assert!(Strata::new(vec![Colliding], None).missing().is_none());
+    }
+
+    #[test]
+    fn medians_have_half_of_the_weight() {
+        assert_eq!(weighted_median([3.0, 1.0, 2.0], &[1.0, 1.0, 1.0]), 2.0);
+        assert_eq!(weighted_median([3.0, 1.0, 2.0], &[5.0, 1.0, 1.0]), 3.0);
+        assert_eq!(weighted_median([3.0, 1.0], &[1.0, 1.0]), 1.0);
+        assert!(weighted_median([], &[]).is_nan());
     }
 }

@@ -2,14 +2,15 @@
 
 use sscc_sim::{SHIPPED, Scene, nearest};
 
+use super::models::ModelsScenario;
 use crate::error::Error;
 use crate::paper::PaperTable;
 
 /// A scenario of the benches.
 #[derive(Clone, Copy, Debug)]
 pub enum Scenario {
-    /// Models over their displacement: see [`amplitudes_models`](crate::amplitudes_models).
-    Amplitudes,
+    /// Models by name.
+    Models(ModelsScenario),
     /// Springs of several sizes: see [`GROWTH_SIZES`](crate::GROWTH_SIZES).
     Growth,
     /// Motions in small steps: see [`KineticBench`](crate::KineticBench).
@@ -33,10 +34,19 @@ pub struct ListedScenario {
 }
 
 /// Scenarios other than single scenes.
-const OTHERS: [(&str, Scenario, &str); 6] = [
-    ("amplitudes", Scenario::Amplitudes, "bunny, dragon and spring at random q, displaced by 0.5 to 40%"),
+const OTHERS: [(&str, Scenario, &str); 7] = [
+    (
+        "amplitudes",
+        Scenario::Models(ModelsScenario::Amplitudes),
+        "bunny, dragon and spring at random q, displaced by 0.5 to 40%",
+    ),
     ("growth", Scenario::Growth, "springs of 4,000 to a million triangles"),
     ("kinetic", Scenario::Kinetic, "a spring that vibrates, 44,100 steps per second: kinetic queries"),
+    (
+        "mixed",
+        Scenario::Models(ModelsScenario::Mixed),
+        "springs, bunny and dragon that swing in all their modes at once",
+    ),
     (
         "table1",
         Scenario::Scenes { scenes: &SHIPPED, table: Some(PaperTable::One) },

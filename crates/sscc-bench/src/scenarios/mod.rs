@@ -6,10 +6,13 @@ mod growth;
 mod growth_plot;
 mod kinetic;
 mod list;
+mod mixed;
+mod models;
+mod oscillators;
 mod scene;
 
-pub use amplitudes::{AmplitudesModel, amplitudes_models};
 pub use growth::{Exponents, GROWTH_RANK, GROWTH_SIZES, GrowthRecord, GrowthSize};
 pub use kinetic::{KineticBench, KineticRecord};
 pub use list::{ListedScenario, Scenario};
+pub use models::{BenchModel, ModelsScenario};
 pub use scene::{SCENE_STEPS, SceneMeasurement, measure_scene};

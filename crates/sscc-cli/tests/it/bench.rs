@@ -23,7 +23,8 @@ fn bench(folder: &Path, args: &[&str]) -> Run {
 
 /// Asserts that a record has all keys, with plausible values.
 fn check(report: &Value, more: &str) {
-    let optional = ["discrete_ms_root_failed"];
+    let parts = ["free_ms", "free_ms_median", "colliding_ms", "colliding_ms_median"];
+    let optional = [&parts[..], &["discrete_ms_root_failed"]].concat();
     let found: Vec<&str> = keys(report).into_iter().filter(|key| !optional.contains(key)).collect();
     assert_eq!(found, sorted(&format!("{KEYS}, {more}")));
     let whole = |key: &str| report[key].as_u64().unwrap_or_else(|| panic!("{key}: {report}"));
@@ -55,6 +56,13 @@ fn check(report: &Value, more: &str) {
         assert_eq!(keys(times), sorted(&format!("{COLUMNS}{kinetic}")), "{key}");
         assert!(times.as_object().unwrap().values().all(positive), "{report}");
     }
+    // Certified methods ran on all steps, so their times are there for each kind of state that there is.
+    let colliding = whole("colliding_steps");
+    let counts = [whole("steps") - colliding, whole("steps") - colliding, colliding, colliding];
+    for (key, count) in parts.iter().zip(counts) {
+        assert_eq!(report.get(key).is_some(), count > 0, "{key}: {report}");
+        assert!(count == 0 || positive(&report[key]["full"]), "{key}: {report}");
+    }
     assert_eq!(report.get("discrete_ms_root_failed").is_some(), whole("compared_root_failed_steps") > 0);
     assert!(report["machine"].as_str().is_some_and(|machine| machine.contains(" cores")));
 }
@@ -74,6 +82,17 @@ fn measurements() {
     assert_eq!(of("share"), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0].map(|share| json!(share)));
     assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
     assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
+
+    // All three motions, and those of the states apart that collide.
+    let mixed = ["mixed", "--only", "spring", "--quick", "--samples", "4", "--json"];
+    let run = bench(folder.path(), &mixed);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let motions = run.json();
+    motions.iter().for_each(|report| check(report, "note, root_radii"));
+    let of = |key: &str| -> Vec<Value> { motions.iter().map(|report| report[key].clone()).collect() };
+    assert_eq!(of("root_radii"), [2.0, 4.0, 8.0].map(|times| json!(times)));
+    let share = |report: &Value| report["share"].as_f64().unwrap();
+    assert!((share(&motions[2]) / share(&motions[1]) - 2.0).abs() < 1e-9, "{motions:?}");
 
     // Growth takes the same model from the cache.
     let made = files(&cache);
@@ -205,6 +224,7 @@ fn refusals() {
         "dragon-polynomial",
         "table2",
         "amplitudes",
+        "mixed",
         "growth",
         "kinetic",
     ] {
@@ -221,9 +241,9 @@ fn refusals() {
         (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["amplitudes", "--only", "bunny", "--models", "."], "bunny_14964_closed.obj: not found"),
         (&["spring", "--steps", "0"], "--steps"),
-        (&["spring", "--only", "spring"], "--only is for amplitudes and growth"),
-        (&["kinetic", "--only", "spring"], "--only is for amplitudes and growth"),
-        (&["spring", "--samples", "2"], "--samples is for amplitudes and growth"),
+        (&["spring", "--only", "spring"], "--only is for amplitudes, mixed and growth"),
+        (&["kinetic", "--only", "spring"], "--only is for amplitudes, mixed and growth"),
+        (&["spring", "--samples", "2"], "--samples is for amplitudes, mixed and growth"),
         (&["growth", "--steps", "2"], "--steps is for scenes and kinetic"),
         (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
         (&["growth", "--quick"], "--quick is not for growth"),

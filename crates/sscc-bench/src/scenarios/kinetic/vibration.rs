@@ -1,13 +1,11 @@
 //! Free vibration of a body: each mode oscillates with its natural frequency.
 
-use std::f64::consts::TAU;
-
 use sscc::{Method, Progress, Query};
 use sscc_sim::CertifiedModel;
 
 use crate::error::Error;
-use crate::random::Random;
 use crate::sampling::{directions, half_diagonal, largest_displacement, scaled};
+use crate::scenarios::oscillators::Oscillators;
 
 /// States for the choice of the amplitude: periods of the first mode, and states in each.
 const PERIODS: usize = 5;
@@ -16,8 +14,6 @@ const STATES: usize = PERIODS * STATES_PER_PERIOD;
 
 /// Number of these states that shall collide.
 const COLLIDING: usize = STATES / 8;
-
-const SEED: u64 = 11;
 
 /// Range of the amplitude (percent), and number of bisections of its logarithm.
 const SHARES: [f64; 2] = [0.1, 100.0];
@@ -31,12 +27,6 @@ pub struct Vibration {
     /// Largest displacement of a vertex in percent of half the diagonal of the AABB, in the states for the choice of
     /// the amplitude.
     pub share: f64,
-}
-
-/// Angular frequencies (1/s) and phases of all modes.
-struct Oscillators {
-    frequencies: Vec<f64>,
-    phases: Vec<f64>,
 }
 
 impl Vibration {
@@ -65,28 +55,11 @@ impl Vibration {
 
     /// Returns the frequency of the first mode (Hz).
     pub fn first_frequency(&self) -> f64 {
-        self.oscillators.frequencies[0] / TAU
+        self.oscillators.first_frequency()
     }
 
     /// Returns q after a number of periods of the first mode.
     pub fn at(&self, periods: f64) -> Vec<f64> {
         self.oscillators.at(&self.amplitudes, periods)
-    }
-}
-
-impl Oscillators {
-    fn of(model: &CertifiedModel) -> Self {
-        let random = &mut Random(SEED);
-        let (rank, stiffness) = (model.model.rank(), model.elasticity.stiffness());
-        Self {
-            frequencies: stiffness.diagonal().map(|k| k.max(0.0).sqrt()).collect(),
-            phases: (0..rank).map(|_| TAU * random.uniform()).collect(),
-        }
-    }
-
-    fn at(&self, amplitudes: &[f64], periods: f64) -> Vec<f64> {
-        let time = TAU * periods / self.frequencies[0];
-        let swing = |k: usize| amplitudes[k] * libm::cos(self.frequencies[k] * time + self.phases[k]);
-        (0..amplitudes.len()).map(swing).collect()
     }
 }

@@ -62,17 +62,20 @@ fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
     let has_steps = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);
     ensure!(
         has_steps || args.steps.is_none(),
-        "--steps is for scenes and kinetic; amplitudes and growth have --samples"
+        "--steps is for scenes and kinetic; amplitudes, mixed and growth have --samples"
     );
     ensure!(
         !has_steps || args.samples.is_none(),
-        "--samples is for amplitudes and growth; scenes and kinetic have --steps"
+        "--samples is for amplitudes, mixed and growth; scenes and kinetic have --steps"
     );
-    ensure!(!has_steps || args.only.is_none(), "--only is for amplitudes and growth: a scene is one model");
+    ensure!(
+        !has_steps || args.only.is_none(),
+        "--only is for amplitudes, mixed and growth: a scene is one model"
+    );
     let is_growth = matches!(scenario, Scenario::Growth);
     ensure!(is_growth || args.plot.is_none(), "--plot is for growth");
     let has_page = !matches!(scenario, Scenario::Kinetic);
-    ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes and growth");
+    ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes, mixed and growth");
     ensure!(
         !is_growth || !args.quick,
         "--quick is not for growth: leave it out, and choose one size by --only"

@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Result, ensure};
 use sscc_bench::{
-    AmplitudesModel, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, PaperTable, SCENE_STEPS, Scenario,
-    Setup, amplitudes_models, measure_scene,
+    GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, ModelsScenario, PaperTable, SCENE_STEPS, Scenario,
+    Setup, measure_scene,
 };
 use sscc_io::write_whole;
 
@@ -14,18 +14,17 @@ use crate::args::Bench;
 /// Measures a scenario and prints its records.
 pub fn run(scenario: Scenario, args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
     match scenario {
-        Scenario::Amplitudes => amplitudes(args, setup, printer),
+        Scenario::Models(scenario) => models(scenario, args, setup, printer),
         Scenario::Growth => growth(args, setup, printer),
         Scenario::Kinetic => kinetic(args, setup, printer),
         Scenario::Scenes { scenes, table } => scenes_with_table(scenes, table, args, setup, printer),
     }
 }
 
-fn amplitudes(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
-    let models = amplitudes_models();
-    check_only(args, &models.each_ref().map(|model| model.name))?;
-    for model in models.into_iter().filter(|model| is_selected(args, model.name)) {
-        printer.print(&model.measure(setup, samples(args, AmplitudesModel::SAMPLES))?)?;
+fn models(scenario: ModelsScenario, args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
+    let samples = args.samples.map_or(scenario.default_samples(), |samples| samples as usize);
+    for model in selected(args, scenario.models(), |model| model.name)? {
+        printer.print(&scenario.measure(model, setup, samples)?)?;
         if printer.is_over() {
             break;
         }
@@ -34,10 +33,10 @@ fn amplitudes(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<
 }
 
 fn growth(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
-    check_only(args, &GROWTH_SIZES.map(|size| size.name))?;
+    let samples = args.samples.map_or(GrowthSize::SAMPLES, |samples| samples as usize);
     let mut records = Vec::new();
-    for size in GROWTH_SIZES.iter().filter(|size| is_selected(args, size.name)) {
-        records.push(size.measure(setup, samples(args, GrowthSize::SAMPLES))?);
+    for size in selected(args, &GROWTH_SIZES, |size| size.name)? {
+        records.push(size.measure(setup, samples)?);
     }
     let growth = GrowthRecord::new(records);
     if let Some(path) = &args.plot {
@@ -98,18 +97,13 @@ fn scenes_with_table(
     }
 }
 
-/// Whether `--only` selects this model. Without that flag, all are selected.
-fn is_selected(args: &Bench, name: &str) -> bool {
-    args.only.as_deref().is_none_or(|only| only == name)
-}
-
-/// Refuses an unknown model in `--only`.
-fn check_only(args: &Bench, names: &[&str]) -> Result<()> {
-    let Some(only) = args.only.as_deref() else { return Ok(()) };
-    ensure!(names.contains(&only), "--only {only}: there is no such model; there are {}", names.join(", "));
-    Ok(())
-}
-
-fn samples(args: &Bench, default: usize) -> usize {
-    args.samples.map_or(default, |samples| samples as usize)
+/// Returns the models that `--only` selects; all without that flag.
+fn selected<'m, M>(args: &Bench, models: &'m [M], name: impl Fn(&M) -> &str) -> Result<Vec<&'m M>> {
+    let only = args.only.as_deref();
+    let selected: Vec<&M> =
+        models.iter().filter(|model| only.is_none_or(|only| only == name(model))).collect();
+    let names = || models.iter().map(&name).collect::<Vec<_>>().join(", ");
+    let only = only.unwrap_or_default();
+    ensure!(!selected.is_empty(), "--only {only}: there is no such model; there are {}", names());
+    Ok(selected)
 }

@@ -68,21 +68,24 @@ impl<'a> Table<'a> {
                 scene[0], compared[0], scene[1], compared[1], scene[2], compared[2]
             ));
         }
-        let label = |record: &Record| format!("{}%", (record.share * 10.0).round() / 10.0);
+        let label = |record: &Record| match record.root_radii {
+            Some(times) => format!("{times} x the root's"),
+            None => format!("{}%", (record.share * 10.0).round() / 10.0),
+        };
         let discrete = self.records.iter().flat_map(|record| {
-            let all = Row {
-                label: label(record),
-                steps: format!("{} of {}", record.colliding_steps, record.steps),
-                means: &record.discrete_ms,
-            };
-            let failed = Row {
-                label: "  root fails".into(),
-                steps: format!("{} of {}", record.root_failed_steps, record.steps),
-                means: &record.discrete_ms_root_failed,
+            let (all, colliding, failed) = (record.steps, record.colliding_steps, record.root_failed_steps);
+            let row = |label: &str, steps: usize, means| {
+                Some(Row { label: label.into(), steps: format!("{steps} of {all}"), means })
             };
             // A second row would repeat the first if the root's certificate always or never fails.
-            let is_same = record.root_failed_steps == record.steps || record.root_failed_steps == 0;
-            [Some(all), (!is_same).then_some(failed)].into_iter().flatten()
+            let is_same = failed == all || failed == 0;
+            let rows = [
+                row(&label(record), colliding, &record.discrete_ms),
+                row("  root fails", failed, &record.discrete_ms_root_failed).filter(|_| !is_same),
+                row("  free, median", all - colliding, &record.free_ms_median),
+                row("  collide, median", colliding, &record.colliding_ms_median),
+            ];
+            rows.into_iter().flatten()
         });
         lines.extend(block("discrete, ms", discrete));
         let continuous = self.records.iter().map(|record| Row {
@@ -108,13 +111,13 @@ fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
     let width = |key: &str| key.len().max(11) + 2;
     let heads: String = keys.iter().map(|key| format!("{key:>0$}", width(key))).collect();
     let over: String = COMPARED.iter().map(|key| format!("{:>18}", format!("{key}/{REFERENCE}"))).collect();
-    let mut lines = vec![format!("  {title:<16}{:>12}{heads}{over}", "collide")];
+    let mut lines = vec![format!("  {title:<19}{:>12}{heads}{over}", "collide")];
     for row in &rows {
         let cell = |key: &&str| format!("{:>1$}", shown(row.means.get(key)), width(key));
         let cells: String = keys.iter().map(cell).collect();
         let ratio = |key: &str| Some(row.means.get(key)? / row.means.get(REFERENCE)?);
         let ratios: String = COMPARED.iter().map(|key| format!("{:>18}", times(ratio(key)))).collect();
-        lines.push(format!("  {:<16}{:>12}{cells}{ratios}", row.label, row.steps));
+        lines.push(format!("  {:<19}{:>12}{cells}{ratios}", row.label, row.steps));
     }
     lines
 }

@@ -1,0 +1,51 @@
+//! Scenario `mixed`: the cost of queries while a body swings in all its modes at once.
+
+use sscc_sim::CertifiedModel;
+
+use super::displacement::displacement_steps;
+use super::oscillators::Oscillators;
+use crate::error::Error;
+use crate::measure::{Kinds, compare};
+use crate::record::Record;
+use crate::sampling::{half_diagonal, largest_displacement, scaled};
+use crate::setup::Setup;
+
+/// Largest `|z|` of the motions, over the root's radius.
+const ROOT_RADII: [f64; 3] = [2.0, 4.0, 8.0];
+
+/// Duration of a motion, in periods of the first mode.
+const PERIODS: f64 = 10.0;
+
+/// Measures so many states of `q_k = a cos(omega_k t + phase_k) / omega_k`, evenly over ten periods of the first mode.
+/// Returns one record for each of [`ROOT_RADII`].
+pub fn measure(
+    name: &str,
+    model: &CertifiedModel,
+    setup: &Setup<'_>,
+    samples: usize,
+) -> Result<Vec<Record>, Error> {
+    let unit = unit_motion(model, samples);
+    let record = |root_radii: f64| {
+        setup.begin_measuring();
+        let factor = root_radii * model.full.certificates.root_radius();
+        let steps = displacement_steps(&unit, 100.0 * factor);
+        let comparison = compare(model, &steps, None, Kinds::Both, setup.watch)?;
+        let displacement = |q: &Vec<f64>| largest_displacement(&model.model, &scaled(q, factor));
+        let largest = unit.iter().map(displacement).fold(0.0, f64::max);
+        let share = 100.0 * largest / half_diagonal(&model.model);
+        let record = Record::new(format!("mixed/{name}"), share, model, &comparison, 1, None);
+        Ok(Record { root_radii: Some(root_radii), ..record })
+    };
+    ROOT_RADII.into_iter().map(record).collect()
+}
+
+/// Returns so many states of the motion, scaled so that the largest `|z|` of them is 1.
+fn unit_motion(model: &CertifiedModel, samples: usize) -> Vec<Vec<f64>> {
+    let oscillators = Oscillators::of(model);
+    let amplitudes = oscillators.amplitudes_of_equal_speed();
+    let at = |i: usize| oscillators.at(&amplitudes, PERIODS * i as f64 / samples as f64);
+    let states: Vec<Vec<f64>> = (0..samples).map(at).collect();
+    let norm = |q: &Vec<f64>| model.full.certificates.norm(q);
+    let largest = states.iter().map(norm).fold(0.0, f64::max);
+    states.iter().map(|q| scaled(q, 1.0 / largest)).collect()
+}
