@@ -1,5 +1,7 @@
 //! Code that the example programs share: a small model for runs without arguments, and the exit code.
 
+#![doc(test(attr(deny(warnings))))]
+
 mod mouth;
 
 use std::error::Error;
@@ -18,3 +20,8 @@ pub fn exit_code(outcome: Result<(), Box<dyn Error>>) -> ExitCode {
         }
     }
 }
+
+/// Compiles the Rust example of the README as a test of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+mod readme {}
