@@ -169,7 +169,7 @@ def test_a_bad_model_fails_alone_under_its_name(client: Any, tmp_path: Path) -> 
 
 
 def test_certificates_by_shards_have_the_same_bytes(client: Any) -> None:
-    model = sscc.Model(*torus(32, 16, 5))
+    model = sscc.Model(*torus(24, 12, 5))
     choices: list[dict[str, Any]] = [
         {},
         {"scheme": "paper"},
