@@ -47,7 +47,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
     .into_iter()
     .enumerate()
     {
-        let model = ring(300, 4, 0.9 + case as f64);
+        let model = ring(150, 4, 0.9 + case as f64);
         let local = Certificates::compute(&model, &options, &()).unwrap();
         assert!(local.parts().node_radii.len() > 20);
         for shards in [7, 1, 2, 1000].into_iter().take(cases(4)) {
