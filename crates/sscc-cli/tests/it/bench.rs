@@ -67,7 +67,38 @@ fn check(report: &Value, more: &str) {
     assert!(report["machine"].as_str().is_some_and(|machine| machine.contains(" cores")));
 }
 
-/// Amplitudes, growth and a scene, in one test so that they share a cache.
+/// Checks the scenario `kinetic`, with the model in the cache of this folder.
+fn check_kinetic(folder: &Path) {
+    let run = bench(folder, &["kinetic", "--quick", "--steps", "90", "--json"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let reports = run.json();
+    assert_eq!(reports.len(), 4);
+    for report in &reports {
+        let known = "scenario, source, note, frequency, share, triangles, rank, step, steps, colliding_steps, \
+            compared_steps, mismatches, kinetic_us_colliding, microseconds, machine";
+        assert_eq!(keys(report), sorted(known));
+        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(90), &json!(0)));
+        assert!(report["colliding_steps"].as_u64().unwrap() < 90 && report["step"].as_f64().unwrap() > 0.0);
+        let times = &report["microseconds"];
+        assert_eq!(keys(times), sorted("kinetic, full, traditional, bdtree, normal_cones, parry"));
+        assert!(times.as_object().unwrap().values().all(|time| time.as_f64().unwrap() > 0.0), "{report}");
+    }
+    let frequency = |i: usize| reports[i]["frequency"].as_f64().unwrap();
+    assert!(frequency(0) < 2.0);
+    assert_eq!([1, 2, 3].map(frequency), [2.0, 20.0, 200.0]);
+    assert!(reports.iter().any(|report| report["colliding_steps"] != json!(0)));
+    let run = bench(folder, &["kinetic", "--quick", "--steps", "5"]);
+    for part in [
+        "kinetic: 4,000 triangles, 20 modes",
+        "first mode 20.000 Hz: 5 steps of ",
+        "parry  ",
+        "note: --quick",
+    ] {
+        assert!(run.stdout.contains(part), "{}", run.stdout);
+    }
+}
+
+/// Amplitudes, growth, kinetic and a scene, in one test so that they share a cache.
 #[test]
 fn measurements() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,6 +146,10 @@ fn measurements() {
     assert!(size.get("continuous_ms").is_none() && size["discrete_ms"]["full"].as_f64() > Some(0.0));
     assert_eq!(keys(&report["exponents"]), sorted("certify_seconds, certify_peak_bytes, discrete_ms"));
     assert_eq!(keys(&report["exponents"]["discrete_ms"]), sorted(COLUMNS));
+
+    // So do vibrations.
+    check_kinetic(folder.path());
+    assert_eq!((files(&cache), written()), (made.clone(), before));
 
     // One changed byte in each file.
     let contents: Vec<Vec<u8>> = made.iter().map(|path| fs::read(path).unwrap()).collect();
@@ -177,38 +212,6 @@ fn measurements() {
     let strata = "means are of the whole scene: ";
     for part in [&seconds[..], strata, "Table 3, ours and the paper's (spring", "    the paper", "<0.01"] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
-    }
-}
-
-#[test]
-fn kinetic() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "90", "--json"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let reports = run.json();
-    assert_eq!(reports.len(), 4);
-    for report in &reports {
-        let known = "scenario, source, note, frequency, share, triangles, rank, step, steps, colliding_steps, \
-            compared_steps, mismatches, kinetic_us_colliding, microseconds, machine";
-        assert_eq!(keys(report), sorted(known));
-        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(90), &json!(0)));
-        assert!(report["colliding_steps"].as_u64().unwrap() < 90 && report["step"].as_f64().unwrap() > 0.0);
-        let times = &report["microseconds"];
-        assert_eq!(keys(times), sorted("kinetic, full, traditional, bdtree, normal_cones, parry"));
-        assert!(times.as_object().unwrap().values().all(|time| time.as_f64().unwrap() > 0.0), "{report}");
-    }
-    let frequency = |i: usize| reports[i]["frequency"].as_f64().unwrap();
-    assert!(frequency(0) < 2.0);
-    assert_eq!([1, 2, 3].map(frequency), [2.0, 20.0, 200.0]);
-    assert!(reports.iter().any(|report| report["colliding_steps"] != json!(0)));
-    let run = bench(folder.path(), &["kinetic", "--quick", "--steps", "5"]);
-    for part in [
-        "kinetic: 4,000 triangles, 20 modes",
-        "first mode 20.000 Hz: 5 steps of ",
-        "parry  ",
-        "note: --quick",
-    ] {
-        assert!(run.stdout.contains(part), "{}", run.stdout);
     }
 }
 
