@@ -20,7 +20,7 @@ pub struct Body<'a> {
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// Undamped acceleration of q after the last step, and its change (2 r numbers); empty for linear forces.
+    /// State of the integrator of nonlinear forces (2 r numbers); empty for linear forces.
     pub(crate) a: Vec<f64>,
     /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,
@@ -292,12 +292,14 @@ impl<'a> Body<'a> {
         buffers: &mut NewmarkBuffers,
     ) -> Result<(), DynamicsError> {
         let has_moved = std::mem::take(&mut self.has_moved);
-        match &self.oscillator {
+        match &mut self.oscillator {
             Oscillator::Linear(oscillator) => oscillator.advance(&mut self.q, &mut self.v, &self.load),
             Oscillator::Nonlinear(oscillator) => {
                 if has_moved {
                     // The stored acceleration belongs to the old q.
-                    self.a = oscillator.undamped_acceleration(&self.q, &self.load, buffers);
+                    let (r, new) =
+                        (self.q.len(), oscillator.undamped_acceleration(&self.q, &self.load, buffers));
+                    self.a[..r].copy_from_slice(&new[..r]);
                 }
                 oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load, buffers)?;
             }

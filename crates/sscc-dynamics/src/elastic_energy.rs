@@ -5,13 +5,11 @@
 //! in lexicographic order, the energy is `z' P z`. Row (i, j) of P has entries only in the columns (k, l) with k >= j,
 //! a suffix of z. One pass over P computes `y = (P + P') z`, and the gradient is `J' y`, where J is the derivative of z.
 
+use pulp::{Simd, WithSimd};
 use sscc_solid::{ReducedForces, monomials};
 
 use crate::DynamicsError;
-
-/// Number of partial sums in a product of two vectors. It is fixed, so that results do not depend on the instruction
-/// set.
-const LANES: usize = 4;
+use crate::packed_rows::{ROW_LANES, add_row_twice, add_rows, dispatch};
 
 /// Maximum asymmetry of the forces: the difference between two values for a coefficient of the energy, relative to the
 /// largest coefficient of its degree. Rounding to single precision leaves less.
@@ -22,7 +20,7 @@ const MAX_ASYMMETRY: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct ElasticEnergy {
     rank: usize,
-    /// The rows of P in the order of j, then of i <= j, each padded with zeros to a multiple of [`LANES`].
+    /// The rows of P in the order of j, then of i <= j, each padded with zeros to a multiple of [`ROW_LANES`].
     coefficients: Vec<f64>,
     /// The rows of each j.
     blocks: Vec<Block>,
@@ -70,6 +68,7 @@ impl Evaluation {
     }
 
     /// Computes p and z, and sets y to 0.
+    #[inline(always)]
     fn begin(&mut self, q: &[f64]) {
         self.p.clear();
         self.p.push(1.0);
@@ -79,12 +78,13 @@ impl Evaluation {
             let factor = self.p[k];
             self.z.extend(self.p[k..].iter().map(|x| factor * x));
         }
-        self.z.extend([0.0; LANES]);
+        self.z.extend([0.0; ROW_LANES]);
         self.y.clear();
         self.y.resize(self.z.len(), 0.0);
     }
 
     /// Computes the gradient `J' y`.
+    #[inline(always)]
     fn finish_gradient(&mut self) {
         self.gradient.clear();
         self.gradient.resize(self.p.len(), 0.0);
@@ -102,7 +102,7 @@ impl ElasticEnergy {
         let n = rank + 1;
         let (mut blocks, mut start) = (Vec::new(), 0);
         for j in 0..n {
-            let stride = monomials::count(n - j, 2).next_multiple_of(LANES);
+            let stride = monomials::count(n - j, 2).next_multiple_of(ROW_LANES);
             blocks.push(Block { start, stride, column: pair(n, j, j) });
             start += (j + 1) * stride;
         }
@@ -171,55 +171,7 @@ impl ElasticEnergy {
     /// When q has another length than r.
     pub fn evaluate_forces(&self, q: &[f64], evaluation: &mut Evaluation) {
         assert_eq!(q.len(), self.rank, "q of another rank");
-        evaluation.begin(q);
-        let (n, Evaluation { p, z, y, .. }) = (self.rank + 1, &mut *evaluation);
-        for (j, block) in self.blocks.iter().enumerate() {
-            let mut i = 0;
-            while i <= j {
-                i += match j + 1 - i {
-                    4.. => self.multiply::<4>(n, [i, j], block, p, z, y),
-                    2.. => self.multiply::<2>(n, [i, j], block, p, z, y),
-                    _ => self.multiply::<1>(n, [i, j], block, p, z, y),
-                };
-            }
-        }
-        evaluation.finish_gradient();
-    }
-
-    /// Adds the rows (i, j) to (i + N - 1, j) of P and their transposes, times z, to y. Returns N.
-    #[inline]
-    fn multiply<const N: usize>(
-        &self,
-        n: usize,
-        [i, j]: [usize; 2],
-        block: &Block,
-        p: &[f64],
-        z: &[f64],
-        y: &mut [f64],
-    ) -> usize {
-        let Block { start, stride, column } = *block;
-        let (z, _) = z[column..][..stride].as_chunks::<LANES>();
-        let weights: [f64; N] = std::array::from_fn(|m| p[i + m] * p[j]);
-        let rows: [&[[f64; LANES]]; N] = std::array::from_fn(|m| {
-            let row = &self.coefficients[start + (i + m) * stride..][..stride];
-            &row.as_chunks().0[..z.len()]
-        });
-        let mut sums = [[0.0; LANES]; N];
-        {
-            let (y, _) = y[column..][..stride].as_chunks_mut::<LANES>();
-            for (c, (z, y)) in z.iter().zip(y).enumerate() {
-                for m in 0..N {
-                    for lane in 0..LANES {
-                        sums[m][lane] += rows[m][c][lane] * z[lane];
-                        y[lane] += rows[m][c][lane] * weights[m];
-                    }
-                }
-            }
-        }
-        for (m, sum) in sums.into_iter().enumerate() {
-            y[pair(n, i + m, j)] += total(sum);
-        }
-        N
+        dispatch(Forces { energy: self, q, evaluation });
     }
 
     /// Computes the forces and the stiffness at q (r numbers): see [`Evaluation::forces`] and
@@ -232,6 +184,35 @@ impl ElasticEnergy {
     /// When q has another length than r.
     pub fn evaluate_stiffness(&self, q: &[f64], evaluation: &mut Evaluation) {
         assert_eq!(q.len(), self.rank, "q of another rank");
+        dispatch(ForcesAndStiffness { energy: self, q, evaluation });
+    }
+
+    #[inline(always)]
+    fn add_forces<S: Simd>(&self, simd: S, q: &[f64], evaluation: &mut Evaluation) {
+        evaluation.begin(q);
+        let (n, Evaluation { p, z, y, .. }) = (self.rank + 1, &mut *evaluation);
+        for (j, block) in self.blocks.iter().enumerate() {
+            let Block { start, stride, column } = *block;
+            let (z, row) =
+                (&z[column..][..stride], |i: usize| &self.coefficients[start + i * stride..][..stride]);
+            let mut i = 0;
+            while i + 4 <= j + 1 {
+                let all = [i, i + 1, i + 2, i + 3];
+                let weights = all.map(|i| p[i] * p[j]);
+                let sums = add_rows(simd, all.map(row), weights, z, &mut y[column..][..stride]);
+                all.iter().zip(sums).for_each(|(i, sum)| y[pair(n, *i, j)] += sum);
+                i += 4;
+            }
+            for i in i..=j {
+                let [sum] = add_rows(simd, [row(i)], [p[i] * p[j]], z, &mut y[column..][..stride]);
+                y[pair(n, i, j)] += sum;
+            }
+        }
+        evaluation.finish_gradient();
+    }
+
+    #[inline(always)]
+    fn add_stiffness<S: Simd>(&self, simd: S, q: &[f64], evaluation: &mut Evaluation) {
         evaluation.begin(q);
         let n = self.rank + 1;
         let Evaluation { p, z, y, row, columns, hessian, .. } = &mut *evaluation;
@@ -248,7 +229,8 @@ impl ElasticEnergy {
                 let Block { start, stride, column } = *block;
                 let coefficients = &self.coefficients[start + i * stride..][..stride];
                 let (sum, next) = (&mut columns[at..][..stride], &mut row[column..][..stride]);
-                let product = add_row(coefficients, &z[column..][..stride], [p[i], p[j]], sum, next);
+                let product =
+                    add_row_twice(simd, coefficients, &z[column..][..stride], [p[i], p[j]], [sum, next]);
                 y[pair(n, i, j)] += product;
                 at += stride;
             }
@@ -274,45 +256,70 @@ impl ElasticEnergy {
     }
 }
 
+/// Evaluation of the forces, compiled for several instruction sets.
+struct Forces<'e> {
+    energy: &'e ElasticEnergy,
+    q: &'e [f64],
+    evaluation: &'e mut Evaluation,
+}
+
+impl WithSimd for Forces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.energy.add_forces(simd, self.q, self.evaluation);
+    }
+}
+
+/// Evaluation of forces and stiffness, compiled for several instruction sets.
+struct ForcesAndStiffness<'e> {
+    energy: &'e ElasticEnergy,
+    q: &'e [f64],
+    evaluation: &'e mut Evaluation,
+}
+
+impl WithSimd for ForcesAndStiffness<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.energy.add_stiffness(simd, self.q, self.evaluation);
+    }
+}
+
 /// Returns the index of `p_k p_l` in z, for k <= l < n.
+#[inline(always)]
 fn pair(n: usize, k: usize, l: usize) -> usize {
     k * n - k * k.saturating_sub(1) / 2 + l - k
 }
 
-/// Adds a row of P, times `weights`, to `sum` and to `next`. Returns its product with z.
-#[inline]
-fn add_row(row: &[f64], z: &[f64], weights: [f64; 2], sum: &mut [f64], next: &mut [f64]) -> f64 {
-    let (row, z) = (row.as_chunks::<LANES>().0, z.as_chunks::<LANES>().0);
-    let (sum, next) = (sum.as_chunks_mut::<LANES>().0, next.as_chunks_mut::<LANES>().0);
-    let mut sums = [0.0; LANES];
-    for (((row, z), sum), next) in row.iter().zip(z).zip(sum).zip(next) {
-        for lane in 0..LANES {
-            sums[lane] += row[lane] * z[lane];
-            sum[lane] += row[lane] * weights[0];
-            next[lane] += row[lane] * weights[1];
-        }
-    }
-    total(sums)
-}
-
 /// Adds `J' y` to `sum`, where J is the derivative of z.
+#[inline(always)]
 fn add_transposed_derivative(p: &[f64], y: &[f64], sum: &mut [f64]) {
     let mut rest = y;
     for k in 0..p.len() {
         let (row, others) = rest.split_at(p.len() - k);
         rest = others;
-        let mut own = 0.0;
-        for ((y, p_l), sum) in row.iter().zip(&p[k..]).zip(&mut sum[k..]) {
-            own += y * p_l;
+        for (y, sum) in row.iter().zip(&mut sum[k..]) {
             *sum += y * p[k];
         }
-        sum[k] += own;
+        sum[k] += product(row, &p[k..]);
     }
 }
 
-fn total(sums: [f64; LANES]) -> f64 {
-    let [a, b, c, d] = sums;
-    (a + b) + (c + d)
+/// Returns the product of two vectors, from four partial sums.
+#[inline(always)]
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..4 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]

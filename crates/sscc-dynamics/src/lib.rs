@@ -62,6 +62,7 @@
 
 mod body;
 mod body_collisions;
+mod broyden;
 mod change;
 mod contact;
 mod contact_constraint;
@@ -85,6 +86,7 @@ mod nearest_point;
 mod nearest_triangles;
 mod nonlinear_oscillator;
 mod options;
+mod packed_rows;
 mod pseudonormals;
 mod rest;
 mod rigid_contacts;

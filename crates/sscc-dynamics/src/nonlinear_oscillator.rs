@@ -1,18 +1,22 @@
 //! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
 
 use faer::Mat;
-use faer::prelude::Solve;
+use faer::linalg::solvers::DenseSolveCore;
 use sscc_solid::Stiffness;
 
+use crate::broyden::Broyden;
 use crate::elastic_energy::{ElasticEnergy, Evaluation};
 use crate::{Damping, DynamicsError};
 
-/// Maximum number of Newton iterations in one step.
+/// Maximum number of iterations in one step.
 const MAX_ITERATIONS: usize = 60;
 
-/// An iteration that leaves a larger share of the residual converges slowly; the next one computes a new derivative.
-/// Iterations otherwise reuse the derivative, which changes little within a step.
-const SLOW_CONVERGENCE: f64 = 0.2;
+/// An iteration that leaves a larger share of the residual converges slowly; the next one is Newton's, with the derivative
+/// at the trial.
+const SLOW_CONVERGENCE: f64 = 0.5;
+
+/// After a step with more iterations, the derivative is computed again, at its q.
+const MAX_CHEAP_ITERATIONS: usize = 4;
 
 /// Minimum share of a Newton step in the line search.
 const MIN_STEP_SHARE: f64 = 1e-6;
@@ -22,14 +26,21 @@ const MIN_STEP_SHARE: f64 = 1e-6;
 const RELATIVE_TOLERANCE: f64 = 1e-11;
 
 /// Integrator for reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`. It uses the implicit Newmark method of
-/// average acceleration (second order, no numerical damping) and solves each step by Newton's method. The Rayleigh
-/// damping uses the stiffness at rest.
+/// average acceleration (second order, no numerical damping). The Rayleigh damping uses the stiffness at rest.
+///
+/// Each step is solved by Broyden's method. It begins with the derivative of an earlier step, because the derivative
+/// changes little within a few steps. Where it converges slowly, an iteration of Newton's method with a line search
+/// follows.
 #[derive(Clone, Debug)]
 pub struct NonlinearOscillator<'a> {
     energy: &'a ElasticEnergy,
     /// Damping matrix C, r x r, row after row.
     damping: Vec<f64>,
     step: f64,
+    /// The q at which the derivative of the residual was computed last.
+    linearised_at: Vec<f64>,
+    /// Inverse of this derivative, column after column.
+    inverse: Vec<f64>,
 }
 
 /// Buffers of a step. All oscillators of a thread can share them.
@@ -39,9 +50,10 @@ pub struct NewmarkBuffers {
     acceleration: Vec<f64>,
     trial: Trial,
     next: Trial,
+    broyden: Broyden,
 }
 
-/// Trial acceleration of Newton's method, and the state at the end of the step with this acceleration.
+/// Trial acceleration, and the state at the end of the step with this acceleration.
 #[derive(Clone, Debug, Default)]
 struct Trial {
     acceleration: Vec<f64>,
@@ -87,11 +99,14 @@ impl<'a> NonlinearOscillator<'a> {
         }
         let mut damping: Vec<f64> = stiffness.entries().iter().map(|k| given.stiffness * k).collect();
         (0..r).for_each(|k| damping[k * (r + 1)] += given.mass);
-        Ok(Self { energy, damping, step })
+        let (rest, linearised_at) = (vec![0.0; r], vec![0.0; r]);
+        let mut oscillator = Self { energy, damping, step, linearised_at, inverse: Vec::new() };
+        oscillator.linearise(&rest, &mut Evaluation::default());
+        Ok(oscillator)
     }
 
-    /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each), then r zeros: the first step
-    /// needs it.
+    /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each), then r zeros (rest): the first
+    /// step needs both.
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
         self.energy.evaluate_forces(q, &mut buffers.evaluation);
         let undamped = g.iter().zip(buffers.evaluation.forces()).map(|(g, f)| g - f);
@@ -99,46 +114,51 @@ impl<'a> NonlinearOscillator<'a> {
     }
 
     /// Advances q, v and the undamped acceleration by one step under the forces g (r numbers each). `undamped` has 2 r
-    /// numbers: the undamped acceleration and its change in the last step. Both depend on q alone, so impulses may change
-    /// v between steps.
+    /// numbers: the undamped acceleration, and the q whose derivative the step begins with. The first depends on q alone,
+    /// so impulses may change v between steps. The same numbers give the same bits, whatever the last step was.
     ///
     /// # Errors
-    /// When Newton's method does not converge; then q, v and the undamped acceleration are unchanged.
+    /// When the iterations do not converge; then q, v and `undamped` are unchanged.
     pub fn advance(
-        &self,
+        &mut self,
         q: &mut [f64],
         v: &mut [f64],
         undamped: &mut [f64],
         g: &[f64],
         buffers: &mut NewmarkBuffers,
     ) -> Result<(), DynamicsError> {
-        let NewmarkBuffers { evaluation, acceleration, trial, next } = buffers;
+        let NewmarkBuffers { evaluation, acceleration, trial, next, broyden } = buffers;
         self.set_damping_forces(v, acceleration);
         acceleration.iter_mut().zip(&*undamped).for_each(|(a, e)| *a = e - *a);
         let start = Start { q, v, acceleration, g };
-        self.begin(start, undamped, evaluation, [&mut *trial, &mut *next]);
-        let mut factor = Some(self.derivative(evaluation).partial_piv_lu());
-        // Whether the derivative is that at the trial.
-        let mut is_fresh = true;
-        for _ in 0..MAX_ITERATIONS {
+        let r = q.len();
+        if undamped[r..] != self.linearised_at {
+            self.linearise(&undamped[r..], evaluation);
+        }
+        self.begin(start, undamped, evaluation, [&mut *trial, &mut *next], &mut broyden.change);
+        let mut is_slow = false;
+        broyden.begin();
+        for iteration in 0..MAX_ITERATIONS {
             let limit = RELATIVE_TOLERANCE * trial.term_sum;
             if !limit.is_finite() {
                 break;
             }
             if trial.residual_sum <= limit {
                 trial.finish(q, v, undamped);
+                let is_old = iteration > MAX_CHEAP_ITERATIONS;
+                undamped[r..].copy_from_slice(if is_old { &trial.q } else { &self.linearised_at });
                 return Ok(());
             }
-            let change = factor
-                .get_or_insert_with(|| {
-                    self.energy.evaluate_stiffness(&trial.q, evaluation);
-                    self.derivative(evaluation).partial_piv_lu()
-                })
-                .solve(Mat::from_fn(q.len(), 1, |i, _| trial.residual[i]));
+            if is_slow {
+                self.linearise(&trial.q, evaluation);
+                broyden.begin();
+            }
+            multiply(&self.inverse, &trial.residual, &mut broyden.change);
+            broyden.improve();
             let mut step = |share: f64| {
                 next.acceleration.clear();
-                let moved = |(k, b): (usize, &f64)| b - share * change[(k, 0)];
-                next.acceleration.extend(trial.acceleration.iter().enumerate().map(moved));
+                let moved = |(b, change): (&f64, &f64)| b - share * change;
+                next.acceleration.extend(trial.acceleration.iter().zip(&broyden.change).map(moved));
                 self.place(start, next);
                 self.energy.evaluate_forces(&next.q, evaluation);
                 next.weigh(evaluation.forces().iter().copied(), start.g);
@@ -147,49 +167,45 @@ impl<'a> NonlinearOscillator<'a> {
             let mut residual_sum = step(1.0);
             // A shorter step in Newton's direction may lower the residual where the full step does not.
             let mut share = 1.0;
-            while is_fresh && residual_sum >= trial.residual_sum && share > MIN_STEP_SHARE {
+            while is_slow && residual_sum >= trial.residual_sum && share > MIN_STEP_SHARE {
                 share /= 2.0;
                 residual_sum = step(share);
             }
             let left = residual_sum / trial.residual_sum;
             if left < 1.0 {
                 std::mem::swap(trial, next);
-            } else if is_fresh {
+                broyden.keep(share);
+            } else if is_slow {
                 break;
             }
-            is_fresh = left >= SLOW_CONVERGENCE;
-            if is_fresh {
-                factor = None;
-            }
+            is_slow = left.is_nan() || left >= SLOW_CONVERGENCE;
         }
         Err(DynamicsError::Unsolved { energy: self.energy(q, v) })
     }
 
-    /// Chooses the first trial, and evaluates the stiffness at its q: the trial has an acceleration extrapolated from the
-    /// last step, or it keeps q. With modes much faster than the step, the extrapolation is a bad guess.
+    /// Chooses the first trial: it keeps q, where the forces are known, or it follows from this by the given derivative.
     fn begin(
         &self,
         start: Start<'_>,
         undamped: &[f64],
         evaluation: &mut Evaluation,
         [trial, still]: [&mut Trial; 2],
+        change: &mut Vec<f64>,
     ) {
-        let (undamped, change) = undamped.split_at(start.q.len());
-        self.set_damping_forces(start.acceleration, &mut trial.damping_forces);
-        trial.acceleration.clear();
-        let extrapolated = start.acceleration.iter().zip(change).zip(&trial.damping_forces);
-        trial.acceleration.extend(extrapolated.map(|((a, change), c)| a + change - self.step * c));
-        self.place(start, trial);
-        self.energy.evaluate_stiffness(&trial.q, evaluation);
-        trial.weigh(evaluation.forces().iter().copied(), start.g);
         still.acceleration.clear();
         let keeping_q = start.acceleration.iter().zip(start.v).map(|(a, v)| -a - 4.0 * v / self.step);
         still.acceleration.extend(keeping_q);
         self.place(start, still);
         still.weigh(start.g.iter().zip(undamped).map(|(g, e)| g - e), start.g);
+        multiply(&self.inverse, &still.residual, change);
+        trial.acceleration.clear();
+        trial.acceleration.extend(still.acceleration.iter().zip(&*change).map(|(a, c)| a - c));
+        self.place(start, trial);
+        self.energy.evaluate_forces(&trial.q, evaluation);
+        trial.weigh(evaluation.forces().iter().copied(), start.g);
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
-            self.energy.evaluate_stiffness(&trial.q, evaluation);
+            self.energy.evaluate_forces(&trial.q, evaluation);
             // The given acceleration may belong to another q.
             trial.weigh(evaluation.forces().iter().copied(), start.g);
         }
@@ -209,14 +225,11 @@ impl<'a> NonlinearOscillator<'a> {
         self.set_damping_forces(v, damping_forces);
     }
 
-    /// Returns the derivative of the residual with respect to the acceleration (r x r).
-    fn derivative(&self, evaluation: &Evaluation) -> Mat<f64> {
-        let (r, h) = (self.energy.rank(), self.step);
-        Mat::from_fn(r, r, |i, j| {
-            f64::from(u8::from(i == j))
-                + h / 2.0 * self.damping[i * r + j]
-                + h * h / 4.0 * evaluation.stiffness(i)[j]
-        })
+    /// Computes the derivative of the residual at q, and its inverse.
+    fn linearise(&mut self, q: &[f64], evaluation: &mut Evaluation) {
+        self.energy.evaluate_stiffness(q, evaluation);
+        self.inverse = inverse(&derivative(&self.damping, self.step, |i, j| evaluation.stiffness(i)[j]));
+        self.linearised_at.copy_from_slice(q);
     }
 
     /// Returns kinetic and elastic energy.
@@ -226,10 +239,32 @@ impl<'a> NonlinearOscillator<'a> {
 
     /// Computes `C v`.
     fn set_damping_forces(&self, v: &[f64], forces: &mut Vec<f64>) {
-        forces.clear();
-        let row = |row: &[f64]| row.iter().zip(v).map(|(c, v)| c * v).sum::<f64>();
-        forces.extend(self.damping.chunks_exact(v.len()).map(row));
+        // C is symmetric.
+        multiply(&self.damping, v, forces);
     }
+}
+
+/// Computes the product of a matrix, given column after column, with a vector.
+fn multiply(columns: &[f64], x: &[f64], product: &mut Vec<f64>) {
+    product.clear();
+    product.resize(x.len(), 0.0);
+    for (column, x) in columns.chunks_exact(x.len()).zip(x) {
+        product.iter_mut().zip(column).for_each(|(sum, c)| *sum += c * x);
+    }
+}
+
+/// Returns the derivative of the residual with respect to the acceleration, `1 + h / 2 C + h^2 / 4 K` (r x r).
+fn derivative(damping: &[f64], h: f64, stiffness: impl Fn(usize, usize) -> f64) -> Mat<f64> {
+    let r = damping.len().isqrt();
+    Mat::from_fn(r, r, |i, j| {
+        f64::from(u8::from(i == j)) + h / 2.0 * damping[i * r + j] + h * h / 4.0 * stiffness(i, j)
+    })
+}
+
+/// Returns the inverse of a matrix, column after column.
+fn inverse(matrix: &Mat<f64>) -> Vec<f64> {
+    let inverse = matrix.partial_piv_lu().inverse();
+    inverse.col_iter().flat_map(|column| column.iter().copied().collect::<Vec<_>>()).collect()
 }
 
 impl Trial {
@@ -252,11 +287,8 @@ impl Trial {
     fn finish(&self, q: &mut [f64], v: &mut [f64], undamped: &mut [f64]) {
         q.copy_from_slice(&self.q);
         v.copy_from_slice(&self.v);
-        let (undamped, change) = undamped.split_at_mut(q.len());
         let accelerations = self.acceleration.iter().zip(&self.damping_forces);
-        for ((e, change), (b, damping)) in undamped.iter_mut().zip(change).zip(accelerations) {
-            (*change, *e) = (b + damping - *e, b + damping);
-        }
+        undamped.iter_mut().zip(accelerations).for_each(|(e, (b, damping))| *e = b + damping);
     }
 }
 
@@ -283,7 +315,7 @@ mod tests {
         let step = period / 200.0;
         let forces = forces(lambda, 90.0, 0.0);
         let energy = ElasticEnergy::new(&forces).unwrap();
-        let oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, step).unwrap();
+        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, step).unwrap();
         let (mut q, mut v) = (vec![1e-3, 0.0], vec![0.0, 0.0]);
         let buffers = &mut NewmarkBuffers::default();
         let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -304,7 +336,7 @@ mod tests {
         let forces = forces(40.0, 90.0, 3e4);
         for (damping, grows) in [(NONE, false), (Damping { mass: 0.1, stiffness: 1e-3 }, true)] {
             let energy = ElasticEnergy::new(&forces).unwrap();
-            let oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 2e-3).unwrap();
+            let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 2e-3).unwrap();
             let (mut q, mut v) = (vec![0.2, -0.1], vec![0.0, 1.0]);
             let buffers = &mut NewmarkBuffers::default();
             let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -327,7 +359,7 @@ mod tests {
         let force = forces.at(&goal);
         let damping = Damping { mass: 10.0, stiffness: 0.0 };
         let energy = ElasticEnergy::new(&forces).unwrap();
-        let oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 1e-2).unwrap();
+        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 1e-2).unwrap();
         let buffers = &mut NewmarkBuffers::default();
         let (mut q, mut v) = (vec![0.0; 2], vec![0.0; 2]);
         let mut a = oscillator.undamped_acceleration(&q, &force, buffers);
@@ -341,7 +373,7 @@ mod tests {
     fn modes_much_faster_than_the_step_are_solved() {
         let forces = forces(4e7, 9e5, 1e8);
         let energy = ElasticEnergy::new(&forces).unwrap();
-        let oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
+        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
         let buffers = &mut NewmarkBuffers::default();
         for speed in [5.0, 50.0] {
             let (mut q, mut v) = (vec![0.2, -0.1], vec![-speed, speed / 2.0]);
@@ -356,6 +388,24 @@ mod tests {
     }
 
     #[test]
+    fn a_new_oscillator_continues_with_the_same_bits() {
+        let forces = forces(4e5, 9e5, 1e8);
+        let energy = ElasticEnergy::new(&forces).unwrap();
+        let new = || NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
+        let (mut oscillator, buffers) = (new(), &mut NewmarkBuffers::default());
+        let (mut q, mut v) = (vec![0.2, -0.1], vec![-5.0, 2.5]);
+        let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
+        for _ in 0..100 {
+            let (mut other_q, mut other_v, mut other_a) = (q.clone(), v.clone(), a.clone());
+            new().advance(&mut other_q, &mut other_v, &mut other_a, &[0.0; 2], buffers).unwrap();
+            oscillator.advance(&mut q, &mut v, &mut a, &[0.0; 2], buffers).unwrap();
+            assert_eq!((&q, &v, &a), (&other_q, &other_v, &other_a));
+        }
+        // The derivative of a later step was used.
+        assert!(a[2..].iter().any(|x| *x != 0.0), "{a:?}");
+    }
+
+    #[test]
     fn invalid_arguments_and_steps_are_refused() {
         let forces = forces(1.0, 1.0, 1.0);
         let energy = ElasticEnergy::new(&forces).unwrap();
@@ -363,7 +413,7 @@ mod tests {
         assert!(matches!(new(NONE, 0.0), Err(DynamicsError::Step { .. })));
         let wrong = Damping { mass: f64::NAN, stiffness: 0.0 };
         assert!(matches!(new(wrong, 1.0), Err(DynamicsError::Damping { .. })));
-        let oscillator = new(NONE, 1.0).unwrap();
+        let mut oscillator = new(NONE, 1.0).unwrap();
         let (mut q, mut v) = (vec![1e200, 0.0], vec![0.0, 0.0]);
         let mut a = vec![0.0; 4];
         let (before, buffers) = (q.clone(), &mut NewmarkBuffers::default());

@@ -1,0 +1,44 @@
+//! Broyden's method: iterations that improve a derivative by what earlier iterations have changed (Kelley 1995, *Iterative
+//! Methods for Linear and Nonlinear Equations*, section 7.3).
+
+/// Changes of the unknowns since the derivative was computed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Broyden {
+    /// Change of the next iteration.
+    pub change: Vec<f64>,
+    /// Changes of the iterations, one after the other.
+    changes: Vec<f64>,
+    /// Their squared lengths.
+    squares: Vec<f64>,
+}
+
+impl Broyden {
+    /// Begins with a derivative.
+    pub fn begin(&mut self) {
+        self.changes.clear();
+        self.squares.clear();
+    }
+
+    /// Improves the change that the derivative gives by the changes since.
+    pub fn improve(&mut self) {
+        let r = self.change.len();
+        let mut all = self.changes.chunks_exact(r).zip(&self.squares).peekable();
+        while let Some((s, square)) = all.next() {
+            let product: f64 = s.iter().zip(&self.change).map(|(s, z)| s * z).sum::<f64>() / square;
+            match all.peek() {
+                Some((next, _)) => self.change.iter_mut().zip(*next).for_each(|(z, s)| *z += product * s),
+                None => self.change.iter_mut().for_each(|z| *z /= 1.0 - product),
+            }
+        }
+    }
+
+    /// Keeps the change of an iteration that used this share of it.
+    pub fn keep(&mut self, share: f64) {
+        if share < 1.0 {
+            self.begin();
+        } else {
+            self.changes.extend_from_slice(&self.change);
+            self.squares.push(self.change.iter().map(|s| s * s).sum());
+        }
+    }
+}
