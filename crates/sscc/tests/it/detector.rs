@@ -183,7 +183,7 @@ fn two_meshes_collide_as_all_their_triangles_do() {
             assert!(expected.iter().all(|pair| at_start.contains(pair)), "case {case}");
             hits += impacts.len();
             // Moved together they meet when their triangles do.
-            for impact in impacts.into_iter().take(cases(800)) {
+            for impact in impacts.iter().take(cases(800)) {
                 let moving = |mesh: &TriMesh, t: u32, [t0, t1]: [&[DVec3]; 2]| {
                     let face = mesh.faces()[t as usize];
                     sscc::MovingTriangle {
