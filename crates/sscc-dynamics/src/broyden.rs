@@ -42,3 +42,29 @@ impl Broyden {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A linear system with a wrong derivative is solved after twice as many iterations as it has unknowns (Gay 1979). With
+    /// the wrong derivative alone, an error of a thousandth is left.
+    #[test]
+    fn linear_systems_are_solved() {
+        let rows = [[2.0, 1.0, 0.0], [0.0, 3.0, 1.0], [1.0, 0.0, 2.0]];
+        let (target, mut x) = ([1.0, -2.0, 0.5], [0.0; 3]);
+        let residual = |x: &[f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|i| (0..3).map(|j| rows[i][j] * x[j]).sum::<f64>() - target[i])
+        };
+        let mut broyden = Broyden::default();
+        broyden.begin();
+        for _ in 0..7 {
+            let left = residual(&x);
+            broyden.change = (0..3).map(|i| -left[i] / rows[i][i]).collect();
+            broyden.improve();
+            (0..3).for_each(|i| x[i] += broyden.change[i]);
+            broyden.keep(1.0);
+        }
+        assert!(residual(&x).iter().all(|left| left.abs() < 1e-9), "{:?}", residual(&x));
+    }
+}

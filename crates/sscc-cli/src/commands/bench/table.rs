@@ -69,7 +69,7 @@ impl<'a> Table<'a> {
             ));
         }
         let label = |record: &Record| match record.root_radii {
-            Some(times) => format!("{times} x the root's"),
+            Some(times) => format!("{times} root radii"),
             None => format!("{}%", (record.share * 10.0).round() / 10.0),
         };
         let discrete = self.records.iter().flat_map(|record| {
@@ -111,7 +111,7 @@ fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
     let width = |key: &str| key.len().max(11) + 2;
     let heads: String = keys.iter().map(|key| format!("{key:>0$}", width(key))).collect();
     let over: String = COMPARED.iter().map(|key| format!("{:>18}", format!("{key}/{REFERENCE}"))).collect();
-    let mut lines = vec![format!("  {title:<19}{:>12}{heads}{over}", "collide")];
+    let mut lines = vec![format!("  {title:<19}{:>12}{heads}{over}", "states")];
     for row in &rows {
         let cell = |key: &&str| format!("{:>1$}", shown(row.means.get(key)), width(key));
         let cells: String = keys.iter().map(cell).collect();
