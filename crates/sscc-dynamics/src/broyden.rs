@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     /// A linear system with a wrong derivative is solved after twice as many iterations as it has unknowns (Gay 1979). With
-    /// the wrong derivative alone, an error of a thousandth is left.
+    /// the wrong derivative alone, a residual of 0.005 is left.
     #[test]
     fn linear_systems_are_solved() {
         let rows = [[2.0, 1.0, 0.0], [0.0, 3.0, 1.0], [1.0, 0.0, 2.0]];

@@ -131,7 +131,7 @@ pub fn weighted_mean(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> 
     sum / weights.iter().sum::<f64>()
 }
 
-/// Returns the weighted median of values: the least one that, with all that are smaller, has half of the weight.
+/// Returns the weighted median of values: the smallest value such that it and all smaller ones have half of the weight.
 pub fn weighted_median(values: impl IntoIterator<Item = f64>, weights: &[f64]) -> f64 {
     let mut values: Vec<(f64, f64)> = values.into_iter().zip(weights.iter().copied()).collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -182,8 +182,8 @@ fn two_meshes_collide_as_all_their_triangles_do() {
             let at_start: Vec<Pair> = impacts.iter().filter(|i| i.time == 0.0).map(|i| i.pair).collect();
             assert!(expected.iter().all(|pair| at_start.contains(pair)), "case {case}");
             hits += impacts.len();
-            // Moved together they meet when their triangles do.
-            for impact in impacts.iter().take(cases(800)) {
+            // Moved together they meet when their triangles do. With CI=true all of them.
+            for impact in impacts.iter().step_by(8 / cases(8)) {
                 let moving = |mesh: &TriMesh, t: u32, [t0, t1]: [&[DVec3]; 2]| {
                     let face = mesh.faces()[t as usize];
                     sscc::MovingTriangle {
