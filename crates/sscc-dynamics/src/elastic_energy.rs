@@ -171,7 +171,7 @@ impl ElasticEnergy {
     /// When q has another length than r.
     pub fn evaluate_forces(&self, q: &[f64], evaluation: &mut Evaluation) {
         assert_eq!(q.len(), self.rank, "q of another rank");
-        dispatch(Forces { energy: self, q, evaluation });
+        dispatch(Evaluate { energy: self, q, evaluation, with_stiffness: false });
     }
 
     /// Computes the forces and the stiffness at q (r numbers): see [`Evaluation::forces`] and
@@ -184,9 +184,10 @@ impl ElasticEnergy {
     /// When q has another length than r.
     pub fn evaluate_stiffness(&self, q: &[f64], evaluation: &mut Evaluation) {
         assert_eq!(q.len(), self.rank, "q of another rank");
-        dispatch(ForcesAndStiffness { energy: self, q, evaluation });
+        dispatch(Evaluate { energy: self, q, evaluation, with_stiffness: true });
     }
 
+    /// See [`Self::evaluate_forces`].
     #[inline(always)]
     fn add_forces<S: Simd>(&self, simd: S, q: &[f64], evaluation: &mut Evaluation) {
         evaluation.begin(q);
@@ -211,6 +212,7 @@ impl ElasticEnergy {
         evaluation.finish_gradient();
     }
 
+    /// See [`Self::evaluate_stiffness`].
     #[inline(always)]
     fn add_stiffness<S: Simd>(&self, simd: S, q: &[f64], evaluation: &mut Evaluation) {
         evaluation.begin(q);
@@ -256,35 +258,24 @@ impl ElasticEnergy {
     }
 }
 
-/// Evaluation of the forces, compiled for several instruction sets.
-struct Forces<'e> {
+/// Evaluation of the forces, and of the stiffness if wanted, compiled for several instruction sets.
+struct Evaluate<'e> {
     energy: &'e ElasticEnergy,
     q: &'e [f64],
     evaluation: &'e mut Evaluation,
+    with_stiffness: bool,
 }
 
-impl WithSimd for Forces<'_> {
+impl WithSimd for Evaluate<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.energy.add_forces(simd, self.q, self.evaluation);
-    }
-}
-
-/// Evaluation of forces and stiffness, compiled for several instruction sets.
-struct ForcesAndStiffness<'e> {
-    energy: &'e ElasticEnergy,
-    q: &'e [f64],
-    evaluation: &'e mut Evaluation,
-}
-
-impl WithSimd for ForcesAndStiffness<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.energy.add_stiffness(simd, self.q, self.evaluation);
+        if self.with_stiffness {
+            self.energy.add_stiffness(simd, self.q, self.evaluation);
+        } else {
+            self.energy.add_forces(simd, self.q, self.evaluation);
+        }
     }
 }
 

@@ -101,6 +101,7 @@ mod state;
 mod step;
 mod step_buffers;
 mod sweep_and_prune;
+mod trial;
 mod world;
 
 pub use body::Body;

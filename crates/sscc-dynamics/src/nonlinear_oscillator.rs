@@ -1,11 +1,14 @@
 //! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5).
 
-use faer::Mat;
-use faer::linalg::solvers::DenseSolveCore;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
+use faer::linalg::lu::partial_pivoting::inverse::{inverse, inverse_scratch};
+use faer::{Mat, Par};
 use sscc_solid::Stiffness;
 
 use crate::broyden::Broyden;
 use crate::elastic_energy::{ElasticEnergy, Evaluation};
+use crate::trial::Trial;
 use crate::{Damping, DynamicsError};
 
 /// Maximum number of iterations in one step.
@@ -51,21 +54,6 @@ pub struct NewmarkBuffers {
     trial: Trial,
     next: Trial,
     broyden: Broyden,
-}
-
-/// Trial acceleration, and the state at the end of the step with this acceleration.
-#[derive(Clone, Debug, Default)]
-struct Trial {
-    acceleration: Vec<f64>,
-    q: Vec<f64>,
-    v: Vec<f64>,
-    /// `C v`.
-    damping_forces: Vec<f64>,
-    residual: Vec<f64>,
-    /// Sum of the absolute values of the residual; infinite where it is not a number.
-    residual_sum: f64,
-    /// Sum of the absolute values of all terms of the residual.
-    term_sum: f64,
 }
 
 /// State at the start of a step, and the forces g.
@@ -161,7 +149,7 @@ impl<'a> NonlinearOscillator<'a> {
                 next.acceleration.extend(trial.acceleration.iter().zip(&broyden.change).map(moved));
                 self.place(start, next);
                 self.energy.evaluate_forces(&next.q, evaluation);
-                next.weigh(evaluation.forces().iter().copied(), start.g);
+                next.set_residual(evaluation.forces().iter().copied(), start.g);
                 next.residual_sum
             };
             let mut residual_sum = step(1.0);
@@ -196,18 +184,18 @@ impl<'a> NonlinearOscillator<'a> {
         let keeping_q = start.acceleration.iter().zip(start.v).map(|(a, v)| -a - 4.0 * v / self.step);
         still.acceleration.extend(keeping_q);
         self.place(start, still);
-        still.weigh(start.g.iter().zip(undamped).map(|(g, e)| g - e), start.g);
+        still.set_residual(start.g.iter().zip(undamped).map(|(g, e)| g - e), start.g);
         multiply(&self.inverse, &still.residual, change);
         trial.acceleration.clear();
         trial.acceleration.extend(still.acceleration.iter().zip(&*change).map(|(a, c)| a - c));
         self.place(start, trial);
         self.energy.evaluate_forces(&trial.q, evaluation);
-        trial.weigh(evaluation.forces().iter().copied(), start.g);
+        trial.set_residual(evaluation.forces().iter().copied(), start.g);
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
             self.energy.evaluate_forces(&trial.q, evaluation);
             // The given acceleration may belong to another q.
-            trial.weigh(evaluation.forces().iter().copied(), start.g);
+            trial.set_residual(evaluation.forces().iter().copied(), start.g);
         }
     }
 
@@ -228,7 +216,7 @@ impl<'a> NonlinearOscillator<'a> {
     /// Computes the derivative of the residual at q, and its inverse.
     fn linearise(&mut self, q: &[f64], evaluation: &mut Evaluation) {
         self.energy.evaluate_stiffness(q, evaluation);
-        self.inverse = inverse(&derivative(&self.damping, self.step, |i, j| evaluation.stiffness(i)[j]));
+        self.inverse = inverted(derivative(&self.damping, self.step, |i, j| evaluation.stiffness(i)[j]));
         self.linearised_at.copy_from_slice(q);
     }
 
@@ -261,35 +249,18 @@ fn derivative(damping: &[f64], h: f64, stiffness: impl Fn(usize, usize) -> f64) 
     })
 }
 
-/// Returns the inverse of a matrix, column after column.
-fn inverse(matrix: &Mat<f64>) -> Vec<f64> {
-    let inverse = matrix.partial_piv_lu().inverse();
-    inverse.col_iter().flat_map(|column| column.iter().copied().collect::<Vec<_>>()).collect()
-}
-
-impl Trial {
-    /// Computes the residual from the inner forces and the forces g.
-    fn weigh(&mut self, inner: impl Iterator<Item = f64>, g: &[f64]) {
-        self.residual.clear();
-        (self.residual_sum, self.term_sum) = (0.0, 0.0);
-        for (((inner, b), damping), g) in inner.zip(&self.acceleration).zip(&self.damping_forces).zip(g) {
-            let residual = b + damping + inner - g;
-            self.residual_sum += residual.abs();
-            self.term_sum += b.abs() + damping.abs() + inner.abs() + g.abs();
-            self.residual.push(residual);
-        }
-        if self.residual_sum.is_nan() {
-            self.residual_sum = f64::INFINITY;
-        }
-    }
-
-    /// Copies the state to q, v and the undamped acceleration.
-    fn finish(&self, q: &mut [f64], v: &mut [f64], undamped: &mut [f64]) {
-        q.copy_from_slice(&self.q);
-        v.copy_from_slice(&self.v);
-        let accelerations = self.acceleration.iter().zip(&self.damping_forces);
-        undamped.iter_mut().zip(accelerations).for_each(|(e, (b, damping))| *e = b + damping);
-    }
+/// Returns the inverse of a matrix, column after column. Uses one thread, so that the order of sums is fixed.
+fn inverted(mut matrix: Mat<f64>) -> Vec<f64> {
+    let r = matrix.nrows();
+    let (mut order, mut inverse_order, mut result) = (vec![0_usize; r], vec![0_usize; r], Mat::zeros(r, r));
+    let scratch = lu_in_place_scratch::<usize, f64>(r, r, Par::Seq, Default::default())
+        .or(inverse_scratch::<usize, f64>(r, Par::Seq));
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    let (rows, lu) = (matrix.as_mut(), Default::default());
+    let (_, order) = lu_in_place(rows, &mut order, &mut inverse_order, Par::Seq, stack, lu);
+    inverse(result.as_mut(), matrix.as_ref(), matrix.as_ref(), order, Par::Seq, stack);
+    result.col_iter().flat_map(|column| column.iter().copied().collect::<Vec<_>>()).collect()
 }
 
 #[cfg(test)]
@@ -305,6 +276,23 @@ mod tests {
         // d/dy: l2 y + s (x^2 + x y) x / 2 = .. + s (x^3 + x^2 y) / 2
         let cubic = [1.0, 1.5, 0.5, 0.0, 0.5, 0.5, 0.0, 0.0].map(|c| s * c).to_vec();
         ReducedForces::new(Stiffness::from_diagonal(&[l1, l2]).unwrap(), vec![0.0; 6], cubic).unwrap()
+    }
+
+    #[test]
+    fn inverses_times_their_matrices_are_the_identity() {
+        for r in [1, 2, 5, 40] {
+            // Rows are exchanged: the largest entry of the first column is in the last row.
+            let entry = |i: usize, j: usize| {
+                libm::sin((3 * i * j + i) as f64) + if i + j + 1 == r { 9.0 } else { 0.0 }
+            };
+            let inverse = inverted(Mat::from_fn(r, r, entry));
+            for i in 0..r {
+                for j in 0..r {
+                    let sum: f64 = (0..r).map(|k| entry(i, k) * inverse[j * r + k]).sum();
+                    assert!((sum - f64::from(u8::from(i == j))).abs() < 1e-12, "{r} {i} {j} {sum}");
+                }
+            }
+        }
     }
 
     #[test]
