@@ -32,6 +32,8 @@ pub(crate) struct Counters {
     pub(crate) opened: u64,
     /// Pairs of boxes compared.
     pub(crate) box_tests: u64,
+    /// Pairs of moving hulls compared.
+    pub(crate) hull_tests: u64,
     /// Pairs of triangles tested exactly.
     pub(crate) triangle_tests: u64,
 }

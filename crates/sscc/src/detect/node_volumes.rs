@@ -12,6 +12,7 @@ use glam::{DVec3, Vec4};
 
 use super::aabb8::{Aabb8, AabbF32};
 use super::exact_positions::ExactPositions;
+use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
 use super::quantization::CoarseMotion;
@@ -128,6 +129,17 @@ impl<const E: usize> NodeVolumes<E> {
         };
         let root = area(0);
         if root > 0.0 { (0..hierarchy.nodes().len()).map(cost).sum::<f64>() / root } else { 0.0 }
+    }
+
+    /// The frame of this search.
+    pub(crate) fn frame(&self) -> &F32Frame {
+        self.positions.frame()
+    }
+
+    /// Whether the AABBs within a bucket are current.
+    #[inline]
+    pub(crate) fn is_bucket_open(&self, bucket: u32) -> bool {
+        self.packets_searches[bucket as usize] == self.search
     }
 
     /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.

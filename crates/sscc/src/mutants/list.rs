@@ -98,6 +98,24 @@ mutants! {
     SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
     /// Vertices go half as far in a kinetic ball.
     BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
+    /// The radius of a moving hull omits the distance of vertices from the core points' hull.
+    HullCoreExact: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// The radius of a moving hull omits the residuals of the modes.
+    HullResidualForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// The bound of residuals by a few vectors omits the remainder.
+    HullRemainderForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// Hulls about a configuration move by q, not by the difference from it.
+    HullWithoutConfiguration: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// The radius of a moving hull omits the error of single precision.
+    HullSinglePrecisionExact: CaughtBy("lib detect::hulls::tests::radii_cover_single_precision");
+    /// The radius of a moving hull omits the rounding of the shape's positions.
+    HullShapeExact: CaughtBy("lib detect::hulls::tests::radii_cover_the_rounding_of_the_shape");
+    /// Hulls in a kinetic ball have the radius at its centre.
+    HullBallNotWidened: CaughtBy("lib detect::hulls::tests::motions_and_balls_are_covered");
+    /// A plane separates hulls of any radius.
+    HullsTouch: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    /// A plane separates hulls at the start of a motion alone.
+    HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// Nodes go half as far in a kinetic ball.
     BallNodesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
     /// A kinetic ball omits the rounding error of positions.

@@ -5,21 +5,24 @@ use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
 use super::pair_tree_traversal::{PairTreeStack, traverse_pair_tree};
 use crate::detect::broad_phase::BroadPhase;
+use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::VertexMotion;
 
-/// The broad phase of a search, and the stack for the pair tree.
+/// The broad phase of a search, and what the traversal of the pair tree needs: its stack and moving hulls.
 #[derive(Clone)]
 pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) broad: BroadPhase<E>,
     stack: PairTreeStack,
+    hulls: Option<MovedHulls<E>>,
 }
 
 impl<const E: usize> CertifiedSearch<E> {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
         let layout = &context.detect.layout;
         let broad = BroadPhase::new(layout, context.method.is_lazy(), context.cones());
-        Self { broad, stack: PairTreeStack::default() }
+        let hulls = context.hulls.as_ref().map(|hulls| MovedHulls::new(&hulls.nodes));
+        Self { broad, stack: PairTreeStack::default(), hulls }
     }
 
     /// Finds all hits but exceptions. `norm`: the largest `|z|` of the motion. A certificate holds during a motion if it
@@ -34,8 +37,13 @@ impl<const E: usize> CertifiedSearch<E> {
         match (context.complete_pair_tree(norm), context.used_certificates()) {
             (Some(tree), Some(parts)) => {
                 let radii = &parts.node_radii;
+                let mut hulls = self.hulls.as_mut().zip(context.hulls.as_deref());
+                if let Some((moved, _)) = &mut hulls {
+                    moved.begin();
+                }
                 traverse_pair_tree(
                     &mut self.broad,
+                    hulls,
                     &mut self.stack,
                     &context.detect,
                     tree,

@@ -2,8 +2,10 @@
 //! at a norm.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::method::Method;
+use super::pair_hulls::PairHulls;
 use crate::detect::context::Context;
 use crate::detect::normal_cones::NormalCones;
 use crate::hierarchy::Hierarchy;
@@ -17,6 +19,8 @@ pub(super) struct QueryContext<'a> {
     pub(super) certificates: Option<&'a Certificates>,
     pub(super) scope: Cow<'a, Scope>,
     pub(super) method: Method,
+    /// Hulls for the pair tree, if the method uses it.
+    pub(super) hulls: Option<Arc<PairHulls>>,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
     /// no exceptions. 0 elsewhere.
     proven_radius: f64,
@@ -33,9 +37,13 @@ impl<'a> QueryContext<'a> {
         let used = certificates.filter(|_| method == Method::Certified);
         let exceptions = used.map_or(&[][..], Certificates::exceptions);
         let detect = Context::new(model, hierarchy, &scope.filter, exceptions, method.needs());
+        let hulls = used.and_then(|used| {
+            let tree = &used.parts().pair_tree;
+            PairHulls::new(model, &detect.hierarchy, &detect.layout, tree, &scope.center).map(Arc::new)
+        });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
-        Self { model, detect, certificates, scope, method, proven_radius }
+        Self { model, detect, certificates, scope, method, hulls, proven_radius }
     }
 
     /// The normal cones of the method, if it uses any.

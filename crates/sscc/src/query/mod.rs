@@ -12,6 +12,7 @@ mod discrete_between;
 mod discrete_search;
 mod kinetic;
 mod method;
+mod pair_hulls;
 mod pair_tree_traversal;
 mod query;
 mod resolve;

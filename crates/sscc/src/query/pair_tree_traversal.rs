@@ -3,10 +3,12 @@
 //! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
 //! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
+use super::pair_hulls::PairHulls;
 use crate::PairTree;
 use crate::certificates::StoredPair;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::context::Context;
+use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::NodePair;
@@ -38,6 +40,7 @@ macro_rules! is_entry_reached {
 #[expect(clippy::too_many_arguments, reason = "all of them are read in the innermost loop")]
 pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
+    mut hulls: Option<(&mut MovedHulls<E>, &PairHulls)>,
     PairTreeStack(stack): &mut PairTreeStack,
     context: &Context<'_>,
     tree: &PairTree,
@@ -81,8 +84,20 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         if !broad.volumes.node(n).overlaps(broad.volumes.node(m)) {
             continue;
         }
-        let buckets = &broad.volumes.layout.buckets;
-        if let [Some(a), Some(b)] = [n, m].map(|n| buckets.of_node(n)) {
+        let buckets = [n, m].map(|n| broad.volumes.layout.buckets.of_node(n));
+        // The boxes of open buckets are tighter and cost less.
+        let is_open = buckets.iter().all(|b| b.is_some_and(|b| broad.volumes.is_bucket_open(b)));
+        if let Some((moved, pairs)) = &mut hulls
+            && moved.is_used()
+            && !is_open
+            && let Some(at_rest) = pairs.direction(entry)
+        {
+            broad.counters.hull_tests += 1;
+            if moved.are_apart(&pairs.nodes, (n, m), at_rest, broad.volumes.frame(), motion) {
+                continue;
+            }
+        }
+        if let [Some(a), Some(b)] = buckets {
             broad.test_bucket_pair(context, (a, b), motion, narrow);
             continue;
         }

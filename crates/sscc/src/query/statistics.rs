@@ -24,7 +24,7 @@ impl Statistics {
 
     /// Takes over the counters of a search.
     pub(super) fn set_counters(&mut self, counters: &Counters) {
-        let Counters { opened, box_tests, triangle_tests } = *counters;
+        let Counters { opened, box_tests, triangle_tests, .. } = *counters;
         (self.opened, self.box_tests, self.triangle_tests) = (opened, box_tests, triangle_tests);
     }
 }

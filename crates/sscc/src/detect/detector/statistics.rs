@@ -33,7 +33,7 @@ impl DetectorStatistics {
         search: &mut Search<E, N>,
         is_done: bool,
     ) {
-        let Counters { opened, box_tests, triangle_tests } = search.counters;
+        let Counters { opened, box_tests, triangle_tests, .. } = search.counters;
         let complete = is_done && search.narrow.hits().is_complete();
         let (tree_cost, rebuilds) = (search.cost, self.rebuilds);
         *self = Self { complete, opened, box_tests, triangle_tests, tree_cost, rebuilds };

@@ -29,9 +29,10 @@ const MAX_PAIRS_PER_TRIANGLE: usize = 8;
 /// ... and at most as many as cost this many plain queries.
 const MAX_PLAIN_QUERIES: u64 = 64;
 
-/// The cost, in boxes compared, of opening a node, of computing the safe distance of two triangles, of testing them, and
-/// of finding them in a ball.
+/// The cost, in boxes compared, of opening a node, of comparing two hulls, of computing the safe distance of two
+/// triangles, of testing them, and of finding them in a ball.
 const OPEN_COST: u64 = 50;
+const HULL_COST: u64 = 30;
 const DISTANCE_COST: u64 = 150;
 const TEST_COST: u64 = 20;
 const FIND_COST: u64 = 10;
@@ -189,7 +190,7 @@ impl<'a> KineticQuery<'a> {
         let is_complete = self.search.find(context, &motion, norm, limit)?;
         let found = &self.search.narrow.0.list;
         let counters = &self.search.certified.broad.counters;
-        let cost = counters.box_tests + OPEN_COST * counters.opened + FIND_COST * found.len() as u64;
+        let cost = node_cost(counters) + FIND_COST * found.len() as u64;
         if !is_complete {
             self.control.record_overflow(cost, share);
             return Ok(false);
@@ -256,5 +257,10 @@ impl<'a> KineticQuery<'a> {
 
 /// The cost of a plain query.
 fn plain_cost(counters: &Counters) -> u64 {
-    counters.box_tests + OPEN_COST * counters.opened + TEST_COST * counters.triangle_tests
+    node_cost(counters) + TEST_COST * counters.triangle_tests
+}
+
+/// The cost of all nodes that a search visited.
+fn node_cost(counters: &Counters) -> u64 {
+    counters.box_tests + OPEN_COST * counters.opened + HULL_COST * counters.hull_tests
 }

@@ -1,0 +1,94 @@
+//! The factors of all hulls in one search, and the bound of their error.
+
+use glam::{DVec3, Vec4};
+
+use super::node_hulls::NodeHulls;
+use crate::detect::f32_frame::F32Frame;
+use crate::detect::vertex_motion::rounding_bound;
+
+/// With a larger error bound, in the coordinates of the frame, too few nodes would be apart.
+const MAX_ERROR: f64 = 1.0 / 64.0;
+
+/// Length of the diagonal of a cube, rounded up: errors here are along each axis, radii are not.
+const DIAGONAL: f64 = 1.7321;
+
+/// The factors of one search, in the coordinates of its frame.
+#[derive(Clone)]
+pub(super) struct HullMotion<const E: usize> {
+    /// The factor of the rest, then of each mode, at each configuration: its magnitude, and three times itself.
+    pub(super) factors: Vec<[Vec4; E]>,
+    /// The centre of the shape.
+    pub(super) shift: [f32; 3],
+    /// An upper bound of the distance of a core point from where exact arithmetic would place it, and of a vertex from the
+    /// position of the shape. It also covers the evaluation of distances from a plane.
+    pub(super) error: f32,
+    /// The relative error of sums over the modes.
+    pub(super) relative: f32,
+    /// Coordinates in the frame for each unit of length, rounded up.
+    pub(super) scale: f64,
+}
+
+impl<const E: usize> Default for HullMotion<E> {
+    fn default() -> Self {
+        Self { factors: Vec::new(), shift: [0.0; 3], error: f32::INFINITY, relative: 0.0, scale: 0.0 }
+    }
+}
+
+impl<const E: usize> HullMotion<E> {
+    /// Sets the factors at each q. `rounding` bounds the error of the shape's positions. False if the error bound is too large
+    /// for hulls to be of use.
+    ///
+    /// Error bound. Let u = 2^-24, and T the sum of the magnitudes of all terms of a coordinate of any core point: the factors
+    /// times [`NodeHulls::weights`], and the shift.
+    /// - Factors and their products add 2 u T, their sums (r + 1) u T, the shift u T.
+    /// - A core point is 3 products and 3 sums more: 6 u T at most. The same error of F times `eps`, which is at most 2.
+    /// - Its distance from a plane of unit normal adds 5 u T along each axis.
+    /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds, which are
+    ///   30 times larger: they cover `q - configuration` and the units of the hulls, too.
+    ///
+    /// The last number of the error covers underflow: squares of residuals below 1e-19, and products.
+    pub(super) fn begin(
+        &mut self,
+        hulls: &NodeHulls,
+        q: [&[f64]; E],
+        frame: &F32Frame,
+        rounding: f64,
+    ) -> bool {
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        self.scale = frame.scale() * (1.0 + 1e-12);
+        let factor = |x: f64| {
+            let x = x as f32;
+            Vec4::new(x.abs(), x, x, x)
+        };
+        let shift = frame.linear(hulls.center);
+        self.shift = shift.as_vec3().to_array();
+        let rest = hulls.half * frame.scale();
+        self.factors.clear();
+        self.factors.push([factor(rest); E]);
+        let mut sums = [shift.abs().max_element() + rest * hulls.weights[0]; E];
+        for (k, size) in hulls.sizes.iter().enumerate() {
+            let y = |q: &[f64]| q[k] - right_or!(hulls.configuration[k], HullWithoutConfiguration, 0.0);
+            let factors = q.map(|q| y(q) * size * frame.scale());
+            (0..E).for_each(|end| sums[end] += factors[end].abs() * hulls.weights[k + 1]);
+            self.factors.push(factors.map(factor));
+        }
+        // NaN must fail the comparison below, too.
+        let most = if sums.iter().all(|sum| sum.is_finite()) {
+            sums.into_iter().fold(0.0, f64::max)
+        } else {
+            f64::INFINITY
+        };
+        let rank = hulls.rank as f64;
+        let single = right_or!((3.0 * rank + 32.0) * unit * most, HullSinglePrecisionExact, 0.0);
+        let double = (rounding + rounding_bound(hulls.reach, hulls.rank)) * self.scale;
+        let error = 1.01 * DIAGONAL * (single + right_or!(double, HullShapeExact, 0.0)) + 1e-15;
+        self.error = error as f32;
+        self.relative = (2.0 * (rank + 16.0) * unit) as f32;
+        error <= MAX_ERROR
+    }
+
+    /// A displacement along each axis as a distance in the frame, rounded up.
+    pub(super) fn distance(&self, displacement: DVec3) -> f32 {
+        ((displacement.length() * self.scale * (1.0 + 1e-6)) as f32).min(f32::MAX)
+    }
+}

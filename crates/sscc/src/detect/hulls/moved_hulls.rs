@@ -1,0 +1,186 @@
+//! The hulls of one search, each moved at most once, and the test of two nodes.
+
+use glam::{Mat3, Vec3, Vec4};
+
+use super::core_points::CORE_POINTS;
+use super::hull_motion::HullMotion;
+use super::node_hulls::NodeHulls;
+use super::separation::{Points, are_separated, widest_gap};
+use crate::detect::f32_frame::F32Frame;
+use crate::detect::vertex_motion::VertexMotion;
+
+/// Tests that may fail at the start of a search before hulls are no longer tested, and what a test adds or takes.
+/// In free states most tests succeed; where many triangles collide, most fail and only cost time.
+const FIRST_CREDIT: i32 = 64;
+const GAIN: i32 = 2;
+const LOSS: i32 = 1;
+
+/// A gap at the centre of less than so many radii seldom stays open: such pairs are not tested.
+const MIN_GAP: f32 = 2.0;
+
+/// The hulls of one search. Each entry has the number of the search for which it is current.
+#[derive(Clone)]
+pub(crate) struct MovedHulls<const E: usize> {
+    motion: HullMotion<E>,
+    /// Whether the motion is that of this search: it is set by the first test.
+    has_begun: bool,
+    credit: i32,
+    search: u32,
+    searches: Vec<u32>,
+    pub(super) hulls: Vec<MovedHull<E>>,
+}
+
+#[derive(Clone)]
+pub(super) struct MovedHull<const E: usize> {
+    pub(super) points: [Points; E],
+    pub(super) radius: f32,
+    /// Turns a direction at rest into one at the first configuration.
+    cofactors: Mat3,
+}
+
+impl<const E: usize> MovedHulls<E> {
+    pub(crate) fn new(hulls: &NodeHulls) -> Self {
+        let empty = MovedHull { points: [[[0.0; CORE_POINTS]; 3]; E], radius: 0.0, cofactors: Mat3::ZERO };
+        Self {
+            motion: HullMotion::default(),
+            has_begun: false,
+            credit: 0,
+            search: 0,
+            searches: vec![0; hulls.count()],
+            hulls: vec![empty; hulls.count()],
+        }
+    }
+
+    /// Starts a new search. Nothing is computed before the first test.
+    #[inline]
+    pub(crate) fn begin(&mut self) {
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 {
+            self.searches.fill(0);
+            self.search = 1;
+        }
+        (self.credit, self.has_begun) = (FIRST_CREDIT, false);
+    }
+
+    /// Sets the motion of this search. Where hulls are of no use, no more tests are worth while.
+    fn begin_motion<M: VertexMotion<E>>(&mut self, hulls: &NodeHulls, frame: &F32Frame, motion: &M) -> bool {
+        self.has_begun = true;
+        let coordinates = motion.coarse_coordinates();
+        let is_useful = coordinates.is_some_and(|q| self.motion.begin(hulls, q, frame, motion.rounding()));
+        if !is_useful {
+            self.credit = 0;
+        }
+        is_useful
+    }
+
+    /// Whether hulls are worth a test in this search.
+    #[inline]
+    pub(crate) fn is_used(&self) -> bool {
+        self.credit > 0
+    }
+
+    /// Whether the hulls of two nodes prove that no triangle of one has a point in common with one of the other. `at_rest`: a
+    /// direction that separates them at the configuration of the hulls.
+    pub(crate) fn are_apart<M: VertexMotion<E>>(
+        &mut self,
+        hulls: &NodeHulls,
+        (n, m): (u32, u32),
+        at_rest: Vec3,
+        frame: &F32Frame,
+        motion: &M,
+    ) -> bool {
+        if !self.has_begun && !self.begin_motion(hulls, frame, motion) {
+            return false;
+        }
+        let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return false };
+        self.update(hulls, i, n, motion);
+        self.update(hulls, j, m, motion);
+        let [a, b] = [i, j].map(|i| &self.hulls[i]);
+        let normal = (a.cofactors + b.cofactors) * at_rest;
+        let is_apart = are_separated(&a.points, &b.points, a.radius + b.radius, normal);
+        self.credit += if is_apart { GAIN } else { -LOSS };
+        is_apart
+    }
+
+    /// Moves all hulls.
+    pub(crate) fn update_all<M: VertexMotion<E>>(&mut self, hulls: &NodeHulls, frame: &F32Frame, motion: &M) {
+        self.begin();
+        self.begin_motion(hulls, frame, motion);
+        for (node, index) in hulls.all() {
+            self.update(hulls, index, node, motion);
+        }
+    }
+
+    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where the
+    /// gap is narrow, or a node has no hull.
+    pub(crate) fn separating_direction(&self, hulls: &NodeHulls, (n, m): (u32, u32)) -> Option<Vec3> {
+        let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return None };
+        let [a, b] = [i, j].map(|i| &self.hulls[i]);
+        let (normal, gap) = widest_gap(&a.points[0], &b.points[0])?;
+        (gap > MIN_GAP * (a.radius + b.radius)).then_some(normal)
+    }
+
+    /// Moves a hull, unless it is current.
+    fn update<M: VertexMotion<E>>(&mut self, hulls: &NodeHulls, index: usize, node: u32, motion: &M) {
+        if self.searches[index] == self.search {
+            return;
+        }
+        self.searches[index] = self.search;
+        let HullMotion { factors, shift, error, relative, .. } = &self.motion;
+        // Rows of F and c, with the products of the residual in the fourth vector.
+        let mut rows = [[Vec4::ZERO; 3]; E];
+        let (mut sums, mut squares) = ([Vec4::ZERO; E], [0.0_f32; E]);
+        for (rate, factors) in hulls.frame(index).iter().zip(factors) {
+            for end in 0..E {
+                let factor = factors[end];
+                let signed = Vec4::splat(factor.y);
+                (0..3).for_each(|axis| rows[end][axis] += rate[axis] * signed);
+                let products = rate[3] * factor;
+                sums[end] += products;
+                squares[end] += products.x * products.x;
+            }
+        }
+        let shape = hulls.shape(index);
+        let hull = &mut self.hulls[index];
+        hull.radius = 0.0;
+        for end in 0..E {
+            let columns = Mat3::from_cols(
+                Vec3::from_array(rows[end].map(|row| row.x)),
+                Vec3::from_array(rows[end].map(|row| row.y)),
+                Vec3::from_array(rows[end].map(|row| row.z)),
+            );
+            for axis in 0..3 {
+                let row = rows[end][axis] + Vec4::W * shift[axis];
+                let [x, y, z] = &shape.core;
+                let out = &mut hull.points[end][axis];
+                for i in 0..CORE_POINTS {
+                    out[i] = x[i] * row.x + y[i] * row.y + z[i] * row.z + row.w;
+                }
+            }
+            let sum = sums[end].x * (1.0 + relative);
+            let along =
+                (0..3).map(|j| shape.along[j] * (sums[end][j + 1].abs() + relative * sum)).sum::<f32>();
+            let split = (along + shape.remainder * squares[end].sqrt()) * (1.0 + 2.0 * relative);
+            let residual = right_or!(sum.min(split), HullResidualForgotten, 0.0);
+            let radius = shape.distance * norm_bound(&columns) + residual;
+            hull.radius = hull.radius.max(radius * (1.0 + 1e-6));
+            if end == 0 {
+                let [x, y, z] = [columns.x_axis, columns.y_axis, columns.z_axis];
+                let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+                let size = cofactors.x_axis.abs().max(cofactors.y_axis.abs()).max(cofactors.z_axis.abs());
+                let scale = 1.0 / size.max_element().max(f32::MIN_POSITIVE);
+                hull.cofactors = cofactors * scale;
+            }
+        }
+        let slack = motion.coarse_slack(node).map_or(0.0, |slack| self.motion.distance(slack));
+        hull.radius += error + right_or!(slack, HullBallNotWidened, 0.0);
+        hull.radius *= 1.0 + 1e-6;
+    }
+}
+
+/// An upper bound of the norm of F: the root of the largest absolute row sum of F'F.
+fn norm_bound(columns: &Mat3) -> f32 {
+    let gram = columns.transpose() * *columns;
+    let sum = |column: Vec3| column.abs().element_sum();
+    sum(gram.x_axis).max(sum(gram.y_axis)).max(sum(gram.z_axis)).sqrt() * (1.0 + 1e-5)
+}

@@ -1,0 +1,118 @@
+//! The hull of one node: its centre, the affine map fitted to its modes, core points, and bounds of all else.
+
+use glam::{DMat3, DVec3, Vec4};
+
+use super::core_points::{self, CORE_POINTS, CorePoints};
+use super::residuals::{Residuals, VECTORS, up};
+
+/// Positions and modes in units in which they are at most about 1: positions about the centre of the shape, relative to
+/// its half size; displacements relative to the largest one by the same mode.
+pub(super) struct Vertices<'t> {
+    pub(super) positions: &'t [DVec3],
+    /// `[vertex * rank + mode]`
+    pub(super) modes: &'t [DVec3],
+    pub(super) rank: usize,
+}
+
+/// The part of the frame of a hull that follows one mode: for each axis a row of G and the component of A, then the
+/// bounds of the residual.
+pub(super) type FrameRate = [Vec4; 4];
+
+/// The hull of a node. Its numbers are exact: what they do not describe is in the bounds.
+pub(super) struct NodeHull {
+    /// At rest, then for each mode.
+    pub(super) frame: Vec<FrameRate>,
+    pub(super) shape: HullShape,
+}
+
+/// The core points of a hull, and its bounds.
+pub(super) struct HullShape {
+    /// For each axis the coordinates of the core points, relative to the largest offset.
+    pub(super) core: [[f32; CORE_POINTS]; 3],
+    /// `eps`, in the units of the core points.
+    pub(super) distance: f32,
+    /// `g_j` and `rho` of the residuals.
+    pub(super) along: [f32; VECTORS],
+    pub(super) remainder: f32,
+}
+
+/// Vertices nearly in a plane do not determine the gradient across it: this share of the trace keeps that part small.
+const REGULARIZATION: f64 = 1e-4;
+
+/// Rounding of a residual, relative to the terms of the map.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+impl NodeHull {
+    /// Fits these vertices, at least one.
+    pub(super) fn fit(vertices: &Vertices<'_>, indices: &[u32], residuals: &mut Vec<DVec3>) -> Self {
+        let (rank, count) = (vertices.rank, indices.len() as f64);
+        let position = |i: &u32| vertices.positions[*i as usize];
+        let center = (indices.iter().map(position).sum::<DVec3>() / count).as_vec3().as_dvec3();
+        let most = indices.iter().map(|i| (position(i) - center).length()).fold(0.0, f64::max);
+        // A power of two is not needed: this number is the exact size of the identity's part of the frame.
+        let size = f64::from(((most * (1.0 + 1e-6)) as f32).next_up().max(f32::MIN_POSITIVE));
+        let offsets: Vec<DVec3> = indices.iter().map(|i| (position(i) - center) / size).collect();
+        let mean = offsets.iter().sum::<DVec3>() / count;
+        let mut moment = DMat3::ZERO;
+        for d in offsets.iter().map(|d| *d - mean) {
+            moment += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        }
+        let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+        let inverse = (moment + DMat3::from_diagonal(DVec3::splat(REGULARIZATION * trace))).inverse();
+        // For each mode the mean, and the columns of the gradient.
+        let mut fits = vec![[DVec3::ZERO; 4]; rank];
+        for (i, d) in indices.iter().zip(&offsets) {
+            let weight = inverse * (*d - mean);
+            let weight = if weight.is_finite() { weight } else { DVec3::ZERO };
+            let modes = &vertices.modes[*i as usize * rank..][..rank];
+            for ([a, x, y, z], u) in fits.iter_mut().zip(modes) {
+                *a += *u;
+                *x += *u * weight.x;
+                *y += *u * weight.y;
+                *z += *u * weight.z;
+            }
+        }
+        let of_axis = |x: DVec3, y: DVec3, z: DVec3, a: DVec3, i: usize| {
+            Vec4::new(x[i] as f32, y[i] as f32, z[i] as f32, a[i] as f32)
+        };
+        let rest = [DVec3::X * size, DVec3::Y * size, DVec3::Z * size];
+        let mut frame = Vec::with_capacity(rank + 1);
+        let rest = |i: usize| of_axis(rest[0], rest[1], rest[2], center, i);
+        frame.push([rest(0), rest(1), rest(2), Vec4::ZERO]);
+        for [a, x, y, z] in &fits {
+            let a = *a / count - (*x * mean.x + *y * mean.y + *z * mean.z);
+            let row = |i: usize| of_axis(*x, *y, *z, a, i);
+            frame.push([row(0), row(1), row(2), Vec4::ZERO]);
+        }
+        residuals.clear();
+        let mut error = vec![0.0_f64; rank];
+        for (i, d) in indices.iter().zip(&offsets) {
+            let d = d.extend(1.0);
+            let modes = &vertices.modes[*i as usize * rank..][..rank];
+            for ((u, rows), error) in modes.iter().zip(&frame[1..]).zip(&mut error) {
+                let rows: [_; 3] = std::array::from_fn(|axis| rows[axis].as_dvec4());
+                let map = DVec3::from_array(rows.map(|row| row.dot(d)));
+                let terms = rows.iter().map(|row| row.abs().element_sum()).fold(1.0, f64::max);
+                *error = error.max(ROUNDING * terms);
+                residuals.push(*u - map);
+            }
+        }
+        // A mode that moves nothing has no error.
+        for (error, rows) in error.iter_mut().zip(&frame[1..]) {
+            let is_still = rows[..3].iter().all(|row| *row == Vec4::ZERO);
+            if is_still {
+                *error = 0.0;
+            }
+        }
+        let Residuals { rates, along, remainder } = if rank > 0 {
+            Residuals::new(residuals, &error)
+        } else {
+            Residuals { rates: Vec::new(), along: [0.0; VECTORS], remainder: 0.0 }
+        };
+        frame[1..].iter_mut().zip(rates).for_each(|(rate, r)| rate[3] = Vec4::from_array(r));
+        let CorePoints { points, distance } = core_points::choose(&offsets);
+        let core = std::array::from_fn(|axis| points.map(|point| point[axis]));
+        let distance = right_or!(up(distance), HullCoreExact, 0.0);
+        Self { frame, shape: HullShape { core, distance, along, remainder } }
+    }
+}

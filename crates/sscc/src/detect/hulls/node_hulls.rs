@@ -1,0 +1,114 @@
+//! The hulls of all nodes of a hierarchy that are worth one.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
+use crate::ReducedModel;
+use crate::hierarchy::Hierarchy;
+
+/// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
+const MAX_TRIANGLES: u32 = 1024;
+
+/// The hulls of a model's nodes, and what places them in a query. No metric matters to them.
+pub(crate) struct NodeHulls {
+    pub(super) rank: usize,
+    /// For each node its hull; [`NONE`] for none.
+    indices: Vec<u32>,
+    frames: Vec<FrameRate>,
+    shapes: Vec<HullShape>,
+    /// The configuration about which offsets are measured.
+    pub(super) configuration: Vec<f64>,
+    /// An upper bound of the magnitude of every term of every position there.
+    pub(super) reach: f64,
+    /// The centre of the shape there, and its half size.
+    pub(super) center: DVec3,
+    pub(super) half: f64,
+    /// The largest displacement by each mode.
+    pub(super) sizes: Vec<f64>,
+    /// For the rest and each mode, how much of its factor may be in a coordinate of any core point of any hull.
+    pub(super) weights: Vec<f64>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl NodeHulls {
+    /// The hulls of buckets and of nodes somewhat larger, about a configuration; none where the shape leaves the range of
+    /// numbers.
+    pub(crate) fn new(model: &ReducedModel, hierarchy: &Hierarchy, configuration: &[f64]) -> Option<Self> {
+        let reach = model.check_coordinates(configuration).ok()?;
+        let (mesh, rank) = (model.mesh(), model.rank());
+        let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
+        let mut positions: Vec<DVec3> =
+            (0..mesh.rest_positions().len() as u32).map(|v| model.position(v, configuration)).collect();
+        let used = mesh.used_vertices().into_iter().map(|v| positions[v as usize]);
+        let (lower, upper) = used
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lower, upper), x| (lower.min(x), upper.max(x)));
+        let center = lower * 0.5 + upper * 0.5;
+        let half = (upper - center).max(center - lower).max_element();
+        if !(half.is_normal() && sizes.iter().all(|size| size.is_finite())) {
+            return None;
+        }
+        let mut modes = vec![DVec3::ZERO; positions.len() * rank];
+        for v in mesh.used_vertices() {
+            positions[v as usize] = (positions[v as usize] - center) / half;
+            let scaled =
+                modes[v as usize * rank..][..rank].iter_mut().zip(model.modes().of_vertex(v)).zip(&sizes);
+            scaled
+                .for_each(|((scaled, u), size)| *scaled = if *size > 0.0 { *u / *size } else { DVec3::ZERO });
+        }
+        let vertices = Vertices { positions: &positions, modes: &modes, rank };
+        let within = hierarchy.nodes_within_buckets();
+        let has_hull = |n: usize| !within[n] && hierarchy.nodes()[n].triangle_count <= MAX_TRIANGLES;
+        let wanted: Vec<usize> = (0..hierarchy.nodes().len()).filter(|n| has_hull(*n)).collect();
+        let fit = |residuals: &mut Vec<DVec3>, n: &usize| {
+            let of_node = hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces());
+            NodeHull::fit(&vertices, &of_node, residuals)
+        };
+        let hulls: Vec<NodeHull> = wanted.par_iter().map_init(Vec::new, fit).collect();
+        let mut indices = vec![NONE; hierarchy.nodes().len()];
+        wanted.iter().enumerate().for_each(|(i, n)| indices[*n] = i as u32);
+        let mut weights = vec![0.0_f64; rank + 1];
+        let (mut frames, mut shapes) = (Vec::new(), Vec::new());
+        for hull in hulls {
+            for (weight, rows) in weights.iter_mut().zip(&hull.frame) {
+                let of_row = rows[..3].iter().map(|row| f64::from(row.abs().element_sum()));
+                *weight = of_row.fold(*weight, f64::max);
+            }
+            frames.extend(hull.frame);
+            shapes.push(hull.shape);
+        }
+        weights.iter_mut().for_each(|weight| *weight *= 1.0 + 1e-6);
+        let configuration = configuration.to_vec();
+        Some(Self { rank, indices, frames, shapes, configuration, reach, center, half, sizes, weights })
+    }
+
+    /// The number of hulls.
+    pub(crate) fn count(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// All nodes that have a hull, and its index.
+    pub(super) fn all(&self) -> impl Iterator<Item = (u32, usize)> {
+        let nodes = self.indices.iter().zip(0..).filter(|(index, _)| **index != NONE);
+        nodes.map(|(index, node)| (node, *index as usize))
+    }
+
+    /// The hull of a node.
+    #[inline]
+    pub(super) fn index_of(&self, node: u32) -> Option<usize> {
+        let index = self.indices[node as usize];
+        (index != NONE).then_some(index as usize)
+    }
+
+    /// The frame of a hull: at rest, then for each mode.
+    #[inline]
+    pub(super) fn frame(&self, index: usize) -> &[FrameRate] {
+        &self.frames[index * (self.rank + 1)..][..self.rank + 1]
+    }
+
+    #[inline]
+    pub(super) fn shape(&self, index: usize) -> &HullShape {
+        &self.shapes[index]
+    }
+}

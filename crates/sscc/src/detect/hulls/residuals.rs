@@ -1,0 +1,121 @@
+//! A bound of how far any vertex of a node is from its affine map: `max_v |E_v f|` for the factors f of the modes.
+//!
+//! Two bounds hold, and the smaller one is used. With `e_k >= max_v |E_v,k|`, first, the sum `sum_k t_k` of
+//! `t_k = e_k |f_k|`. Second, `E_v = H_v diag(e)`, and for any stored vectors w_j and `h_vj` with remainder
+//! `L_v = H_v - sum_j h_vj w_j'`:
+//!
+//! ```text
+//! |E_v f| <= sum_j g_j |w_j . (e f)| + rho |t|,    g_j >= max_v |h_vj|,    rho >= max_v |L_v|
+//! ```
+//!
+//! Within a small part the residuals of all vertices are nearly multiples of a few vectors, so that three w_j leave a
+//! small rho. The remainder is that of the vectors as they are stored, so these need be neither orthogonal nor of
+//! length 1.
+
+use glam::DVec3;
+
+/// Vectors that the residuals are split into.
+pub(super) const VECTORS: usize = 3;
+
+/// Rounds of the search for the vectors.
+const ROUNDS: usize = 8;
+
+/// Rounding of residuals, vectors and remainders in double precision, relative to entries of at most 1.
+const ROUNDING: f64 = 1e-11;
+
+/// The bound of a node's residuals.
+pub(super) struct Residuals {
+    /// `e_k`, and `w_jk e_k`: for each mode.
+    pub(super) rates: Vec<[f32; 1 + VECTORS]>,
+    /// `g_j`
+    pub(super) along: [f32; VECTORS],
+    /// `rho`
+    pub(super) remainder: f32,
+}
+
+impl Residuals {
+    /// `residuals`: for each vertex the residual of each mode. `error`: for each mode an upper bound of the error of its residuals.
+    pub(super) fn new(residuals: &mut [DVec3], error: &[f64]) -> Self {
+        let rank = error.len();
+        let mut rates = vec![[0.0_f32; 1 + VECTORS]; rank];
+        for of_vertex in residuals.chunks_exact(rank) {
+            rates.iter_mut().zip(of_vertex).for_each(|(rate, e)| rate[0] = rate[0].max(e.length() as f32));
+        }
+        for (rate, error) in rates.iter_mut().zip(error) {
+            rate[0] = up(f64::from(rate[0]) + error);
+        }
+        // H_v, from here on.
+        for of_vertex in residuals.chunks_exact_mut(rank) {
+            for (h, rate) in of_vertex.iter_mut().zip(&rates) {
+                *h = if rate[0] > 0.0 { *h / f64::from(rate[0]) } else { DVec3::ZERO };
+            }
+        }
+        let mut along = [0.0; VECTORS];
+        let mut vector = vec![0.0; rank];
+        for j in 0..VECTORS.min(rank) {
+            principal_vector(residuals, &mut vector);
+            for (rate, w) in rates.iter_mut().zip(&mut vector) {
+                rate[1 + j] = (*w as f32) * rate[0];
+                // As it is stored.
+                *w = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };
+            }
+            let mut most = 0.0_f64;
+            for of_vertex in residuals.chunks_exact_mut(rank) {
+                let h = of_vertex.iter().zip(&vector).map(|(h, w)| *h * *w).sum::<DVec3>();
+                most = most.max(h.length());
+                of_vertex.iter_mut().zip(&vector).for_each(|(l, w)| *l -= h * *w);
+            }
+            along[j] = up(most);
+        }
+        let largest = residuals.chunks_exact(rank).map(spectral_bound).fold(0.0, f64::max);
+        // The error of the residuals is at most 1 in units of e_k; of the mode's own error, that is.
+        let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
+        let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
+        let remainder = right_or!(up(largest + error + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
+        Self { rates, along, remainder }
+    }
+}
+
+/// The unit vector over the modes along which the rows of all vertices are largest, approximately.
+fn principal_vector(rows: &[DVec3], vector: &mut [f64]) {
+    let rank = vector.len();
+    // The row that is largest.
+    let norm = |h: &[DVec3]| h.iter().map(|h| h.length_squared()).sum::<f64>();
+    let rows_of = || rows.chunks_exact(rank);
+    let first =
+        rows_of().map(norm).enumerate().fold((0, -1.0), |best, x| if x.1 > best.1 { x } else { best }).0;
+    let row = &rows[first * rank..][..rank];
+    let sum = row.iter().map(|h| *h * *h).sum::<DVec3>();
+    let axis = sum.max_position();
+    vector.iter_mut().zip(row).for_each(|(w, h)| *w = h[axis]);
+    normalize(vector);
+    let mut next = vec![0.0; rank];
+    for _ in 0..ROUNDS {
+        next.fill(0.0);
+        for of_vertex in rows_of() {
+            let h = of_vertex.iter().zip(&*vector).map(|(h, w)| *h * *w).sum::<DVec3>();
+            next.iter_mut().zip(of_vertex).for_each(|(next, row)| *next += row.dot(h));
+        }
+        vector.copy_from_slice(&next);
+        normalize(vector);
+    }
+}
+
+fn normalize(vector: &mut [f64]) {
+    let norm = vector.iter().map(|w| w * w).sum::<f64>().sqrt();
+    vector.iter_mut().for_each(|w| *w = if norm > 0.0 { *w / norm } else { 0.0 });
+}
+
+/// At least the largest singular value of the three rows: the root of the largest absolute row sum of their Gram matrix.
+fn spectral_bound(rows: &[DVec3]) -> f64 {
+    let mut gram = [DVec3::ZERO; 3];
+    for l in rows {
+        (0..3).for_each(|axis| gram[axis] += *l * l[axis]);
+    }
+    gram.map(|row| row.abs().element_sum()).into_iter().fold(0.0, f64::max).sqrt()
+}
+
+/// Rounds up to single precision.
+pub(super) fn up(x: f64) -> f32 {
+    if x > 0.0 { ((x * (1.0 + 1e-12)) as f32).next_up() } else { 0.0 }
+}

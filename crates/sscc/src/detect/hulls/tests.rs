@@ -1,0 +1,258 @@
+//! Attacks on hulls: every vertex of every node, at its computed position, is within the radius of the hull.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+
+use super::core_points::CORE_POINTS;
+use super::separation::are_separated;
+use super::{MovedHulls, NodeHulls};
+use crate::detect::ball_motion::{BallMotion, BallRates};
+use crate::detect::f32_frame::F32Frame;
+use crate::detect::layout::{Layout, Needs};
+use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
+use crate::filter::PairFilter;
+use crate::geometry::nearest_to_origin;
+use crate::hierarchy::Hierarchy;
+use crate::model::ScaledModel;
+use crate::test_models::Random;
+use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
+
+/// A model with all that its hulls need.
+struct Case {
+    model: ReducedModel,
+    hierarchy: Hierarchy,
+    layout: Layout,
+    hulls: NodeHulls,
+}
+
+impl Case {
+    fn new(model: ReducedModel, configuration: &[f64]) -> Self {
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+        let hulls = NodeHulls::new(&model, &hierarchy, configuration).unwrap();
+        Self { model, hierarchy, layout, hulls }
+    }
+
+    /// Checks that all vertices at each q are in the hulls of one motion. Returns the largest share of a radius that a distance
+    /// takes, and the smallest radius; none where the error bound is too large for hulls.
+    fn check<const E: usize>(
+        &self,
+        motion: &impl VertexMotion<E>,
+        ends: [&[f64]; E],
+        label: &str,
+    ) -> Option<(f64, f64)> {
+        let frame = F32Frame::around(motion.overall_aabb(&self.layout));
+        let mut moved = MovedHulls::<E>::new(&self.hulls);
+        moved.update_all(&self.hulls, &frame, motion);
+        if !moved.is_used() {
+            return None;
+        }
+        let (mut share, mut smallest) = (0.0_f64, f64::INFINITY);
+        for (node, index) in self.hulls.all() {
+            let hull = &moved.hulls[index];
+            let radius = f64::from(hull.radius);
+            smallest = smallest.min(radius);
+            let of_node = &self.hierarchy.nodes()[node as usize];
+            for v in self.hierarchy.vertices(of_node, self.model.mesh().faces()) {
+                for (end, q) in ends.iter().enumerate() {
+                    let x = frame.linear(self.model.position(v, q));
+                    let point = |i: usize| DVec3::from(hull.points[end].map(|axis| f64::from(axis[i])));
+                    let core: [DVec3; CORE_POINTS] = std::array::from_fn(|i| point(i) - x);
+                    let distance = nearest_to_origin(&core).point.length();
+                    assert!(distance <= radius, "{label}, node {node}: {distance} {radius}");
+                    share = share.max(distance / radius);
+                }
+            }
+        }
+        Some((share, smallest))
+    }
+
+    fn check_at(&self, q: &[f64], label: &str) -> Option<(f64, f64)> {
+        let Ok(reach) = self.model.check_coordinates(q) else { return None };
+        self.check(&DeformedMotion::new([q], reach), [q], label)
+    }
+}
+
+/// A rolled sheet of `2 (side - 1)^2` triangles. `modes`: the displacements of each vertex, from its place on the unit sheet
+/// and its position.
+fn sheet(side: u32, size: f64, mut modes: impl FnMut([f64; 2], DVec3) -> Vec<DVec3>) -> ReducedModel {
+    let (mut positions, mut rows, mut rank) = (Vec::new(), Vec::new(), 0);
+    for i in 0..side * side {
+        let [u, v] = [i % side, i / side].map(|i| f64::from(i) / f64::from(side - 1));
+        let angle = 1.5 * PI * u;
+        let x = DVec3::new(angle.cos(), angle.sin(), 2.0 * v) * size;
+        let of_vertex = modes([u, v], x);
+        rank = of_vertex.len();
+        rows.extend(of_vertex);
+        positions.push(x);
+    }
+    let face = |i: u32| {
+        let j = i + i / (side - 1);
+        [[j, j + 1, j + side], [j + 1, j + side + 1, j + side]]
+    };
+    let faces = (0..(side - 1) * (side - 1)).flat_map(face).collect();
+    ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
+}
+
+/// Smooth, affine, rigid, planar and noisy modes of any size.
+fn random_sheet(random: &mut Random, case: usize) -> ReducedModel {
+    let rank = [1, 2, 3, 7, 20][case % 5];
+    let size = [1.0, 1e-60, 1e40, 1.0][case / 5 % 4];
+    let ways: Vec<[DVec3; 4]> = (0..rank).map(|_| std::array::from_fn(|_| random.vector())).collect();
+    let mut noise = Random(case as u64 + 1);
+    sheet([4, 9, 14][case % 3], size, |[u, v], x| {
+        let x = x / size;
+        let mode = |(k, [a, b, c, d]): (usize, &[DVec3; 4])| {
+            let k_f64 = k as f64;
+            let shape = match k % 6 {
+                0 => *a * (3.0 * u + k_f64).sin() + *b * v * v,
+                1 => *a * x.dot(*b) + *c * x.dot(*d),
+                2 => *a,
+                3 => a.cross(x),
+                4 => DVec3::Z * (u - v) * u,
+                _ => *a * (4.0 * v).cos() * u + noise.vector() * 0.3,
+            };
+            // Modes of very different length.
+            shape * size * 10.0_f64.powi((k as i32 * 7) % 9 - 4)
+        };
+        ways.iter().enumerate().map(mode).collect()
+    })
+}
+
+#[test]
+fn vertices_are_within_the_radius_of_their_hull() {
+    let random = &mut Random(5);
+    let (mut checked, mut tight) = (0, 0);
+    for case in 0..60 {
+        let model = random_sheet(random, case);
+        let rank = model.rank();
+        let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
+        let size = model.mesh().rest_positions()[0].length();
+        // Each mode moves the shape by up to about so many times its size.
+        let mut q = |most: f64| -> Vec<f64> {
+            sizes.iter().map(|s| random.signed() * most * size / s.max(f64::MIN_POSITIVE)).collect()
+        };
+        let configuration = if case % 2 == 0 { vec![0.0; rank] } else { q(0.7) };
+        let case_of = Case::new(model, &configuration);
+        for i in 0..16 {
+            let mut at = q([1e-9, 0.02, 0.3, 2.0][i % 4]);
+            if i % 3 == 0 {
+                // One mode alone.
+                let only = i % rank;
+                at.iter_mut().enumerate().filter(|(k, _)| *k != only).for_each(|(_, x)| *x = 0.0);
+            }
+            at.iter_mut().zip(&configuration).for_each(|(x, c)| *x += c);
+            if let Some((share, _)) = case_of.check_at(&at, &format!("case {case}, {i}")) {
+                checked += 1;
+                tight += usize::from(share > 0.7);
+            }
+        }
+    }
+    assert!(checked > 700 && tight > 200, "{checked} {tight}");
+}
+
+/// With as many core points as vertices and affine modes nothing but rounding is left. Modes that cancel make it large.
+#[test]
+fn radii_cover_single_precision() {
+    let (mut farthest, mut checked) = (0.0_f64, 0);
+    for case in 0..40 {
+        let random = &mut Random(case + 1);
+        let [a, b, c, d] = std::array::from_fn(|_| random.vector());
+        // Two modes that are nearly opposite.
+        let model = sheet(4, 1.0, |_, x| vec![a + b * x.dot(c), -a - b * x.dot(c) + d * x.x * 1e-3]);
+        let case_of = Case::new(model, &[0.0; 2]);
+        for size in [1.0, 30.0, 500.0] {
+            let q = size * random.signed();
+            if let Some((share, _)) = case_of.check_at(&[q, q], "cancelling modes") {
+                (farthest, checked) = (farthest.max(share), checked + 1);
+            }
+        }
+    }
+    assert!(checked > 60 && farthest > 0.005, "{checked} {farthest}");
+}
+
+/// Far from the origin the computed shape itself is rounded.
+#[test]
+fn radii_cover_the_rounding_of_the_shape() {
+    let mut farthest = 0.0_f64;
+    for case in 0..20 {
+        let random = &mut Random(case + 1);
+        let far = DVec3::splat(1e11 * (1.0 + random.signed().abs()));
+        let model = sheet(4, 1.0, |_, x| vec![DVec3::ONE, x.cross(DVec3::Z)]);
+        let positions: Vec<DVec3> = model.mesh().rest_positions().iter().map(|x| *x + far).collect();
+        let mesh = TriMesh::new(positions, model.mesh().faces().to_vec()).unwrap();
+        let model = ReducedModel::new(mesh, model.modes().clone()).unwrap();
+        let case_of = Case::new(model, &[0.0; 2]);
+        for _ in 0..10 {
+            let q = [random.signed(), random.signed()];
+            let (share, _) = case_of.check_at(&q, "far from the origin").unwrap();
+            farthest = farthest.max(share);
+        }
+    }
+    assert!(farthest > 0.001, "{farthest}");
+}
+
+/// At both ends of a motion, and anywhere in a ball.
+#[test]
+fn motions_and_balls_are_covered() {
+    let (mut balls, mut farthest) = (0, 0.0_f64);
+    for case in 0..20 {
+        let random = &mut Random(case as u64 + 40);
+        let model = random_sheet(random, case);
+        let (rank, scope) = (model.rank(), Scope::of(&model));
+        let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
+        let size = model.mesh().rest_positions()[0].length();
+        let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
+        let case_of = Case::new(model, &vec![0.0; rank]);
+        let rates = BallRates::new(&scaled, &case_of.hierarchy, &case_of.layout);
+        let mut q = || -> Vec<f64> { sizes.iter().map(|s| random.signed() * 0.3 * size / s).collect() };
+        let (t0, t1) = (q(), q());
+        let ends = [&t0[..], &t1[..]];
+        let reach = ends.map(|q| case_of.model.check_coordinates(q).unwrap()).into_iter().fold(0.0, f64::max);
+        assert!(case_of.check(&DeformedMotion::new(ends, reach), ends, "two ends").is_some());
+        let radius = 0.1 * scope.metric.norm(&t0);
+        let motion = BallMotion::new(&rates, &t0, radius, 2.0 * reach);
+        for v in (0..case_of.model.mesh().rest_positions().len() as u32).step_by(7) {
+            let mut rows = vec![DVec3::ZERO; rank];
+            scope.metric.scaled_modes(case_of.model.modes().of_vertex(v), &mut rows);
+            let axis = v as usize % 3;
+            let length = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
+            let z: Vec<f64> = rows.iter().map(|a| a[axis] / length * radius * 0.999).collect();
+            let there: Vec<f64> = t0.iter().zip(scope.metric.unscaled(&z)).map(|(q, d)| q + d).collect();
+            if there.iter().all(|x| x.is_finite())
+                && let Some((share, _)) = case_of.check(&motion, [&there, &there], "in a ball")
+            {
+                (balls, farthest) = (balls + 1, farthest.max(share));
+            }
+        }
+    }
+    assert!(balls > 100 && farthest > 0.5, "{balls} {farthest}");
+}
+
+#[test]
+fn only_gaps_wider_than_the_radii_separate() {
+    let at = |z: f32| {
+        let mut points = [[0.0; CORE_POINTS]; 3];
+        (0..CORE_POINTS).for_each(|i| (points[0][i], points[1][i]) = (i as f32 * 0.1, (i % 3) as f32));
+        points[2] = [z; CORE_POINTS];
+        points
+    };
+    let (low, high, higher) = (at(0.0), at(1.0), at(1.5));
+    assert!(are_separated(&[low], &[high], 0.9, Vec3::Z));
+    assert!(!are_separated(&[low], &[high], 1.0, Vec3::Z));
+    assert!(!are_separated(&[high], &[low], 0.9, Vec3::Z));
+    assert!(!are_separated(&[low], &[high], 0.9, Vec3::X));
+    assert!(
+        !are_separated(&[low], &[high], 0.9, Vec3::ZERO) && !are_separated(&[low], &[high], 0.9, Vec3::NAN)
+    );
+    assert!(
+        !are_separated(&[low], &[high], f32::INFINITY, Vec3::Z)
+            && !are_separated(&[low], &[high], f32::NAN, Vec3::Z)
+    );
+    // At both configurations, in either order.
+    assert!(are_separated(&[low, low], &[high, higher], 0.9, Vec3::Z));
+    assert!(!are_separated(&[low, high], &[high, high], 0.9, Vec3::Z));
+    assert!(!are_separated(&[low, low], &[higher, low], 0.9, Vec3::Z));
+}

@@ -1,0 +1,138 @@
+//! Moving hulls for the pair tree: for each stored node pair a direction that separates its hulls at the centre.
+//!
+//! From it the search for a plane begins, turned as the nodes turn. Node pairs that nothing separates at the centre are
+//! opened without a test of hulls; that proves nothing, it only saves time.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::detect::f32_frame::F32Frame;
+use crate::detect::hulls::{MovedHulls, NodeHulls};
+use crate::detect::layout::Layout;
+use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
+use crate::hierarchy::{Hierarchy, NodePair};
+use crate::{PairTree, ReducedModel};
+
+/// The hulls of nodes, and a direction for each entry of the pair tree.
+pub(super) struct PairHulls {
+    pub(super) nodes: NodeHulls,
+    /// The components of the directions in units of 1 / [`WHOLE`]; all 0 for none.
+    directions: Vec<[i16; 3]>,
+}
+
+/// The component 1 of a direction.
+const WHOLE: f32 = 32767.0;
+
+impl PairHulls {
+    /// About the centre of the certificates; none where the pair tree is empty or the shape too large.
+    pub(super) fn new(
+        model: &ReducedModel,
+        hierarchy: &Hierarchy,
+        layout: &Layout,
+        tree: &PairTree,
+        center: &[f64],
+    ) -> Option<Self> {
+        if tree.is_empty() {
+            return None;
+        }
+        let reach = model.check_coordinates(center).ok()?;
+        let nodes = NodeHulls::new(model, hierarchy, center)?;
+        let motion = DeformedMotion::new([center], reach);
+        let mut moved = MovedHulls::<1>::new(&nodes);
+        moved.update_all(&nodes, &F32Frame::around(motion.overall_aabb(layout)), &motion);
+        let pairs = node_pairs(hierarchy, tree);
+        let quantized = |dir: Vec3| (dir * WHOLE).to_array().map(|x| x.round() as i16);
+        let direction = |pair: &NodePair| moved.separating_direction(&nodes, *pair).map_or([0; 3], quantized);
+        let directions = pairs.par_iter().map(direction).collect();
+        Some(Self { nodes, directions })
+    }
+
+    /// The direction of an entry, if it has one.
+    #[inline]
+    pub(super) fn direction(&self, entry: u32) -> Option<Vec3> {
+        let dir = self.directions[entry as usize];
+        (dir != [0; 3]).then(|| Vec3::from_array(dir.map(f32::from)))
+    }
+}
+
+/// The node pair of each entry, by its index.
+fn node_pairs(hierarchy: &Hierarchy, tree: &PairTree) -> Vec<NodePair> {
+    let mut pairs = vec![(0, 0); tree.len()];
+    let mut stack = Vec::new();
+    for (n, node) in hierarchy.nodes().iter().enumerate() {
+        let children: Vec<NodePair> = node.child_pairs().collect();
+        for stored in tree.of_node(n as u32) {
+            stack.push((stored.index, children[stored.entry.which() as usize]));
+        }
+    }
+    while let Some((index, (n, m))) = stack.pop() {
+        pairs[index as usize] = (n, m);
+        if let Some(split) = hierarchy.split_above_buckets(n, m) {
+            stack.extend(tree.below(index).map(|stored| (stored.index, split.pair(stored.entry.which()))));
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use crate::test_models::Random;
+    use crate::{
+        Certificates, CertifyOptions, KineticQuery, Method, Modes, Query, ReducedModel, Scope, TriMesh,
+    };
+
+    /// A coil of a flat band, whose turns swing against each other, and bend and widen.
+    fn coil(turns: u32, rank: usize) -> ReducedModel {
+        let around = 24 * turns;
+        let at = |i: u32, j: u32| {
+            let t = f64::from(i) / 24.0;
+            let (sin, cos) = (std::f64::consts::TAU * t).sin_cos();
+            (t / f64::from(turns), DVec3::new(cos, sin, 0.25 * t + 0.1 * f64::from(j)))
+        };
+        let (mut positions, mut rows) = (Vec::new(), Vec::new());
+        for (t, x) in (0..=around).flat_map(|i| (0..2).map(move |j| at(i, j))) {
+            positions.push(x);
+            rows.extend((0..rank).map(|k| {
+                let wave = ((k / 3 + 1) as f64 * 3.0 * t + k as f64).sin();
+                [DVec3::X, DVec3::Y, DVec3::Z][k % 3] * wave + x * if k == 3 { 0.2 } else { 0.0 }
+            }));
+        }
+        let faces = (0..2 * around).map(|i| [i, i + 1, i + 2]).collect();
+        ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
+    }
+
+    /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs, about
+    /// centres and in a metric that is not the default.
+    #[test]
+    fn hulls_change_no_answer() {
+        let (mut free, mut colliding, mut tests) = (0, 0, 0);
+        for case in 0..6 {
+            let random = &mut Random(case + 60);
+            let model = coil(8 + case as u32, 6);
+            let center = (case % 2 == 1).then(|| (0..6).map(|_| 0.02 * random.signed()).collect());
+            let options = CertifyOptions { center, ..CertifyOptions::default() };
+            let certificates = Certificates::compute(&model, &options, &()).unwrap();
+            let scope = Scope { ..certificates.parts().scope.clone() };
+            let mut query = Query::new(&model, &certificates).unwrap();
+            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+            let mut plain = Query::without_certificates(&model, scope, Method::BdTree).unwrap();
+            let dir: Vec<f64> = (0..6).map(|_| random.signed()).collect();
+            for i in 0..60 {
+                let size = 0.004 * f64::from(i) * certificates.parts().pair_tree.limit();
+                let at = |s: f64| -> Vec<f64> { dir.iter().map(|x| x * s).collect() };
+                let (t0, t1) = (at(size), at(size * 1.01));
+                let pairs = plain.discrete(&t0).unwrap().to_vec();
+                assert_eq!(query.discrete(&t0).unwrap(), pairs, "case {case}, {i}");
+                tests += query.discrete.certified.broad.counters.hull_tests;
+                assert_eq!(kinetic.discrete(&t0).unwrap(), pairs, "case {case}, {i}");
+                (free, colliding) =
+                    (free + i32::from(pairs.is_empty()), colliding + i32::from(!pairs.is_empty()));
+                let impacts = plain.continuous(&t0, &t1).unwrap().to_vec();
+                assert_eq!(query.continuous(&t0, &t1).unwrap(), impacts, "case {case}, {i}");
+            }
+        }
+        assert!(free > 30 && colliding > 30 && tests > 1000, "{free} {colliding} {tests}");
+    }
+}
