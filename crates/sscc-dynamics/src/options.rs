@@ -61,7 +61,7 @@ impl ContactOptions {
 pub struct SleepOptions {
     /// Time without motion after which bodies sleep (s); infinite: never.
     pub time: f64,
-    /// Distance within which all points of a body stay in this time (model unit). None: 1/200 of the body's radius.
+    /// Distance within which all points of a body stay in this time (model unit). None: 1/50 of the body's radius.
     pub distance: Option<f64>,
 }
 

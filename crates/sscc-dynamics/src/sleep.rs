@@ -4,7 +4,7 @@ use crate::step_buffers::StepBuffers;
 use crate::{DynamicsError, World};
 
 /// Distance, as a share of a body's radius, within which all of its points stay while it is at rest.
-const SLEEP_DISTANCE: f64 = 5e-3;
+const SLEEP_DISTANCE: f64 = 2e-2;
 
 impl World<'_> {
     /// Joins bodies in contact to islands.

@@ -60,7 +60,7 @@ pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
     StateLayout, StateLog, StepRecord, Summary, run,
 };
-pub use scenes::{BodySpec, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
+pub use scenes::{BodySpec, GENTLE, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
 pub use sweeps::{SweepRequest, SweepRow, default_ranges, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};

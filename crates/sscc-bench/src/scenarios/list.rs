@@ -1,6 +1,6 @@
 //! List of the scenarios by name.
 
-use sscc_sim::{SHIPPED, Scene, nearest};
+use sscc_sim::{GENTLE, SHIPPED, Scene, nearest};
 
 use super::models::ModelsScenario;
 use crate::error::Error;
@@ -69,7 +69,11 @@ fn all() -> impl Iterator<Item = (&'static str, Scenario)> {
     let single = |shipped: &'static (&'static str, &'static str)| {
         (shipped.0, Scenario::Scenes { scenes: std::slice::from_ref(shipped), table: None })
     };
-    SHIPPED.iter().map(single).chain(OTHERS.iter().map(|(name, scenario, _)| (*name, *scenario)))
+    SHIPPED
+        .iter()
+        .chain(&GENTLE)
+        .map(single)
+        .chain(OTHERS.iter().map(|(name, scenario, _)| (*name, *scenario)))
 }
 
 impl Scenario {
@@ -91,7 +95,7 @@ impl Scenario {
     /// When a scene cannot be parsed.
     pub fn list() -> Result<Vec<ListedScenario>, Error> {
         let mut list = Vec::new();
-        for (name, text) in SHIPPED {
+        for (name, text) in SHIPPED.into_iter().chain(GENTLE) {
             list.push(ListedScenario { name, about: Scene::parse(name.as_ref(), text)?.about });
         }
         list.extend(OTHERS.iter().map(|(name, _, about)| ListedScenario { name, about: (*about).into() }));

@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::error::SimError;
 use crate::nearest::nearest;
 
-/// Names and texts of the scenes that come with the program, similar to those of the paper's Table 1.
+/// Names and texts of the scenes of the paper's Table 1: the Earth's gravity, and materials that exist.
 pub const SHIPPED: [(&str, &str); 5] = [
     ("spring", include_str!("../../../../scenes/spring.toml")),
     ("bunny16", include_str!("../../../../scenes/bunny16.toml")),
@@ -15,17 +15,25 @@ pub const SHIPPED: [(&str, &str); 5] = [
     ("dragon-polynomial", include_str!("../../../../scenes/dragon-polynomial.toml")),
 ];
 
+/// Names and texts of scenes made for the method: so gentle that most steps are within the root's radius, in a metric
+/// measured in their own motion.
+pub const GENTLE: [(&str, &str); 2] = [
+    ("spring-gentle", include_str!("../../../../scenes/spring-gentle.toml")),
+    ("bunny16-gentle", include_str!("../../../../scenes/bunny16-gentle.toml")),
+];
+
 /// Reads a scene: a file, or a scene that comes with the program by its name.
 ///
 /// # Errors
 /// Those of [`Scene::read`]. If a name is neither, the error names the nearest one.
 pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
-    let shipped = path.to_str().and_then(|name| SHIPPED.iter().find(|(known, _)| *known == name));
+    let all = || SHIPPED.iter().chain(&GENTLE);
+    let shipped = path.to_str().and_then(|name| all().find(|(known, _)| *known == name));
     match shipped {
         Some((name, text)) if !path.is_file() => Scene::parse(Path::new(&format!("{name}.toml")), text),
         // A name without an extension may be a mistyped name of a scene that comes with the program.
         None if path.extension().is_none() && !path.exists() => {
-            let meant = nearest(&path.display().to_string(), SHIPPED.iter().map(|(name, _)| *name));
+            let meant = nearest(&path.display().to_string(), all().map(|(name, _)| *name));
             let cause = format!("not found; did you mean '{}'?", meant.unwrap_or_default());
             Err(SimError::refused(path.display(), cause))
         }
