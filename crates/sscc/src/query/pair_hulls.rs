@@ -103,8 +103,8 @@ mod tests {
         ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
     }
 
-    /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs, about
-    /// centres and in a metric that is not the default.
+    /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs,
+    /// about centres and in a metric that is not the default.
     #[test]
     fn hulls_change_no_answer() {
         let (mut free, mut colliding, mut tests) = (0, 0, 0);

@@ -38,8 +38,8 @@ pub struct Query<'a> {
 }
 
 impl<'a> Query<'a> {
-    /// A query that uses certificates. Fits the moving hulls of nodes first, which takes up to a fifth of the time that the
-    /// certificates took; clones share them.
+    /// A query that uses certificates. First it fits the moving hulls of nodes, in about a fifth of the time that the
+    /// certificates took. Clones share them.
     ///
     /// # Errors
     /// When the certificates were computed for another model.

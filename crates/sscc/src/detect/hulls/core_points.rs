@@ -7,8 +7,8 @@ use crate::geometry::nearest_to_origin;
 /// Core points of each hull. With 16 hulls are too loose; 64 hardly make them tighter.
 pub(super) const CORE_POINTS: usize = 32;
 
-/// Directions in which the first core points are extreme: the corners, edge midpoints and face centres of a cube, one of
-/// each two opposite ones.
+/// Directions in which the first core points are extreme: the corners, edge midpoints and face centres of a cube, one
+/// of each two opposite ones.
 const DIRECTIONS: [[f64; 3]; 13] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -102,7 +102,8 @@ mod tests {
     use super::*;
     use crate::test_models::Random;
 
-    /// Each point is within the bound of the hull, seen from many directions, and the bound is small for a smooth shape.
+    /// Each point is within the bound of the hull, seen from many directions, and the bound is small for a smooth
+    /// shape.
     #[test]
     fn all_points_are_near_the_hull() {
         let random = &mut Random(3);

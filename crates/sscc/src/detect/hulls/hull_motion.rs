@@ -19,8 +19,8 @@ pub(super) struct HullMotion<const E: usize> {
     pub(super) factors: Vec<[Vec4; E]>,
     /// The centre of the shape.
     pub(super) shift: [f32; 3],
-    /// An upper bound of the distance of a core point from where exact arithmetic would place it, and of a vertex from the
-    /// position of the shape. It also covers the evaluation of distances from a plane.
+    /// An upper bound of the distance of a core point from where exact arithmetic would place it, and of a vertex from
+    /// the position of the shape. It also covers the evaluation of distances from a plane.
     pub(super) error: f32,
     /// The relative error of sums over the modes.
     pub(super) relative: f32,
@@ -35,16 +35,17 @@ impl<const E: usize> Default for HullMotion<E> {
 }
 
 impl<const E: usize> HullMotion<E> {
-    /// Sets the factors at each q. `rounding` bounds the error of the shape's positions. False if the error bound is too large
-    /// for hulls to be of use.
+    /// Sets the factors at each q. `rounding` bounds the error of the shape's positions. False if the error bound is
+    /// too large for hulls to be of use.
     ///
-    /// Error bound. Let u = 2^-24, and T the sum of the magnitudes of all terms of a coordinate of any core point: the factors
-    /// times [`NodeHulls::weights`], and the shift.
+    /// Error bound. Let u = 2^-24, and T the sum of the magnitudes of all terms of a coordinate of any core point: the
+    /// factors times [`NodeHulls::weights`], and the shift.
     /// - Factors and their products add 2 u T, their sums (r + 1) u T, the shift u T.
-    /// - A core point is 3 products and 3 sums more: 6 u T at most. The same error of F times `eps`, which is at most 2.
+    /// - A core point is 3 products and 3 sums more: 6 u T at most. The same error of F times `eps`, which is at most
+    ///   2.
     /// - Its distance from a plane of unit normal adds 5 u T along each axis.
-    /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds, which are
-    ///   30 times larger: they cover `q - configuration` and the units of the hulls, too.
+    /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds,
+    ///   which are 30 times larger: they cover `q - configuration` and the units of the hulls, too.
     ///
     /// The last number of the error covers underflow: squares of residuals below 1e-19, and products.
     pub(super) fn begin(

@@ -79,8 +79,8 @@ impl<const E: usize> MovedHulls<E> {
         self.credit > 0
     }
 
-    /// Whether the hulls of two nodes prove that no triangle of one has a point in common with one of the other. `at_rest`: a
-    /// direction that separates them at the configuration of the hulls.
+    /// Whether the hulls of two nodes prove that no triangle of one has a point in common with one of the other.
+    /// `at_rest`: a direction that separates them at the configuration of the hulls.
     pub(crate) fn are_apart<M: VertexMotion<E>>(
         &mut self,
         hulls: &NodeHulls,
@@ -111,8 +111,8 @@ impl<const E: usize> MovedHulls<E> {
         }
     }
 
-    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where the
-    /// gap is narrow, or a node has no hull.
+    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where
+    /// the gap is narrow, or a node has no hull.
     pub(crate) fn separating_direction(&self, hulls: &NodeHulls, (n, m): (u32, u32)) -> Option<Vec3> {
         let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return None };
         let [a, b] = [i, j].map(|i| &self.hulls[i]);

@@ -33,8 +33,8 @@ pub(crate) struct NodeHulls {
 const NONE: u32 = u32::MAX;
 
 impl NodeHulls {
-    /// The hulls of buckets and of nodes somewhat larger, about a configuration; none where the shape leaves the range of
-    /// numbers.
+    /// The hulls of buckets and of nodes somewhat larger, about a configuration; none where the shape leaves the range
+    /// of numbers.
     pub(crate) fn new(model: &ReducedModel, hierarchy: &Hierarchy, configuration: &[f64]) -> Option<Self> {
         let reach = model.check_coordinates(configuration).ok()?;
         let (mesh, rank) = (model.mesh(), model.rank());

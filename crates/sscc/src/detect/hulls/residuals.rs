@@ -34,7 +34,8 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// `residuals`: for each vertex the residual of each mode. `error`: for each mode an upper bound of the error of its residuals.
+    /// `residuals`: for each vertex the residual of each mode. `error`: for each mode an upper bound of the error of
+    /// its residuals.
     pub(super) fn new(residuals: &mut [DVec3], error: &[f64]) -> Self {
         let rank = error.len();
         let mut rates = vec![[0.0_f32; 1 + VECTORS]; rank];
@@ -106,7 +107,8 @@ fn normalize(vector: &mut [f64]) {
     vector.iter_mut().for_each(|w| *w = if norm > 0.0 { *w / norm } else { 0.0 });
 }
 
-/// At least the largest singular value of the three rows: the root of the largest absolute row sum of their Gram matrix.
+/// At least the largest singular value of the three rows: the root of the largest absolute row sum of their Gram
+/// matrix.
 fn spectral_bound(rows: &[DVec3]) -> f64 {
     let mut gram = [DVec3::ZERO; 3];
     for l in rows {

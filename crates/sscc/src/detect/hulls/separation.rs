@@ -22,8 +22,8 @@ const ROUND_UP: f32 = 1.0 + 1e-5;
 const STEPS: usize = 32;
 const TOLERANCE: f32 = 1e-3;
 
-/// Whether a plane of this normal separates two sets of points by more than `distance`, the first one below. The points of
-/// a set are at one configuration or at two.
+/// Whether a plane of this normal separates two sets of points by more than `distance`, the first one below. The points
+/// of a set are at one configuration or at two.
 #[inline]
 pub(super) fn are_separated<const E: usize>(
     a: &[Points; E],

@@ -35,8 +35,8 @@ impl Case {
         Self { model, hierarchy, layout, hulls }
     }
 
-    /// Checks that all vertices at each q are in the hulls of one motion. Returns the largest share of a radius that a distance
-    /// takes, and the smallest radius; none where the error bound is too large for hulls.
+    /// Checks that all vertices at each q are in the hulls of one motion. Returns the largest share of a radius that a
+    /// distance takes, and the smallest radius; none where the error bound is too large for hulls.
     fn check<const E: usize>(
         &self,
         motion: &impl VertexMotion<E>,
@@ -75,8 +75,8 @@ impl Case {
     }
 }
 
-/// A rolled sheet of `2 (side - 1)^2` triangles. `modes`: the displacements of each vertex, from its place on the unit sheet
-/// and its position.
+/// A rolled sheet of `2 (side - 1)^2` triangles. `modes`: the displacements of each vertex, from its place on the unit
+/// sheet and its position.
 fn sheet(side: u32, size: f64, mut modes: impl FnMut([f64; 2], DVec3) -> Vec<DVec3>) -> ReducedModel {
     let (mut positions, mut rows, mut rank) = (Vec::new(), Vec::new(), 0);
     for i in 0..side * side {
