@@ -34,6 +34,12 @@ def large() -> sscc.Model:
 
 
 @pytest.fixture(scope="module")
+def medium() -> sscc.Model:
+    """A torus of 12,800 triangles: certificates take seconds."""
+    return sscc.Model(*torus(112, 57, 12))
+
+
+@pytest.fixture(scope="module")
 def one_point() -> sscc.Certificates:
     """Certificates of a torus that is one point at q = 1: each pair of triangles collides, so queries take minutes."""
     vertices, faces, _ = torus(90, 45, 1)
@@ -121,7 +127,7 @@ def test_progress_ascends_to_one(model: sscc.Model) -> None:
     assert len(certs.hierarchy) > 1
 
 
-def test_progress_is_reported_during_the_work(large: sscc.Model) -> None:
+def test_progress_is_reported_during_the_work(medium: sscc.Model) -> None:
     class Enough(Exception):
         pass
 
@@ -133,7 +139,7 @@ def test_progress_is_reported_during_the_work(large: sscc.Model) -> None:
             raise Enough("three are enough")
 
     with pytest.raises(Enough, match="three are enough"):
-        large.certify(progress=report)
+        medium.certify(progress=report)
     assert 0 < reports[0][0] < reports[-1][0] < 1
     assert len(reports) == 3 and {thread for _, thread in reports} == {threading.current_thread()}
 
@@ -162,7 +168,7 @@ def test_interrupted_work_leaves_no_file(tmp_path: Path, large: sscc.Model) -> N
     assert list(tmp_path.iterdir()) == []
 
 
-def test_progress_functions_stop_work_on_other_threads(large: sscc.Model) -> None:
+def test_progress_functions_stop_work_on_other_threads(medium: sscc.Model) -> None:
     stop = threading.Event()
     raised: list[BaseException] = []
 
@@ -172,7 +178,7 @@ def test_progress_functions_stop_work_on_other_threads(large: sscc.Model) -> Non
 
     def work() -> None:
         try:
-            large.certify(progress=report)
+            medium.certify(progress=report)
         except InterruptedError as error:
             raised.append(error)
 

@@ -21,7 +21,7 @@ def resident() -> int:
 
 
 @pytest.mark.skipif(not STATM.exists(), reason="only Linux has /proc/self/statm")
-def test_a_thousand_cycles_leave_memory_flat() -> None:
+def test_hundreds_of_cycles_leave_memory_flat() -> None:
     vertices, faces, modes = torus(5, 4, 2)
     qs = samples(4, 2, 0.4)
 
@@ -40,11 +40,11 @@ def test_a_thousand_cycles_leave_memory_flat() -> None:
             certs.check([0.0])
         assert len(certs.hierarchy.order) == 40
 
-    for _ in range(100):
+    for _ in range(50):
         cycle()
     before = resident()
-    for _ in range(1000):
+    for _ in range(400):
         cycle()
     grown = resident() - before
-    # A leak of 8 kB in each cycle fails.
-    assert grown < 8 << 20, f"{grown / 2**20:.1f} MB more after 1,000 cycles"
+    # A leak of 11 kB in each cycle fails.
+    assert grown < 4 << 20, f"{grown / 2**20:.1f} MB more after 400 cycles"

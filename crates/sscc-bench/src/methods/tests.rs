@@ -43,7 +43,7 @@ fn spring(random: &mut Random) -> ReducedModel {
 fn listed_pairs_collide_and_few_are_missed() {
     let random = &mut Random(5);
     let (mut listed, mut missed) = (0, 0);
-    for _ in 0..4 {
+    for _ in 0..2 {
         let model = spring(random);
         let certificates = certify(&model);
         let mut cones = Query::with_approximate_cones(&model, &certificates).unwrap();
@@ -58,7 +58,7 @@ fn listed_pairs_collide_and_few_are_missed() {
             missed += expected.len() - pairs.len();
         }
     }
-    assert!(listed > 1000 && missed < listed / 4, "{listed} {missed}");
+    assert!(listed > 500 && missed < listed / 4, "{listed} {missed}");
 }
 
 /// All normals of a ramp point up, also where one turn passes through the other.

@@ -48,7 +48,7 @@ pub fn measure_scene(
     let mut model = model.certified.with_paper(setup.cache, setup.watch)?;
     if setup.is_quick {
         model.note =
-            Some("--quick: a spring of 4,000 triangles replaces the model, for half a second".into());
+            Some("--quick: a spring of 4,000 triangles replaces the model, for a fifth of a second".into());
     }
     let strata = strata(&model, &history);
     let numbers = blocks(&strata, steps);

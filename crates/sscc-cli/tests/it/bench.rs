@@ -69,7 +69,7 @@ fn check(report: &Value, more: &str) {
 
 /// Checks the scenario `kinetic`, with the model in the cache of this folder.
 fn check_kinetic(folder: &Path) {
-    let run = bench(folder, &["kinetic", "--quick", "--steps", "90", "--json"]);
+    let run = bench(folder, &["kinetic", "--quick", "--steps", "40", "--json"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let reports = run.json();
     assert_eq!(reports.len(), 4);
@@ -77,8 +77,8 @@ fn check_kinetic(folder: &Path) {
         let known = "scenario, source, note, frequency, share, triangles, rank, step, steps, colliding_steps, \
             compared_steps, mismatches, kinetic_us_colliding, microseconds, machine";
         assert_eq!(keys(report), sorted(known));
-        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(90), &json!(0)));
-        assert!(report["colliding_steps"].as_u64().unwrap() < 90 && report["step"].as_f64().unwrap() > 0.0);
+        assert_eq!((&report["steps"], &report["mismatches"]), (&json!(40), &json!(0)));
+        assert!(report["colliding_steps"].as_u64().unwrap() < 40 && report["step"].as_f64().unwrap() > 0.0);
         let times = &report["microseconds"];
         assert_eq!(keys(times), sorted("kinetic, full, traditional, bdtree, normal_cones, parry"));
         assert!(times.as_object().unwrap().values().all(|time| time.as_f64().unwrap() > 0.0), "{report}");
