@@ -33,7 +33,7 @@ pub use intersection::{
     Feature, Intersection, IntersectionPoint, Penetration, intersection_triangle_triangle,
     penetration_triangle_triangle,
 };
-pub(crate) use nearest_point::nearest_to_origin;
+pub(crate) use nearest_point::{nearest_to_origin, nearest_within};
 pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_triangle::intersect_triangle_triangle;
 pub(crate) use two_triangles::TwoTriangles;

@@ -14,15 +14,23 @@ pub(crate) struct Nearest<const N: usize> {
 
 /// Minimises `|sum w_i d_i|` over convex weights w.
 pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
+    nearest_within(d, 0.0)
+}
+
+/// The same, but any point of the hull will do whose norm is at most `enough`.
+pub(crate) fn nearest_within<const N: usize>(d: &[DVec3; N], enough: f64) -> Nearest<N> {
     let start = index_of_smallest(&d.map(|d| d.length_squared()));
     let mut corners = [start, 0, 0, 0];
     let mut weights = [1.0, 0.0, 0.0, 0.0];
     let mut count = 1;
     let mut point = d[start];
     for _ in 0..3 * N {
+        let norm = point.length_squared();
+        if norm < enough * enough {
+            break;
+        }
         let along = d.map(|d| d.dot(point));
         let entering = index_of_smallest(&along);
-        let norm = point.length_squared();
         let done = norm - along[entering] <= 1e-10 * norm;
         if done || count == 4 || corners[..count].contains(&entering) {
             break;

@@ -36,11 +36,11 @@ impl PairHulls {
             return None;
         }
         let reach = model.check_coordinates(center).ok()?;
-        let nodes = NodeHulls::new(model, hierarchy, center)?;
+        let pairs = node_pairs(hierarchy, tree);
+        let nodes = NodeHulls::new(model, hierarchy, &pairs, center)?;
         let motion = DeformedMotion::new([center], reach);
         let mut moved = MovedHulls::<1>::new(&nodes);
         moved.update_all(&nodes, &F32Frame::around(motion.overall_aabb(layout)), &motion);
-        let pairs = node_pairs(hierarchy, tree);
         let quantized = |dir: Vec3| (dir * WHOLE).to_array().map(|x| x.round() as i16);
         let direction = |pair: &NodePair| moved.separating_direction(&nodes, *pair).map_or([0; 3], quantized);
         let directions = pairs.par_iter().map(direction).collect();

@@ -38,7 +38,7 @@ pub struct Query<'a> {
 }
 
 impl<'a> Query<'a> {
-    /// A query that uses certificates. First it fits the moving hulls of nodes, in about a fifth of the time that the
+    /// A query that uses certificates. First it fits the moving hulls of nodes, in less than a fifth of the time that the
     /// certificates took. Clones share them.
     ///
     /// # Errors

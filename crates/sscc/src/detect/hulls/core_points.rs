@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::nearest_to_origin;
+use crate::geometry::nearest_within;
 
 /// Core points of each hull. With 16 hulls are too loose; 64 hardly make them tighter.
 pub(super) const CORE_POINTS: usize = 32;
@@ -27,6 +27,9 @@ const DIRECTIONS: [[f64; 3]; 13] = [
 
 /// Points are added until all points are this close to the hull, as a share of the largest norm.
 const TOLERANCE: f64 = 0.01;
+
+/// A distance that needs not be known more exactly.
+const CLOSE: f64 = TOLERANCE / 2.0;
 
 /// Rounding of a distance, as a share of the largest norm.
 const ROUNDING: f64 = 1e-12;
@@ -92,7 +95,7 @@ fn hull_of(points: &[DVec3], chosen: &[usize]) -> [DVec3; CORE_POINTS] {
 
 /// An upper bound, up to [`ROUNDING`], of the distance of a point from a hull: that from one point of the hull.
 fn distance_bound(point: DVec3, hull: &[DVec3; CORE_POINTS]) -> f64 {
-    let nearest = nearest_to_origin(&hull.map(|d| d - point));
+    let nearest = nearest_within(&hull.map(|d| d - point), CLOSE);
     let weights = nearest.weights.iter().zip(hull);
     weights.map(|(weight, d)| (*d - point) * *weight).sum::<DVec3>().length()
 }

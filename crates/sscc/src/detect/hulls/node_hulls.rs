@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
 use crate::ReducedModel;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 
 /// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
 const MAX_TRIANGLES: u32 = 1024;
@@ -33,9 +33,14 @@ pub(crate) struct NodeHulls {
 const NONE: u32 = u32::MAX;
 
 impl NodeHulls {
-    /// The hulls of buckets and of nodes somewhat larger, about a configuration; none where the shape leaves the range
-    /// of numbers.
-    pub(crate) fn new(model: &ReducedModel, hierarchy: &Hierarchy, configuration: &[f64]) -> Option<Self> {
+    /// The hulls of all nodes in these pairs that are small enough for one, about a configuration; none where the shape
+    /// leaves the range of numbers.
+    pub(crate) fn new(
+        model: &ReducedModel,
+        hierarchy: &Hierarchy,
+        pairs: &[NodePair],
+        configuration: &[f64],
+    ) -> Option<Self> {
         let reach = model.check_coordinates(configuration).ok()?;
         let (mesh, rank) = (model.mesh(), model.rank());
         let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
@@ -58,9 +63,12 @@ impl NodeHulls {
                 .for_each(|((scaled, u), size)| *scaled = if *size > 0.0 { *u / *size } else { DVec3::ZERO });
         }
         let vertices = Vertices { positions: &positions, modes: &modes, rank };
-        let within = hierarchy.nodes_within_buckets();
-        let has_hull = |n: usize| !within[n] && hierarchy.nodes()[n].triangle_count <= MAX_TRIANGLES;
-        let wanted: Vec<usize> = (0..hierarchy.nodes().len()).filter(|n| has_hull(*n)).collect();
+        let is_small = |n: u32| hierarchy.nodes()[n as usize].triangle_count <= MAX_TRIANGLES;
+        let mut is_wanted = vec![false; hierarchy.nodes().len()];
+        for &(n, m) in pairs.iter().filter(|(n, m)| is_small(*n) && is_small(*m)) {
+            [n, m].iter().for_each(|n| is_wanted[*n as usize] = true);
+        }
+        let wanted: Vec<usize> = (0..is_wanted.len()).filter(|n| is_wanted[*n]).collect();
         let fit = |residuals: &mut Vec<DVec3>, n: &usize| {
             let of_node = hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces());
             NodeHull::fit(&vertices, &of_node, residuals)

@@ -18,7 +18,7 @@ use glam::DVec3;
 pub(super) const VECTORS: usize = 3;
 
 /// Rounds of the search for the vectors.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 3;
 
 /// Rounding of residuals, vectors and remainders in double precision, relative to entries of at most 1.
 const ROUNDING: f64 = 1e-11;

@@ -13,7 +13,7 @@ use crate::detect::layout::{Layout, Needs};
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::filter::PairFilter;
 use crate::geometry::nearest_to_origin;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::ScaledModel;
 use crate::test_models::Random;
 use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
@@ -31,7 +31,10 @@ impl Case {
         let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
         let filter = PairFilter::new(&model, &ContactFilter::default());
         let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
-        let hulls = NodeHulls::new(&model, &hierarchy, configuration).unwrap();
+        let within = hierarchy.nodes_within_buckets();
+        let nodes = (0..within.len() as u32).filter(|n| !within[*n as usize]);
+        let all: Vec<NodePair> = nodes.map(|n| (n, n)).collect();
+        let hulls = NodeHulls::new(&model, &hierarchy, &all, configuration).unwrap();
         Self { model, hierarchy, layout, hulls }
     }
 
