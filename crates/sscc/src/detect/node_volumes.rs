@@ -95,14 +95,15 @@ impl<const E: usize> NodeVolumes<E> {
             frame.error_bound(rounding)
         };
         if !self.is_lazy {
-            self.refit(&layout, hierarchy, motion);
+            self.refit(hierarchy, motion);
         }
     }
 
     /// Computes all AABBs from all vertices, bottom-up.
-    fn refit<M: VertexMotion<E>>(&mut self, layout: &Layout, hierarchy: &Hierarchy, motion: &M) {
+    pub(crate) fn refit<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
+        let layout = Arc::clone(&self.layout);
         if !self.is_coarse {
-            self.positions.move_all(layout, motion);
+            self.positions.move_all(&layout, motion);
         }
         for bucket in 0..layout.buckets.count() as u32 {
             self.refit_bucket(bucket, motion);

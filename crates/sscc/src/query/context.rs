@@ -21,6 +21,8 @@ pub(super) struct QueryContext<'a> {
     pub(super) method: Method,
     /// Hulls for the pair tree, if the method uses it.
     pub(super) hulls: Option<Arc<PairHulls>>,
+    /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
+    pub(super) refit_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
     /// no exceptions. 0 elsewhere.
     proven_radius: f64,
@@ -43,7 +45,12 @@ impl<'a> QueryContext<'a> {
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
-        Self { model, detect, certificates, scope, method, hulls, proven_radius }
+        let refit_norm = used.map_or(f64::INFINITY, |used| {
+            let buckets = &detect.layout.buckets;
+            let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
+            refit_norm((0..buckets.count() as u32).map(radius).collect())
+        });
+        Self { model, detect, certificates, scope, method, hulls, refit_norm, proven_radius }
     }
 
     /// The normal cones of the method, if it uses any.
@@ -86,4 +93,15 @@ impl<'a> QueryContext<'a> {
             parts.is_some_and(|parts| norm <= parts.node_radii[0])
         )
     }
+}
+
+/// A search that opens this share of all buckets is faster if it refits all AABBs first
+/// (docs/notes/2026-11-25-refit-beyond-the-limit.md).
+const REFIT_SHARE: f64 = 0.7;
+
+/// The `|z|` at which [`REFIT_SHARE`] of these radii of buckets are reached.
+fn refit_norm(mut radii: Vec<f64>) -> f64 {
+    radii.sort_unstable_by(f64::total_cmp);
+    let rank = (REFIT_SHARE * radii.len() as f64) as usize;
+    radii.get(rank).copied().unwrap_or(f64::INFINITY)
 }

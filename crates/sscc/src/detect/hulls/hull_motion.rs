@@ -41,9 +41,9 @@ impl<const E: usize> HullMotion<E> {
     /// Error bound. Let u = 2^-24, and T the sum of the magnitudes of all terms of a coordinate of any core point: the
     /// factors times [`NodeHulls::weights`], and the shift.
     /// - Factors and their products add 2 u T, their sums (r + 1) u T, the shift u T.
-    /// - A core point is 3 products and 3 sums more: 6 u T at most. The same error of F times `eps`, which is at most
-    ///   2.
-    /// - Its distance from a plane of unit normal adds 5 u T along each axis.
+    /// - The coordinate of a core point along a unit normal is `D . (F' n) + c . n`: two products of 3 terms each one
+    ///   after the other, and a sum. That adds 7 u T along each axis. The error of F times `eps`, which is at most 2,
+    ///   adds as much.
     /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds,
     ///   which are 30 times larger: they cover `q - configuration` and the units of the hulls, too.
     ///

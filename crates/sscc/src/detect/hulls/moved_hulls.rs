@@ -2,10 +2,9 @@
 
 use glam::{Mat3, Vec3, Vec4};
 
-use super::core_points::CORE_POINTS;
 use super::hull_motion::HullMotion;
 use super::node_hulls::NodeHulls;
-use super::separation::{Points, are_separated, widest_gap};
+use super::separation::{AffineMap, MovedPoints, are_separated, widest_gap};
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::vertex_motion::VertexMotion;
 
@@ -32,7 +31,8 @@ pub(crate) struct MovedHulls<const E: usize> {
 
 #[derive(Clone)]
 pub(super) struct MovedHull<const E: usize> {
-    pub(super) points: [Points; E],
+    /// Moves the core points.
+    maps: [AffineMap; E],
     pub(super) radius: f32,
     /// Turns a direction at rest into one at the first configuration.
     cofactors: Mat3,
@@ -40,7 +40,7 @@ pub(super) struct MovedHull<const E: usize> {
 
 impl<const E: usize> MovedHulls<E> {
     pub(crate) fn new(hulls: &NodeHulls) -> Self {
-        let empty = MovedHull { points: [[[0.0; CORE_POINTS]; 3]; E], radius: 0.0, cofactors: Mat3::ZERO };
+        let empty = MovedHull { maps: [[Vec4::ZERO; 3]; E], radius: 0.0, cofactors: Mat3::ZERO };
         Self {
             motion: HullMotion::default(),
             has_begun: false,
@@ -97,7 +97,8 @@ impl<const E: usize> MovedHulls<E> {
         self.update(hulls, j, m, motion);
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
-        let is_apart = are_separated(&a.points, &b.points, a.radius + b.radius, normal);
+        let [x, y] = [i, j].map(|i| self.points(hulls, i));
+        let is_apart = are_separated(&x, &y, a.radius + b.radius, normal);
         self.credit += if is_apart { GAIN } else { -LOSS };
         is_apart
     }
@@ -111,13 +112,10 @@ impl<const E: usize> MovedHulls<E> {
         }
     }
 
-    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where
-    /// the gap is narrow, or a node has no hull.
-    pub(crate) fn separating_direction(&self, hulls: &NodeHulls, (n, m): (u32, u32)) -> Option<Vec3> {
-        let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return None };
-        let [a, b] = [i, j].map(|i| &self.hulls[i]);
-        let (normal, gap) = widest_gap(&a.points[0], &b.points[0])?;
-        (gap > MIN_GAP * (a.radius + b.radius)).then_some(normal)
+    /// The core points of a current hull, with the maps that move them.
+    #[inline]
+    pub(super) fn points<'t>(&'t self, hulls: &'t NodeHulls, index: usize) -> MovedPoints<'t, E> {
+        MovedPoints { points: &hulls.shape(index).core, maps: &self.hulls[index].maps }
     }
 
     /// Moves a hull, unless it is current.
@@ -149,14 +147,7 @@ impl<const E: usize> MovedHulls<E> {
                 Vec3::from_array(rows[end].map(|row| row.y)),
                 Vec3::from_array(rows[end].map(|row| row.z)),
             );
-            for axis in 0..3 {
-                let row = rows[end][axis] + Vec4::W * shift[axis];
-                let [x, y, z] = &shape.core;
-                let out = &mut hull.points[end][axis];
-                for i in 0..CORE_POINTS {
-                    out[i] = x[i] * row.x + y[i] * row.y + z[i] * row.z + row.w;
-                }
-            }
+            (0..3).for_each(|axis| hull.maps[end][axis] = rows[end][axis] + Vec4::W * shift[axis]);
             let sum = sums[end].x * (1.0 + relative);
             let along =
                 (0..3).map(|j| shape.along[j] * (sums[end][j + 1].abs() + relative * sum)).sum::<f32>();
@@ -175,6 +166,18 @@ impl<const E: usize> MovedHulls<E> {
         let slack = motion.coarse_slack(node).map_or(0.0, |slack| self.motion.distance(slack));
         hull.radius += error + right_or!(slack, HullBallNotWidened, 0.0);
         hull.radius *= 1.0 + 1e-6;
+    }
+}
+
+impl MovedHulls<1> {
+    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where
+    /// the gap is narrow, or a node has no hull.
+    pub(crate) fn separating_direction(&self, hulls: &NodeHulls, (n, m): (u32, u32)) -> Option<Vec3> {
+        let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return None };
+        let [a, b] = [i, j].map(|i| &self.hulls[i]);
+        let [x, y] = [i, j].map(|i| self.points(hulls, i));
+        let (normal, gap) = widest_gap(&x, &y)?;
+        (gap > MIN_GAP * (a.radius + b.radius)).then_some(normal)
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use super::separation::are_separated;
+use super::separation::{AffineMap, MovedPoints, Points, are_separated};
 use super::{MovedHulls, NodeHulls};
 use crate::detect::ball_motion::{BallMotion, BallRates};
 use crate::detect::f32_frame::F32Frame;
@@ -54,15 +54,16 @@ impl Case {
         }
         let (mut share, mut smallest) = (0.0_f64, f64::INFINITY);
         for (node, index) in self.hulls.all() {
-            let hull = &moved.hulls[index];
-            let radius = f64::from(hull.radius);
+            let points = moved.points(&self.hulls, index);
+            let radius = f64::from(moved.hulls[index].radius);
             smallest = smallest.min(radius);
             let of_node = &self.hierarchy.nodes()[node as usize];
             for v in self.hierarchy.vertices(of_node, self.model.mesh().faces()) {
                 for (end, q) in ends.iter().enumerate() {
                     let x = frame.linear(self.model.position(v, q));
-                    let point = |i: usize| DVec3::from(hull.points[end].map(|axis| f64::from(axis[i])));
-                    let core: [DVec3; CORE_POINTS] = std::array::from_fn(|i| point(i) - x);
+                    let maps = &[points.maps[end]];
+                    let at_end = MovedPoints { points: points.points, maps };
+                    let core: [DVec3; CORE_POINTS] = std::array::from_fn(|i| at_end.point(i).as_dvec3() - x);
                     let distance = nearest_to_origin(&core).point.length();
                     assert!(distance <= radius, "{label}, node {node}: {distance} {radius}");
                     share = share.max(distance / radius);
@@ -234,28 +235,56 @@ fn motions_and_balls_are_covered() {
     assert!(balls > 100 && farthest > 0.5, "{balls} {farthest}");
 }
 
+/// Coordinates along a direction are those of the moved points, within their error bound.
+#[test]
+fn extents_are_those_of_the_moved_points() {
+    let random = &mut Random(9);
+    let mut number = || random.signed() as f32;
+    for _ in 0..500 {
+        let points = std::array::from_fn(|_| std::array::from_fn(|_| number()));
+        let maps =
+            std::array::from_fn(|_| [(); 3].map(|()| Vec4::from_array(std::array::from_fn(|_| number()))));
+        let dir = Vec3::from_array(std::array::from_fn(|_| number())).normalize();
+        let moved = MovedPoints::<2> { points: &points, maps: &maps };
+        let along = |map: &AffineMap, i: usize| {
+            let point = DVec3::from_array([0, 1, 2].map(|axis| f64::from(points[axis][i]))).extend(1.0);
+            DVec3::from_array(map.map(|row| row.as_dvec4().dot(point))).dot(dir.as_dvec3())
+        };
+        let of_map = |map: &AffineMap| (0..CORE_POINTS).map(|i| along(map, i)).fold(f64::MIN, f64::max);
+        let most = maps.iter().map(of_map).fold(f64::MIN, f64::max);
+        // All terms of a coordinate are below 4 together.
+        let error = 7.0 * 4.0 * 1.7321 * f64::from(f32::EPSILON) / 2.0;
+        assert!((f64::from(moved.extent(dir)) - most).abs() <= error);
+    }
+}
+
 #[test]
 fn only_gaps_wider_than_the_radii_separate() {
-    let at = |z: f32| {
-        let mut points = [[0.0; CORE_POINTS]; 3];
-        (0..CORE_POINTS).for_each(|i| (points[0][i], points[1][i]) = (i as f32 * 0.1, (i % 3) as f32));
-        points[2] = [z; CORE_POINTS];
-        points
-    };
+    let mut points = [[0.0; CORE_POINTS]; 3];
+    (0..CORE_POINTS).for_each(|i| (points[0][i], points[1][i]) = (i as f32 * 0.1, (i % 3) as f32));
+    let at = |z: f32| [Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 1.0, z)];
     let (low, high, higher) = (at(0.0), at(1.0), at(1.5));
-    assert!(are_separated(&[low], &[high], 0.9, Vec3::Z));
-    assert!(!are_separated(&[low], &[high], 1.0, Vec3::Z));
-    assert!(!are_separated(&[high], &[low], 0.9, Vec3::Z));
-    assert!(!are_separated(&[low], &[high], 0.9, Vec3::X));
+    fn test<const E: usize>(
+        points: &Points,
+        a: [AffineMap; E],
+        b: [AffineMap; E],
+        distance: f32,
+        normal: Vec3,
+    ) -> bool {
+        let [a, b] = [&a, &b].map(|maps| MovedPoints { points, maps });
+        are_separated(&a, &b, distance, normal)
+    }
+    assert!(test(&points, [low], [high], 0.9, Vec3::Z));
+    assert!(!test(&points, [low], [high], 1.0, Vec3::Z));
+    assert!(!test(&points, [high], [low], 0.9, Vec3::Z));
+    assert!(!test(&points, [low], [high], 0.9, Vec3::X));
+    assert!(!test(&points, [low], [high], 0.9, Vec3::ZERO) && !test(&points, [low], [high], 0.9, Vec3::NAN));
     assert!(
-        !are_separated(&[low], &[high], 0.9, Vec3::ZERO) && !are_separated(&[low], &[high], 0.9, Vec3::NAN)
-    );
-    assert!(
-        !are_separated(&[low], &[high], f32::INFINITY, Vec3::Z)
-            && !are_separated(&[low], &[high], f32::NAN, Vec3::Z)
+        !test(&points, [low], [high], f32::INFINITY, Vec3::Z)
+            && !test(&points, [low], [high], f32::NAN, Vec3::Z)
     );
     // At both configurations, in either order.
-    assert!(are_separated(&[low, low], &[high, higher], 0.9, Vec3::Z));
-    assert!(!are_separated(&[low, high], &[high, high], 0.9, Vec3::Z));
-    assert!(!are_separated(&[low, low], &[higher, low], 0.9, Vec3::Z));
+    assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
+    assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));
+    assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
 }
