@@ -1,6 +1,7 @@
 //! The hulls of one search, each moved at most once, and the test of two nodes.
 
 use glam::{Mat3, Vec3, Vec4};
+use pulp::Arch;
 
 use super::hull_motion::HullMotion;
 use super::node_hulls::NodeHulls;
@@ -21,6 +22,8 @@ const MIN_GAP: f32 = 2.0;
 #[derive(Clone)]
 pub(crate) struct MovedHulls<const E: usize> {
     motion: HullMotion<E>,
+    /// The instruction set of this processor.
+    simd: Arch,
     /// Whether the motion is that of this search: it is set by the first test.
     has_begun: bool,
     credit: i32,
@@ -43,6 +46,7 @@ impl<const E: usize> MovedHulls<E> {
         let empty = MovedHull { maps: [[Vec4::ZERO; 3]; E], radius: 0.0, cofactors: Mat3::ZERO };
         Self {
             motion: HullMotion::default(),
+            simd: Arch::new(),
             has_begun: false,
             credit: 0,
             search: 0,
@@ -98,7 +102,10 @@ impl<const E: usize> MovedHulls<E> {
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
         let [x, y] = [i, j].map(|i| self.points(hulls, i));
-        let is_apart = are_separated(&x, &y, a.radius + b.radius, normal);
+        let is_apart = self.simd.dispatch(
+            #[inline(always)]
+            || are_separated(&x, &y, a.radius + b.radius, normal),
+        );
         self.credit += if is_apart { GAIN } else { -LOSS };
         is_apart
     }

@@ -4,6 +4,8 @@
 //! Whatever plane is tried, two sets are apart only where the test says so. The error of the test is part of the radii
 //! ([`HullMotion::error`](super::hull_motion::HullMotion)).
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
@@ -24,7 +26,7 @@ pub(super) struct MovedPoints<'t, const E: usize> {
 impl<const E: usize> MovedPoints<'_, E> {
     /// The largest coordinate of any moved point along a direction. No point is moved: the transposed map turns the
     /// direction back, at the cost of moving one point.
-    #[inline]
+    #[inline(always)]
     pub(super) fn extent(&self, dir: Vec3) -> f32 {
         let [first, others @ ..] = right_or!(&self.maps[..], HullsAtStart, &self.maps[..1]) else {
             return f32::INFINITY;
@@ -53,7 +55,7 @@ impl<const E: usize> MovedPoints<'_, E> {
 }
 
 /// The product of a direction with the transposed matrix of a map, then the shift along the direction.
-#[inline]
+#[inline(always)]
 fn turned_back(map: &AffineMap, dir: Vec3) -> Vec4 {
     map[0] * dir.x + map[1] * dir.y + map[2] * dir.z
 }
@@ -61,24 +63,36 @@ fn turned_back(map: &AffineMap, dir: Vec3) -> Vec4 {
 /// Points compared side by side.
 const LANES: usize = 8;
 
-/// Covers the rounding of the test: a length, a sum, a product, a difference.
+/// Covers the rounding of the test: squares, products, a sum, a difference.
 const ROUND_UP: f32 = 1.0 + 1e-5;
+
+/// The squares of lengths of normals that are tested.
+const SQUARES: Range<f32> = 1e-6..1e18;
 
 /// Steps of a search, and the share of the distance at which it ends.
 const STEPS: usize = 32;
 const TOLERANCE: f32 = 1e-3;
 
 /// Whether a plane of this normal separates two sets of points by more than `distance`, the first one below.
-#[inline]
+///
+/// The gap along the normal is compared with the distance times the normal's length, both squared. Squares are within the
+/// range of numbers: coordinates are below 1e5 and distances above 1e-15, by the bound of their errors
+/// ([`HullMotion::error`](super::hull_motion::HullMotion)).
+#[inline(always)]
 pub(super) fn are_separated<const E: usize>(
     a: &MovedPoints<'_, E>,
     b: &MovedPoints<'_, E>,
     distance: f32,
     normal: Vec3,
 ) -> bool {
-    let Some(normal) = unit(normal) else { return false };
+    let square = normal.length_squared();
+    // NaN is in no range, and fails the other tests, too.
+    if !SQUARES.contains(&square) {
+        return false;
+    }
     let gap = -b.extent(-normal) - a.extent(normal);
-    right_or!(gap > distance * ROUND_UP, HullsTouch, gap > 0.0)
+    let is_wide = gap * gap > distance * distance * square * ROUND_UP;
+    gap > 0.0 && right_or!(is_wide, HullsTouch, true)
 }
 
 /// The unit normal of the plane with the widest gap between two sets of points, and the gap; none where it is 0.
@@ -118,7 +132,7 @@ fn unit(dir: Vec3) -> Option<Vec3> {
 }
 
 /// The largest coordinate of any point along a direction.
-#[inline]
+#[inline(always)]
 fn extent(points: &Points, dir: Vec3) -> f32 {
     let mut lanes = [f32::NEG_INFINITY; LANES];
     let [x, y, z] = points.each_ref().map(|axis| axis.as_chunks::<LANES>().0);
