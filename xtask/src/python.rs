@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use crate::program::{cargo, run_and_forward};
+use crate::program::{build_from_nothing, cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 
 /// The oldest supported version of Python.
@@ -52,6 +52,7 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     let _ = fs::remove_dir_all(&wheels);
     // The profile and the features of the other tests, so that dependencies are compiled once.
     let mut maturin = Command::new(&python);
+    build_from_nothing(&mut maturin);
     maturin.args(["-m", "maturin", "build", "--profile", "dev", "--features", "shared-dependencies"]);
     maturin.arg("--interpreter").arg(&python);
     maturin.arg("--out").arg(&wheels).current_dir(&package);
