@@ -6,6 +6,7 @@
 mod bvtt;
 mod certify;
 mod executor;
+mod fine_radii;
 mod frontier;
 mod global_radius;
 mod leaf_bounds;
