@@ -21,7 +21,7 @@ use crate::model::rounding::to_f32_down;
 const TRIANGLES_PER_BUCKET: usize = if cfg!(test) { 64 } else { 1024 };
 
 /// One of two buckets that touch for this many.
-const TRIANGLES_PER_TOUCHING_PAIR: usize = if cfg!(test) { 32 } else { 256 };
+const TRIANGLES_PER_TOUCHING_PAIR: usize = if cfg!(test) { 32 } else { 128 };
 
 /// One of two other buckets for this many: it takes a tenth of the time.
 const TRIANGLES_PER_PAIR: usize = 32;
