@@ -13,6 +13,7 @@ mod leaf_bounds;
 mod limit_schedule;
 mod node_groups;
 mod node_radii;
+mod node_stages;
 mod pair_tree_builder;
 mod pair_tree_layout;
 mod preparation;

@@ -2,22 +2,23 @@
 //! 5.2).
 //!
 //! There are two passes. The first is coarse: it uses the bounds from building the pair tree and searches the rest with
-//! few subdivisions, the smallest radii of buckets finely (`fine_radii.rs`); it also yields an upper bound of the root's radius. The second searches every radius that may be
-//! below this bound, with the tolerance of the options. A bucket is searched as a whole, and the nodes within it get
-//! its radius, because traversals end at buckets.
+//! few subdivisions, the smallest radii of buckets finely (`fine_radii.rs`); it also yields an upper bound of the root's
+//! radius. The second searches every radius that may be below this bound, with the tolerance of the options. A bucket is
+//! searched as a whole, and the nodes within it get its radius, because traversals end at buckets.
 
 use std::ops::Range;
 
 use super::executor::{Executor, Stage};
 use super::fine_radii::choose_buckets;
 use super::frontier::Frontier;
+use super::node_stages::{BUCKETS, node_stages};
 use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use super::progress_counter::ProgressCounter;
 use super::radius_bound::{BoundedNodePair, RadiusBound};
 use super::search_goal::{Precision, SearchGoal};
 use super::task::{NodeRadiusTask, Task, TaskResult};
-use crate::hierarchy::{Hierarchy, Node};
+use crate::hierarchy::Node;
 use crate::{Error, Progress};
 
 /// Radii that a thread takes at once: each takes long.
@@ -65,8 +66,7 @@ struct Passes<'a> {
 impl Passes<'_> {
     /// Computes all radii that are below a limit. Returns the smallest upper bound found of any radius.
     ///
-    /// Nodes of one level are independent of each other, and so are all buckets. So a stage is the buckets, then the larger
-    /// nodes of a level, from below, then the pairs of the root's children.
+    /// A stage is the buckets, then the larger nodes of a level ([`node_stages`]), then the pairs of the root's children.
     fn run(&mut self, precision: Precision, below: f64, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.preparation.hierarchy;
         let nodes = hierarchy.nodes();
@@ -175,19 +175,6 @@ impl Passes<'_> {
             }
         }
     }
-}
-
-/// The first stage.
-const BUCKETS: usize = 0;
-
-/// The nodes of each stage: all buckets, then the larger nodes of each level below the root, from below. A root that is a
-/// leaf is a stage, too.
-fn node_stages(hierarchy: &Hierarchy, is_in_bucket: &[bool]) -> Vec<Vec<usize>> {
-    let is_bucket = |n: &usize| hierarchy.is_bucket_below_root(*n as u32);
-    let buckets = (0..is_in_bucket.len()).filter(|n| is_bucket(n) && !is_in_bucket[*n]).collect();
-    let is_searched = |n: &usize| !is_bucket(n) && (*n != 0 || hierarchy.nodes()[0].is_leaf());
-    let larger = hierarchy.levels().into_iter().rev().map(|level| level.filter(is_searched).collect());
-    std::iter::once(buckets).chain(larger).collect()
 }
 
 /// Has radii searched as one stage.

@@ -1,8 +1,8 @@
 //! The goal of a search for a radius: how far and how precisely.
 //!
 //! The radii that determine the root's radius are precise, and those that queries meet most often are fine
-//! (`fine_radii.rs`). Larger radii are coarse: small parts of a model all collapse
-//! at about the same radius, tens of times the root's, and a precise bound there would need subdivision of every pair
+//! (`fine_radii.rs`). Larger radii are coarse: small parts of a model all collapse at about the same radius, tens of
+//! times the root's, and a precise bound there would need subdivision of every pair
 //! (docs/notes/2026-11-23-coarse-radii.md).
 
 /// How closely a radius is searched.
