@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::node_modes::NodeModes;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::mode_rows::{dot, gram, project};
 use crate::model::rounding::{ROUND_UP, quotient_down};
 use crate::model::{ScaledModel, scale_direction};
@@ -80,6 +80,11 @@ impl NodePairBounds {
     /// The squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.
     pub(crate) fn size(&self, n: u32) -> f64 {
         self.nodes[n as usize].half.length_squared()
+    }
+
+    /// Whether the AABBs of two nodes touch or overlap at the centre.
+    pub(crate) fn are_touching(&self, (n, m): NodePair) -> bool {
+        self.nodes[n as usize].gap(&self.nodes[m as usize]) == DVec3::ZERO
     }
 
     /// The best direction to separate two points whose difference is the gap vector of the AABBs; none if the AABBs

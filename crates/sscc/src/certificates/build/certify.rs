@@ -45,7 +45,7 @@ impl CertifiedRadii {
     ) -> Result<Self, Error> {
         let hierarchy = &preparation.hierarchy;
         let entries = budget.saturating_mul(hierarchy.order().len()) / size_of::<PairEntry>();
-        let builder = PairTreeBuilder::build(hierarchy, preparation.global_radius, entries, executor)?;
+        let builder = PairTreeBuilder::build(preparation, entries, executor)?;
         let radii = NodeRadii::compute(preparation, &builder, executor, progress)?;
         let pair_tree = builder.finish(hierarchy, &radii.nodes);
         Ok(Self { radii, pair_tree })

@@ -6,12 +6,14 @@
 mod bvtt;
 mod certify;
 mod executor;
+mod fine_radii;
 mod frontier;
 mod global_radius;
 mod leaf_bounds;
 mod limit_schedule;
 mod node_groups;
 mod node_radii;
+mod node_stages;
 mod pair_tree_builder;
 mod pair_tree_layout;
 mod preparation;

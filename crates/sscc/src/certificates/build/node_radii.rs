@@ -2,14 +2,16 @@
 //! 5.2).
 //!
 //! There are two passes. The first is coarse: it uses the bounds from building the pair tree and searches the rest with
-//! few subdivisions; it also yields an upper bound of the root's radius. The second searches every radius that may be
-//! below this bound, with the tolerance of the options. A bucket is searched as a whole, and the nodes within it get
-//! its radius, because traversals end at buckets.
+//! few subdivisions, the smallest radii of buckets finely (`fine_radii.rs`); it also yields an upper bound of the root's
+//! radius. The second searches every radius that may be below this bound, with the tolerance of the options. A bucket is
+//! searched as a whole, and the nodes within it get its radius, because traversals end at buckets.
 
 use std::ops::Range;
 
 use super::executor::{Executor, Stage};
+use super::fine_radii::choose_buckets;
 use super::frontier::Frontier;
+use super::node_stages::{BUCKETS, node_stages};
 use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use super::progress_counter::ProgressCounter;
@@ -64,30 +66,34 @@ struct Passes<'a> {
 impl Passes<'_> {
     /// Computes all radii that are below a limit. Returns the smallest upper bound found of any radius.
     ///
-    /// Nodes of one level are independent of each other. So a stage is a level, from the leaves up, then the pairs of the
-    /// root's children.
+    /// A stage is the buckets, then the larger nodes of a level ([`node_stages`]), then the pairs of the root's children.
     fn run(&mut self, precision: Precision, below: f64, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.preparation.hierarchy;
         let nodes = hierarchy.nodes();
         let is_in_bucket = hierarchy.nodes_within_buckets();
+        self.counter.add(is_in_bucket.iter().filter(|is_in_bucket| **is_in_bucket).count());
         let mut upper = f64::INFINITY;
         let mut take = |radius: &mut f64, bound: RadiusBound| {
             *radius = radius.max(bound.radius);
             upper = upper.min(bound.upper);
         };
-        for level in hierarchy.levels().into_iter().rev() {
-            if level.start == 0 && !nodes[0].is_leaf() {
-                continue;
-            }
-            let is_wanted = |n: &usize| self.radii.nodes[*n] < below && !is_in_bucket[*n];
-            let wanted: Vec<usize> = level.clone().filter(is_wanted).collect();
-            self.counter.add(level.len() - wanted.len());
+        for (index, stage) in node_stages(hierarchy, &is_in_bucket).into_iter().enumerate() {
+            let wanted: Vec<usize> = stage.iter().copied().filter(|n| self.radii.nodes[*n] < below).collect();
+            self.counter.add(stage.len() - wanted.len());
             let task = |index: usize| {
                 let node = &nodes[wanted[index]];
                 self.task(precision, wanted[index], 0..node.child_pairs().count(), self.smallest_child(node))
             };
             let bounds = search(executor, wanted.len(), &task, &|count| self.counter.add(count))?;
             wanted.into_iter().zip(bounds).for_each(|(n, bound)| take(&mut self.radii.nodes[n], bound));
+            if index == BUCKETS && precision == Precision::Coarse {
+                let limit = self.builder.complete_below;
+                let chosen = choose_buckets(limit, &stage, &self.radii.nodes, hierarchy);
+                let task =
+                    |index: usize| NodeRadiusTask::within(chosen[index] as u32, Precision::Fine, limit);
+                let bounds = search(executor, chosen.len(), &task, &|_| {})?;
+                chosen.iter().zip(bounds).for_each(|(n, bound)| take(&mut self.radii.nodes[*n], bound));
+            }
         }
         if !nodes[0].is_leaf() {
             let wanted: Vec<usize> =
@@ -164,7 +170,9 @@ impl Passes<'_> {
                 let pairs = open.into_iter().filter(|pair| pair.lower < radius).collect();
                 NodeRadiusTask { node, pairs, goal: SearchGoal { cap: radius, refine_up_to, precision } }
             }
-            Precision::Full => NodeRadiusTask { node, pairs: [open, bounded].concat(), goal },
+            Precision::Fine | Precision::Full => {
+                NodeRadiusTask { node, pairs: [open, bounded].concat(), goal }
+            }
         }
     }
 }

@@ -3,15 +3,17 @@
 //! The BVTT is built in rounds with increasing limits. A pair with a lower bound below the limit is split; a pair of
 //! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
 //! threads, as it would with one shared priority queue. The rounds end when the budget is used up. All pairs below the
-//! last limit are known.
+//! last limit are known. Some of their radii are then searched again (`fine_radii.rs`).
 
 use std::ops::Range;
 
 use super::bvtt::{Bvtt, BvttPair};
 use super::executor::{Executor, Stage};
+use super::fine_radii::refine_pairs;
 use super::frontier::Frontier;
 use super::limit_schedule::LimitSchedule;
 use super::pair_tree_layout::lay_out;
+use super::preparation::Preparation;
 use super::split_task::SplitTask;
 use super::task::{Task, TaskResult};
 use crate::Error;
@@ -32,7 +34,7 @@ const SPLIT_GRAIN: usize = 8;
 pub(super) struct PairTreeBuilder {
     bvtt: Bvtt,
     /// Radii below this are known; 0: none is.
-    complete_below: f64,
+    pub(super) complete_below: f64,
     /// The maximum number of entries of the tree.
     budget: usize,
 }
@@ -40,14 +42,14 @@ pub(super) struct PairTreeBuilder {
 impl PairTreeBuilder {
     /// Builds the BVTT for a tree of at most `budget` entries.
     pub(super) fn build(
-        hierarchy: &Hierarchy,
-        global_radius: f64,
+        preparation: &Preparation,
         budget: usize,
         executor: &mut dyn Executor,
     ) -> Result<Self, Error> {
+        let hierarchy = &preparation.hierarchy;
         let budget = budget.min(MAX_ENTRIES);
         let mut builder = Self { bvtt: Bvtt::empty(), complete_below: 0.0, budget };
-        let Some(mut schedule) = LimitSchedule::new(global_radius).filter(|_| budget > 0) else {
+        let Some(mut schedule) = LimitSchedule::new(preparation.global_radius).filter(|_| budget > 0) else {
             return Ok(builder);
         };
         builder.bvtt = Bvtt::new(hierarchy);
@@ -61,6 +63,7 @@ impl PairTreeBuilder {
             }
         }
         builder.complete_below = schedule.complete_below();
+        refine_pairs(&mut builder.bvtt, builder.complete_below, preparation, executor)?;
         Ok(builder)
     }
 

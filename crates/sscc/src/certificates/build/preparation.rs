@@ -10,7 +10,7 @@ use crate::bounds::NodePairBounds;
 use crate::certificates::{CertifyOptions, Digest, Scope};
 use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
@@ -90,6 +90,11 @@ impl Preparation {
     /// The radius up to which coarse searches go.
     pub(crate) fn coarse_cap(&self) -> f64 {
         coarse_cap(self.global_radius, self.epsilon)
+    }
+
+    /// Whether the AABBs of two nodes touch or overlap at the centre.
+    pub(crate) fn are_touching(&self, nodes: NodePair) -> bool {
+        self.nodes.are_touching(nodes)
     }
 
     /// A search for one thread.

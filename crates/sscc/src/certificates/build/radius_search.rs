@@ -11,7 +11,8 @@ use super::leaf_bounds::{BoundedTriangles, LeafBounds};
 use super::radius_bound::{BoundedNodePair, RadiusBound};
 use super::radius_search_context::RadiusSearchContext;
 use super::search_goal::{
-    COARSE_EPSILON, COARSE_SUBDIVISIONS, FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
+    COARSE_EPSILON, COARSE_SUBDIVISIONS, FINE_EPSILON, FINE_SUBDIVISIONS, FULL_SUBDIVISIONS,
+    PAIR_TREE_EPSILON, Precision, SearchGoal,
 };
 use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
 use crate::filter::Hulls;
@@ -136,6 +137,7 @@ impl<'a> RadiusSearch<'a> {
         self.queue.clear();
         let (epsilon, subdivisions) = match goal.precision {
             Precision::Coarse => (self.epsilon.max(COARSE_EPSILON), COARSE_SUBDIVISIONS),
+            Precision::Fine => (self.epsilon.min(FINE_EPSILON), FINE_SUBDIVISIONS),
             Precision::Full => (self.epsilon, FULL_SUBDIVISIONS),
         };
         let cap = goal.cap.min(goal.refine_up_to);

@@ -1,7 +1,8 @@
 //! The goal of a search for a radius: how far and how precisely.
 //!
-//! The radii that determine the root's radius are precise. Larger radii are coarse: small parts of a model all collapse
-//! at about the same radius, tens of times the root's, and a precise bound there would need subdivision of every pair
+//! The radii that determine the root's radius are precise, and those that queries meet most often are fine
+//! (`fine_radii.rs`). Larger radii are coarse: small parts of a model all collapse at about the same radius, tens of
+//! times the root's, and a precise bound there would need subdivision of every pair
 //! (docs/notes/2026-11-23-coarse-radii.md).
 
 /// How closely a radius is searched.
@@ -9,6 +10,8 @@
 pub(crate) enum Precision {
     /// To [`COARSE_EPSILON`], as far as [`COARSE_SUBDIVISIONS`] suffice.
     Coarse,
+    /// To [`FINE_EPSILON`], or the tolerance of the options if that is smaller, as far as [`FINE_SUBDIVISIONS`] suffice.
+    Fine,
     /// To the tolerance of the options.
     Full,
 }
@@ -18,6 +21,13 @@ pub(super) const COARSE_EPSILON: f64 = 0.4;
 
 /// The maximum number of subdivisions of one triangle pair in coarse searches.
 pub(super) const COARSE_SUBDIVISIONS: usize = 4;
+
+/// The relative error of fine searches: the less, the fewer node pairs queries open
+/// (docs/notes/2026-11-25-fine-radii.md).
+pub(super) const FINE_EPSILON: f64 = 0.02;
+
+/// The maximum number of subdivisions of one triangle pair in fine searches.
+pub(super) const FINE_SUBDIVISIONS: usize = 16;
 
 /// The maximum number of subdivisions of one triangle pair in full searches. When they are used up the search takes the
 /// best lower bound so far: still certified, only less tight. Mostly modes of rank 1 and 2 need so many.

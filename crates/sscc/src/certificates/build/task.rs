@@ -25,7 +25,7 @@ pub(crate) enum Task {
 pub(crate) struct NodeRadiusTask {
     /// A leaf or a bucket is searched within.
     pub(crate) node: u32,
-    /// Of any other node these pairs are searched; their radii make up the one wanted.
+    /// Of any other node these pairs of nodes below it are searched; their radii make up the one wanted.
     pub(crate) pairs: Vec<BoundedNodePair>,
     pub(crate) goal: SearchGoal,
 }
@@ -60,6 +60,12 @@ impl NodeRadiusTask {
     /// Searches all of a leaf or a bucket.
     pub(crate) fn within(node: u32, precision: Precision, cap: f64) -> Self {
         Self { node, pairs: Vec::new(), goal: SearchGoal::new(cap, precision) }
+    }
+
+    /// Searches the pairs between two nodes.
+    pub(super) fn between(pair: BoundedNodePair, precision: Precision, cap: f64) -> Self {
+        // Both are below the root, which is no bucket of its own.
+        Self { node: 0, pairs: vec![pair], goal: SearchGoal::new(cap, precision) }
     }
 
     fn run(self, preparation: &Preparation, search: &mut RadiusSearch<'_>) -> Option<RadiusBound> {

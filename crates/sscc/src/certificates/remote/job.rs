@@ -19,6 +19,7 @@ pub(super) struct Job {
 const SPLIT: u8 = 0;
 const COARSE_RADIUS: u8 = 1;
 const FULL_RADIUS: u8 = 2;
+const FINE_RADIUS: u8 = 3;
 
 /// Writes a job, task by task, so that not all of them need be in memory at once.
 pub(super) struct JobWriter(Vec<u8>);
@@ -50,6 +51,7 @@ impl JobWriter {
         let SearchGoal { cap, refine_up_to, precision } = task.goal;
         self.0.push(match precision {
             Precision::Coarse => COARSE_RADIUS,
+            Precision::Fine => FINE_RADIUS,
             Precision::Full => FULL_RADIUS,
         });
         self.0.extend(task.node.to_le_bytes());
@@ -78,6 +80,7 @@ impl Job {
             tasks.push(match from.u8()? {
                 SPLIT => Task::Split(read_split(hierarchy, &mut from)?),
                 COARSE_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Coarse, &mut from)?),
+                FINE_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Fine, &mut from)?),
                 FULL_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Full, &mut from)?),
                 _ => return None,
             });
