@@ -1,13 +1,13 @@
-//! Number of random cases of a test: all of them with `CI=true` in the environment, else the first sixteenth.
+//! Number of random cases of a test: all of them with `CI=true` in the environment, else the first eighth.
 //!
 //! Both begin with the same seeds.
 
 use std::ops::Div;
 
 /// Divisor of the number of cases outside of CI.
-const DIVISOR: u8 = 16;
+const DIVISOR: u8 = 8;
 
-/// Returns the number of cases to try out of `all`: all of them in CI, else a sixteenth, at least one.
+/// Returns the number of cases to try out of `all`: all of them in CI, else an eighth, at least one.
 pub fn cases<T: Div<Output = T> + From<u8> + Ord>(all: T) -> T {
     scaled_cases(all, is_ci())
 }
@@ -34,12 +34,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sixteenth_is_tried_outside_of_ci() {
-        assert_eq!((scaled_cases(400_u64, true), scaled_cases(400_u64, false)), (400, 25));
+    fn an_eighth_is_tried_outside_of_ci() {
+        assert_eq!((scaled_cases(400_u64, true), scaled_cases(400_u64, false)), (400, 50));
         assert_eq!((scaled_cases(3_usize, true), scaled_cases(3_usize, false)), (3, 1));
         assert_eq!(
             (scaled_threshold(21, true), scaled_threshold(21, false), scaled_threshold(3, false)),
-            (21, 1, 0)
+            (21, 2, 0)
         );
     }
 }
