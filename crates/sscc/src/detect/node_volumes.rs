@@ -10,21 +10,26 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 
-use super::aabb8::{Aabb8, AabbF32};
+use super::aabb8::{Aabb8, AabbF32, LANES};
 use super::exact_positions::ExactPositions;
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
 use super::quantization::CoarseMotion;
+use super::vectors::InstructionSet;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{BRANCHING, Hierarchy};
+
+// The children of a node are compared as the first four lanes of a packet.
+const _: () = assert!(BRANCHING <= LANES / 2);
 
 /// The AABBs of one search and the positions from which they are computed. Each entry has the number of the search for
 /// which it is current.
 #[derive(Clone)]
 pub(crate) struct NodeVolumes<const E: usize> {
     pub(crate) layout: Arc<Layout>,
+    pub(crate) instructions: InstructionSet,
     is_lazy: bool,
     search: u32,
     positions: ExactPositions<E>,
@@ -43,16 +48,21 @@ pub(crate) struct NodeVolumes<const E: usize> {
     /// The AABBs of the packets of each bucket.
     packets: Vec<Aabb8>,
     packets_searches: Vec<u32>,
+    /// For each bucket the search for which [`Self::prepare_buckets`] has computed the AABBs within it, and its own AABB.
+    prepared: Vec<(u32, AabbF32)>,
     /// The AABBs of the triangles of each packet.
     triangles: Vec<Aabb8>,
+    /// How many buckets [`Self::open_bucket`] has opened in this search.
+    open_buckets: usize,
 }
 
 impl<const E: usize> NodeVolumes<E> {
     /// Lazy volumes are computed where a traversal visits nodes, others all at the start of each search.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool) -> Self {
-        let (nodes, buckets) = (layout.buckets.node_count(), layout.buckets.count());
+        let (nodes, buckets) = (layout.buckets.visited_node_count(), layout.buckets.count());
         Self {
             layout: Arc::clone(layout),
+            instructions: InstructionSet::default(),
             is_lazy,
             search: 0,
             positions: ExactPositions::new(layout.vertices.count()),
@@ -66,18 +76,22 @@ impl<const E: usize> NodeVolumes<E> {
             children_searches: vec![0; nodes],
             packets: vec![Aabb8::EMPTY; buckets],
             packets_searches: vec![0; buckets],
+            prepared: vec![(0, AabbF32::EMPTY); buckets],
             triangles: vec![Aabb8::EMPTY; layout.buckets.packet_count()],
+            open_buckets: 0,
         }
     }
 
     /// Starts a new search: forgets all AABBs, or, where they are not lazy, refits all of them.
     pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
+        self.open_buckets = 0;
         self.search = self.search.wrapping_add(1);
         if self.search == 0 {
             [&mut self.node_searches, &mut self.children_searches, &mut self.packets_searches]
                 .into_iter()
                 .for_each(|searches| searches.fill(0));
+            self.prepared.fill((0, AabbF32::EMPTY));
             self.search = 1;
         }
         self.positions.begin(self.search, motion.overall_aabb(&layout));
@@ -117,7 +131,7 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
     /// nodes relative to the root's, a bucket counting once for each of its packets. 0 where the root has no area.
-    pub(crate) fn surface_area_cost(&self, hierarchy: &Hierarchy) -> f64 {
+    pub(crate) fn surface_area_cost(&self) -> f64 {
         let area = |n: usize| {
             let size = self.nodes[n].upper - self.nodes[n].lower;
             f64::from(size.x * size.y + size.y * size.z + size.z * size.x)
@@ -128,7 +142,7 @@ impl<const E: usize> NodeVolumes<E> {
             area(n) * packets as f64
         };
         let root = area(0);
-        if root > 0.0 { (0..hierarchy.nodes().len()).map(cost).sum::<f64>() / root } else { 0.0 }
+        if root > 0.0 { (0..self.nodes.len()).map(cost).sum::<f64>() / root } else { 0.0 }
     }
 
     /// The frame of this search.
@@ -140,6 +154,11 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn is_bucket_open(&self, bucket: u32) -> bool {
         self.packets_searches[bucket as usize] == self.search
+    }
+
+    /// How many buckets a lazy search has opened.
+    pub(crate) fn open_bucket_count(&self) -> usize {
+        self.open_buckets
     }
 
     /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
@@ -180,6 +199,13 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn open_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         if self.packets_searches[bucket as usize] != self.search {
+            self.open_buckets += 1;
+            let (search, whole) = self.prepared[bucket as usize];
+            if right_or!(search == self.search, PreparedBucketsKept, search != 0) {
+                self.packets_searches[bucket as usize] = self.search;
+                self.set_node(self.layout.buckets.node(bucket), whole);
+                return;
+            }
             if !self.is_coarse {
                 let layout = &*self.layout;
                 let vertices = layout.buckets.vertices(bucket).iter();
@@ -210,28 +236,64 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// Computes all AABBs of a bucket; where exact positions are needed, its vertices have been moved.
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
-        let Layout { buckets, coarse, .. } = &*self.layout;
-        let n = buckets.node(bucket);
+        if self.is_coarse {
+            self.layout.coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
+        }
+        let whole = self.refit_packets(bucket, motion);
+        self.packets_searches[bucket as usize] = self.search;
+        self.set_node(self.layout.buckets.node(bucket), whole);
+    }
+
+    /// Computes the AABBs of the packets of a bucket and of their triangles, whose vertices have been moved, and returns that
+    /// of the bucket.
+    fn refit_packets<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) -> AabbF32 {
+        let buckets = &self.layout.buckets;
         let mut by = Vec4::ZERO;
         if self.is_coarse {
-            coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
-            by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
+            let error = right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
+            by = self.slack(buckets.node(bucket), motion) + error;
         } else if motion.margin() > 0.0 {
             by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
         }
         let mut whole = AabbF32::EMPTY;
         for (lane, packet) in buckets.packets(bucket).enumerate() {
-            let mut union = AabbF32::EMPTY;
-            for (i, slot) in buckets.slots(packet).enumerate() {
-                let triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
-                self.triangles[packet].set(i, &triangle);
-                union = union.union(&triangle);
+            let (slots, mut union) = (buckets.slots(packet), AabbF32::EMPTY);
+            for half in 0..2 {
+                let mut triangles = [AabbF32::EMPTY; LANES / 2];
+                for (triangle, slot) in triangles.iter_mut().zip(slots.clone().skip(half * LANES / 2)) {
+                    *triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
+                    union = union.union(triangle);
+                }
+                self.triangles[packet].set_half(half, &triangles);
             }
             self.packets[bucket as usize].set(lane, &union);
             whole = whole.union(&union);
         }
-        self.packets_searches[bucket as usize] = self.search;
-        self.set_node(n, whole);
+        whole
+    }
+
+    /// Whether [`Self::prepare_buckets`] may be called in this search: AABBs are computed when they are needed, from coarse
+    /// positions.
+    pub(crate) fn can_prepare(&self) -> bool {
+        self.is_lazy && self.is_coarse
+    }
+
+    /// Computes the AABBs within buckets for several searches at once, before any of them has opened one. This reads and
+    /// converts the modes of each vertex once. A bucket becomes open only where its search opens it, so a search does the
+    /// same with prepared buckets as without.
+    pub(crate) fn prepare_buckets<M: VertexMotion<E>, const N: usize>(
+        expected: impl Iterator<Item = u32>,
+        mut searches: [&mut (&mut Self, M); N],
+    ) {
+        let Some(layout) = searches.first().map(|(volumes, _)| Arc::clone(&volumes.layout)) else { return };
+        for bucket in expected {
+            let motions = searches.each_mut().map(|(volumes, _)| (&volumes.motion, &mut volumes.coarse[..]));
+            layout.coarse.move_bucket_at(bucket, motions);
+            for (volumes, motion) in &mut searches {
+                let whole = volumes.refit_packets(bucket, motion);
+                volumes.prepared[bucket as usize] = (volumes.search, whole);
+            }
+        }
     }
 
     /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.

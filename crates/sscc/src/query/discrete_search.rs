@@ -7,7 +7,6 @@ use super::method::Method;
 use super::statistics::Statistics;
 use crate::Error;
 use crate::detect::narrow_phase::DiscreteHits;
-use crate::detect::vertex_motion::DeformedMotion;
 
 /// Finds the pairs that collide at q, and owns the memory for it.
 #[derive(Clone)]
@@ -35,12 +34,36 @@ impl DiscreteSearch {
     pub(super) fn find(
         &mut self,
         context: &QueryContext<'_>,
-        Configuration { q, norm, reach }: Configuration<'_>,
+        configuration: Configuration<'_>,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
-        statistics.root_certified = context.is_root_certified(norm);
+        self.begin_volumes(context, configuration);
+        self.find_begun(context, configuration, statistics)
+    }
+
+    /// Starts the volumes of a search, if there is anything to search.
+    #[inline]
+    pub(super) fn begin_volumes(&mut self, context: &QueryContext<'_>, configuration: Configuration<'_>) {
+        let is_needed =
+            !context.is_root_certified(configuration.norm) || !context.detect.exceptions.is_empty();
+        if is_needed && context.method != Method::BruteForce {
+            self.certified.broad.begin_volumes(&context.detect, &configuration.motion());
+        }
+    }
+
+    /// Finds all pairs at q, sorted, with volumes that have begun this search.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    pub(super) fn find_begun(
+        &mut self,
+        context: &QueryContext<'_>,
+        configuration: Configuration<'_>,
+        statistics: &mut Statistics,
+    ) -> Result<(), Error> {
+        statistics.root_certified = context.is_root_certified(configuration.norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {
-            let result = self.search(context, Configuration { q, norm, reach }, statistics.root_certified);
+            let result = self.search(context, configuration, statistics.root_certified);
             statistics.set_counters(&self.certified.broad.counters);
             result?;
         }
@@ -51,18 +74,18 @@ impl DiscreteSearch {
     fn search(
         &mut self,
         context: &QueryContext<'_>,
-        Configuration { q, norm, reach }: Configuration<'_>,
+        configuration: Configuration<'_>,
         is_root_certified: bool,
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
         if context.method == Method::BruteForce {
-            certified.broad.brute_force(&context.detect, |v| [context.model.position(v, q)], narrow);
+            let position = |v| [context.model.position(v, configuration.q)];
+            certified.broad.brute_force(&context.detect, position, narrow);
         } else {
-            let motion = DeformedMotion::new([q], reach);
-            certified.broad.begin_volumes(&context.detect, &motion);
+            let motion = configuration.motion();
             certified.broad.test_exceptions(&context.detect, &motion, narrow);
             if !is_root_certified {
-                certified.find(context, norm, &motion, narrow);
+                certified.find(context, configuration.norm, &motion, narrow);
             }
         }
         certified.broad.end(narrow)?;
