@@ -16,6 +16,7 @@ pub(crate) mod broad_phase;
 mod brute_force;
 pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
+pub(crate) mod buckets_ahead;
 mod coarse_vertices;
 mod colliding_pairs;
 pub(crate) mod contact_curves;

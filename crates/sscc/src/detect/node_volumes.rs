@@ -11,6 +11,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec4};
 
 use super::aabb8::{Aabb8, AabbF32, LANES};
+use super::buckets_ahead::{CoarsePositions, begin_coarse};
 use super::exact_positions::ExactPositions;
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
@@ -36,7 +37,7 @@ pub(crate) struct NodeVolumes<const E: usize> {
     /// Whether AABBs of triangles are computed from coarse positions.
     is_coarse: bool,
     motion: CoarseMotion<E>,
-    coarse: Vec<[Vec4; E]>,
+    coarse: CoarsePositions<E>,
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
     corner_error: f32,
     /// The AABB of each node that is a bucket or larger.
@@ -48,12 +49,8 @@ pub(crate) struct NodeVolumes<const E: usize> {
     /// The AABBs of the packets of each bucket.
     packets: Vec<Aabb8>,
     packets_searches: Vec<u32>,
-    /// For each bucket the search for which [`Self::prepare_buckets`] has computed the AABBs within it, and its own AABB.
-    prepared: Vec<(u32, AabbF32)>,
     /// The AABBs of the triangles of each packet.
     triangles: Vec<Aabb8>,
-    /// How many buckets [`Self::open_bucket`] has opened in this search.
-    open_buckets: usize,
 }
 
 impl<const E: usize> NodeVolumes<E> {
@@ -68,7 +65,7 @@ impl<const E: usize> NodeVolumes<E> {
             positions: ExactPositions::new(layout.vertices.count()),
             is_coarse: false,
             motion: CoarseMotion::default(),
-            coarse: layout.coarse.new_positions(),
+            coarse: CoarsePositions { positions: layout.coarse.new_positions(), moved: Vec::new() },
             corner_error: f32::INFINITY,
             nodes: vec![AabbF32::EMPTY; nodes],
             node_searches: vec![0; nodes],
@@ -76,31 +73,23 @@ impl<const E: usize> NodeVolumes<E> {
             children_searches: vec![0; nodes],
             packets: vec![Aabb8::EMPTY; buckets],
             packets_searches: vec![0; buckets],
-            prepared: vec![(0, AabbF32::EMPTY); buckets],
             triangles: vec![Aabb8::EMPTY; layout.buckets.packet_count()],
-            open_buckets: 0,
         }
     }
 
     /// Starts a new search: forgets all AABBs, or, where they are not lazy, refits all of them.
     pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
-        self.open_buckets = 0;
         self.search = self.search.wrapping_add(1);
         if self.search == 0 {
             [&mut self.node_searches, &mut self.children_searches, &mut self.packets_searches]
                 .into_iter()
                 .for_each(|searches| searches.fill(0));
-            self.prepared.fill((0, AabbF32::EMPTY));
             self.search = 1;
         }
         self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
-        let coarse_motion = &mut self.motion;
-        self.is_coarse = !layout.coarse.is_empty()
-            && motion
-                .coarse_coordinates()
-                .is_some_and(|q| layout.quantization.begin(coarse_motion, q, frame, rounding));
+        self.is_coarse = begin_coarse(&layout, motion, frame, &mut self.motion);
         self.corner_error = if !M::HAS_ERROR_BOUND {
             f32::INFINITY
         } else if self.is_coarse {
@@ -156,11 +145,6 @@ impl<const E: usize> NodeVolumes<E> {
         self.packets_searches[bucket as usize] == self.search
     }
 
-    /// How many buckets a lazy search has opened.
-    pub(crate) fn open_bucket_count(&self) -> usize {
-        self.open_buckets
-    }
-
     /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
     #[inline]
     pub(crate) fn node(&self, n: u32) -> &AabbF32 {
@@ -199,13 +183,6 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn open_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         if self.packets_searches[bucket as usize] != self.search {
-            self.open_buckets += 1;
-            let (search, whole) = self.prepared[bucket as usize];
-            if right_or!(search == self.search, PreparedBucketsKept, search != 0) {
-                self.packets_searches[bucket as usize] = self.search;
-                self.set_node(self.layout.buckets.node(bucket), whole);
-                return;
-            }
             if !self.is_coarse {
                 let layout = &*self.layout;
                 let vertices = layout.buckets.vertices(bucket).iter();
@@ -236,22 +213,14 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// Computes all AABBs of a bucket; where exact positions are needed, its vertices have been moved.
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
-        if self.is_coarse {
-            self.layout.coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
-        }
-        let whole = self.refit_packets(bucket, motion);
-        self.packets_searches[bucket as usize] = self.search;
-        self.set_node(self.layout.buckets.node(bucket), whole);
-    }
-
-    /// Computes the AABBs of the packets of a bucket and of their triangles, whose vertices have been moved, and returns that
-    /// of the bucket.
-    fn refit_packets<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) -> AabbF32 {
-        let buckets = &self.layout.buckets;
+        let Layout { buckets, coarse, .. } = &*self.layout;
+        let n = buckets.node(bucket);
         let mut by = Vec4::ZERO;
         if self.is_coarse {
-            let error = right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
-            by = self.slack(buckets.node(bucket), motion) + error;
+            if !self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
+                coarse.move_bucket(bucket, &self.motion, &mut self.coarse.positions);
+            }
+            by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
         } else if motion.margin() > 0.0 {
             by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
         }
@@ -269,31 +238,14 @@ impl<const E: usize> NodeVolumes<E> {
             self.packets[bucket as usize].set(lane, &union);
             whole = whole.union(&union);
         }
-        whole
+        self.packets_searches[bucket as usize] = self.search;
+        self.set_node(n, whole);
     }
 
-    /// Whether [`Self::prepare_buckets`] may be called in this search: AABBs are computed when they are needed, from coarse
-    /// positions.
-    pub(crate) fn can_prepare(&self) -> bool {
-        self.is_lazy && self.is_coarse
-    }
-
-    /// Computes the AABBs within buckets for several searches at once, before any of them has opened one. This reads and
-    /// converts the modes of each vertex once. A bucket becomes open only where its search opens it, so a search does the
-    /// same with prepared buckets as without.
-    pub(crate) fn prepare_buckets<M: VertexMotion<E>, const N: usize>(
-        expected: impl Iterator<Item = u32>,
-        mut searches: [&mut (&mut Self, M); N],
-    ) {
-        let Some(layout) = searches.first().map(|(volumes, _)| Arc::clone(&volumes.layout)) else { return };
-        for bucket in expected {
-            let motions = searches.each_mut().map(|(volumes, _)| (&volumes.motion, &mut volumes.coarse[..]));
-            layout.coarse.move_bucket_at(bucket, motions);
-            for (volumes, motion) in &mut searches {
-                let whole = volumes.refit_packets(bucket, motion);
-                volumes.prepared[bucket as usize] = (volumes.search, whole);
-            }
-        }
+    /// Exchanges the coarse positions of this search. Some buckets may have been moved for the search that begins next
+    /// ([`BucketsAhead`](super::buckets_ahead::BucketsAhead)).
+    pub(crate) fn exchange_positions(&mut self, other: &mut CoarsePositions<E>) {
+        std::mem::swap(&mut self.coarse, other);
     }
 
     /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
@@ -340,7 +292,7 @@ impl<const E: usize> NodeVolumes<E> {
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         let Layout { buckets, coarse, .. } = &*self.layout;
         if self.is_coarse {
-            coarse.corners(bucket, slot, &self.coarse)
+            coarse.corners(bucket, slot, &self.coarse.positions)
         } else {
             self.positions.mapped(buckets.corners()[slot])
         }

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
-use super::search_group::{Answer, GROUP, SearchGroup};
+use super::search_group::{Answer, SearchGroup, is_joint};
 use super::statistics::Statistics;
+use crate::detect::buckets_ahead::GROUP;
 use crate::thread_pool::on_threads;
 use crate::{Error, Progress};
 
@@ -65,8 +66,8 @@ struct Batch<'b, Q> {
 }
 
 impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
-    /// Answers each q that the root's certificate proves free. Returns the indices of all others, too, ascending; their answers
-    /// are empty.
+    /// Answers each q that the root's certificate proves free. Returns the indices of all others, too, whose answers are
+    /// empty: first those that are searched alone, then those that are searched in groups, each ascending.
     ///
     /// # Errors
     /// That of the first q that has one; when it was cancelled.
@@ -83,7 +84,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
                 }
                 return Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE });
             }
-            lock(&open).push(index);
+            lock(&open).push((is_joint(&query.context, norm, self.limit), index));
             Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::default() })
         };
         let answers: Vec<Result<Answer, Error>> =
@@ -91,7 +92,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         let answers = answers.into_iter().collect::<Result<Vec<Answer>, Error>>()?;
         let mut open = open.into_inner().unwrap_or_else(PoisonError::into_inner);
         open.sort_unstable();
-        Ok((answers, open))
+        Ok((answers, open.into_iter().map(|(_, index)| index).collect()))
     }
 
     /// Answers the q of these indices, in groups.

@@ -37,30 +37,6 @@ impl DiscreteSearch {
         configuration: Configuration<'_>,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
-        self.begin_volumes(context, configuration);
-        self.find_begun(context, configuration, statistics)
-    }
-
-    /// Starts the volumes of a search, if there is anything to search.
-    #[inline]
-    pub(super) fn begin_volumes(&mut self, context: &QueryContext<'_>, configuration: Configuration<'_>) {
-        let is_needed =
-            !context.is_root_certified(configuration.norm) || !context.detect.exceptions.is_empty();
-        if is_needed && context.method != Method::BruteForce {
-            self.certified.broad.begin_volumes(&context.detect, &configuration.motion());
-        }
-    }
-
-    /// Finds all pairs at q, sorted, with volumes that have begun this search.
-    ///
-    /// # Errors
-    /// When it was cancelled.
-    pub(super) fn find_begun(
-        &mut self,
-        context: &QueryContext<'_>,
-        configuration: Configuration<'_>,
-        statistics: &mut Statistics,
-    ) -> Result<(), Error> {
         statistics.root_certified = context.is_root_certified(configuration.norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {
             let result = self.search(context, configuration, statistics.root_certified);
@@ -79,10 +55,14 @@ impl DiscreteSearch {
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
         if context.method == Method::BruteForce {
-            let position = |v| [context.model.position(v, configuration.q)];
-            certified.broad.brute_force(&context.detect, position, narrow);
+            certified.broad.brute_force(
+                &context.detect,
+                |v| [context.model.position(v, configuration.q)],
+                narrow,
+            );
         } else {
             let motion = configuration.motion();
+            certified.broad.begin_volumes(&context.detect, &motion);
             certified.broad.test_exceptions(&context.detect, &motion, narrow);
             if !is_root_certified {
                 certified.find(context, configuration.norm, &motion, narrow);
