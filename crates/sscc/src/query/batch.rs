@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
-use super::search_group::{Answer, SearchGroup, is_joint};
+use super::search_group::{Answer, SearchGroup, is_far};
 use super::statistics::Statistics;
 use crate::detect::buckets_ahead::GROUP;
 use crate::thread_pool::on_threads;
@@ -84,7 +84,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
                 }
                 return Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE });
             }
-            lock(&open).push((is_joint(&query.context, norm, self.limit), index));
+            lock(&open).push((is_far(&query.context, norm, self.limit), index));
             Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::default() })
         };
         let answers: Vec<Result<Answer, Error>> =

@@ -38,7 +38,7 @@ impl<'a> SearchGroup<'a> {
         Self { context, check: query.check.clone(), search, ahead: None }
     }
 
-    /// Answers at most [`GROUP`] q as [`Query::discrete_at_most`] would. The root's certificate proves none of them free.
+    /// Answers the q of one group as [`Query::discrete_at_most`] would. The root's certificate proves none of them free.
     ///
     /// # Errors
     /// When a q is no configuration of the model; when it was cancelled.
@@ -47,7 +47,7 @@ impl<'a> SearchGroup<'a> {
         let configurations: Vec<Configuration<'_>> =
             batch.iter().map(|q| check.measure(context, q)).collect::<Result<_, _>>()?;
         let is_together = batch.len() > 1
-            && configurations.iter().all(|configuration| is_joint(context, configuration.norm, limit));
+            && configurations.iter().all(|configuration| is_far(context, configuration.norm, limit));
         let layout = &context.detect.layout;
         let mut ahead = is_together.then(|| ahead.get_or_insert_with(|| BucketsAhead::new(layout)));
         if let Some(ahead) = &mut ahead {
@@ -78,9 +78,9 @@ impl<'a> SearchGroup<'a> {
     }
 }
 
-/// Whether buckets are moved for q of this norm and others at once: beyond the pair tree searches open many, and no limit
-/// ends them early.
-pub(super) fn is_joint(context: &QueryContext<'_>, norm: f64, limit: usize) -> bool {
+/// Whether buckets are moved for a q of this norm and others at once: beyond the pair tree searches open many, and no
+/// limit ends them early.
+pub(super) fn is_far(context: &QueryContext<'_>, norm: f64, limit: usize) -> bool {
     limit == usize::MAX
         && context.used_certificates().is_some()
         && !context.is_root_certified(norm)
