@@ -1,13 +1,15 @@
 //! `Aabb8`, a packet of eight AABBs side by side: one AABB is compared with all of them at once. Also the AABB and the
 //! set of lanes that go with it.
 //!
-//! [`Vec4`] is one SSE2 or NEON register. Every x86-64 and AArch64 processor has those, so no instruction set is chosen
-//! at run time.
+//! Two packets are compared in the instruction set that is chosen at run time. A single comparison takes less time than
+//! such a call, so it uses [`Vec4`], one SSE2 or NEON register.
 
-use glam::Vec4;
+use glam::{Mat4, Vec4};
+
+use super::vectors::{InstructionSet, Kernel, Vectors};
 
 /// AABBs in a packet.
-pub(crate) const LANES: usize = 8;
+pub(crate) use super::vectors::LANES;
 
 /// An AABB in the single-precision coordinates of an [`F32Frame`](crate::detect::f32_frame::F32Frame): lower and upper
 /// corner; the fourth components mean nothing.
@@ -68,6 +70,19 @@ impl Aabb8 {
     pub(crate) const EMPTY: Self =
         Self { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3] };
 
+    /// Sets the AABBs of the first four lanes (`half` 0) or of the others (1).
+    #[inline]
+    pub(crate) fn set_half(&mut self, half: usize, [a, b, c, d]: &[AabbF32; LANES / 2]) {
+        let lower = Mat4::from_cols(a.lower, b.lower, c.lower, d.lower).transpose();
+        let upper = Mat4::from_cols(a.upper, b.upper, c.upper, d.upper).transpose();
+        for (axis, ends) in self.lower.iter_mut().enumerate() {
+            ends.as_chunks_mut().0[half] = lower.col(axis).to_array();
+        }
+        for (axis, ends) in self.upper.iter_mut().enumerate() {
+            ends.as_chunks_mut().0[half] = upper.col(axis).to_array();
+        }
+    }
+
     /// Sets the AABB of one lane.
     #[inline]
     pub(crate) fn set(&mut self, lane: usize, b: &AabbF32) {
@@ -96,16 +111,134 @@ impl Aabb8 {
         )
     }
 
+    /// The lanes among the first four whose AABB overlaps a given one.
+    #[inline]
+    pub(crate) fn overlapping_of_four(&self, other: &AabbF32) -> Lanes {
+        let (lower, upper) = (other.lower, other.upper);
+        let apart = self.beyond_half(
+            0,
+            [lower.x, lower.y, lower.z].map(Vec4::splat),
+            [upper.x, upper.y, upper.z].map(Vec4::splat),
+        );
+        Lanes(!apart & 0xf)
+    }
+
+    /// The lanes among the first four whose AABB overlaps that of one lane of another packet.
+    #[inline]
+    pub(crate) fn overlapping_lane_of_four(&self, other: &Self, lane: usize) -> Lanes {
+        let apart = self.beyond_half(
+            0,
+            [0, 1, 2].map(|axis| Vec4::splat(other.lower[axis][lane])),
+            [0, 1, 2].map(|axis| Vec4::splat(other.upper[axis][lane])),
+        );
+        Lanes(!apart & 0xf)
+    }
+
     #[inline(always)]
     fn compare(&self, lower: [Vec4; 3], upper: [Vec4; 3]) -> Lanes {
-        let half = |from: usize| {
-            let of = |ends: &[f32; LANES]| Vec4::from_slice(&ends[from..from + 4]);
-            let beyond = |axis: usize| {
-                of(&self.lower[axis]).cmpgt(upper[axis]) | of(&self.upper[axis]).cmplt(lower[axis])
-            };
-            (beyond(0) | beyond(1) | beyond(2)).bitmask()
+        let apart = self.beyond_half(0, lower, upper) | self.beyond_half(4, lower, upper) << 4;
+        Lanes(!apart & 0xff)
+    }
+
+    /// Which of four lanes from one on are disjoint from an AABB.
+    #[inline(always)]
+    fn beyond_half(&self, from: usize, lower: [Vec4; 3], upper: [Vec4; 3]) -> u32 {
+        let of = |ends: &[f32; LANES]| Vec4::from_slice(&ends[from..from + 4]);
+        let beyond =
+            |axis: usize| of(&self.lower[axis]).cmpgt(upper[axis]) | of(&self.upper[axis]).cmplt(lower[axis]);
+        (beyond(0) | beyond(1) | beyond(2)).bitmask()
+    }
+}
+
+/// Two packets whose overlapping pairs of lanes are wanted.
+#[derive(Clone, Copy)]
+pub(crate) struct PacketPair<'p> {
+    pub(crate) first: &'p Aabb8,
+    pub(crate) second: &'p Aabb8,
+    /// The lanes of the first packet to compare.
+    pub(crate) rows: u32,
+    /// Bit `8 i + j` for lane i of the first and lane j of the second packet: the pairs to leave out.
+    pub(crate) masked: u64,
+}
+
+/// The overlapping pairs of lanes of two packets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Overlaps {
+    /// Bit `8 i + j` for lane i of the first and lane j of the second packet.
+    pub(crate) pairs: u64,
+    /// How many lanes of the first packet were compared.
+    pub(crate) rows: u32,
+}
+
+impl PacketPair<'_> {
+    /// The pairs of lanes whose AABBs overlap. Lanes of the first packet whose pairs are all left out are not compared.
+    #[inline]
+    pub(crate) fn overlaps(self, instructions: InstructionSet) -> Overlaps {
+        instructions.run(self)
+    }
+
+    /// The same, where all lanes of either packet lie within one lane of another packet: only those are compared that overlap
+    /// the whole of the other side. `rows` is not used.
+    #[inline]
+    pub(crate) fn overlaps_within(
+        self,
+        instructions: InstructionSet,
+        wholes: [(&Aabb8, usize); 2],
+    ) -> Overlaps {
+        instructions.run(Within { pair: self, wholes })
+    }
+}
+
+impl Kernel for PacketPair<'_> {
+    type Output = Overlaps;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, v: V) -> Overlaps {
+        let mut overlaps = Overlaps::default();
+        for row in Lanes(self.rows) {
+            let open = !(self.masked >> (LANES as u32 * row)) as u32 & 0xff;
+            if open == 0 {
+                continue;
+            }
+            overlaps.rows += 1;
+            let lanes = self.second.compare_all(v, self.first, row as usize) & open;
+            overlaps.pairs |= u64::from(lanes) << (LANES as u32 * row);
+        }
+        overlaps
+    }
+}
+
+/// Two packets, and for each the packet and the lane whose AABB contains all of its own.
+struct Within<'p> {
+    pair: PacketPair<'p>,
+    wholes: [(&'p Aabb8, usize); 2],
+}
+
+impl Kernel for Within<'_> {
+    type Output = Overlaps;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, v: V) -> Overlaps {
+        let Self { mut pair, wholes: [first, second] } = self;
+        pair.rows = pair.first.compare_all(v, second.0, second.1);
+        if pair.rows == 0 {
+            return Overlaps::default();
+        }
+        let columns = pair.second.compare_all(v, first.0, first.1);
+        pair.masked |= u64::from(!columns & 0xff) * 0x0101_0101_0101_0101;
+        pair.run(v)
+    }
+}
+
+impl Aabb8 {
+    /// The lanes whose AABB overlaps that of one lane of another packet.
+    #[inline(always)]
+    fn compare_all<V: Vectors>(&self, v: V, other: &Self, lane: usize) -> u32 {
+        let beyond = |axis: usize| {
+            let (lower, upper) = (v.splat(other.lower[axis][lane]), v.splat(other.upper[axis][lane]));
+            v.or(v.greater(v.load(&self.lower[axis]), upper), v.greater(lower, v.load(&self.upper[axis])))
         };
-        Lanes(!(half(0) | half(4) << 4) & 0xff)
+        !v.bits(v.or(v.or(beyond(0), beyond(1)), beyond(2))) & 0xff
     }
 }
 
@@ -121,6 +254,21 @@ impl Iterator for Lanes {
         let lane = (self.0 != 0).then(|| self.0.trailing_zeros());
         self.0 &= self.0.wrapping_sub(1);
         lane
+    }
+}
+
+/// A set of pairs of lanes: bit `8 i + j` for the pair `(i, j)`. As an iterator, its pairs, ascending.
+#[derive(Clone, Copy)]
+pub(crate) struct PairsOfLanes(pub(crate) u64);
+
+impl Iterator for PairsOfLanes {
+    type Item = (usize, usize);
+
+    #[inline]
+    fn next(&mut self) -> Option<(usize, usize)> {
+        let bit = (self.0 != 0).then(|| self.0.trailing_zeros() as usize)?;
+        self.0 &= self.0 - 1;
+        Some((bit / LANES, bit % LANES))
     }
 }
 
@@ -144,6 +292,10 @@ mod tests {
             let boxes: [AabbF32; 5] = std::array::from_fn(|_| one());
             let mut packet = Aabb8::EMPTY;
             boxes.iter().enumerate().for_each(|(lane, b)| packet.set(lane, b));
+            let mut in_halves = Aabb8::EMPTY;
+            in_halves.set_half(0, &[boxes[0], boxes[1], boxes[2], boxes[3]]);
+            in_halves.set_half(1, &[boxes[4], AabbF32::EMPTY, AabbF32::EMPTY, AabbF32::EMPTY]);
+            assert_eq!(in_halves, packet);
             let other = one();
             let mut expected = 0;
             for (lane, b) in boxes.iter().enumerate() {
@@ -154,11 +306,49 @@ mod tests {
             assert_eq!(packet.overlapping(&other), Lanes(expected));
             for (lane, b) in boxes.iter().enumerate() {
                 assert_eq!(packet.overlapping_lane(&packet, lane), packet.overlapping(b));
+                let of_four = Lanes(packet.overlapping(b).0 & 0xf);
+                assert_eq!(packet.overlapping_of_four(b), of_four);
+                assert_eq!(packet.overlapping_lane_of_four(&packet, lane), of_four);
             }
+            compare_pairs(&packet, &boxes, &other, u64::from(expected).wrapping_mul(0x9e37_79b9_7f4a_7c15));
             assert_eq!(Lanes(expected).map(|lane| 1 << lane).sum::<u32>(), expected);
             overlaps += expected.count_ones();
         }
         assert!((1000..9000).contains(&overlaps), "{overlaps}");
         assert_eq!(Aabb8::EMPTY.overlapping(&AabbF32::ALL), Lanes(0));
+    }
+
+    /// Both instruction sets find the overlapping pairs of two packets.
+    fn compare_pairs(packet: &Aabb8, boxes: &[AabbF32], other: &AabbF32, masked: u64) {
+        let mut second = Aabb8::EMPTY;
+        boxes.iter().rev().enumerate().for_each(|(lane, b)| {
+            second.set(lane + 3, &AabbF32 { lower: b.lower.min(other.lower), upper: b.upper });
+        });
+        let rows = masked as u32 >> 3 & 0xff;
+        let pair = PacketPair { first: packet, second: &second, rows, masked };
+        let (mut expected, mut within) = (Overlaps::default(), Overlaps::default());
+        let mut whole = Aabb8::EMPTY;
+        [packet, &second].into_iter().zip(0..).for_each(|(one, lane)| {
+            let union = |ends: [f32; LANES], of: fn(f32, f32) -> f32| ends.into_iter().reduce(of).unwrap();
+            for axis in 0..3 {
+                whole.lower[axis][lane] = union(one.lower[axis], f32::min);
+                whole.upper[axis][lane] = union(one.upper[axis], f32::max);
+            }
+        });
+        for row in 0..LANES {
+            let open = !(masked >> (8 * row)) as u32 & 0xff;
+            let lanes = second.overlapping_lane(packet, row).0 & open;
+            if rows >> row & 1 != 0 && open != 0 {
+                expected.rows += 1;
+                expected.pairs |= u64::from(lanes) << (8 * row);
+            }
+            within.pairs |= u64::from(lanes) << (8 * row);
+        }
+        for instructions in [InstructionSet::default(), InstructionSet::Baseline] {
+            assert_eq!(pair.overlaps(instructions), expected);
+            let found = pair.overlaps_within(instructions, [(&whole, 0), (&whole, 1)]);
+            assert_eq!(found.pairs, within.pairs);
+            assert!(found.rows <= LANES as u32);
+        }
     }
 }

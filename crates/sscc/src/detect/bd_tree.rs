@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::aabb8::AabbF32;
 use super::quantization::{CoarseMotion, Quantization};
+use super::vectors::{InstructionSet, Kernel, LANES, Vectors};
 use crate::ReducedModel;
 use crate::geometry::Aabb;
 use crate::hierarchy::{Hierarchy, Node};
@@ -12,9 +13,12 @@ use crate::hierarchy::{Hierarchy, Node};
 /// Components of a mean and a growth.
 const COMPONENTS: usize = 6;
 
+/// Lanes of a vector beyond the components.
+const PADDING: usize = LANES - COMPONENTS;
+
 /// For the nodes that have a box, how it moves and grows with q:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct BdTree {
     rank: usize,
     /// For each node its index in the lists below; `u32::MAX` for none.
@@ -23,8 +27,9 @@ pub(crate) struct BdTree {
     rest: Vec<(DVec3, DVec3)>,
     /// `[index * rank + mode] = (mean, growth)`
     rates: Vec<(DVec3, DVec3)>,
-    /// The same, quantized: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; and one more entry.
+    /// The same, quantized: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; and two more entries.
     quantized: Vec<i16>,
+    instructions: InstructionSet,
 }
 
 impl BdTree {
@@ -62,16 +67,16 @@ impl BdTree {
         let mut next = 0..;
         let index = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let indices = (0..hierarchy.nodes().len()).map(index).collect();
-        let mut quantized: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * COMPONENTS + 1);
+        let mut quantized: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * COMPONENTS + PADDING);
         for ((center, half), rates) in &all {
             let means = quantization.quantize(*center, rates.iter().map(|rate| rate.0));
             let growths = quantization.quantize_extents(*half, rates.iter().map(|rate| rate.1));
             means.zip(growths).for_each(|(m, g)| quantized.extend([m, g].as_flattened()));
         }
-        quantized.push(0);
+        quantized.extend([0; PADDING]);
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
-        Self { rank, indices, rest, rates, quantized }
+        Self { rank, indices, rest, rates, quantized, instructions: InstructionSet::default() }
     }
 
     /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
@@ -82,31 +87,37 @@ impl BdTree {
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision, in the frame of the motion.
-    pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
+    /// The same in single precision for several motions at once, each in its own frame.
+    pub(crate) fn coarse_at<const E: usize, const N: usize>(
+        &self,
+        node: u32,
+        motions: [&CoarseMotion<E>; N],
+    ) -> Option<[AabbF32; N]> {
         let index = self.indices[node as usize] as usize;
         if index >= self.rest.len() {
             return None;
         }
-        let (mut center, mut half) = (motion.shift, Vec4::ZERO);
         let start = index * (self.rank + 1) * COMPONENTS;
-        let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + 1];
-        for (k, (factors, largest)) in motion.factors.iter().zip(&motion.largest).enumerate() {
-            // The fourth components belong to what follows.
-            let of_mode = &quantized[k * COMPONENTS..][..COMPONENTS + 1];
-            let vector =
-                |i: usize| Vec4::from_array(std::array::from_fn(|axis| f32::from(of_mode[i + axis])));
-            let (mean, growth) = (vector(0), vector(3));
-            for end in 0..E {
-                center[end] += mean * factors[end];
-            }
-            // No less than at either end, since rounding is monotone; where a step is short, hardly more.
-            half += growth * *largest;
-        }
-        // The error of the centre, and that of the half.
-        let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
-        let ends = center.map(|center| AabbF32 { lower: center - half, upper: center + half });
-        ends.into_iter().reduce(|a, b| right_or!(a.union(&b), SweptCoarseNodesAtStart, a))
+        let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + PADDING];
+        let all = self.instructions.run(MoveBoxes { quantized, motions });
+        Some(std::array::from_fn(|n| {
+            // Half extents are no less than at either end, since rounding is monotone; where a step is short, hardly more.
+            let half = all[n].first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
+            // The error of the centre, and that of the half.
+            let half = half + Vec4::splat(right_or!(2.0 * motions[n].error, CoarseNodesNotWidened, 0.0));
+            let ends = all[n].map(|[x, y, z, ..]| {
+                let center = Vec4::new(x, y, z, 0.0);
+                AabbF32 { lower: center - half, upper: center + half }
+            });
+            let join = |a: AabbF32, b: AabbF32| right_or!(a.union(&b), SweptCoarseNodesAtStart, a);
+            ends.into_iter().reduce(join).unwrap_or(AabbF32::ALL)
+        }))
+    }
+
+    /// The same for one motion.
+    #[inline]
+    pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
+        self.coarse_at(node, [motion]).map(|[aabb]| aabb)
     }
 
     /// The same for the whole shape.
@@ -128,6 +139,49 @@ impl BdTree {
             .map(|(center, half)| Aabb { lower: center - (half + margin), upper: center + (half + margin) });
         let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtStart, a);
         ends.into_iter().reduce(join).unwrap_or_default()
+    }
+}
+
+/// The sums of the six quantized components of an AABB at each configuration of each motion.
+struct MoveBoxes<'b, const E: usize, const N: usize> {
+    quantized: &'b [i16],
+    motions: [&'b CoarseMotion<E>; N],
+}
+
+impl<const E: usize, const N: usize> Kernel for MoveBoxes<'_, E, N> {
+    type Output = [[[f32; LANES]; E]; N];
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, v: V) -> Self::Output {
+        let Self { quantized, motions } = self;
+        let modes = motions.first().map_or(0, |motion| motion.node_factors.len());
+        // Loops, because maps of arrays are not inlined.
+        let mut factors: [&[[[f32; LANES]; E]]; N] = [&[]; N];
+        let mut sums = [[v.splat(0.0); E]; N];
+        for n in 0..N {
+            factors[n] = &motions[n].node_factors[..modes];
+            for end in 0..E {
+                let shift = motions[n].shift[end];
+                sums[n][end] = v.load(&[shift.x, shift.y, shift.z, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            }
+        }
+        for k in 0..modes {
+            // The last two components belong to what follows.
+            let Some(of_mode) = quantized[k * COMPONENTS..].first_chunk::<LANES>() else { break };
+            let of_mode = v.convert(of_mode);
+            for n in 0..N {
+                for end in 0..E {
+                    sums[n][end] = v.multiply_add(of_mode, v.load(&factors[n][k][end]), sums[n][end]);
+                }
+            }
+        }
+        let mut all = [[[0.0; LANES]; E]; N];
+        for n in 0..N {
+            for end in 0..E {
+                all[n][end] = v.array(sums[n][end]);
+            }
+        }
+        all
     }
 }
 
@@ -159,6 +213,12 @@ mod tests {
         ReducedModel::new(mesh, Modes::new(rank, displacements).unwrap()).unwrap()
     }
 
+    fn bits(boxes: &[AabbF32]) -> Vec<[u32; 8]> {
+        let ends = |b: &AabbF32| [b.lower.to_array(), b.upper.to_array()];
+        let bits = |b: &AabbF32| -> Vec<u32> { ends(b).as_flattened().iter().map(|x| x.to_bits()).collect() };
+        boxes.iter().map(|b| bits(b).try_into().unwrap()).collect()
+    }
+
     /// From one q to another, of all sizes and directions.
     #[test]
     fn boxes_contain_the_positions_at_both_ends() {
@@ -182,8 +242,16 @@ mod tests {
                 continue;
             }
             coarse += 1;
+            let mut other = CoarseMotion::default();
+            quantization.begin(&mut other, [ends[1], ends[1]], &frame, rounding);
+            let plain = BdTree { instructions: InstructionSet::Baseline, ..tree.clone() };
             for (n, node) in hierarchy.nodes().iter().enumerate() {
                 let mapped = tree.coarse(n as u32, &motion).unwrap();
+                // Both instruction sets give the same bits, for one motion and for several at once.
+                let all = tree.coarse_at(n as u32, [&motion, &other, &motion]).unwrap();
+                assert_eq!(bits(&all), bits(&plain.coarse_at(n as u32, [&motion, &other, &motion]).unwrap()));
+                assert_eq!(bits(&[mapped, mapped]), bits(&[all[0], all[2]]));
+                assert_eq!(bits(&[plain.coarse(n as u32, &other).unwrap()]), bits(&all[1..2]));
                 let Aabb { lower, upper } = tree.at(n as u32, ends, DVec3::splat(rounding)).unwrap();
                 for v in hierarchy.vertices(node, model.mesh().faces()) {
                     for q in ends {

@@ -1,12 +1,15 @@
 //! Tests of a bucket against itself and of two buckets: packets of boxes against packets, down to triangle pairs.
 
-use super::aabb8::{LANES, Lanes};
+use super::aabb8::{LANES, PacketPair, PairsOfLanes};
 use super::broad_phase::{BroadPhase, TriangleVertices};
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::BucketSlot;
 use super::vertex_motion::VertexMotion;
 use crate::filter::Relation;
+
+/// The pairs of lanes `(i, j)` with `j < i`, as in [`PacketPair`].
+const BEFORE: u64 = 0x7f3f_1f0f_0703_0100;
 
 /// A packet: its bucket and its lane there.
 #[derive(Clone, Copy)]
@@ -36,14 +39,13 @@ impl<const E: usize> BroadPhase<E> {
         narrow: &mut N,
     ) {
         self.volumes.open_bucket(bucket, motion);
-        for i in 0..self.volumes.layout.buckets.packets(bucket).len() {
-            self.counters.box_tests += LANES as u64;
-            let packets = self.volumes.packets(bucket);
-            let later = packets.overlapping_lane(packets, i).0 >> i << i;
-            for j in Lanes(later) {
-                let [first, second] = [i, j as usize].map(|lane| BucketLane { bucket, lane });
-                self.test_packet_pair(context, first, second, motion, narrow);
-            }
+        let count = self.volumes.layout.buckets.packets(bucket).len();
+        self.counters.box_tests += (LANES * count) as u64;
+        let packets = self.volumes.packets(bucket);
+        let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked: BEFORE };
+        for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
+            let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
+            self.test_packet_pair(context, first, second, motion, narrow);
         }
     }
 
@@ -65,13 +67,14 @@ impl<const E: usize> BroadPhase<E> {
             return;
         }
         self.counters.box_tests += LANES as u64;
-        for i in self.volumes.packets(n).overlapping(&y) {
-            self.counters.box_tests += LANES as u64;
-            for j in self.volumes.packets(m).overlapping_lane(self.volumes.packets(n), i as usize) {
-                let first = BucketLane { bucket: n, lane: i as usize };
-                let second = BucketLane { bucket: m, lane: j as usize };
-                self.test_packet_pair(context, first, second, motion, narrow);
-            }
+        let [first, second] = [n, m].map(|bucket| self.volumes.packets(bucket));
+        let pair = PacketPair { first, second, rows: first.overlapping(&y).0, masked: 0 };
+        let overlaps = pair.overlaps(self.volumes.instructions);
+        self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
+        for (i, j) in PairsOfLanes(overlaps.pairs) {
+            let first = BucketLane { bucket: n, lane: i };
+            let second = BucketLane { bucket: m, lane: j };
+            self.test_packet_pair(context, first, second, motion, narrow);
         }
     }
 
@@ -87,38 +90,30 @@ impl<const E: usize> BroadPhase<E> {
     ) {
         let buckets = &self.volumes.layout.buckets;
         let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
-        // Most triangles of a packet stay clear of the whole other packet.
-        let rows = self.volumes.triangles(first).overlapping_lane(self.volumes.packets(y.bucket), y.lane);
-        let columns =
-            self.volumes.triangles(second).overlapping_lane(self.volumes.packets(x.bucket), x.lane).0;
-        self.counters.box_tests += 2 * LANES as u64;
         let (masked, has_adjacent) = buckets.masked_pairs(first, second);
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
-        for row in rows {
-            let open = columns & !(masked >> (LANES as u32 * row)) as u32;
-            if open == 0 {
+        // Most triangles of a packet stay clear of the whole other packet.
+        let wholes = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
+        let [first, second] = [first, second].map(|packet| self.volumes.triangles(packet));
+        let overlaps =
+            PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, wholes);
+        self.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
+        for (row, column) in PairsOfLanes(overlaps.pairs) {
+            let slots = [start_x + row, start_y + column];
+            if !has_adjacent && self.are_adjacent(context, slots) {
                 continue;
             }
-            self.counters.box_tests += LANES as u64;
-            let overlapping =
-                self.volumes.triangles(second).overlapping_lane(self.volumes.triangles(first), row as usize);
-            for column in Lanes(overlapping.0 & open) {
-                let slots = [start_x + row as usize, start_y + column as usize];
-                if !has_adjacent && self.are_adjacent(context, slots) {
-                    continue;
-                }
-                let a = BucketSlot { bucket: x.bucket, slot: slots[0] };
-                let b = BucketSlot { bucket: y.bucket, slot: slots[1] };
-                if self.volumes.are_separated(a, b) {
-                    continue;
-                }
-                let buckets = &self.volumes.layout.buckets;
-                let [a, b] = slots.map(|slot| TriangleVertices {
-                    triangle: buckets.triangle(slot),
-                    vertices: buckets.corners()[slot],
-                });
-                self.test_triangles(context, a, b, motion, narrow);
+            let a = BucketSlot { bucket: x.bucket, slot: slots[0] };
+            let b = BucketSlot { bucket: y.bucket, slot: slots[1] };
+            if self.volumes.are_separated(a, b) {
+                continue;
             }
+            let buckets = &self.volumes.layout.buckets;
+            let [a, b] = slots.map(|slot| TriangleVertices {
+                triangle: buckets.triangle(slot),
+                vertices: buckets.corners()[slot],
+            });
+            self.test_triangles(context, a, b, motion, narrow);
         }
     }
 }

@@ -135,6 +135,12 @@ impl Buckets {
         self.of_node.len()
     }
 
+    /// The end of the indices of nodes that traversals visit: buckets and larger nodes.
+    pub(crate) fn visited_node_count(&self) -> usize {
+        let is_visited = |n: u32| self.of_node(n).is_none_or(|bucket| self.node(bucket) == n);
+        (0..self.of_node.len() as u32).rev().find(|n| is_visited(*n)).map_or(0, |last| last as usize + 1)
+    }
+
     /// The node of a bucket.
     pub(crate) fn node(&self, bucket: u32) -> u32 {
         self.nodes[bucket as usize]

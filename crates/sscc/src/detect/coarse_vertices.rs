@@ -3,26 +3,25 @@
 
 use std::ops::Range;
 
-use glam::{Mat4, Vec4};
+use glam::Vec4;
 
 use super::buckets::Buckets;
 use super::quantization::{CoarseMotion, Quantization};
+use super::vectors::{InstructionSet, Kernel, LANES, Vectors};
 use super::vertex_store::VertexStore;
 
 /// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of
 /// them, so that a bucket is read from contiguous memory (docs/notes/2026-11-23-packets-of-buckets.md).
 #[derive(Default)]
 pub(crate) struct CoarseVertices {
-    /// For each bucket its first group of four vertices, and the end.
+    /// For each bucket its first group of eight vertices, and the end.
     starts: Vec<u32>,
     /// `[group * (rank + 1) + mode][axis]`, see [`Quantization`]: one lane for each vertex.
-    quantized: Vec<[[i16; GROUP]; 3]>,
+    quantized: Vec<[[i16; LANES]; 3]>,
     /// For each slot the corners of its triangle, as numbers among the vertices of its bucket.
     corners: Vec<[u8; 3]>,
+    instructions: InstructionSet,
 }
-
-/// Vertices side by side.
-const GROUP: usize = 4;
 
 impl CoarseVertices {
     pub(crate) fn new(quantization: &Quantization, buckets: &Buckets, vertices: &VertexStore) -> Self {
@@ -35,22 +34,22 @@ impl CoarseVertices {
                 let in_slots = &buckets.corners()[buckets.slots(packet)];
                 corners.extend(in_slots.iter().map(|corners| corners.map(|v| numbers[v as usize])));
             }
-            for group in own.chunks(GROUP) {
+            for group in own.chunks(LANES) {
                 let first = quantized.len();
                 for (lane, &v) in group.iter().enumerate() {
                     for (k, x) in
                         quantization.quantize(vertices.rest(v), vertices.modes(v).iter().copied()).enumerate()
                     {
                         if lane == 0 {
-                            quantized.push([[0; GROUP]; 3]);
+                            quantized.push([[0; LANES]; 3]);
                         }
                         (0..3).for_each(|axis| quantized[first + k][axis][lane] = x[axis]);
                     }
                 }
             }
-            starts.push(starts[bucket as usize] + own.len().div_ceil(GROUP) as u32);
+            starts.push(starts[bucket as usize] + own.len().div_ceil(LANES) as u32);
         }
-        Self { starts, quantized, corners }
+        Self { starts, quantized, corners, instructions: InstructionSet::default() }
     }
 
     /// Whether nothing is stored: then queries must use exact positions.
@@ -60,7 +59,7 @@ impl CoarseVertices {
 
     /// Memory for the coarse positions of all buckets.
     pub(crate) fn new_positions<const E: usize>(&self) -> Vec<[Vec4; E]> {
-        vec![[Vec4::ZERO; E]; GROUP * self.starts.last().map_or(0, |end| *end as usize)]
+        vec![[Vec4::ZERO; E]; LANES * self.starts.last().map_or(0, |end| *end as usize)]
     }
 
     /// The groups of a bucket.
@@ -75,22 +74,23 @@ impl CoarseVertices {
         motion: &CoarseMotion<E>,
         positions: &mut [[Vec4; E]],
     ) {
-        let (groups, modes) = (self.groups(bucket), motion.factors.len());
-        let positions = &mut positions[groups.start * GROUP..groups.end * GROUP];
-        let quantized = self.quantized[groups.start * modes..groups.end * modes].chunks_exact(modes);
-        let shift = motion.shift.map(|x| [0, 1, 2].map(|axis| Vec4::splat(x[axis])));
-        for (group, positions) in quantized.zip(positions.as_chunks_mut::<GROUP>().0) {
-            let mut sums = shift;
-            for (displacement, factors) in group.iter().zip(&motion.factors) {
-                for end in 0..E {
-                    for axis in 0..3 {
-                        sums[end][axis] += Vec4::from_array(displacement[axis].map(f32::from)) * factors[end];
-                    }
-                }
-            }
-            let columns = sums.map(|[x, y, z]| Mat4::from_cols(x, y, z, Vec4::ZERO).transpose());
-            *positions = std::array::from_fn(|lane| columns.map(|columns| columns.col(lane)));
-        }
+        self.move_bucket_at(bucket, [(motion, positions)]);
+    }
+
+    /// Moves the vertices of a bucket for several motions at once, each with its own positions: displacements are read and
+    /// converted once for all of them.
+    pub(crate) fn move_bucket_at<const E: usize, const N: usize>(
+        &self,
+        bucket: u32,
+        motions: [(&CoarseMotion<E>, &mut [[Vec4; E]]); N],
+    ) {
+        let groups = self.groups(bucket);
+        let modes = motions.first().map_or(0, |(motion, _)| motion.factors.len());
+        let displacements = &self.quantized[groups.start * modes..groups.end * modes];
+        let motions = motions.map(|(motion, positions)| {
+            (motion, positions[groups.start * LANES..groups.end * LANES].as_chunks_mut().0)
+        });
+        self.instructions.run(MoveVertices { displacements, motions });
     }
 
     /// The corners of the triangle in a slot of a bucket whose vertices have been moved, in the frame; their fourth
@@ -102,9 +102,58 @@ impl CoarseVertices {
         slot: usize,
         positions: &[[Vec4; E]],
     ) -> [[Vec4; E]; 3] {
-        let first = self.starts[bucket as usize] as usize * GROUP;
+        let first = self.starts[bucket as usize] as usize * LANES;
         let [a, b, c] = self.corners[slot];
         [positions[first + a as usize], positions[first + b as usize], positions[first + c as usize]]
+    }
+}
+
+/// The motion of all groups of a bucket.
+struct MoveVertices<'b, const E: usize, const N: usize> {
+    displacements: &'b [[[i16; LANES]; 3]],
+    motions: [(&'b CoarseMotion<E>, &'b mut [[[Vec4; E]; LANES]]); N],
+}
+
+impl<const E: usize, const N: usize> Kernel for MoveVertices<'_, E, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, v: V) {
+        let Self { displacements, motions } = self;
+        let modes = motions.first().map_or(0, |(motion, _)| motion.factors.len());
+        // Loops, because maps of arrays are not inlined.
+        let mut factors: [&[[f32; E]]; N] = [&[]; N];
+        let mut shifts = [[[v.splat(0.0); 3]; E]; N];
+        for (n, (motion, _)) in motions.iter().enumerate() {
+            factors[n] = &motion.factors[..modes];
+            for end in 0..E {
+                let shift = motion.shift[end];
+                shifts[n][end] = [v.splat(shift.x), v.splat(shift.y), v.splat(shift.z)];
+            }
+        }
+        for (group, displacements) in displacements.chunks_exact(modes).enumerate() {
+            let mut sums = shifts;
+            for (k, axes) in displacements.iter().enumerate() {
+                for axis in 0..3 {
+                    let displacement = v.convert(&axes[axis]);
+                    for n in 0..N {
+                        for end in 0..E {
+                            let factor = v.splat(factors[n][k][end]);
+                            sums[n][end][axis] = v.multiply_add(displacement, factor, sums[n][end][axis]);
+                        }
+                    }
+                }
+            }
+            for n in 0..N {
+                let positions = &mut motions[n].1[group];
+                for end in 0..E {
+                    let points = v.points(sums[n][end]);
+                    for lane in 0..LANES {
+                        positions[lane][end] = points[lane];
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -165,6 +214,7 @@ mod tests {
                 continue;
             }
             used += 1;
+            compare_kernels(&layout, [ends, [&q, &q], [&later, &q], ends], &frame, rounding);
             let mut largest = 0.0_f64;
             for bucket in 0..layout.buckets.count() as u32 {
                 layout.coarse.move_bucket(bucket, &motion, &mut positions);
@@ -183,5 +233,35 @@ mod tests {
             worst = worst.max(largest / f64::from(motion.error));
         }
         assert!(used > 300 && unused > 2 && worst > 0.05, "{used} {unused} {worst}");
+    }
+
+    /// Both instruction sets give the same bits, for one motion and for several at once.
+    fn compare_kernels(layout: &Layout, all: [[&[f64]; 2]; 4], frame: &F32Frame, rounding: f64) {
+        let mut coarse = CoarseVertices::new(&layout.quantization, &layout.buckets, &layout.vertices);
+        let motions = all.map(|ends| {
+            let mut motion = CoarseMotion::default();
+            layout.quantization.begin(&mut motion, ends, frame, rounding);
+            motion
+        });
+        let bits = |positions: &[[Vec4; 2]]| -> Vec<[u32; 4]> {
+            positions.as_flattened().iter().map(|x| x.to_array().map(f32::to_bits)).collect()
+        };
+        let mut expected: Option<Vec<Vec<[u32; 4]>>> = None;
+        for instructions in [InstructionSet::default(), InstructionSet::Baseline] {
+            coarse.instructions = instructions;
+            let [mut one, mut group] = [(); 2].map(|()| [(); 4].map(|()| coarse.new_positions()));
+            for bucket in 0..layout.buckets.count() as u32 {
+                for (motion, positions) in motions.iter().zip(&mut one) {
+                    coarse.move_bucket(bucket, motion, positions);
+                }
+                let [a, b, c, d] = &mut group;
+                let [p, q, r, s] = &motions;
+                coarse.move_bucket_at(bucket, [(p, a), (q, b), (r, c), (s, d)]);
+            }
+            for found in [one, group] {
+                let found: Vec<_> = found.iter().map(|positions| bits(positions)).collect();
+                assert_eq!(expected.get_or_insert_with(|| found.clone()), &found);
+            }
+        }
     }
 }

@@ -16,6 +16,7 @@ pub(crate) mod broad_phase;
 mod brute_force;
 pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
+pub(crate) mod buckets_ahead;
 mod coarse_vertices;
 mod colliding_pairs;
 pub(crate) mod contact_curves;
@@ -33,6 +34,7 @@ pub(crate) mod normal_cones;
 mod quantization;
 mod traversal;
 pub(crate) mod two_meshes;
+mod vectors;
 pub(crate) mod vertex_motion;
 mod vertex_store;
 

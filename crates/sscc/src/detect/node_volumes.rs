@@ -10,28 +10,34 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 
-use super::aabb8::{Aabb8, AabbF32};
+use super::aabb8::{Aabb8, AabbF32, LANES};
+use super::buckets_ahead::{CoarsePositions, begin_coarse};
 use super::exact_positions::ExactPositions;
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
 use super::quantization::CoarseMotion;
+use super::vectors::InstructionSet;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{BRANCHING, Hierarchy};
+
+// The children of a node are compared as the first four lanes of a packet.
+const _: () = assert!(BRANCHING <= LANES / 2);
 
 /// The AABBs of one search and the positions from which they are computed. Each entry has the number of the search for
 /// which it is current.
 #[derive(Clone)]
 pub(crate) struct NodeVolumes<const E: usize> {
     pub(crate) layout: Arc<Layout>,
+    pub(crate) instructions: InstructionSet,
     is_lazy: bool,
     search: u32,
     positions: ExactPositions<E>,
     /// Whether AABBs of triangles are computed from coarse positions.
     is_coarse: bool,
     motion: CoarseMotion<E>,
-    coarse: Vec<[Vec4; E]>,
+    coarse: CoarsePositions<E>,
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
     corner_error: f32,
     /// The AABB of each node that is a bucket or larger.
@@ -50,15 +56,16 @@ pub(crate) struct NodeVolumes<const E: usize> {
 impl<const E: usize> NodeVolumes<E> {
     /// Lazy volumes are computed where a traversal visits nodes, others all at the start of each search.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool) -> Self {
-        let (nodes, buckets) = (layout.buckets.node_count(), layout.buckets.count());
+        let (nodes, buckets) = (layout.buckets.visited_node_count(), layout.buckets.count());
         Self {
             layout: Arc::clone(layout),
+            instructions: InstructionSet::default(),
             is_lazy,
             search: 0,
             positions: ExactPositions::new(layout.vertices.count()),
             is_coarse: false,
             motion: CoarseMotion::default(),
-            coarse: layout.coarse.new_positions(),
+            coarse: CoarsePositions { positions: layout.coarse.new_positions(), moved: Vec::new() },
             corner_error: f32::INFINITY,
             nodes: vec![AabbF32::EMPTY; nodes],
             node_searches: vec![0; nodes],
@@ -82,11 +89,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
         self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
-        let coarse_motion = &mut self.motion;
-        self.is_coarse = !layout.coarse.is_empty()
-            && motion
-                .coarse_coordinates()
-                .is_some_and(|q| layout.quantization.begin(coarse_motion, q, frame, rounding));
+        self.is_coarse = begin_coarse(&layout, motion, frame, &mut self.motion);
         self.corner_error = if !M::HAS_ERROR_BOUND {
             f32::INFINITY
         } else if self.is_coarse {
@@ -118,7 +121,7 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
     /// nodes relative to the root's, a bucket counting once for each of its packets. 0 where the root has no area.
-    pub(crate) fn surface_area_cost(&self, hierarchy: &Hierarchy) -> f64 {
+    pub(crate) fn surface_area_cost(&self) -> f64 {
         let area = |n: usize| {
             let size = self.nodes[n].upper - self.nodes[n].lower;
             f64::from(size.x * size.y + size.y * size.z + size.z * size.x)
@@ -129,7 +132,7 @@ impl<const E: usize> NodeVolumes<E> {
             area(n) * packets as f64
         };
         let root = area(0);
-        if root > 0.0 { (0..hierarchy.nodes().len()).map(cost).sum::<f64>() / root } else { 0.0 }
+        if root > 0.0 { (0..self.nodes.len()).map(cost).sum::<f64>() / root } else { 0.0 }
     }
 
     /// The frame of this search.
@@ -215,24 +218,35 @@ impl<const E: usize> NodeVolumes<E> {
         let n = buckets.node(bucket);
         let mut by = Vec4::ZERO;
         if self.is_coarse {
-            coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
+            if !self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
+                coarse.move_bucket(bucket, &self.motion, &mut self.coarse.positions);
+            }
             by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
         } else if motion.margin() > 0.0 {
             by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
         }
         let mut whole = AabbF32::EMPTY;
         for (lane, packet) in buckets.packets(bucket).enumerate() {
-            let mut union = AabbF32::EMPTY;
-            for (i, slot) in buckets.slots(packet).enumerate() {
-                let triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
-                self.triangles[packet].set(i, &triangle);
-                union = union.union(&triangle);
+            let (slots, mut union) = (buckets.slots(packet), AabbF32::EMPTY);
+            for half in 0..2 {
+                let mut triangles = [AabbF32::EMPTY; LANES / 2];
+                for (triangle, slot) in triangles.iter_mut().zip(slots.clone().skip(half * LANES / 2)) {
+                    *triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
+                    union = union.union(triangle);
+                }
+                self.triangles[packet].set_half(half, &triangles);
             }
             self.packets[bucket as usize].set(lane, &union);
             whole = whole.union(&union);
         }
         self.packets_searches[bucket as usize] = self.search;
         self.set_node(n, whole);
+    }
+
+    /// Exchanges the coarse positions of this search. Some buckets may have been moved for the search that begins next
+    /// ([`BucketsAhead`](super::buckets_ahead::BucketsAhead)).
+    pub(crate) fn exchange_positions(&mut self, other: &mut CoarsePositions<E>) {
+        std::mem::swap(&mut self.coarse, other);
     }
 
     /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
@@ -279,7 +293,7 @@ impl<const E: usize> NodeVolumes<E> {
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         let Layout { buckets, coarse, .. } = &*self.layout;
         if self.is_coarse {
-            coarse.corners(bucket, slot, &self.coarse)
+            coarse.corners(bucket, slot, &self.coarse.positions)
         } else {
             self.positions.mapped(buckets.corners()[slot])
         }

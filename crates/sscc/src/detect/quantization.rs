@@ -1,10 +1,11 @@
 //! Displacements quantized to 16 bits: a quarter of the bytes of double precision.
 //!
-//! They are moved in single precision, four vertices side by side, with a bound of the error.
+//! They are moved in single precision, eight vertices side by side, with a bound of the error.
 
 use glam::{DVec3, Vec4};
 
 use super::f32_frame::F32Frame;
+use super::vectors::LANES;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
@@ -31,17 +32,18 @@ const MAX_ERROR: f64 = 1.0 / 2048.0;
 pub(crate) struct CoarseMotion<const E: usize> {
     /// The centre of the rest pose in the frame.
     pub(crate) shift: [Vec4; E],
-    /// For each mode its factor, the same in all lanes.
-    pub(crate) factors: Vec<[Vec4; E]>,
-    /// For each mode the larger magnitude of its factors at both configurations.
-    pub(crate) largest: Vec<Vec4>,
+    /// For each mode its factor.
+    pub(crate) factors: Vec<[f32; E]>,
+    /// For each mode the factors of the six components of a BD-tree AABB: of its centre the factor, of its half extents
+    /// the larger magnitude of the factors at both configurations. Two lanes are 0.
+    pub(crate) node_factors: Vec<[[f32; LANES]; E]>,
     /// An upper bound, along each axis, of the distance from coarse positions to the exact ones mapped to the frame.
     pub(crate) error: f32,
 }
 
 impl<const E: usize> Default for CoarseMotion<E> {
     fn default() -> Self {
-        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), largest: Vec::new(), error: f32::INFINITY }
+        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), node_factors: Vec::new(), error: f32::INFINITY }
     }
 }
 
@@ -104,7 +106,7 @@ impl Quantization {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let scale = frame.scale();
         let rest = self.half * scale;
-        let factor = |x: f64| Vec4::splat((x / WHOLE) as f32);
+        let factor = |x: f64| (x / WHOLE) as f32;
         motion.factors.clear();
         motion.factors.push([factor(rest); E]);
         let mut sums = [rest; E];
@@ -113,9 +115,12 @@ impl Quantization {
             (0..E).for_each(|end| sums[end] += factors[end].abs());
             motion.factors.push(factors.map(factor));
         }
-        let largest = |ends: &[Vec4; E]| ends.iter().fold(Vec4::ZERO, |most, factor| most.max(factor.abs()));
-        motion.largest.clear();
-        motion.largest.extend(motion.factors.iter().map(largest));
+        let of_node = |ends: &[f32; E]| {
+            let largest = ends.iter().fold(0.0_f32, |most, factor| most.max(factor.abs()));
+            ends.map(|factor| [factor, factor, factor, largest, largest, largest, 0.0, 0.0])
+        };
+        motion.node_factors.clear();
+        motion.node_factors.extend(motion.factors.iter().map(of_node));
         let most = if sums.iter().all(|sum| sum.is_finite()) {
             sums.into_iter().fold(0.0, f64::max)
         } else {

@@ -82,7 +82,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn push_overlapping(&mut self, n: u32, first_child: u32, (a, b): NodePair) {
         self.counters.box_tests += 1;
-        let lanes = self.volumes.children(n).overlapping(self.volumes.node(a));
+        let lanes = self.volumes.children(n).overlapping_of_four(self.volumes.node(a));
         if lanes.0 >> (b - first_child) & 1 != 0 {
             self.stack.push((a, b));
         }
@@ -107,7 +107,7 @@ impl<const E: usize> BroadPhase<E> {
         self.counters.opened += 1;
         self.volumes.open_node(&context.hierarchy, n, motion);
         self.counters.box_tests += LANES as u64;
-        let open = self.volumes.children(n).overlapping(self.volumes.node(m));
+        let open = self.volumes.children(n).overlapping_of_four(self.volumes.node(m));
         if self.volumes.layout.buckets.of_node(m).is_some() {
             self.stack.extend(open.map(|i| (first_child(n) + i, m)));
             return;
@@ -115,7 +115,8 @@ impl<const E: usize> BroadPhase<E> {
         self.volumes.open_node(&context.hierarchy, m, motion);
         for i in open {
             self.counters.box_tests += LANES as u64;
-            let open = self.volumes.children(m).overlapping_lane(self.volumes.children(n), i as usize);
+            let open =
+                self.volumes.children(m).overlapping_lane_of_four(self.volumes.children(n), i as usize);
             self.stack.extend(open.map(|j| (first_child(n) + i, first_child(m) + j)));
         }
     }

@@ -81,14 +81,14 @@ pub(crate) fn traverse_two_meshes<
                 x.open(n);
                 let first_child = x.first_child(n);
                 counters.box_tests += LANES as u64;
-                let open = x.volumes.children(n).overlapping(y.volumes.node(m));
+                let open = x.volumes.children(n).overlapping_of_four(y.volumes.node(m));
                 stack.extend(open.map(|i| (first_child + i, m)));
             }
             [Some(_), None] => {
                 y.open(m);
                 let first_child = y.first_child(m);
                 counters.box_tests += LANES as u64;
-                let open = y.volumes.children(m).overlapping(x.volumes.node(n));
+                let open = y.volumes.children(m).overlapping_of_four(x.volumes.node(n));
                 stack.extend(open.map(|j| (n, first_child + j)));
             }
             [None, None] => {
@@ -96,9 +96,10 @@ pub(crate) fn traverse_two_meshes<
                 y.open(m);
                 let first = [x.first_child(n), y.first_child(m)];
                 counters.box_tests += LANES as u64;
-                for i in x.volumes.children(n).overlapping(y.volumes.node(m)) {
+                for i in x.volumes.children(n).overlapping_of_four(y.volumes.node(m)) {
                     counters.box_tests += LANES as u64;
-                    let open = y.volumes.children(m).overlapping_lane(x.volumes.children(n), i as usize);
+                    let open =
+                        y.volumes.children(m).overlapping_lane_of_four(x.volumes.children(n), i as usize);
                     stack.extend(open.map(|j| (first[0] + i, first[1] + j)));
                 }
             }

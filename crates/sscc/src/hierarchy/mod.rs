@@ -14,5 +14,5 @@ mod validation;
 
 pub use hierarchy::Hierarchy;
 pub use node::Node;
-pub(crate) use node::{BUCKET_TRIANGLES, PACKET_TRIANGLES};
+pub(crate) use node::{BRANCHING, BUCKET_TRIANGLES, PACKET_TRIANGLES};
 pub(crate) use node_pair::NodePair;

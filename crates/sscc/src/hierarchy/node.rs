@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::node_pair::NodePair;
 
 /// Children of an inner node: between 2 and this many.
-pub(super) const BRANCHING: usize = 4;
+pub(crate) const BRANCHING: usize = 4;
 
 /// A bucket is a node of at most this many triangles that lies within no other such node. Traversals end at buckets.
 pub(crate) const BUCKET_TRIANGLES: usize = 64;

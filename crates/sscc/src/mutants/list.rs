@@ -86,6 +86,8 @@ mutants! {
     QuantizationExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
     CoarseTrianglesNotWidened: CaughtBy("it rounding::exact_contacts_are_found_in_single_precision");
+    /// The buckets moved ahead for one group are those of the last group.
+    BucketsOfLastGroup: CaughtBy("it batch::answers_are_those_of_single_queries");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Swept AABBs of triangles contain the start only.

@@ -7,7 +7,6 @@ use super::method::Method;
 use super::statistics::Statistics;
 use crate::Error;
 use crate::detect::narrow_phase::DiscreteHits;
-use crate::detect::vertex_motion::DeformedMotion;
 
 /// Finds the pairs that collide at q, and owns the memory for it.
 #[derive(Clone)]
@@ -35,12 +34,12 @@ impl DiscreteSearch {
     pub(super) fn find(
         &mut self,
         context: &QueryContext<'_>,
-        Configuration { q, norm, reach }: Configuration<'_>,
+        configuration: Configuration<'_>,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
-        statistics.root_certified = context.is_root_certified(norm);
+        statistics.root_certified = context.is_root_certified(configuration.norm);
         if !statistics.root_certified || !context.detect.exceptions.is_empty() {
-            let result = self.search(context, Configuration { q, norm, reach }, statistics.root_certified);
+            let result = self.search(context, configuration, statistics.root_certified);
             statistics.set_counters(&self.certified.broad.counters);
             result?;
         }
@@ -51,18 +50,22 @@ impl DiscreteSearch {
     fn search(
         &mut self,
         context: &QueryContext<'_>,
-        Configuration { q, norm, reach }: Configuration<'_>,
+        configuration: Configuration<'_>,
         is_root_certified: bool,
     ) -> Result<(), Error> {
         let Self { certified, narrow } = self;
         if context.method == Method::BruteForce {
-            certified.broad.brute_force(&context.detect, |v| [context.model.position(v, q)], narrow);
+            certified.broad.brute_force(
+                &context.detect,
+                |v| [context.model.position(v, configuration.q)],
+                narrow,
+            );
         } else {
-            let motion = DeformedMotion::new([q], reach);
+            let motion = configuration.motion();
             certified.broad.begin_volumes(&context.detect, &motion);
             certified.broad.test_exceptions(&context.detect, &motion, narrow);
             if !is_root_certified {
-                certified.find(context, norm, &motion, narrow);
+                certified.find(context, configuration.norm, &motion, narrow);
             }
         }
         certified.broad.end(narrow)?;

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use super::configuration::Configuration;
+use super::configuration_check::ConfigurationCheck;
 use super::context::QueryContext;
 use super::discrete_search::DiscreteSearch;
 use super::method::Method;
 use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
-use super::valid_ball::ValidBall;
 use crate::detect::narrow_phase::{BallHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
@@ -32,9 +32,7 @@ pub struct Query<'a> {
     pub(super) candidates: Option<Box<SweptSearch<BallHits>>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
-    pub(super) valid_ball: ValidBall,
-    /// Scratch for `q - center`; empty where the centre is 0.
-    offset: Vec<f64>,
+    pub(super) check: ConfigurationCheck,
 }
 
 impl<'a> Query<'a> {
@@ -87,13 +85,11 @@ impl<'a> Query<'a> {
         hierarchy: Cow<'a, Hierarchy>,
         method: Method,
     ) -> Self {
-        let is_centered = scope.center.iter().all(|x| *x == 0.0);
-        let offset = vec![0.0; if is_centered { 0 } else { model.rank() }];
         let context = QueryContext::new(model, certificates, scope, hierarchy, method);
         let discrete = DiscreteSearch::new(&context);
-        let valid_ball = ValidBall::new(&context);
+        let check = ConfigurationCheck::new(&context);
         let statistics = Statistics::default();
-        Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, valid_ball, offset }
+        Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, check }
     }
 
     /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
@@ -164,18 +160,7 @@ impl<'a> Query<'a> {
     /// Checks that q is a configuration of the model, and measures it.
     #[inline(always)]
     pub(super) fn measure<'q>(&mut self, q: &'q [f64]) -> Result<Configuration<'q>, Error> {
-        let scope = &self.context.scope;
-        let norm = if q.len() != scope.center.len() {
-            f64::INFINITY
-        } else if self.offset.is_empty() {
-            scope.metric.norm(q)
-        } else {
-            scope.metric.norm_from(q, &scope.center, &mut self.offset)
-        };
-        let is_within = norm < self.valid_ball.radius;
-        let reach =
-            if is_within { self.valid_ball.reach } else { self.context.model.check_coordinates(q)? };
-        Ok(Configuration { q, norm, reach })
+        self.check.measure(&self.context, q)
     }
 
     /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.

@@ -38,6 +38,7 @@ impl ValidBall {
 mod tests {
     use glam::DVec3;
 
+    use super::ValidBall;
     use crate::{
         Certificates, CertifyOptions, Error, Metric, MetricKind, Modes, Query, ReducedModel, TriMesh,
     };
@@ -59,17 +60,18 @@ mod tests {
             let options = CertifyOptions { center: Some(center.clone()), ..CertifyOptions::default() };
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let query = Query::new(&model, &certificates).unwrap();
-            assert_eq!(query.valid_ball.radius, certificates.root_radius());
+            let valid_ball = ValidBall::new(&query.context);
+            assert_eq!(valid_ball.radius, certificates.root_radius());
             let mut largest = 0.0_f64;
             for i in 0..1000 {
                 let z: Vec<f64> = (0..3).map(|k| (f64::from(i) * (k as f64 + 1.3)).sin()).collect();
                 let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
-                let z: Vec<f64> = z.iter().map(|z| z / length * query.valid_ball.radius).collect();
+                let z: Vec<f64> = z.iter().map(|z| z / length * valid_ball.radius).collect();
                 let d = model.metric().unscaled(&z);
                 let q: Vec<f64> = center.iter().zip(d).map(|(c, d)| c + d).collect();
                 largest = largest.max(model.reach(&q));
             }
-            assert!(largest <= query.valid_ball.reach && largest > 0.7 * query.valid_ball.reach, "{largest}");
+            assert!(largest <= valid_ball.reach && largest > 0.7 * valid_ball.reach, "{largest}");
         }
     }
 

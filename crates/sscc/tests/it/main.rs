@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod audit;
+mod batch;
 mod cancel;
 mod ccd;
 mod certificates;

@@ -35,7 +35,7 @@ impl<const E: usize, N: NarrowPhase<E>> Search<E, N> {
         self.narrow.hits().begin(limit);
         broad.begin();
         broad.begin_volumes(context, motion);
-        self.cost = broad.volumes.surface_area_cost(&context.hierarchy);
+        self.cost = broad.volumes.surface_area_cost();
         if is_first {
             self.first_cost = self.cost;
         }

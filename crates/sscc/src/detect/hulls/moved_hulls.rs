@@ -1,12 +1,12 @@
 //! The hulls of one search, each moved at most once, and the test of two nodes.
 
 use glam::{Mat3, Vec3, Vec4};
-use pulp::Arch;
 
 use super::hull_motion::HullMotion;
 use super::node_hulls::NodeHulls;
-use super::separation::{AffineMap, MovedPoints, are_separated, widest_gap};
+use super::separation::{AffineMap, MovedPoints, PlaneTest, widest_gap};
 use crate::detect::f32_frame::F32Frame;
+use crate::detect::vectors::InstructionSet;
 use crate::detect::vertex_motion::VertexMotion;
 
 /// Tests that may fail at the start of a search before hulls are no longer tested, and what a test adds or takes.
@@ -22,8 +22,7 @@ const MIN_GAP: f32 = 2.0;
 #[derive(Clone)]
 pub(crate) struct MovedHulls<const E: usize> {
     motion: HullMotion<E>,
-    /// The instruction set of this processor.
-    simd: Arch,
+    instructions: InstructionSet,
     /// Whether the motion is that of this search: it is set by the first test.
     has_begun: bool,
     credit: i32,
@@ -46,7 +45,7 @@ impl<const E: usize> MovedHulls<E> {
         let empty = MovedHull { maps: [[Vec4::ZERO; 3]; E], radius: 0.0, cofactors: Mat3::ZERO };
         Self {
             motion: HullMotion::default(),
-            simd: Arch::new(),
+            instructions: InstructionSet::default(),
             has_begun: false,
             credit: 0,
             search: 0,
@@ -101,11 +100,8 @@ impl<const E: usize> MovedHulls<E> {
         self.update(hulls, j, m, motion);
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
-        let [x, y] = [i, j].map(|i| self.points(hulls, i));
-        let is_apart = self.simd.dispatch(
-            #[inline(always)]
-            || are_separated(&x, &y, a.radius + b.radius, normal),
-        );
+        let points = [i, j].map(|i| self.points(hulls, i));
+        let is_apart = self.instructions.run(PlaneTest { points, distance: a.radius + b.radius, normal });
         self.credit += if is_apart { GAIN } else { -LOSS };
         is_apart
     }

@@ -9,6 +9,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
+use crate::detect::vectors::{Baseline, Kernel, LANES, Vectors};
 use crate::geometry::nearest_to_origin;
 
 /// The coordinates of core points along each axis.
@@ -27,14 +28,11 @@ impl<const E: usize> MovedPoints<'_, E> {
     /// The largest coordinate of any moved point along a direction. No point is moved: the transposed map turns the
     /// direction back, at the cost of moving one point.
     #[inline(always)]
-    pub(super) fn extent(&self, dir: Vec3) -> f32 {
+    pub(super) fn extent<V: Vectors>(&self, vectors: V, dir: Vec3) -> f32 {
         let [first, others @ ..] = right_or!(&self.maps[..], HullsAtStart, &self.maps[..1]) else {
             return f32::INFINITY;
         };
-        let of_map = |map: &AffineMap| {
-            let turned = turned_back(map, dir);
-            extent(self.points, turned.truncate()) + turned.w
-        };
+        let of_map = |map: &AffineMap| extent(vectors, self.points, turned_back(map, dir));
         others.iter().fold(of_map(first), |most, map| most.max(of_map(map)))
     }
 
@@ -46,10 +44,10 @@ impl<const E: usize> MovedPoints<'_, E> {
 
     /// The moved point that is farthest along a direction at the first configuration.
     fn support(&self, dir: Vec3) -> Vec3 {
-        let dir = turned_back(&self.maps[0], dir).truncate();
-        let extent = extent(self.points, dir);
+        let dir = turned_back(&self.maps[0], dir);
+        let extent = extent(Baseline, self.points, dir);
         let [x, y, z] = self.points;
-        let along = |i: usize| x[i] * dir.x + y[i] * dir.y + z[i] * dir.z;
+        let along = |i: usize| x[i] * dir.x + dir.w + y[i] * dir.y + z[i] * dir.z;
         self.point((0..CORE_POINTS).find(|i| along(*i) == extent).unwrap_or(0))
     }
 }
@@ -60,8 +58,19 @@ fn turned_back(map: &AffineMap, dir: Vec3) -> Vec4 {
     map[0] * dir.x + map[1] * dir.y + map[2] * dir.z
 }
 
-/// Points compared side by side.
-const LANES: usize = 8;
+/// The largest coordinate of any point along a direction, and the shift.
+#[inline(always)]
+fn extent<V: Vectors>(v: V, points: &Points, turned: Vec4) -> f32 {
+    let [x, y, z] = points.each_ref().map(|axis| axis.as_chunks::<LANES>().0);
+    let [dir_x, dir_y, dir_z, shift] = turned.to_array().map(|c| v.splat(c));
+    let along = |i: usize| {
+        let sum = v.multiply_add(v.load(&x[i]), dir_x, shift);
+        let sum = v.multiply_add(v.load(&y[i]), dir_y, sum);
+        v.multiply_add(v.load(&z[i]), dir_z, sum)
+    };
+    let lanes = v.array((1..x.len()).fold(along(0), |most, i| v.max(most, along(i))));
+    lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)
+}
 
 /// Covers the rounding of the test: squares, products, a sum, a difference.
 const ROUND_UP: f32 = 1.0 + 1e-5;
@@ -73,26 +82,33 @@ const SQUARES: Range<f32> = 1e-6..1e18;
 const STEPS: usize = 32;
 const TOLERANCE: f32 = 1e-3;
 
-/// Whether a plane of this normal separates two sets of points by more than `distance`, the first one below.
+/// Whether a plane separates two sets of points by more than a distance, the first one below.
 ///
 /// The gap along the normal is compared with the distance times the normal's length, both squared. Squares are within the
 /// range of numbers: coordinates are below 1e5 and distances above 1e-15, by the bound of their errors
 /// ([`HullMotion::error`](super::hull_motion::HullMotion)).
-#[inline(always)]
-pub(super) fn are_separated<const E: usize>(
-    a: &MovedPoints<'_, E>,
-    b: &MovedPoints<'_, E>,
-    distance: f32,
-    normal: Vec3,
-) -> bool {
-    let square = normal.length_squared();
-    // NaN is in no range, and fails the other tests, too.
-    if !SQUARES.contains(&square) {
-        return false;
+pub(super) struct PlaneTest<'t, const E: usize> {
+    pub(super) points: [MovedPoints<'t, E>; 2],
+    pub(super) distance: f32,
+    /// Of any length.
+    pub(super) normal: Vec3,
+}
+
+impl<const E: usize> Kernel for PlaneTest<'_, E> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, vectors: V) -> bool {
+        let Self { points: [a, b], distance, normal } = self;
+        let square = normal.length_squared();
+        // NaN is in no range, and fails the other tests, too.
+        if !SQUARES.contains(&square) {
+            return false;
+        }
+        let gap = -b.extent(vectors, -normal) - a.extent(vectors, normal);
+        let is_wide = gap * gap > distance * distance * square * ROUND_UP;
+        gap > 0.0 && right_or!(is_wide, HullsTouch, true)
     }
-    let gap = -b.extent(-normal) - a.extent(normal);
-    let is_wide = gap * gap > distance * distance * square * ROUND_UP;
-    gap > 0.0 && right_or!(is_wide, HullsTouch, true)
 }
 
 /// The unit normal of the plane with the widest gap between two sets of points, and the gap; none where it is 0.
@@ -102,7 +118,7 @@ pub(super) fn widest_gap(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> Opti
     let mut best = None;
     let mut simplex: Vec<DVec3> = Vec::with_capacity(4);
     for _ in 0..STEPS {
-        let gap = -b.extent(-normal) - a.extent(normal);
+        let gap = -b.extent(Baseline, -normal) - a.extent(Baseline, normal);
         if gap > best.map_or(0.0, |(_, gap)| gap) {
             best = Some((normal, gap));
         }
@@ -129,21 +145,4 @@ pub(super) fn widest_gap(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> Opti
 fn unit(dir: Vec3) -> Option<Vec3> {
     let dir = (dir / dir.abs().max_element()).normalize();
     dir.is_finite().then_some(dir)
-}
-
-/// The largest coordinate of any point along a direction.
-#[inline(always)]
-fn extent(points: &Points, dir: Vec3) -> f32 {
-    let mut lanes = [f32::NEG_INFINITY; LANES];
-    let [x, y, z] = points.each_ref().map(|axis| axis.as_chunks::<LANES>().0);
-    for ((x, y), z) in x.iter().zip(y).zip(z) {
-        for i in 0..LANES {
-            let along = x[i] * dir.x + y[i] * dir.y + z[i] * dir.z;
-            // Without the exact rule for NaN this is one instruction.
-            lanes[i] = if along > lanes[i] { along } else { lanes[i] };
-        }
-    }
-    let [a, b, c, d, e, f, g, h] = lanes;
-    let max = |a: f32, b: f32| if a > b { a } else { b };
-    max(max(max(a, b), max(c, d)), max(max(e, f), max(g, h)))
 }

@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use super::separation::{AffineMap, MovedPoints, Points, are_separated};
+use super::separation::{AffineMap, MovedPoints, PlaneTest, Points};
 use super::{MovedHulls, NodeHulls};
 use crate::detect::ball_motion::{BallMotion, BallRates};
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::layout::{Layout, Needs};
+use crate::detect::vectors::{Baseline, InstructionSet};
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::filter::PairFilter;
 use crate::geometry::nearest_to_origin;
@@ -254,7 +255,7 @@ fn extents_are_those_of_the_moved_points() {
         let most = maps.iter().map(of_map).fold(f64::MIN, f64::max);
         // All terms of a coordinate are below 4 together.
         let error = 7.0 * 4.0 * 1.7321 * f64::from(f32::EPSILON) / 2.0;
-        assert!((f64::from(moved.extent(dir)) - most).abs() <= error);
+        assert!((f64::from(moved.extent(Baseline, dir)) - most).abs() <= error);
     }
 }
 
@@ -271,8 +272,11 @@ fn only_gaps_wider_than_the_radii_separate() {
         distance: f32,
         normal: Vec3,
     ) -> bool {
-        let [a, b] = [&a, &b].map(|maps| MovedPoints { points, maps });
-        are_separated(&a, &b, distance, normal)
+        let points = [&a, &b].map(|maps| MovedPoints { points, maps });
+        let test = || PlaneTest { points: points.each_ref().map(|p| MovedPoints { ..*p }), distance, normal };
+        let is_apart = InstructionSet::default().run(test());
+        assert_eq!(is_apart, InstructionSet::Baseline.run(test()));
+        is_apart
     }
     assert!(test(&points, [low], [high], 0.9, Vec3::Z));
     assert!(!test(&points, [low], [high], 1.0, Vec3::Z));

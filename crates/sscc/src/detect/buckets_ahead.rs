@@ -1,0 +1,118 @@
+//! Buckets that are moved before several searches begin, for all of them at once.
+//!
+//! Far from rest, searches of a batch open nearly the same buckets. Those that most searches of the last group opened are
+//! moved for the next group, so that modes are read and converted once for all of its configurations. Each search then
+//! finds coarse positions that it would have computed itself, with the same bits. So answers and statistics depend neither on
+//! groups nor on which buckets were expected (docs/notes/2026-11-25-explicit-vectors.md).
+
+use glam::Vec4;
+
+use super::f32_frame::F32Frame;
+use super::layout::Layout;
+use super::quantization::CoarseMotion;
+use super::vertex_motion::VertexMotion;
+
+/// Searches in a group at most: as many as their sums fit in the registers of AVX2.
+pub(crate) const GROUP: usize = 4;
+
+/// The coarse positions of one search.
+#[derive(Clone, Default)]
+pub(crate) struct CoarsePositions<const E: usize> {
+    /// See [`CoarseVertices::new_positions`](super::coarse_vertices::CoarseVertices::new_positions).
+    pub(crate) positions: Vec<[Vec4; E]>,
+    /// For each bucket whether it has been moved ahead of the search; empty for none.
+    pub(crate) moved: Vec<bool>,
+}
+
+/// The buckets moved ahead for a group of searches.
+pub(crate) struct BucketsAhead<const E: usize> {
+    motions: Vec<CoarseMotion<E>>,
+    positions: Vec<CoarsePositions<E>>,
+    /// The buckets that the next group is expected to open.
+    expected: Vec<u32>,
+    /// For each bucket how many searches of this group have opened it.
+    opened: Vec<u8>,
+}
+
+impl<const E: usize> BucketsAhead<E> {
+    pub(crate) fn new(layout: &Layout) -> Self {
+        let positions = CoarsePositions { positions: layout.coarse.new_positions(), moved: Vec::new() };
+        Self {
+            motions: vec![CoarseMotion::default(); GROUP],
+            positions: vec![positions; GROUP],
+            expected: Vec::new(),
+            opened: vec![0; layout.buckets.count()],
+        }
+    }
+
+    /// Starts a group of at most [`GROUP`] searches: moves the buckets that they are expected to open.
+    pub(crate) fn begin<M: VertexMotion<E>>(&mut self, layout: &Layout, searches: &[M]) {
+        let begins = |(coarse, motion): (&mut CoarseMotion<E>, &M)| {
+            begin_coarse(layout, motion, &F32Frame::around(motion.overall_aabb(layout)), coarse)
+        };
+        let is_coarse = self.motions.iter_mut().zip(searches).fold(true, |all, both| all & begins(both));
+        self.positions.iter_mut().for_each(|positions| positions.moved.clear());
+        // A search alone gains nothing.
+        if !is_coarse || self.expected.is_empty() || searches.len() < 2 {
+            return;
+        }
+        for positions in &mut self.positions[..searches.len()] {
+            positions.moved.resize(self.opened.len(), false);
+            self.expected.iter().for_each(|bucket| positions.moved[*bucket as usize] = true);
+        }
+        let [p, q, r, s] = &self.motions[..] else { return };
+        for &bucket in right_or!(&self.expected[..], BucketsOfLastGroup, &[]) {
+            let coarse = &layout.coarse;
+            match &mut self.positions[..searches.len()] {
+                [a, b] => coarse.move_bucket_at(bucket, [(p, &mut a.positions), (q, &mut b.positions)]),
+                [a, b, c] => coarse.move_bucket_at(
+                    bucket,
+                    [(p, &mut a.positions), (q, &mut b.positions), (r, &mut c.positions)],
+                ),
+                [a, b, c, d] => coarse.move_bucket_at(
+                    bucket,
+                    [
+                        (p, &mut a.positions),
+                        (q, &mut b.positions),
+                        (r, &mut c.positions),
+                        (s, &mut d.positions),
+                    ],
+                ),
+                _ => {}
+            }
+        }
+    }
+
+    /// The positions of a search of the group. Exchange them with those of the search before it begins, and again after it.
+    pub(crate) fn of_search(&mut self, search: usize) -> &mut CoarsePositions<E> {
+        &mut self.positions[search]
+    }
+
+    /// Counts the buckets that a search has opened.
+    pub(crate) fn count(&mut self, is_open: impl Fn(u32) -> bool) {
+        self.opened.iter_mut().zip(0..).for_each(|(opened, bucket)| *opened += u8::from(is_open(bucket)));
+    }
+
+    /// Ends a group of so many searches: the next one is expected to open the buckets that at least three quarters of them
+    /// have opened.
+    pub(crate) fn end(&mut self, searches: usize) {
+        self.expected.clear();
+        let is_expected = |opened: u8| 4 * usize::from(opened) >= 3 * searches;
+        let expected = self.opened.iter().zip(0..).filter(|(opened, _)| is_expected(**opened));
+        self.expected.extend(expected.map(|(_, bucket)| bucket));
+        self.opened.fill(0);
+    }
+}
+
+/// Sets the coarse motion of a search. False if it must use exact positions.
+pub(crate) fn begin_coarse<const E: usize, M: VertexMotion<E>>(
+    layout: &Layout,
+    motion: &M,
+    frame: &F32Frame,
+    coarse: &mut CoarseMotion<E>,
+) -> bool {
+    !layout.coarse.is_empty()
+        && motion
+            .coarse_coordinates()
+            .is_some_and(|q| layout.quantization.begin(coarse, q, frame, motion.rounding()))
+}

@@ -1,0 +1,297 @@
+//! Vectors of eight single-precision numbers, in the instruction set that the processor has: AVX2, or the baseline.
+//!
+//! A [`Kernel`] is written once, over [`Vectors`]. [`InstructionSet`] chooses the vectors at run time. Both kinds round
+//! each operation to nearest, and no product is fused with a sum, so a kernel gives the same bits with both
+//! (docs/notes/2026-11-25-explicit-vectors.md).
+
+use glam::{BVec4A, Mat4, Vec4};
+
+/// Numbers in a vector.
+pub(crate) const LANES: usize = 8;
+
+/// The operations on vectors of eight numbers that kernels use.
+pub(crate) trait Vectors: Copy {
+    /// Eight numbers.
+    type F32s: Copy;
+    /// Eight truth values.
+    type Mask: Copy;
+
+    /// The same number in all lanes.
+    fn splat(self, x: f32) -> Self::F32s;
+
+    /// The numbers of an array.
+    fn load(self, x: &[f32; LANES]) -> Self::F32s;
+
+    /// Eight integers as numbers.
+    fn convert(self, x: &[i16; LANES]) -> Self::F32s;
+
+    /// `a * b + c`, rounded twice.
+    fn multiply_add(self, a: Self::F32s, b: Self::F32s, c: Self::F32s) -> Self::F32s;
+
+    /// The larger numbers. None may be NaN.
+    fn max(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
+
+    /// The lanes in which the first number is greater.
+    fn greater(self, a: Self::F32s, b: Self::F32s) -> Self::Mask;
+
+    /// The lanes of either mask.
+    fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+
+    /// Bit i for lane i.
+    fn bits(self, mask: Self::Mask) -> u32;
+
+    /// The lanes as an array.
+    fn array(self, x: Self::F32s) -> [f32; LANES];
+
+    /// The points that have these coordinates along each axis, one for each lane; their fourth components are 0.
+    fn points(self, coordinates: [Self::F32s; 3]) -> [Vec4; LANES];
+}
+
+/// A computation on vectors. Implementations of `run` must be `#[inline(always)]`: only then are they compiled for the
+/// instruction set of the vectors.
+pub(crate) trait Kernel {
+    type Output;
+
+    fn run<V: Vectors>(self, vectors: V) -> Self::Output;
+}
+
+/// The instruction set of kernels.
+#[derive(Clone, Copy)]
+pub(crate) enum InstructionSet {
+    /// The one that every processor of this kind has.
+    Baseline,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+}
+
+impl Default for InstructionSet {
+    /// The best one that the processor has.
+    fn default() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            return Self::Avx2(simd);
+        }
+        Self::Baseline
+    }
+}
+
+impl InstructionSet {
+    /// Runs a kernel.
+    #[inline]
+    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Baseline => kernel.run(Baseline),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(simd) => avx2::run(simd, kernel),
+        }
+    }
+}
+
+/// Two vectors of four numbers, which SSE2 and NEON have.
+#[derive(Clone, Copy)]
+pub(crate) struct Baseline;
+
+impl Vectors for Baseline {
+    type F32s = [Vec4; 2];
+    type Mask = [BVec4A; 2];
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> [Vec4; 2] {
+        [Vec4::splat(x); 2]
+    }
+
+    #[inline(always)]
+    fn load(self, [a, b, c, d, e, f, g, h]: &[f32; LANES]) -> [Vec4; 2] {
+        [Vec4::new(*a, *b, *c, *d), Vec4::new(*e, *f, *g, *h)]
+    }
+
+    #[inline(always)]
+    fn convert(self, x: &[i16; LANES]) -> [Vec4; 2] {
+        self.load(&x.map(f32::from))
+    }
+
+    #[inline(always)]
+    fn multiply_add(self, a: [Vec4; 2], b: [Vec4; 2], c: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0] * b[0] + c[0], a[1] * b[1] + c[1]]
+    }
+
+    #[inline(always)]
+    fn max(self, a: [Vec4; 2], b: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0].max(b[0]), a[1].max(b[1])]
+    }
+
+    #[inline(always)]
+    fn greater(self, a: [Vec4; 2], b: [Vec4; 2]) -> [BVec4A; 2] {
+        [a[0].cmpgt(b[0]), a[1].cmpgt(b[1])]
+    }
+
+    #[inline(always)]
+    fn or(self, a: [BVec4A; 2], b: [BVec4A; 2]) -> [BVec4A; 2] {
+        [a[0] | b[0], a[1] | b[1]]
+    }
+
+    #[inline(always)]
+    fn bits(self, [low, high]: [BVec4A; 2]) -> u32 {
+        low.bitmask() | high.bitmask() << 4
+    }
+
+    #[inline(always)]
+    fn array(self, [low, high]: [Vec4; 2]) -> [f32; LANES] {
+        let ([a, b, c, d], [e, f, g, h]) = (low.to_array(), high.to_array());
+        [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    fn points(self, [x, y, z]: [[Vec4; 2]; 3]) -> [Vec4; LANES] {
+        let [low, high] = [0, 1].map(|i| Mat4::from_cols(x[i], y[i], z[i], Vec4::ZERO).transpose());
+        [low.x_axis, low.y_axis, low.z_axis, low.w_axis, high.x_axis, high.y_axis, high.z_axis, high.w_axis]
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::{__m256, _CMP_GT_OQ};
+
+    use glam::Vec4;
+    use pulp::cast;
+    use pulp::x86::V3;
+
+    use super::{Kernel, LANES, Vectors};
+
+    /// Runs a kernel, compiled for AVX2.
+    #[inline]
+    pub(super) fn run<K: Kernel>(simd: V3, kernel: K) -> K::Output {
+        simd.vectorize(Run { simd, kernel })
+    }
+
+    struct Run<K> {
+        simd: V3,
+        kernel: K,
+    }
+
+    impl<K: Kernel> pulp::NullaryFnOnce for Run<K> {
+        type Output = K::Output;
+
+        #[inline(always)]
+        fn call(self) -> K::Output {
+            self.kernel.run(self.simd)
+        }
+    }
+
+    impl Vectors for V3 {
+        type F32s = __m256;
+        type Mask = __m256;
+
+        #[inline(always)]
+        fn splat(self, x: f32) -> __m256 {
+            self.avx._mm256_set1_ps(x)
+        }
+
+        #[inline(always)]
+        fn load(self, x: &[f32; LANES]) -> __m256 {
+            cast(*x)
+        }
+
+        #[inline(always)]
+        fn convert(self, x: &[i16; LANES]) -> __m256 {
+            self.avx._mm256_cvtepi32_ps(self.avx2._mm256_cvtepi16_epi32(cast(*x)))
+        }
+
+        #[inline(always)]
+        fn multiply_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            self.avx._mm256_add_ps(self.avx._mm256_mul_ps(a, b), c)
+        }
+
+        #[inline(always)]
+        fn max(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_max_ps(a, b)
+        }
+
+        #[inline(always)]
+        fn greater(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_cmp_ps::<_CMP_GT_OQ>(a, b)
+        }
+
+        #[inline(always)]
+        fn or(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_or_ps(a, b)
+        }
+
+        #[inline(always)]
+        fn bits(self, mask: __m256) -> u32 {
+            self.avx._mm256_movemask_ps(mask) as u32
+        }
+
+        #[inline(always)]
+        fn array(self, x: __m256) -> [f32; LANES] {
+            cast(x)
+        }
+
+        #[inline(always)]
+        fn points(self, [x, y, z]: [__m256; 3]) -> [Vec4; LANES] {
+            let avx = self.avx;
+            let zero = avx._mm256_set1_ps(0.0);
+            // Lanes 0, 1, 4, 5 and 2, 3, 6, 7, as (x, z) and (y, 0).
+            let [xz, xz_high] = [avx._mm256_unpacklo_ps(x, z), avx._mm256_unpackhi_ps(x, z)];
+            let [y0, y0_high] = [avx._mm256_unpacklo_ps(y, zero), avx._mm256_unpackhi_ps(y, zero)];
+            // Each has the points of lane i in its low half, and of lane i + 4 in its high half.
+            let pairs = [
+                avx._mm256_unpacklo_ps(xz, y0),
+                avx._mm256_unpackhi_ps(xz, y0),
+                avx._mm256_unpacklo_ps(xz_high, y0_high),
+                avx._mm256_unpackhi_ps(xz_high, y0_high),
+            ];
+            let low = |i: usize| Vec4::from(avx._mm256_castps256_ps128(pairs[i]));
+            let high = |i: usize| Vec4::from(avx._mm256_extractf128_ps::<1>(pairs[i]));
+            [low(0), low(1), low(2), low(3), high(0), high(1), high(2), high(3)]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::Random;
+
+    /// All operations, on eight integers and eight numbers.
+    struct AllOperations([i16; LANES], [f32; LANES]);
+
+    impl Kernel for AllOperations {
+        type Output = (Vec<u32>, u32);
+
+        #[inline(always)]
+        fn run<V: Vectors>(self, v: V) -> Self::Output {
+            let (a, b, c) = (v.convert(&self.0), v.load(&self.1), v.splat(self.1[3]));
+            let sum = v.multiply_add(a, b, c);
+            let mask = v.or(v.greater(a, b), v.greater(c, sum));
+            let points = v.points([a, b, sum]);
+            let numbers = v
+                .array(sum)
+                .into_iter()
+                .chain(v.array(v.max(a, b)))
+                .chain(points.iter().flat_map(|p| p.to_array()));
+            (numbers.map(f32::to_bits).collect(), v.bits(mask))
+        }
+    }
+
+    #[test]
+    fn bits_do_not_depend_on_the_instruction_set() {
+        let random = &mut Random(11);
+        for case in 0..2000 {
+            let size = 10.0_f64.powi(case % 70 - 35);
+            let integers: [i16; LANES] = std::array::from_fn(|_| (random.signed() * 32767.0) as i16);
+            let numbers: [f32; LANES] = std::array::from_fn(|_| (random.signed() * size) as f32);
+            let [first, second] = [InstructionSet::default(), InstructionSet::Baseline]
+                .map(|set| set.run(AllOperations(integers, numbers)));
+            assert_eq!(first, second);
+            for lane in 0..LANES {
+                let [a, b, c] = [f32::from(integers[lane]), numbers[lane], numbers[3]];
+                let sum = a * b + c;
+                assert_eq!(first.0[lane], sum.to_bits());
+                assert_eq!(first.0[LANES + lane], if a > b { a } else { b }.to_bits());
+                assert_eq!(first.0[2 * LANES + 4 * lane..][..4], [a, b, sum, 0.0].map(f32::to_bits));
+                assert_eq!(first.1 >> lane & 1 != 0, a > b || c > sum);
+            }
+        }
+    }
+}
