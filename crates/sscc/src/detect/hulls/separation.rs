@@ -9,7 +9,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use crate::detect::vectors::{Baseline, Kernel, LANES, Vectors};
+use crate::detect::vectors::{Baseline, Kernel, Vectors};
 use crate::geometry::nearest_to_origin;
 
 /// The coordinates of core points along each axis.
@@ -29,11 +29,11 @@ impl<const E: usize> MovedPoints<'_, E> {
     /// direction back, at the cost of moving one point.
     #[inline(always)]
     pub(super) fn extent<V: Vectors>(&self, vectors: V, dir: Vec3) -> f32 {
-        let [first, others @ ..] = right_or!(&self.maps[..], HullsAtStart, &self.maps[..1]) else {
-            return f32::INFINITY;
-        };
-        let of_map = |map: &AffineMap| extent(vectors, self.points, turned_back(map, dir));
-        others.iter().fold(of_map(first), |most, map| most.max(of_map(map)))
+        let mut most = f32::NEG_INFINITY;
+        for map in right_or!(&self.maps[..], HullsAtStart, &self.maps[..1]) {
+            most = most.max(extent(vectors, self.points, turned_back(map, dir)));
+        }
+        most
     }
 
     /// A point, moved by the first map.
@@ -58,18 +58,19 @@ fn turned_back(map: &AffineMap, dir: Vec3) -> Vec4 {
     map[0] * dir.x + map[1] * dir.y + map[2] * dir.z
 }
 
-/// The largest coordinate of any point along a direction, and the shift.
+/// The largest coordinate of any point along a direction, and the shift. Closures would not be compiled for the instruction
+/// set of the vectors.
 #[inline(always)]
-fn extent<V: Vectors>(v: V, points: &Points, turned: Vec4) -> f32 {
-    let [x, y, z] = points.each_ref().map(|axis| axis.as_chunks::<LANES>().0);
-    let [dir_x, dir_y, dir_z, shift] = turned.to_array().map(|c| v.splat(c));
-    let along = |i: usize| {
-        let sum = v.multiply_add(v.load(&x[i]), dir_x, shift);
-        let sum = v.multiply_add(v.load(&y[i]), dir_y, sum);
-        v.multiply_add(v.load(&z[i]), dir_z, sum)
-    };
-    let lanes = v.array((1..x.len()).fold(along(0), |most, i| v.max(most, along(i))));
-    lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)
+fn extent<V: Vectors>(v: V, [x, y, z]: &Points, turned: Vec4) -> f32 {
+    let (dir_x, dir_y, dir_z) = (v.splat(turned.x), v.splat(turned.y), v.splat(turned.z));
+    let (shift, mut most) = (v.splat(turned.w), v.splat(f32::NEG_INFINITY));
+    for ((x, y), z) in x.as_chunks().0.iter().zip(y.as_chunks().0).zip(z.as_chunks().0) {
+        let sum = v.multiply_add(v.load(x), dir_x, shift);
+        let sum = v.multiply_add(v.load(y), dir_y, sum);
+        most = v.max(v.multiply_add(v.load(z), dir_z, sum), most);
+    }
+    let [a, b, c, d, e, f, g, h] = v.array(most);
+    a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
 }
 
 /// Covers the rounding of the test: squares, products, a sum, a difference.
