@@ -11,7 +11,7 @@ const METHODS: [Method; 5] =
 
 /// A sheet of many buckets, rolled up, whose vertices all move by random amounts. `unit`: its size.
 fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
-    let side = 24 + random.below(8) as u32;
+    let side = 20 + random.below(6) as u32;
     let positions: Vec<DVec3> = (0..side * side)
         .map(|i| {
             let (s, t) = (f64::from(i / side), f64::from(i % side));
@@ -51,7 +51,7 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
     let scope = &certificates.parts().scope;
     let root = certificates.root_radius();
     let unit = if root > 0.0 && root.is_finite() { root } else { 1.0 };
-    let batch: Vec<Vec<f64>> = (0..19)
+    let batch: Vec<Vec<f64>> = (0..14)
         .map(|i| {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed()).collect();
             let size = match i % 6 {
@@ -65,9 +65,9 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
         .filter(|q| model.check_coordinates(q).is_ok())
         .collect();
     let mut counts = [0; 3];
-    // Brute force is quadratic.
-    let is_small = model.mesh().faces().len() < 200;
-    for method in METHODS.into_iter().filter(|method| is_small || *method != Method::BruteForce) {
+    // Of large models the two methods that compute boxes where they visit nodes.
+    let methods = if model.mesh().faces().len() < 300 { &METHODS[..] } else { &METHODS[..2] };
+    for &method in methods {
         let mut query = Query::with_method(model, certificates, method).unwrap();
         for limit in [usize::MAX, 1 + random.below(4)] {
             let expected: Vec<Answer> =
@@ -77,7 +77,7 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
                 counts[1] += usize::from(answer.pairs.is_empty());
                 counts[2] += usize::from(answer.statistics.root_certified);
             }
-            for threads in [Some(1), Some(2), None] {
+            for threads in [Some(1), Some(2)] {
                 let found = query.batch_at_most(&batch, limit, threads, &()).unwrap();
                 assert_eq!(found, expected, "{name}, {method:?}, limit {limit}, threads {threads:?}");
             }
@@ -93,7 +93,7 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
 #[test]
 fn answers_are_those_of_single_queries() {
     let mut counts = [0; 3];
-    let (mut skipped, seeds) = (0, cases(60_u64));
+    let (mut skipped, seeds) = (0, cases(40_u64));
     for seed in 0..seeds {
         let random = &mut Random::new(seed + 9_000_000);
         let model = match seed % 3 {
