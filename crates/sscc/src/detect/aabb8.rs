@@ -177,15 +177,15 @@ impl PacketPair<'_> {
         instructions.run(self)
     }
 
-    /// The same, where all lanes of either packet lie within one lane of another packet: only those are compared that overlap
-    /// the whole of the other side. `rows` is not used.
+    /// The same, where all lanes of either packet lie within one lane of another packet, the outer one: only those are
+    /// compared that overlap the outer lane of the other side. `rows` is not used.
     #[inline]
     pub(crate) fn overlaps_within(
         self,
         instructions: InstructionSet,
-        wholes: [(&Aabb8, usize); 2],
+        outer: [(&Aabb8, usize); 2],
     ) -> Overlaps {
-        instructions.run(Within { pair: self, wholes })
+        instructions.run(NestedPacketPair { pair: self, outer })
     }
 }
 
@@ -209,17 +209,17 @@ impl Kernel for PacketPair<'_> {
 }
 
 /// Two packets, and for each the packet and the lane whose AABB contains all of its own.
-struct Within<'p> {
+struct NestedPacketPair<'p> {
     pair: PacketPair<'p>,
-    wholes: [(&'p Aabb8, usize); 2],
+    outer: [(&'p Aabb8, usize); 2],
 }
 
-impl Kernel for Within<'_> {
+impl Kernel for NestedPacketPair<'_> {
     type Output = Overlaps;
 
     #[inline(always)]
     fn run<V: Vectors>(self, v: V) -> Overlaps {
-        let Self { mut pair, wholes: [first, second] } = self;
+        let Self { mut pair, outer: [first, second] } = self;
         pair.rows = pair.first.compare_all(v, second.0, second.1);
         if pair.rows == 0 {
             return Overlaps::default();
@@ -234,11 +234,17 @@ impl Aabb8 {
     /// The lanes whose AABB overlaps that of one lane of another packet.
     #[inline(always)]
     fn compare_all<V: Vectors>(&self, v: V, other: &Self, lane: usize) -> u32 {
-        let beyond = |axis: usize| {
-            let (lower, upper) = (v.splat(other.lower[axis][lane]), v.splat(other.upper[axis][lane]));
-            v.or(v.greater(v.load(&self.lower[axis]), upper), v.greater(lower, v.load(&self.upper[axis])))
-        };
-        !v.bits(v.or(v.or(beyond(0), beyond(1)), beyond(2))) & 0xff
+        let x = self.beyond(v, other, lane, 0);
+        let y = self.beyond(v, other, lane, 1);
+        let z = self.beyond(v, other, lane, 2);
+        !v.bits(v.or(v.or(x, y), z)) & 0xff
+    }
+
+    /// The lanes that are apart from that of another packet along an axis.
+    #[inline(always)]
+    fn beyond<V: Vectors>(&self, v: V, other: &Self, lane: usize, axis: usize) -> V::Mask {
+        let (lower, upper) = (v.splat(other.lower[axis][lane]), v.splat(other.upper[axis][lane]));
+        v.or(v.greater(v.load(&self.lower[axis]), upper), v.greater(lower, v.load(&self.upper[axis])))
     }
 }
 

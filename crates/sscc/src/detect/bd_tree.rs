@@ -87,37 +87,26 @@ impl BdTree {
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision for several motions at once, each in its own frame.
-    pub(crate) fn coarse_at<const E: usize, const N: usize>(
-        &self,
-        node: u32,
-        motions: [&CoarseMotion<E>; N],
-    ) -> Option<[AabbF32; N]> {
+    /// The same in single precision, in the frame of the motion.
+    #[inline]
+    pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
         let index = self.indices[node as usize] as usize;
         if index >= self.rest.len() {
             return None;
         }
         let start = index * (self.rank + 1) * COMPONENTS;
         let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + PADDING];
-        let all = self.instructions.run(MoveBoxes { quantized, motions });
-        Some(std::array::from_fn(|n| {
-            // Half extents are no less than at either end, since rounding is monotone; where a step is short, hardly more.
-            let half = all[n].first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
-            // The error of the centre, and that of the half.
-            let half = half + Vec4::splat(right_or!(2.0 * motions[n].error, CoarseNodesNotWidened, 0.0));
-            let ends = all[n].map(|[x, y, z, ..]| {
-                let center = Vec4::new(x, y, z, 0.0);
-                AabbF32 { lower: center - half, upper: center + half }
-            });
-            let join = |a: AabbF32, b: AabbF32| right_or!(a.union(&b), SweptCoarseNodesAtStart, a);
-            ends.into_iter().reduce(join).unwrap_or(AabbF32::ALL)
-        }))
-    }
-
-    /// The same for one motion.
-    #[inline]
-    pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
-        self.coarse_at(node, [motion]).map(|[aabb]| aabb)
+        let sums = self.instructions.run(MoveBox { quantized, motion });
+        // Half extents are no less than at either end, since rounding is monotone; where a step is short, hardly more.
+        let half = sums.first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
+        // The error of the centre, and that of the half.
+        let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
+        let ends = sums.map(|[x, y, z, ..]| {
+            let center = Vec4::new(x, y, z, 0.0);
+            AabbF32 { lower: center - half, upper: center + half }
+        });
+        let join = |a: AabbF32, b: AabbF32| right_or!(a.union(&b), SweptCoarseNodesAtStart, a);
+        ends.into_iter().reduce(join)
     }
 
     /// The same for the whole shape.
@@ -142,44 +131,37 @@ impl BdTree {
     }
 }
 
-/// The sums of the six quantized components of an AABB at each configuration of each motion.
-struct MoveBoxes<'b, const E: usize, const N: usize> {
+/// The sums of the six quantized components of an AABB at each configuration of a motion.
+struct MoveBox<'b, const E: usize> {
     quantized: &'b [i16],
-    motions: [&'b CoarseMotion<E>; N],
+    motion: &'b CoarseMotion<E>,
 }
 
-impl<const E: usize, const N: usize> Kernel for MoveBoxes<'_, E, N> {
-    type Output = [[[f32; LANES]; E]; N];
+impl<const E: usize> Kernel for MoveBox<'_, E> {
+    type Output = [[f32; LANES]; E];
 
     #[inline(always)]
     fn run<V: Vectors>(self, v: V) -> Self::Output {
-        let Self { quantized, motions } = self;
-        let modes = motions.first().map_or(0, |motion| motion.node_factors.len());
+        let Self { quantized, motion } = self;
         // Loops, because maps of arrays are not inlined.
-        let mut factors: [&[[[f32; LANES]; E]]; N] = [&[]; N];
-        let mut sums = [[v.splat(0.0); E]; N];
-        for n in 0..N {
-            factors[n] = &motions[n].node_factors[..modes];
-            for end in 0..E {
-                let shift = motions[n].shift[end];
-                sums[n][end] = v.load(&[shift.x, shift.y, shift.z, 0.0, 0.0, 0.0, 0.0, 0.0]);
-            }
+        let mut sums = [v.splat(0.0); E];
+        for end in 0..E {
+            let shift = motion.shift[end];
+            sums[end] = v.load(&[shift.x, shift.y, shift.z, 0.0, 0.0, 0.0, 0.0, 0.0]);
         }
-        for k in 0..modes {
-            // The last two components belong to what follows.
-            let Some(of_mode) = quantized[k * COMPONENTS..].first_chunk::<LANES>() else { break };
+        let mut components = quantized;
+        for factors in &motion.node_factors {
+            // The last two components belong to what follows. A sum without a mode would be no AABB.
+            let Some(of_mode) = components.first_chunk::<LANES>() else { return [[f32::NAN; LANES]; E] };
+            components = &components[COMPONENTS..];
             let of_mode = v.convert(of_mode);
-            for n in 0..N {
-                for end in 0..E {
-                    sums[n][end] = v.multiply_add(of_mode, v.load(&factors[n][k][end]), sums[n][end]);
-                }
+            for end in 0..E {
+                sums[end] = v.multiply_add(of_mode, v.load(&factors[end]), sums[end]);
             }
         }
-        let mut all = [[[0.0; LANES]; E]; N];
-        for n in 0..N {
-            for end in 0..E {
-                all[n][end] = v.array(sums[n][end]);
-            }
+        let mut all = [[0.0; LANES]; E];
+        for end in 0..E {
+            all[end] = v.array(sums[end]);
         }
         all
     }
@@ -242,16 +224,11 @@ mod tests {
                 continue;
             }
             coarse += 1;
-            let mut other = CoarseMotion::default();
-            quantization.begin(&mut other, [ends[1], ends[1]], &frame, rounding);
             let plain = BdTree { instructions: InstructionSet::Baseline, ..tree.clone() };
             for (n, node) in hierarchy.nodes().iter().enumerate() {
                 let mapped = tree.coarse(n as u32, &motion).unwrap();
-                // Both instruction sets give the same bits, for one motion and for several at once.
-                let all = tree.coarse_at(n as u32, [&motion, &other, &motion]).unwrap();
-                assert_eq!(bits(&all), bits(&plain.coarse_at(n as u32, [&motion, &other, &motion]).unwrap()));
-                assert_eq!(bits(&[mapped, mapped]), bits(&[all[0], all[2]]));
-                assert_eq!(bits(&[plain.coarse(n as u32, &other).unwrap()]), bits(&all[1..2]));
+                // Both instruction sets give the same bits.
+                assert_eq!(bits(&[mapped]), bits(&[plain.coarse(n as u32, &motion).unwrap()]));
                 let Aabb { lower, upper } = tree.at(n as u32, ends, DVec3::splat(rounding)).unwrap();
                 for v in hierarchy.vertices(node, model.mesh().faces()) {
                     for q in ends {

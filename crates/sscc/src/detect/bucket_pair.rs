@@ -9,7 +9,7 @@ use super::vertex_motion::VertexMotion;
 use crate::filter::Relation;
 
 /// The pairs of lanes `(i, j)` with `j < i`, as in [`PacketPair`].
-const BEFORE: u64 = 0x7f3f_1f0f_0703_0100;
+const NOT_LATER: u64 = 0x7f3f_1f0f_0703_0100;
 
 /// A packet: its bucket and its lane there.
 #[derive(Clone, Copy)]
@@ -42,7 +42,7 @@ impl<const E: usize> BroadPhase<E> {
         let count = self.volumes.layout.buckets.packets(bucket).len();
         self.counters.box_tests += (LANES * count) as u64;
         let packets = self.volumes.packets(bucket);
-        let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked: BEFORE };
+        let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked: NOT_LATER };
         for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
             self.test_packet_pair(context, first, second, motion, narrow);
@@ -93,10 +93,10 @@ impl<const E: usize> BroadPhase<E> {
         let (masked, has_adjacent) = buckets.masked_pairs(first, second);
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
         // Most triangles of a packet stay clear of the whole other packet.
-        let wholes = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
+        let outer = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
         let [first, second] = [first, second].map(|packet| self.volumes.triangles(packet));
         let overlaps =
-            PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, wholes);
+            PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, outer);
         self.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
         for (row, column) in PairsOfLanes(overlaps.pairs) {
             let slots = [start_x + row, start_y + column];

@@ -4,15 +4,15 @@
 //! configurations each AABB is a swept AABB. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
 //! 2004), computed where the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
 //! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel
-//! or not. The traditional method refits everything first.
+//! or not. The traditional method refits everything first, as certified searches do far beyond the pair tree.
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 
 use super::aabb8::{Aabb8, AabbF32, LANES};
-use super::buckets_ahead::{CoarsePositions, begin_coarse};
 use super::exact_positions::ExactPositions;
+use super::expected_buckets::{CoarsePositions, begin_coarse};
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
@@ -244,7 +244,7 @@ impl<const E: usize> NodeVolumes<E> {
     }
 
     /// Exchanges the coarse positions of this search. Some buckets may have been moved for the search that begins next
-    /// ([`BucketsAhead`](super::buckets_ahead::BucketsAhead)).
+    /// ([`ExpectedBuckets`](super::expected_buckets::ExpectedBuckets)).
     pub(crate) fn exchange_positions(&mut self, other: &mut CoarsePositions<E>) {
         std::mem::swap(&mut self.coarse, other);
     }

@@ -116,6 +116,8 @@ mutants! {
     HullBallNotWidened: CaughtBy("lib detect::hulls::tests::motions_and_balls_are_covered");
     /// A plane separates hulls of any radius.
     HullsTouch: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    /// The gap along a normal is compared as if the normal had length 1.
+    HullNormalTakenAsUnit: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// A plane separates hulls at the start of a motion alone.
     HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// Nodes go half as far in a kinetic ball.

@@ -10,7 +10,7 @@ use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
 use super::search_group::{Answer, SearchGroup, is_far};
 use super::statistics::Statistics;
-use crate::detect::buckets_ahead::GROUP;
+use crate::detect::expected_buckets::GROUP;
 use crate::thread_pool::on_threads;
 use crate::{Error, Progress};
 
@@ -48,7 +48,7 @@ impl Query<'_> {
         let batch = Batch { rows: batch, limit, progress, done: AtomicUsize::new(0) };
         let answers = on_threads(threads, || {
             let (mut answers, open) = batch.answer_by_root(self)?;
-            for (index, answer) in batch.answer_in_groups(self, &open)? {
+            for (index, answer) in batch.answer_open(self, &open)? {
                 answers[index] = answer;
             }
             Ok(answers)
@@ -56,6 +56,14 @@ impl Query<'_> {
         progress.report(batch.rows.len(), batch.rows.len());
         answers
     }
+}
+
+/// The indices of the q of a batch that the root does not prove free.
+struct OpenRows {
+    /// Those that are searched alone, ascending.
+    near: Vec<usize>,
+    /// Those that are searched in groups, by ascending norm, because equal norms open the same buckets.
+    far: Vec<usize>,
 }
 
 /// The q of a batch, and how they are to be answered.
@@ -68,13 +76,12 @@ struct Batch<'b, Q> {
 }
 
 impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
-    /// Answers each q that the root's certificate proves free. Returns the indices of all others, too, whose answers are
-    /// empty: first those that are searched alone, then those that are searched in groups, each ascending.
+    /// Answers each q that the root's certificate proves free, and finds all others, whose answers are empty.
     ///
     /// # Errors
     /// That of the first q that has one; when it was cancelled.
-    fn answer_by_root(&self, query: &Query<'_>) -> Result<(Vec<Answer>, Vec<usize>), Error> {
-        let open = Mutex::new(Vec::new());
+    fn answer_by_root(&self, query: &Query<'_>) -> Result<(Vec<Answer>, OpenRows), Error> {
+        let open = Mutex::new((Vec::new(), Vec::new()));
         let answer = |check: &mut ConfigurationCheck, (index, q): (usize, &Q)| {
             if self.progress.is_cancelled() {
                 return Err(Error::Cancelled);
@@ -86,23 +93,29 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
                 }
                 return Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE });
             }
-            lock(&open).push((is_far(&query.context, norm, self.limit), index));
+            let (near, far) = &mut *lock(&open);
+            if is_far(&query.context, norm, self.limit) {
+                far.push((norm, index));
+            } else {
+                near.push(index);
+            }
             Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::default() })
         };
         let answers: Vec<Result<Answer, Error>> =
             self.rows.par_iter().enumerate().map_init(|| query.check.clone(), answer).collect();
         let answers = answers.into_iter().collect::<Result<Vec<Answer>, Error>>()?;
-        let mut open = open.into_inner().unwrap_or_else(PoisonError::into_inner);
-        open.sort_unstable();
-        Ok((answers, open.into_iter().map(|(_, index)| index).collect()))
+        let (mut near, mut far) = open.into_inner().unwrap_or_else(PoisonError::into_inner);
+        near.sort_unstable();
+        far.sort_unstable_by(|(r, i), (s, j)| r.total_cmp(s).then(i.cmp(j)));
+        Ok((answers, OpenRows { near, far: far.into_iter().map(|(_, index)| index).collect() }))
     }
 
-    /// Answers the q of these indices, in groups.
+    /// Answers the q that the root does not prove free.
     ///
     /// # Errors
     /// When it was cancelled.
-    fn answer_in_groups(&self, query: &Query<'_>, open: &[usize]) -> Result<Vec<(usize, Answer)>, Error> {
-        self.done.store(self.rows.len() - open.len(), Ordering::Relaxed);
+    fn answer_open(&self, query: &Query<'_>, open: &OpenRows) -> Result<Vec<(usize, Answer)>, Error> {
+        self.done.fetch_max(self.rows.len() - open.near.len() - open.far.len(), Ordering::Relaxed);
         let idle = Mutex::new(Vec::new());
         let answer = |group: &[usize]| {
             if self.progress.is_cancelled() {
@@ -116,8 +129,11 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
             self.report(group.len());
             Ok(group.iter().copied().zip(answers).collect())
         };
-        let groups: Result<Vec<Vec<(usize, Answer)>>, Error> = open.par_chunks(GROUP).map(answer).collect();
-        Ok(groups?.into_iter().flatten().collect())
+        // No thread is idle for the sake of groups.
+        let group_len = open.far.len().div_ceil(rayon::current_num_threads()).clamp(1, GROUP);
+        let groups = open.far.par_chunks(group_len).chain(open.near.par_chunks(1));
+        let answers: Result<Vec<Vec<(usize, Answer)>>, Error> = groups.map(answer).collect();
+        Ok(answers?.into_iter().flatten().collect())
     }
 
     /// Reports that so many more answers are known.

@@ -1,5 +1,5 @@
 //! Chooses the traversal at a norm: of the pair tree if it is complete there, else Algorithm 1 with the certificates of
-//! nodes, else without certificates. Where Algorithm 1 would open nearly all nodes, all AABBs are refitted first.
+//! nodes, else without certificates. Where Algorithm 1 would open most buckets, all AABBs are refitted first.
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
@@ -54,7 +54,8 @@ impl<const E: usize> CertifiedSearch<E> {
                 );
             }
             (_, Some(parts)) => {
-                if norm >= context.refit_norm {
+                // A search that few hits end opens few nodes.
+                if norm >= context.refit_norm && narrow.hits().is_unlimited() {
                     self.broad.volumes.refit(&context.detect.hierarchy, motion);
                 }
                 traverse_certified(&mut self.broad, &context.detect, parts, norm, motion, narrow);

@@ -105,3 +105,15 @@ fn refit_norm(mut radii: Vec<f64>) -> f64 {
     let rank = (REFIT_SHARE * radii.len() as f64) as usize;
     radii.get(rank).copied().unwrap_or(f64::INFINITY)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::refit_norm;
+
+    #[test]
+    fn the_share_of_buckets_is_reached_there() {
+        let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
+        assert_eq!((refit_norm(ten), refit_norm(vec![3.0]), refit_norm(vec![])), (7.0, 3.0, f64::INFINITY));
+        assert_eq!(refit_norm(vec![f64::INFINITY, 1.0]), f64::INFINITY);
+    }
+}

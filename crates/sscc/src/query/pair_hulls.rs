@@ -103,11 +103,11 @@ mod tests {
         ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
     }
 
-    /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs,
-    /// about centres and in a metric that is not the default.
+    /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs, and in
+    /// others where all AABBs are refitted first, about centres and in a metric that is not the default.
     #[test]
     fn hulls_change_no_answer() {
-        let (mut free, mut colliding, mut tests) = (0, 0, 0);
+        let (mut free, mut colliding, mut tests, mut refits) = (0, 0, 0, 0);
         for case in 0..6 {
             let random = &mut Random(case + 60);
             let model = coil(8 + case as u32, 6);
@@ -119,20 +119,24 @@ mod tests {
             let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
             let mut plain = Query::without_certificates(&model, scope, Method::BdTree).unwrap();
             let dir: Vec<f64> = (0..6).map(|_| random.signed()).collect();
-            for i in 0..60 {
-                let size = 0.004 * f64::from(i) * certificates.parts().pair_tree.limit();
+            for i in 0..70 {
+                let share = if i < 60 { 0.004 * f64::from(i) } else { 0.5 * f64::from(i - 58) };
+                let size = share * certificates.parts().pair_tree.limit();
                 let at = |s: f64| -> Vec<f64> { dir.iter().map(|x| x * s).collect() };
                 let (t0, t1) = (at(size), at(size * 1.01));
                 let pairs = plain.discrete(&t0).unwrap().to_vec();
                 assert_eq!(query.discrete(&t0).unwrap(), pairs, "case {case}, {i}");
                 tests += query.discrete.certified.broad.counters.hull_tests;
                 assert_eq!(kinetic.discrete(&t0).unwrap(), pairs, "case {case}, {i}");
+                let buckets = query.context.detect.layout.buckets.count();
+                refits += i32::from(query.norm() >= query.context.refit_norm && buckets > 1);
                 (free, colliding) =
                     (free + i32::from(pairs.is_empty()), colliding + i32::from(!pairs.is_empty()));
                 let impacts = plain.continuous(&t0, &t1).unwrap().to_vec();
                 assert_eq!(query.continuous(&t0, &t1).unwrap(), impacts, "case {case}, {i}");
             }
         }
-        assert!(free > 30 && colliding > 30 && tests > 1000, "{free} {colliding} {tests}");
+        let counts = [free, colliding, refits];
+        assert!(counts.iter().all(|count| *count > 30) && tests > 1000, "{counts:?} {tests}");
     }
 }

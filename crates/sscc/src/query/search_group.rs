@@ -6,7 +6,7 @@ use super::context::QueryContext;
 use super::discrete_search::DiscreteSearch;
 use super::query::Query;
 use super::statistics::Statistics;
-use crate::detect::buckets_ahead::BucketsAhead;
+use crate::detect::expected_buckets::ExpectedBuckets;
 use crate::{Error, Pair, Progress};
 
 /// The answer for one q of a batch.
@@ -26,7 +26,7 @@ pub(super) struct SearchGroup<'a> {
     check: ConfigurationCheck,
     search: DiscreteSearch,
     /// Made when several q are first answered together.
-    ahead: Option<BucketsAhead<1>>,
+    ahead: Option<ExpectedBuckets<1>>,
 }
 
 impl<'a> SearchGroup<'a> {
@@ -49,7 +49,7 @@ impl<'a> SearchGroup<'a> {
         let is_together = batch.len() > 1
             && configurations.iter().all(|configuration| is_far(context, configuration.norm, limit));
         let layout = &context.detect.layout;
-        let mut ahead = is_together.then(|| ahead.get_or_insert_with(|| BucketsAhead::new(layout)));
+        let mut ahead = is_together.then(|| ahead.get_or_insert_with(|| ExpectedBuckets::new(layout)));
         if let Some(ahead) = &mut ahead {
             let motions: Vec<_> = configurations.iter().map(Configuration::motion).collect();
             ahead.begin(layout, &motions);

@@ -25,12 +25,12 @@ fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
         [[square[0], square[1], square[2]], [square[1], square[3], square[2]]]
     });
     let faces = faces.collect();
-    let ways: Vec<[DVec3; 2]> = (0..rank).map(|_| [random.vector(), random.vector()]).collect();
+    let directions: Vec<[DVec3; 2]> = (0..rank).map(|_| [random.vector(), random.vector()]).collect();
     let noise = random.power(-4.0, -1.0);
     let mut rows = Vec::new();
     for x in &positions {
-        for [way, along] in &ways {
-            rows.push((*way * (x.dot(*along) / unit).sin() + random.vector() * noise) * unit);
+        for [dir, along] in &directions {
+            rows.push((*dir * (x.dot(*along) / unit).sin() + random.vector() * noise) * unit);
         }
     }
     let mesh = TriMesh::new(positions, faces).unwrap();

@@ -12,7 +12,7 @@ pub(super) struct Frontier {
     pub(super) radius: f64,
     /// Pairs of which only a lower bound is known.
     pub(super) open: Vec<BoundedNodePair>,
-    /// Pairs of buckets whose radius is known, with the tolerance of the pair tree.
+    /// Pairs of buckets whose radius is known, with the tolerance of the pair tree or a smaller one.
     pub(super) bounded: Vec<BoundedNodePair>,
 }
 

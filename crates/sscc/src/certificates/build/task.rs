@@ -16,7 +16,7 @@ use crate::{Error, Progress};
 pub(crate) enum Task {
     /// Splits an open pair of the BVTT.
     Split(SplitTask),
-    /// Searches the radius of a node, or of some pairs of its children.
+    /// Searches the radius of a node, or of some pairs of nodes within it.
     NodeRadius(NodeRadiusTask),
 }
 
@@ -64,7 +64,7 @@ impl NodeRadiusTask {
 
     /// Searches the pairs between two nodes.
     pub(super) fn between(pair: BoundedNodePair, precision: Precision, cap: f64) -> Self {
-        // Both are below the root, which is no bucket of its own.
+        // Both are within the root, whose pairs are searched: it is no leaf where there are pairs.
         Self { node: 0, pairs: vec![pair], goal: SearchGoal::new(cap, precision) }
     }
 

@@ -9,7 +9,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use crate::detect::vectors::{Baseline, Kernel, Vectors};
+use crate::detect::vectors::{Baseline, Kernel, LANES, Vectors};
 use crate::geometry::nearest_to_origin;
 
 /// The coordinates of core points along each axis.
@@ -76,6 +76,8 @@ fn extent<V: Vectors>(v: V, [x, y, z]: &Points, turned: Vec4) -> f32 {
 /// Covers the rounding of the test: squares, products, a sum, a difference.
 const ROUND_UP: f32 = 1.0 + 1e-5;
 
+const _: () = assert!(CORE_POINTS.is_multiple_of(LANES));
+
 /// The squares of lengths of normals that are tested.
 const SQUARES: Range<f32> = 1e-6..1e18;
 
@@ -102,13 +104,14 @@ impl<const E: usize> Kernel for PlaneTest<'_, E> {
     fn run<V: Vectors>(self, vectors: V) -> bool {
         let Self { points: [a, b], distance, normal } = self;
         let square = normal.length_squared();
-        // NaN is in no range, and fails the other tests, too.
+        // NaN and infinity fail this test or one of the gap.
         if !SQUARES.contains(&square) {
             return false;
         }
         let gap = -b.extent(vectors, -normal) - a.extent(vectors, normal);
-        let is_wide = gap * gap > distance * distance * square * ROUND_UP;
-        gap > 0.0 && right_or!(is_wide, HullsTouch, true)
+        let reached = distance * distance * right_or!(square, HullNormalTakenAsUnit, 1.0);
+        let is_wide = gap * gap > reached * ROUND_UP;
+        gap > 0.0 && gap.is_finite() && right_or!(is_wide, HullsTouch, true)
     }
 }
 

@@ -287,6 +287,11 @@ fn only_gaps_wider_than_the_radii_separate() {
         !test(&points, [low], [high], f32::INFINITY, Vec3::Z)
             && !test(&points, [low], [high], f32::NAN, Vec3::Z)
     );
+    for length in [2e-3, 0.1, 3e4, 9e8] {
+        assert!(test(&points, [low], [high], 0.9, Vec3::Z * length), "{length}");
+        assert!(!test(&points, [low], [high], 1.0, Vec3::Z * length), "{length}");
+    }
+    assert!([5e-4, 2e9].iter().all(|length| !test(&points, [low], [high], 0.9, Vec3::Z * *length)));
     // At both configurations, in either order.
     assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
     assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));

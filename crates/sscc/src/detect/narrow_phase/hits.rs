@@ -30,6 +30,11 @@ impl<T> Hits<T> {
         self.is_full
     }
 
+    /// Whether no number of hits ends the search.
+    pub(crate) fn is_unlimited(&self) -> bool {
+        self.limit == usize::MAX
+    }
+
     /// Whether the limit never stopped the search.
     #[inline]
     pub(crate) fn is_complete(&self) -> bool {

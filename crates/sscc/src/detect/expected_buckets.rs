@@ -25,7 +25,7 @@ pub(crate) struct CoarsePositions<const E: usize> {
 }
 
 /// The buckets moved ahead for a group of searches.
-pub(crate) struct BucketsAhead<const E: usize> {
+pub(crate) struct ExpectedBuckets<const E: usize> {
     motions: Vec<CoarseMotion<E>>,
     positions: Vec<CoarsePositions<E>>,
     /// The buckets that the next group is expected to open.
@@ -34,7 +34,7 @@ pub(crate) struct BucketsAhead<const E: usize> {
     opened: Vec<u8>,
 }
 
-impl<const E: usize> BucketsAhead<E> {
+impl<const E: usize> ExpectedBuckets<E> {
     pub(crate) fn new(layout: &Layout) -> Self {
         let positions = CoarsePositions { positions: layout.coarse.new_positions(), moved: Vec::new() };
         Self {
