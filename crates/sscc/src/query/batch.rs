@@ -62,7 +62,7 @@ impl Query<'_> {
 struct OpenRows {
     /// Those that are searched alone, ascending.
     near: Vec<usize>,
-    /// Those that are searched in groups, by ascending norm, because equal norms open the same buckets.
+    /// Those that are searched in groups, by ascending norm, because at similar norms the same radii are reached.
     far: Vec<usize>,
 }
 

@@ -54,7 +54,7 @@ impl<const E: usize> CertifiedSearch<E> {
                 );
             }
             (_, Some(parts)) => {
-                // A search that few hits end opens few nodes.
+                // A search that ends at its first hits may open few nodes.
                 if norm >= context.refit_norm && narrow.hits().is_unlimited() {
                     self.broad.volumes.refit(&context.detect.hierarchy, motion);
                 }
