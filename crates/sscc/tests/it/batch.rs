@@ -124,7 +124,8 @@ fn the_first_error_is_reported() {
     let model = sheet(random, 3, 1.0);
     let certificates = Certificates::compute(&model, &random_options(1, &model), &()).unwrap();
     let query = Query::new(&model, &certificates).unwrap();
-    let good: Vec<Vec<f64>> = (0..40).map(|_| (0..3).map(|_| random.signed()).collect()).collect();
+    // Near rest, where answers are short: only errors are compared.
+    let good: Vec<Vec<f64>> = (0..40).map(|_| (0..3).map(|_| 0.01 * random.signed()).collect()).collect();
     let bad = [vec![0.0; 2], vec![f64::NAN, 0.0, 0.0], vec![0.0, 1e300, 0.0]];
     let error = |q: &[f64]| query.clone().discrete(q).unwrap_err();
     for _ in 0..60 {
