@@ -16,6 +16,7 @@ use crate::contact::Contact;
 use crate::contact_constraint::{GROUND, Side, Source, sides};
 use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::displacement::displacement;
+use crate::friction_cone::limit_friction;
 use crate::ground_contacts::GroundContacts;
 use crate::ground_point::{GroundPoint, rest_position};
 use crate::rigid_contacts::RigidContacts;
@@ -36,8 +37,8 @@ pub(crate) struct Correction {
     /// Mean velocity between the points in the step, without w.
     slip: DVec3,
     pub friction: f64,
-    /// Whether the points part with the coefficient of restitution.
-    pub bounces: bool,
+    /// Velocity at which the points of an impact part after the step; None if they do not bounce.
+    pub bounce: Option<f64>,
     /// Total impulse along the normal; never negative.
     pub normal_impulse: f64,
     /// Total impulse perpendicular to the normal.
@@ -152,9 +153,6 @@ impl CorrectionSolver {
         let slip = (body.point(rest, modes) - start) / rigid.step - applied;
         let trial = normal.dot(body.trial.point(rest, modes) - start) / rigid.step;
         let approach = -normal.dot(body.start.rigid.velocity_at(arm));
-        let gap_target = (min_gap - gap) / rigid.step - normal.dot(slip);
-        let bounce = rigid.bounce(approach.min(-trial));
-        let target = bounce.map_or(gap_target, |speed| gap_target.max(speed - normal.dot(slip)));
         self.list.push(Correction {
             bodies: [number as u32, GROUND],
             source: Source::Vertex(vertex),
@@ -162,10 +160,10 @@ impl CorrectionSolver {
             arms: [arm, DVec3::ZERO],
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
-            target,
+            target: (min_gap - gap) / rigid.step - normal.dot(slip),
             slip,
             friction: ground.friction,
-            bounces: bounce.is_some(),
+            bounce: rigid.bounce(approach.min(-trial)),
             normal_impulse,
             friction_impulse,
             end_impulse: DVec3::ZERO,
@@ -195,9 +193,6 @@ impl CorrectionSolver {
         let slip = (now[0] - now[1] - contact.between) / rigid.step - applied;
         let trial = contact.between(both.map(|body| &body.trial)) - contact.between;
         let approach = -normal.dot(trial) / rigid.step;
-        let gap_target = (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip);
-        let bounce = rigid.bounce(contact.approach(both).min(approach));
-        let target = bounce.map_or(gap_target, |speed| gap_target.max(speed - normal.dot(slip)));
         let friction_impulse = contact.friction_impulse;
         self.list.push(Correction {
             bodies: contact.bodies,
@@ -206,10 +201,10 @@ impl CorrectionSolver {
             arms: contact.arms,
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
-            target,
+            target: (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip),
             slip,
             friction,
-            bounces: bounce.is_some(),
+            bounce: rigid.bounce(contact.approach(both).min(approach)),
             normal_impulse: contact.normal_impulse,
             friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
             end_impulse: DVec3::ZERO,
@@ -242,7 +237,7 @@ impl CorrectionSolver {
             target: (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip),
             slip,
             friction,
-            bounces: false,
+            bounce: None,
             normal_impulse: contact.normal_impulse,
             friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
             end_impulse: DVec3::ZERO,
@@ -319,7 +314,8 @@ impl CorrectionSolver {
                 friction_impulse -=
                     direction * (sliding.length() / direction.dot(one.inverse_mass * direction));
             }
-            friction_impulse = friction_impulse.clamp_length_max(one.friction * normal_impulse);
+            friction_impulse =
+                limit_friction(friction_impulse, one.friction, normal, normal_impulse, &one.inverse_mass);
             impulse += friction_impulse - one.friction_impulse;
         }
         if impulse == DVec3::ZERO {

@@ -74,6 +74,7 @@ mod depth_field;
 mod displacement;
 mod elastic_energy;
 mod error;
+mod friction_cone;
 mod ground;
 mod ground_contacts;
 mod ground_point;

@@ -1,11 +1,16 @@
-//! Velocities at the end of a step: points that contacts hold neither approach nor part.
+//! Velocities at the end of a step: points that contacts hold neither approach nor part, and impacts bounce.
 //!
 //! The impulses of corrections act at the beginning of the step, and the forces of the step act after them. So the points
 //! of a body at rest end the step with a velocity towards the ground, half of what its weight adds in a step; and points
 //! whose gap recovers would be thrown off. Impulses of all contacts that bear a load stop both, and friction the sliding
 //! within Coulomb's cone. In the whole step contacts only push: an impulse at the end takes back at most the one at the
-//! beginning. Contacts that bounce part. Modes have the weights of corrections, so that both impulses of a body at rest are
-//! equal, and its modes at rest, too.
+//! beginning. Modes have the weights of corrections, so that both impulses of a body at rest are equal, and its modes at
+//! rest, too.
+//!
+//! Impacts bounce by Newton's law, after all contacts were stopped, with impulses that are at most as large as those that
+//! stopped them. The bound is needed because Newton's law demands a velocity of each point: where a part is wedged between
+//! points with opposite normals, these velocities contradict each other, and without it impulses grow in each iteration. For
+//! the same reason the positions at the end of the step do not bounce: staying in place satisfies all contacts.
 
 use glam::{DMat3, DVec3};
 
@@ -14,6 +19,7 @@ use crate::contact_constraint::{Side, Source, sides};
 use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::correction::Correction;
 use crate::displacement::displacement;
+use crate::friction_cone::limit_friction;
 use crate::ground_point::rest_position;
 
 /// Maximum number of iterations.
@@ -37,8 +43,12 @@ struct Load {
     /// Impulses at the beginning of the step.
     given_normal: f64,
     given_friction: DVec3,
-    /// Whether the points may part.
-    bounces: bool,
+    /// Velocity at which the points of an impact part; None if they do not bounce.
+    bounce: Option<f64>,
+    /// Velocity along the normal that the impulses aim at.
+    target: f64,
+    /// Minimum and maximum impulse along the normal at the end of the step.
+    range: [f64; 2],
     /// Impulses at the end of the step.
     normal_impulse: f64,
     friction_impulse: DVec3,
@@ -54,11 +64,30 @@ impl World<'_> {
         let mut velocities: Vec<RigidVelocity> = self.bodies.iter().map(RigidVelocity::of).collect();
         let corrections = self.corrections.list.iter().enumerate().filter(is_loaded);
         let mut loads: Vec<Load> = corrections.map(|(n, one)| self.load(n, one, &velocities)).collect();
+        self.stop_all(&mut loads, &mut velocities);
+        let mut bounces = false;
+        for load in &mut loads {
+            let Some(speed) = load.bounce else { continue };
+            let stopping = (load.given_normal + load.normal_impulse).max(0.0);
+            (load.target, load.range) = (speed, [load.normal_impulse, load.normal_impulse + stopping]);
+            bounces = true;
+        }
+        if bounces {
+            self.stop_all(&mut loads, &mut velocities);
+        }
+        for load in &loads {
+            self.corrections.list[load.correction].end_impulse =
+                load.normal * load.normal_impulse + load.friction_impulse;
+        }
+    }
+
+    /// Gives the points of all contacts the velocities that they aim at, as far as their impulses can.
+    fn stop_all(&mut self, loads: &mut [Load], velocities: &mut [RigidVelocity]) {
         let mut first_change = 0.0;
         for iteration in 0..MAX_ITERATIONS {
             let mut max_change = 0.0_f64;
-            for load in &mut loads {
-                max_change = max_change.max(self.stop_contact(load, &mut velocities));
+            for load in &mut *loads {
+                max_change = max_change.max(self.stop_contact(load, velocities));
             }
             if iteration == 0 {
                 first_change = max_change;
@@ -66,10 +95,6 @@ impl World<'_> {
             if max_change <= RELATIVE_TOLERANCE * first_change {
                 break;
             }
-        }
-        for load in &loads {
-            self.corrections.list[load.correction].end_impulse =
-                load.normal * load.normal_impulse + load.friction_impulse;
         }
     }
 
@@ -88,7 +113,9 @@ impl World<'_> {
             friction,
             given_normal: one.normal_impulse,
             given_friction: one.friction_impulse,
-            bounces: one.bounces,
+            bounce: one.bounce,
+            target: 0.0,
+            range: [if one.bounce.is_some() { 0.0 } else { -one.normal_impulse }, f64::INFINITY],
             normal_impulse: 0.0,
             friction_impulse: DVec3::ZERO,
         };
@@ -133,19 +160,21 @@ impl World<'_> {
             let modal = displacement(source.modes(n, body, contacts), &body.v);
             v += if is_within { modal } else { rigid.of_point(arms[n], modal) * sign };
         }
-        let least = if load.bounces { 0.0 } else { -load.given_normal };
-        let change = (-normal.dot(v) / normal_inverse_mass).max(least - load.normal_impulse);
-        load.normal_impulse += change;
-        let mut impulse = normal * change;
+        let [least, most] = load.range;
+        let before = load.normal_impulse;
+        let wanted = before + (load.target - normal.dot(v)) / normal_inverse_mass;
+        load.normal_impulse = wanted.max(least).min(most);
+        let mut impulse = normal * (load.normal_impulse - before);
         let after = v + inverse_mass * impulse;
         let sliding = after - normal * normal.dot(after);
         let mut friction_impulse = load.friction_impulse;
         if let Some(direction) = sliding.try_normalize() {
             friction_impulse -= direction * (sliding.length() / direction.dot(inverse_mass * direction));
         }
-        let most = friction * (load.given_normal + load.normal_impulse);
+        let (total, total_normal) =
+            (load.given_friction + friction_impulse, load.given_normal + load.normal_impulse);
         friction_impulse =
-            (load.given_friction + friction_impulse).clamp_length_max(most) - load.given_friction;
+            limit_friction(total, friction, normal, total_normal, &inverse_mass) - load.given_friction;
         impulse += friction_impulse - load.friction_impulse;
         load.friction_impulse = friction_impulse;
         for Side { n, body, sign } in sides(bodies) {
