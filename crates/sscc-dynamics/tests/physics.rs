@@ -228,7 +228,8 @@ fn distant_resting_bodies_change_no_bounce() {
             world.bodies()[0].rigid().position.y
         };
         let heights: Vec<f64> = (0..5000).map(|_| height()).collect();
-        assert!(touched > 10 + 1000 * blocks, "{touched}");
+        // A rigid contact bounces in one step or two; a spring would touch for half of its period.
+        assert!(touched > 3 + 1000 * blocks, "{touched}");
         heights
     };
     let (alone, beside) = (heights(0), heights(3));
