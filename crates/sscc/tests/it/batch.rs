@@ -117,15 +117,14 @@ fn answers_are_those_of_single_queries() {
     assert!(skipped < 1 + seeds / 4 && counts.iter().all(|count| *count > least), "{skipped} {counts:?}");
 }
 
-/// The error is that of the first q that has one, wherever it is in a group, and no other answer is lost by it.
+/// The error is that of the first q that has one, for any number of threads.
 #[test]
 fn the_first_error_is_reported() {
     let random = &mut Random::new(77);
     let model = sheet(random, 3, 1.0);
     let certificates = Certificates::compute(&model, &random_options(1, &model), &()).unwrap();
     let query = Query::new(&model, &certificates).unwrap();
-    // Near rest, where answers are short: only errors are compared.
-    let good: Vec<Vec<f64>> = (0..40).map(|_| (0..3).map(|_| 0.01 * random.signed()).collect()).collect();
+    let good: Vec<Vec<f64>> = (0..40).map(|_| (0..3).map(|_| random.signed()).collect()).collect();
     let bad = [vec![0.0; 2], vec![f64::NAN, 0.0, 0.0], vec![0.0, 1e300, 0.0]];
     let error = |q: &[f64]| query.clone().discrete(q).unwrap_err();
     for _ in 0..60 {
