@@ -9,9 +9,6 @@ use crate::ground_contacts::GroundContacts;
 use crate::ground_point::GroundPoint;
 use crate::rigid_contacts::RigidContacts;
 
-/// Vertices become points when they sink below this share of the gap at rest.
-const SINKING: f64 = 0.5;
-
 /// Maximum number of points that a body gains in one round of corrections.
 const MAX_NEW_POINTS: usize = 8;
 
@@ -44,7 +41,7 @@ impl GroundContacts {
     pub(crate) fn add_sinking(&mut self, body: &Body<'_>, ground: &Ground, rigid: &RigidContacts) -> bool {
         let mut sinking: Vec<(u32, f64)> = Vec::new();
         for &(vertex, gap) in &self.touching {
-            if gap < SINKING * rigid.rest_gap && gap < self.start_gap(vertex) && self.find(vertex).is_err() {
+            if gap < rigid.min_gap() && gap < self.start_gap(vertex) && self.find(vertex).is_err() {
                 sinking.push((vertex, gap));
             }
         }

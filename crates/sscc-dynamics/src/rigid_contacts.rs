@@ -24,6 +24,11 @@ const MAX_RECOVERY: f64 = 0.1;
 /// Gap that resting bodies keep, in skins.
 const REST_GAP: f64 = 0.5;
 
+/// Gap below which vertices become points on the ground, and up to which gaps recover, as a share of the gap that resting
+/// bodies keep. Were the second one larger, a body that rocks would be lifted at each vertex on which it lands, and the
+/// energy of this would keep it rocking.
+const MIN_GAP: f64 = 0.5;
+
 impl RigidContacts {
     /// Returns the numbers for a world with this skin.
     pub fn new(options: &WorldOptions, skin: f64) -> Self {
@@ -41,9 +46,14 @@ impl RigidContacts {
         gap.min(self.rest_gap)
     }
 
+    /// Returns the gap below which vertices become points on the ground, and up to which gaps recover.
+    pub fn min_gap(&self) -> f64 {
+        MIN_GAP * self.rest_gap
+    }
+
     /// Returns by how much a gap should grow in a step; 0 if it is large enough.
     pub fn recovery(&self, gap: f64) -> f64 {
-        self.recovery * (self.rest_gap - gap).max(0.0)
+        self.recovery * (self.min_gap() - gap).max(0.0)
     }
 
     /// Returns the velocity at which an impact with this velocity bounces; None if it does not.
