@@ -47,7 +47,7 @@ fn pairs_between_bodies_equal_brute_force() {
     // Bodies that begin in each other collide until they are apart; then they never meet again.
     let mut world = pile(&shapes, Detection::Certified, 0.2);
     let (mut met, mut apart) = (0, 0);
-    for step in 0..1200 {
+    for step in 0..700 {
         let placed: Vec<Vec<[DVec3; 3]>> = world
             .bodies()
             .iter()
