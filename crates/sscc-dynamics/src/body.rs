@@ -1,7 +1,7 @@
 //! Body: state, integrators and self-collision detection.
 
 use glam::{DMat3, DQuat, DVec3};
-use sscc::{Aabb, KineticQuery, Method, Pair, Pose, PosedShape, Query, SweptShape};
+use sscc::{Aabb, Impact, KineticQuery, Method, Pair, Pose, PosedShape, Query, SweptShape};
 
 use crate::change::Change;
 use crate::displacement::displacement;
@@ -31,6 +31,12 @@ pub struct Body<'a> {
     oscillator: Oscillator<'a>,
     detection: Detection,
     detector: Detector<'a>,
+    /// Continuous query of the body with itself; made when it is first needed.
+    continuous: Option<Box<Query<'a>>>,
+    /// Impacts of the body with itself, found by the last continuous query.
+    pub(crate) impacts: Vec<Impact>,
+    /// Whether a continuous query has proven the last motion free of self-collisions.
+    pub(crate) is_proven_free: bool,
     pub(crate) posed: PosedShape<'a>,
     /// The motion of the last step; made when it is first needed.
     pub(crate) swept: Option<Box<SweptShape<'a>>>,
@@ -160,6 +166,9 @@ impl<'a> Body<'a> {
             oscillator,
             detection: start.detection,
             detector,
+            continuous: None,
+            impacts: Vec::new(),
+            is_proven_free: false,
             posed,
             swept: None,
             pairs: Vec::new(),
@@ -221,6 +230,18 @@ impl<'a> Body<'a> {
         elastic + self.rigid.energy()
     }
 
+    /// Returns the total energy at the beginning of the step and now.
+    pub(crate) fn energies(&self, gravity: DVec3) -> [f64; 2] {
+        let Kinematics { rigid, q, v } = &self.start;
+        let elastic = match &self.oscillator {
+            Oscillator::Linear(oscillator) => oscillator.energy(q, v),
+            Oscillator::Nonlinear(oscillator) => oscillator.energy(q, v),
+        };
+        let load: f64 = self.load.iter().zip(q).map(|(f, q)| f * q).sum();
+        let weight = self.shape.mass().mass * gravity.dot(rigid.position);
+        [elastic + rigid.energy() - weight - load, self.energy() + self.potential(gravity)]
+    }
+
     /// Returns the kinetic energy of rigid motion and vibration.
     pub fn kinetic_energy(&self) -> f64 {
         self.v.iter().map(|v| v * v / 2.0).sum::<f64>() + self.rigid.energy()
@@ -249,8 +270,13 @@ impl<'a> Body<'a> {
         self.corners(triangle).map(|x| pose.apply(x))
     }
 
-    /// Returns the positions of the corners of a triangle in the world at the beginning of the step.
-    pub(crate) fn start_corners(&self, triangle: u32) -> [DVec3; 3] {
+    /// Returns the positions of the corners of a triangle at the beginning of the step: in axes of the rest pose if
+    /// `within`, else of the world.
+    pub(crate) fn start_corners(&self, triangle: u32, within: bool) -> [DVec3; 3] {
+        if within {
+            let model = self.shape.model();
+            return model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.start.q));
+        }
         self.start.corners(self.shape, triangle)
     }
 
@@ -262,6 +288,10 @@ impl<'a> Body<'a> {
     /// Detects self-collisions and stores the pairs in `pairs`.
     pub(crate) fn detect(&mut self) -> Result<(), DynamicsError> {
         self.pairs.clear();
+        if std::mem::take(&mut self.is_proven_free) {
+            self.root_failed = !self.is_root_certified();
+            return Ok(());
+        }
         let statistics = match &mut self.detector {
             Detector::Off => return Ok(()),
             Detector::Discrete(query) => {
@@ -274,6 +304,31 @@ impl<'a> Body<'a> {
             }
         };
         self.root_failed = !statistics.root_certified;
+        Ok(())
+    }
+
+    /// Whether the certificate of the root holds at q.
+    pub(crate) fn is_root_certified(&self) -> bool {
+        let certificates = self.shape.certificates();
+        certificates.norm(&self.q) < certificates.root_radius()
+    }
+
+    /// Finds the impacts of the body with itself in the motion from the beginning of the step to the current state. A body
+    /// that collides with itself at the beginning has none: it may pass through itself until it is free.
+    pub(crate) fn find_own_impacts(&mut self) -> Result<(), DynamicsError> {
+        self.impacts.clear();
+        if !self.pairs.is_empty() || self.detection == Detection::Off {
+            return Ok(());
+        }
+        let query = match (&mut self.continuous, &self.detector) {
+            (Some(query), _) => query,
+            (none, Detector::Discrete(query)) if self.detection == Detection::Certified => {
+                none.insert(query.clone())
+            }
+            (none, _) => none.insert(Box::new(Query::new(self.shape.model(), self.shape.certificates())?)),
+        };
+        self.impacts.extend_from_slice(query.continuous(&self.start.q, &self.q)?);
+        self.is_proven_free = self.impacts.is_empty();
         Ok(())
     }
 

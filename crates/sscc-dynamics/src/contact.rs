@@ -1,9 +1,8 @@
 //! Contact between two triangles: its geometry.
 //!
-//! A contact is rigid or soft. Triangles of different bodies, which never intersect, make rigid contacts: a swept query
-//! finds them, and each step computes nearest points and normal anew. Triangles that intersect make soft contacts,
-//! springs whose material points and normal stay those of the beginning. A gap within one body is therefore a linear
-//! function of q, and a step costs O(r).
+//! A contact is rigid or soft. Triangles that do not intersect make rigid contacts: a swept query finds them, and each step
+//! computes nearest points and normal anew. Triangles that intersect make soft contacts, springs whose material points and
+//! normal stay those of the beginning.
 
 use glam::{DMat3, DVec3};
 use sscc::Pair;
@@ -187,7 +186,11 @@ impl Contact {
             let weights = clamp_weights(weights(nearest.points[n], &corners[n]));
             Anchor { triangle: triangles[n], weights }
         });
-        self.normal = bodies[1].start.rigid.orientation.inverse() * nearest.normal;
+        self.normal = if indices[0] == indices[1] {
+            nearest.normal
+        } else {
+            bodies[1].start.rigid.orientation.inverse() * nearest.normal
+        };
         (self.offset, self.max_slip, self.preload, self.age) = (0.0, 0.0, 0.0, 0);
         (self.normal_impulse, self.friction_impulse) = (0.0, DVec3::ZERO);
         self.is_duplicate = is_duplicate;
@@ -199,6 +202,11 @@ impl Contact {
 
     /// Computes the normal, the gap and the arms of a rigid contact from its anchors at the beginning of the step.
     pub fn locate(&mut self, bodies: [&Body<'_>; 2]) {
+        if self.is_within() {
+            self.between = self.rest[0] - self.rest[1] + displacement(&self.modes[0], &bodies[0].start.q);
+            self.gap = self.normal.dot(self.between);
+            return;
+        }
         self.world_normal = bodies[1].start.rigid.orientation * self.normal;
         let [x, y] = [0, 1].map(|n| bodies[n].start.point(self.rest[n], &self.modes[n]));
         self.between = x - y;

@@ -103,6 +103,7 @@ impl ContactSet {
                 }
                 let mut contact = self.spare.pop().unwrap_or_default();
                 contact.preload = 0.0;
+                (contact.normal_impulse, contact.friction_impulse) = (0.0, DVec3::ZERO);
                 let is_contact = contact.begin(indices, (i, j), [a, b], corners);
                 if is_contact { &mut self.list } else { &mut self.spare }.push(contact);
             }
@@ -113,7 +114,9 @@ impl ContactSet {
     /// Appends the rigid contacts of two triangles at the beginning of the step, if they are near. Contacts of `old` with
     /// the same features pass on their impulses.
     pub fn begin_near(&mut self, indices: [u32; 2], pair: Pair, bodies: [&Body<'_>; 2], skin: f64) {
-        let corners = [bodies[0].start_corners(pair.0), bodies[1].start_corners(pair.1)];
+        let is_within = indices[0] == indices[1];
+        let corners =
+            [bodies[0].start_corners(pair.0, is_within), bodies[1].start_corners(pair.1, is_within)];
         nearest_features(&corners[0], &corners[1], MAX_GAP * skin, &mut self.found);
         let found = std::mem::take(&mut self.found);
         let is_near = |one: &Nearest| one.points[0].distance(one.points[1]) < MAX_GAP * skin;

@@ -184,12 +184,8 @@ impl ContactSolver {
             let rigid = &self.velocities[body];
             let body = &bodies[body];
             let modal = displacement(constraint.modes(n, body, contacts), &body.v);
-            sum += if constraint.is_within() {
-                modal
-            } else {
-                let rotation = rigid.angular_velocity.cross(constraint.arms[n]);
-                (rigid.velocity + rotation + rigid.rotation * modal) * sign
-            };
+            sum +=
+                if constraint.is_within() { modal } else { rigid.of_point(constraint.arms[n], modal) * sign };
         }
         sum
     }
@@ -209,11 +205,9 @@ impl ContactSolver {
             if !constraint.is_within() {
                 let impulse = impulse * sign;
                 if body.is_free() {
-                    let angular_impulse = constraint.arms[n].cross(impulse);
-                    rigid.velocity += impulse * rigid.inverse_mass;
-                    rigid.angular_velocity += rigid.inverse_inertia * angular_impulse;
+                    rigid.push(impulse, constraint.arms[n]);
                     body.rigid.momentum += impulse;
-                    body.rigid.angular_momentum += angular_impulse;
+                    body.rigid.angular_momentum += constraint.arms[n].cross(impulse);
                 }
                 local = rigid.rotation.transpose() * impulse;
             }
@@ -293,6 +287,17 @@ impl RigidVelocity {
         }
     }
 
+    /// Returns the velocity of a point that moves with `modal` in axes of the body.
+    pub fn of_point(&self, arm: DVec3, modal: DVec3) -> DVec3 {
+        self.velocity + self.angular_velocity.cross(arm) + self.rotation * modal
+    }
+
+    /// Adds the change by an impulse.
+    pub fn push(&mut self, impulse: DVec3, arm: DVec3) {
+        self.velocity += impulse * self.inverse_mass;
+        self.angular_velocity += self.inverse_inertia * arm.cross(impulse);
+    }
+
     /// Returns the matrices from impulse to velocity at a point: with all modes, and with slow modes only.
     pub fn inverse_masses(&self, arm: DVec3, modal: &ModalInverseMass, within: bool) -> [DMat3; 2] {
         if within {
@@ -315,11 +320,17 @@ impl RigidVelocity {
 
     /// Returns the matrix from impulse to velocity at a point with these modes, of which each has a weight.
     pub fn inverse_mass_at(&self, arm: DVec3, modes: &[DVec3], weights: &[f64]) -> DMat3 {
-        let mut modal = DMat3::ZERO;
-        for (u, weight) in modes.iter().zip(weights) {
-            let x = *u * *weight;
-            modal += DMat3::from_cols(*u * x.x, *u * x.y, *u * x.z);
-        }
+        let modal = modal_inverse_mass(modes, weights);
         self.rigid_inverse_mass(arm) + self.rotation * modal * self.rotation.transpose()
     }
+}
+
+/// Returns the matrix from impulse to velocity due to modes, of which each has a weight (axes of the body).
+pub(crate) fn modal_inverse_mass(modes: &[DVec3], weights: &[f64]) -> DMat3 {
+    let mut sum = DMat3::ZERO;
+    for (u, weight) in modes.iter().zip(weights) {
+        let x = *u * *weight;
+        sum += DMat3::from_cols(*u * x.x, *u * x.y, *u * x.z);
+    }
+    sum
 }

@@ -1,20 +1,24 @@
-//! Solver for corrections: the smallest change of the end of a step at which all contacts between bodies hold.
+//! Solver for corrections: the smallest change of the end of a step at which all contacts hold.
 //!
 //! The unknown is the change w of the mean velocity of each body in the step (rigid motion and modes). The end of the
 //! step is displaced by `step * w`, and the velocity there changes by w. The metric is that of mass, inertia and modes, in
 //! which fast modes weigh more: an impulse at the beginning of a step of Newmark's method moves them by as much less. A
-//! rigid contact bounds the gap at the end of the step, which is a linear function of w, from below. Friction opposes
-//! the tangential displacement in the step, within Coulomb's cone. Contacts with the ground resist as the springs that
-//! they are. The solution is that of projected Gauss-Seidel, which begins with the impulses of the last step.
+//! contact bounds the gap at the end of the step, which is a linear function of w, from below. Friction opposes the
+//! tangential displacement in the step, within Coulomb's cone. The solution is that of projected Gauss-Seidel, which
+//! begins with the impulses of the last step.
 
 use glam::{DMat3, DVec3};
 
+use crate::Ground;
 use crate::body::Body;
 use crate::change::Change;
 use crate::contact::Contact;
-use crate::contact_constraint::{ContactConstraint, Side, Source, sides};
-use crate::contact_solver::{ContactSolver, RigidVelocity};
+use crate::contact_constraint::{GROUND, Side, Source, sides};
+use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::displacement::displacement;
+use crate::friction_cone::limit_friction;
+use crate::ground_contacts::GroundContacts;
+use crate::ground_point::{GroundPoint, rest_position};
 use crate::rigid_contacts::RigidContacts;
 
 /// Constraint on the end of a step.
@@ -22,30 +26,41 @@ use crate::rigid_contacts::RigidContacts;
 pub(crate) struct Correction {
     pub bodies: [u32; 2],
     pub source: Source,
-    normal: DVec3,
+    pub normal: DVec3,
     arms: [DVec3; 2],
     /// Matrix from impulse to change of velocity.
     inverse_mass: DMat3,
     /// Change of velocity along the normal by a unit impulse along the normal.
     normal_inverse_mass: f64,
-    /// The constraint along the normal is `n . w + compliance * normal_impulse >= target`.
-    compliance: f64,
+    /// The constraint along the normal is `n . w >= target`.
     target: f64,
     /// Mean velocity between the points in the step, without w.
     slip: DVec3,
-    friction: f64,
-    /// Impulse of the contact solver, which has acted before.
-    given: DVec3,
+    pub friction: f64,
+    /// Velocity at which the points of an impact part after the step; None if they do not bounce.
+    pub bounce: Option<f64>,
     /// Total impulse along the normal; never negative.
     pub normal_impulse: f64,
     /// Total impulse perpendicular to the normal.
     pub friction_impulse: DVec3,
+    /// Impulse at the end of the step: see [`resting_velocities`](crate::resting_velocities).
+    pub end_impulse: DVec3,
 }
 
 impl Correction {
-    /// Returns the impulse on the first body, without that which has acted before.
-    pub fn impulse(&self) -> DVec3 {
-        self.normal * self.normal_impulse + self.friction_impulse - self.given
+    /// Returns the impulse on the first body by which the end of the step is displaced.
+    fn impulse(&self) -> DVec3 {
+        self.normal * self.normal_impulse + self.friction_impulse
+    }
+
+    /// Returns the impulse on the first body in the whole step.
+    pub fn total_impulse(&self) -> DVec3 {
+        self.impulse() + self.end_impulse
+    }
+
+    /// Whether both points belong to one body. Their impulses then change its modes alone.
+    pub fn is_within(&self) -> bool {
+        self.bodies[0] == self.bodies[1]
     }
 }
 
@@ -53,8 +68,6 @@ impl Correction {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CorrectionSolver {
     pub list: Vec<Correction>,
-    /// Number of contact constraints, and of corrections of the ground at the beginning of the list.
-    taken: [usize; 2],
     active: Vec<u32>,
     masses: Vec<RigidVelocity>,
     /// Change of each body, and that of the modes of all bodies, one after the other.
@@ -76,7 +89,6 @@ impl CorrectionSolver {
     /// Begins a step.
     pub fn begin(&mut self, bodies: &[Body<'_>]) {
         self.list.clear();
-        self.taken = [0; 2];
         self.masses.clear();
         self.masses.extend(bodies.iter().map(|body| RigidVelocity::at(body, &body.start.rigid)));
         self.changes.clear();
@@ -93,27 +105,31 @@ impl CorrectionSolver {
         self.applied.1.clone_from(&self.modes);
     }
 
-    /// Makes the list of constraints: those of the ground, and those of rigid contacts in the bodies' current state.
+    /// Makes the list of constraints of the ground and of contacts, in the bodies' current state.
     pub fn gather(
         &mut self,
         bodies: &[Body<'_>],
+        ground: (&[GroundContacts], Option<Ground>),
         contacts: &[Contact],
-        solver: &ContactSolver,
         rigid: &RigidContacts,
         friction: f64,
     ) {
-        let [known, ground] = self.taken;
-        self.list.truncate(ground);
-        for (n, constraint) in solver.constraints.iter().enumerate().skip(known) {
-            if let Source::Vertex(v) = constraint.source {
-                let compliance = solver.coefficients.get(n).map_or(0.0, |own| own.compliance);
-                self.add_ground(constraint, v, compliance, bodies, rigid.step);
+        self.list.clear();
+        if let (all, Some(ground)) = ground {
+            for (n, (body, contacts)) in bodies.iter().zip(all).enumerate() {
+                for point in contacts.points.iter().filter(|_| !body.is_asleep()) {
+                    self.add_ground(n, point, body, &ground, rigid);
+                }
             }
         }
-        self.taken = [solver.constraints.len(), self.list.len()];
         for (n, contact) in contacts.iter().enumerate() {
             let both = contact.bodies.map(|body| &bodies[body as usize]);
-            if contact.is_rigid && !contact.is_duplicate && !both.iter().all(|body| body.is_asleep()) {
+            if !contact.is_rigid || contact.is_duplicate || both.iter().all(|body| body.is_asleep()) {
+                continue;
+            }
+            if contact.is_within() {
+                self.add_within(n, contact, both[0], rigid, friction);
+            } else {
                 self.add_rigid(n, contact, both, rigid, friction);
             }
         }
@@ -121,32 +137,36 @@ impl CorrectionSolver {
 
     fn add_ground(
         &mut self,
-        constraint: &ContactConstraint,
-        vertex: u32,
-        compliance: f64,
-        bodies: &[Body<'_>],
-        step: f64,
+        number: usize,
+        point: &GroundPoint,
+        body: &Body<'_>,
+        ground: &Ground,
+        rigid: &RigidContacts,
     ) {
-        let body = &bodies[constraint.bodies[0] as usize];
-        let (shape, modes) = (body.shape(), constraint.modes(0, body, &[]));
-        let rest = shape.model().mesh().rest_positions()[vertex as usize] - shape.mass().center;
-        let inverse_mass = self.inverse_mass(constraint.bodies[0], constraint.arms[0], modes, bodies);
-        let moved = body.trial.point(rest, modes) - body.start.point(rest, modes);
-        let ContactConstraint { normal, normal_impulse, friction_impulse, friction, .. } = *constraint;
+        let GroundPoint { vertex, arm, gap, min_gap, normal_impulse, friction_impulse } = *point;
+        let (rest, modes) =
+            (rest_position(body.shape(), vertex), body.shape().model().modes().of_vertex(vertex));
+        let start = body.start.rigid.position + arm;
+        let normal = ground.normal;
+        let inverse_mass = self.masses[number].inverse_mass_at(arm, modes, &body.step_weights);
+        let applied = self.velocity(number, arm, modes, &self.applied.0, &self.applied.1);
+        let slip = (body.point(rest, modes) - start) / rigid.step - applied;
+        let trial = normal.dot(body.trial.point(rest, modes) - start) / rigid.step;
+        let approach = -normal.dot(body.start.rigid.velocity_at(arm));
         self.list.push(Correction {
-            bodies: constraint.bodies,
-            source: constraint.source,
+            bodies: [number as u32, GROUND],
+            source: Source::Vertex(vertex),
             normal,
-            arms: constraint.arms,
+            arms: [arm, DVec3::ZERO],
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
-            compliance,
-            target: compliance * normal_impulse,
-            slip: moved / step,
-            friction,
-            given: normal * normal_impulse + friction_impulse,
+            target: (min_gap - gap) / rigid.step - normal.dot(slip),
+            slip,
+            friction: ground.friction,
+            bounce: rigid.bounce(approach.min(-trial)),
             normal_impulse,
             friction_impulse,
+            end_impulse: DVec3::ZERO,
         });
     }
 
@@ -173,9 +193,6 @@ impl CorrectionSolver {
         let slip = (now[0] - now[1] - contact.between) / rigid.step - applied;
         let trial = contact.between(both.map(|body| &body.trial)) - contact.between;
         let approach = -normal.dot(trial) / rigid.step;
-        let gap_target = (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip);
-        let bounce = rigid.bounce(contact.approach(both).min(approach));
-        let target = bounce.map_or(gap_target, |speed| gap_target.max(speed - normal.dot(slip)));
         let friction_impulse = contact.friction_impulse;
         self.list.push(Correction {
             bodies: contact.bodies,
@@ -184,18 +201,47 @@ impl CorrectionSolver {
             arms: contact.arms,
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
-            compliance: 0.0,
-            target,
+            target: (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip),
             slip,
             friction,
-            given: DVec3::ZERO,
+            bounce: rigid.bounce(contact.approach(both).min(approach)),
             normal_impulse: contact.normal_impulse,
             friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
+            end_impulse: DVec3::ZERO,
         });
     }
 
-    fn inverse_mass(&self, body: u32, arm: DVec3, modes: &[DVec3], bodies: &[Body<'_>]) -> DMat3 {
-        self.masses[body as usize].inverse_mass_at(arm, modes, &bodies[body as usize].step_weights)
+    /// Adds the constraint of a contact within a body. Its vectors are in axes of the body.
+    fn add_within(
+        &mut self,
+        number: usize,
+        contact: &Contact,
+        body: &Body<'_>,
+        rigid: &RigidContacts,
+        friction: f64,
+    ) {
+        let (modes, normal) = (&contact.modes[0], contact.normal);
+        let inverse_mass = modal_inverse_mass(modes, &body.step_weights);
+        let own = contact.bodies[0] as usize;
+        let applied = displacement(modes, &self.applied.1[self.first_mode[own]..][..modes.len()]);
+        let now = contact.rest[0] - contact.rest[1] + displacement(modes, &body.q);
+        let slip = (now - contact.between) / rigid.step - applied;
+        let friction_impulse = contact.friction_impulse;
+        self.list.push(Correction {
+            bodies: contact.bodies,
+            source: Source::Contact(number as u32),
+            normal,
+            arms: [DVec3::ZERO; 2],
+            inverse_mass,
+            normal_inverse_mass: normal.dot(inverse_mass * normal),
+            target: (contact.min_gap - contact.gap) / rigid.step - normal.dot(slip),
+            slip,
+            friction,
+            bounce: None,
+            normal_impulse: contact.normal_impulse,
+            friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
+            end_impulse: DVec3::ZERO,
+        });
     }
 
     /// Solves the constraints that act on a body of `among`, which must contain whole islands, and moves these bodies.
@@ -246,14 +292,17 @@ impl CorrectionSolver {
     /// Updates the impulse of one constraint. Returns the change of velocity between its points.
     fn update(&mut self, n: usize, bodies: &[Body<'_>], contacts: &[Contact]) -> f64 {
         let one = self.list[n];
-        let (normal, compliance) = (one.normal, one.compliance);
+        let normal = one.normal;
         let mut w = DVec3::ZERO;
         for Side { n, body, sign } in sides(one.bodies) {
             let modes = one.source.modes(n, &bodies[body], contacts);
-            w += self.velocity(body, one.arms[n], modes, &self.changes, &self.modes) * sign;
+            w += if one.is_within() {
+                displacement(modes, &self.modes[self.first_mode[body]..][..modes.len()])
+            } else {
+                self.velocity(body, one.arms[n], modes, &self.changes, &self.modes) * sign
+            };
         }
-        let change = (one.target - normal.dot(w) - compliance * one.normal_impulse)
-            / (one.normal_inverse_mass + compliance);
+        let change = (one.target - normal.dot(w)) / one.normal_inverse_mass;
         let change = change.max(-one.normal_impulse);
         let normal_impulse = one.normal_impulse + change;
         let mut impulse = normal * change;
@@ -265,7 +314,8 @@ impl CorrectionSolver {
                 friction_impulse -=
                     direction * (sliding.length() / direction.dot(one.inverse_mass * direction));
             }
-            friction_impulse = friction_impulse.clamp_length_max(one.friction * normal_impulse);
+            friction_impulse =
+                limit_friction(friction_impulse, one.friction, normal, normal_impulse, &one.inverse_mass);
             impulse += friction_impulse - one.friction_impulse;
         }
         if impulse == DVec3::ZERO {
@@ -289,14 +339,14 @@ impl CorrectionSolver {
     fn apply(&mut self, one: &Correction, impulse: DVec3, bodies: &[Body<'_>], contacts: &[Contact]) {
         for Side { n, body, sign } in sides(one.bodies) {
             let (mass, change, impulse) = (&self.masses[body], &mut self.changes[body], impulse * sign);
-            if bodies[body].is_free() {
+            if bodies[body].is_free() && !one.is_within() {
                 let angular_impulse = one.arms[n].cross(impulse);
                 change.impulse += impulse;
                 change.angular_impulse += angular_impulse;
                 change.velocity += impulse * mass.inverse_mass;
                 change.angular_velocity += mass.inverse_inertia * angular_impulse;
             }
-            let local = mass.rotation.transpose() * impulse;
+            let local = if one.is_within() { impulse } else { mass.rotation.transpose() * impulse };
             let modes = one.source.modes(n, &bodies[body], contacts);
             let own = &mut self.modes[self.first_mode[body]..][..modes.len()];
             for ((w, u), weight) in own.iter_mut().zip(modes).zip(&bodies[body].step_weights) {

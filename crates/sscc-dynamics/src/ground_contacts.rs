@@ -1,14 +1,12 @@
-//! Contacts of a body's vertices with the ground: a list of near vertices serves many steps, and each of them is tested
+//! Search for a body's vertices near the ground: a list of near vertices serves many steps, and each of them is tested
 //! again only when it can have come within the skin.
 
 use glam::DVec3;
 use sscc::Aabb;
 
 use crate::body::Body;
-use crate::contact::ModalInverseMass;
-use crate::contact_constraint::{ContactConstraint, GROUND, Source};
-use crate::contact_set::adapt_preload;
 use crate::displacement::displacement;
+use crate::ground_point::GroundPoint;
 use crate::{DynamicsError, Ground, Shape};
 
 /// Number of steps for which a search for near vertices is meant to serve.
@@ -45,13 +43,15 @@ pub(crate) struct GroundContacts {
     vertices: Vec<u32>,
     /// The `near_travel` up to which each of them is outside the skin.
     limits: Vec<f64>,
-    /// Modal inverse mass of each vertex that was within the skin since the last search.
-    modal_inverse_masses: Vec<Option<Box<ModalInverseMass>>>,
-    /// Constraints of this step: one for each vertex within the skin, ascending.
-    pub(crate) constraints: Vec<ContactConstraint>,
-    /// Length by which the springs of the ground exceed the skin: see [`adapt_preload`].
-    pub(crate) preload: f64,
-    /// Number of vertices within the skin.
+    /// The skin of the last update.
+    pub(crate) skin: f64,
+    /// Vertices within the skin, ascending, each with its gap, in the state of the last update.
+    pub(crate) touching: Vec<(u32, f64)>,
+    /// The same at the beginning of this step.
+    pub(crate) touching_at_start: Vec<(u32, f64)>,
+    /// Vertices that corrections keep above the ground, ascending.
+    pub(crate) points: Vec<GroundPoint>,
+    /// Number of vertices within the skin at the beginning of this step.
     pub(crate) count: usize,
 }
 
@@ -104,21 +104,22 @@ impl Reach {
 pub(crate) struct GroundOptions {
     pub ground: Ground,
     pub skin: f64,
-    /// See [`adapt_preload`].
-    pub preload_rate: f64,
 }
 
 impl GroundContacts {
-    /// Computes the constraints of the body with this number, and updates the preload.
+    /// Lists the vertices within the skin in the body's current state, and their gaps.
     pub(crate) fn update(
         &mut self,
-        number: usize,
         body: &mut Body<'_>,
         options: &GroundOptions,
     ) -> Result<(), DynamicsError> {
-        let GroundOptions { ground, skin, preload_rate } = *options;
+        let GroundOptions { ground, skin } = *options;
         let rotation = body.rotation();
         let local = rotation.transpose() * ground.normal;
+        let is_same = (self.position, self.normal) == (body.rigid.position, local) && self.q == body.q;
+        if is_same && self.search_limit.is_some() {
+            return Ok(());
+        }
         let shape = body.shape();
         let displacement_travel = ground.normal.dot(body.rigid.position - self.position).abs();
         let near_travel =
@@ -143,8 +144,8 @@ impl GroundContacts {
             let near = self.search_limit.map_or(0.0, |_| SEARCH_STEPS * travel);
             self.search(body, &ground, skin, near.max(MIN_MARGIN * shape.radius()), rounding)?;
         }
-        self.constraints.clear();
-        let mut min_gap = skin;
+        self.skin = skin;
+        self.touching.clear();
         let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
         for (n, limit) in self.limits.iter_mut().enumerate() {
             if *limit > self.near_travel {
@@ -158,26 +159,8 @@ impl GroundContacts {
                 *limit = self.near_travel + (gap - skin - rounding);
                 continue;
             }
-            min_gap = min_gap.min(gap);
-            let own = self.modal_inverse_masses[n]
-                .get_or_insert_with(|| Box::new(ModalInverseMass::of(modes, &body.slow_weights)));
-            self.constraints.push(ContactConstraint {
-                bodies: [number as u32, GROUND],
-                source: Source::Vertex(v),
-                normal: ground.normal,
-                arms: [rotation * point, DVec3::ZERO],
-                compression: skin - gap,
-                modal_inverse_mass: [**own, ModalInverseMass::default()],
-                friction: ground.friction,
-                normal_impulse: 0.0,
-                friction_impulse: DVec3::ZERO,
-            });
+            self.touching.push((v, gap));
         }
-        self.preload = adapt_preload(self.preload, min_gap, skin, preload_rate);
-        for constraint in &mut self.constraints {
-            constraint.compression += self.preload;
-        }
-        self.count = self.constraints.len();
         Ok(())
     }
 
@@ -203,13 +186,12 @@ impl GroundContacts {
         self.near_reach.set(body.shape(), &self.vertices, body.rotation().transpose() * ground.normal);
         self.limits.clear();
         self.limits.resize(self.vertices.len(), f64::NEG_INFINITY);
-        self.modal_inverse_masses.clear();
-        self.modal_inverse_masses.resize(self.vertices.len(), None);
         Ok(())
     }
 
-    /// Discards the list of near vertices; needed after the body was moved to another state.
+    /// Discards all lists; needed after the body was moved to another state.
     pub(crate) fn reset(&mut self) {
         self.search_limit = None;
+        self.points.clear();
     }
 }

@@ -1,28 +1,41 @@
 //! Energy of corrections: what a correction adds to the energy of an island is paid from the energy budgets of its bodies.
+//!
+//! Without contacts, bodies would move in the step, and damping would take energy that no motion loses in truth. A
+//! correction that prevents this motion gives this energy back. So it adds what exceeds the energy of the island both before
+//! and after the motion without it, and dissipates what falls short of both.
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use crate::World;
 use crate::body::Body;
 
 impl World<'_> {
     /// Charges the change of energy by the corrections of this step to energy budgets. Velocities are scaled down where
-    /// the budgets are too small. `before` holds the energy of each corrected body without its correction.
-    pub(crate) fn limit_energy(&mut self, before: &[Option<f64>]) {
+    /// the budgets are too small. `before` holds the energies of each corrected body at the beginning of the step and at its
+    /// end without the correction.
+    pub(crate) fn limit_energy(&mut self, before: &[Option<[f64; 2]>]) {
         let mut corrected: Vec<(usize, usize)> =
             (0..before.len()).filter(|n| before[*n].is_some()).map(|n| (self.islands.of(n), n)).collect();
+        if corrected.is_empty() {
+            return;
+        }
         corrected.sort_unstable();
+        let gravity = self.options.gravity;
+        let energy = |(body, before): (&Body<'_>, &Option<_>)| {
+            before.as_ref().map_or(0.0, |_| body.energy() + body.potential(gravity))
+        };
+        let energies: Vec<f64> = self.bodies.par_iter().zip(before).map(energy).collect();
         for island in corrected.chunk_by(|a, b| a.0 == b.0) {
             let members = || island.iter().map(|(_, n)| *n);
-            let energy = |bodies: &[Body<'_>]| -> f64 {
-                members().map(|n| bodies[n].energy() + bodies[n].potential(self.options.gravity)).sum()
-            };
-            let first: f64 = members().filter_map(|n| before[n]).sum();
+            let [start, trial] =
+                [0, 1].map(|k| members().filter_map(|n| before[n]).map(|both| both[k]).sum::<f64>());
             let budget: f64 = members().map(|n| self.bodies[n].energy_budget).sum();
-            let mut work = energy(&self.bodies) - first;
+            let now: f64 = members().map(|n| energies[n]).sum();
+            let mut work = (now - start.max(trial)).max(0.0) + (now - start.min(trial)).min(0.0);
             if work > budget {
-                let is_held =
-                    members().any(|n| !self.bodies[n].is_free() || self.ground_contacts[n].count > 0);
+                let is_held = members()
+                    .any(|n| !self.bodies[n].is_free() || !self.ground_contacts[n].points.is_empty());
                 work -= remove_kinetic_energy(&mut self.bodies, island, work - budget, !is_held);
             }
             let count = island.len() as f64;

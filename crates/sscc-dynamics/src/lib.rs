@@ -46,16 +46,16 @@
 //! - **Contacts never add energy**, up to rounding: they return at most the energy that they have dissipated
 //!   ([`World::dissipated`]), for every stiffness and step. Linear modes and free flight conserve energy up to
 //!   rounding; tumbling and Newmark's method conserve it to second order in the step.
-//! - **No intersections between bodies** in any state, if there are none in the first one: a swept query proves each step.
+//! - **No intersections** between bodies, within them ([`Response::Contact`]) and with the ground in any state, if there are
+//!   none in the first one: swept queries prove each step.
 //! - **Momenta** are conserved exactly between bodies and within them, except where a body moves only a share of its way.
 //! - **Bodies at rest sleep** ([`SleepOptions`]), and cost nothing until a moving body touches them.
 //!
 //! # Limitations
 //!
 //! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia.
-//! Contacts within a body and with the ground are found at the ends of steps, so thin parts of a body can pass through
-//! each other in one step. Bodies that no correction keeps apart move only a share of their way in a step, which conserves
-//! no angular momentum ([`World::shortened_bodies`]).
+//! Bodies that no correction keeps apart move only a share of their way in a step, which conserves no angular momentum
+//! ([`World::shortened_bodies`]). Bodies that begin in intersection with themselves or others pass through until they are free.
 //!
 //! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
 //! mass-orthonormal, so generalised forces are accelerations of q.
@@ -74,8 +74,11 @@ mod depth_field;
 mod displacement;
 mod elastic_energy;
 mod error;
+mod friction_cone;
 mod ground;
 mod ground_contacts;
+mod ground_point;
+mod ground_points;
 mod island_energy;
 mod islands;
 mod kinematics;
@@ -88,7 +91,9 @@ mod nonlinear_oscillator;
 mod options;
 mod packed_rows;
 mod pseudonormals;
+mod recovery;
 mod rest;
+mod resting_velocities;
 mod rigid_contacts;
 mod rigid_motion;
 mod rolling;

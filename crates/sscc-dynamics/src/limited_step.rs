@@ -1,16 +1,21 @@
-//! Limits a step to motions in which no two bodies intersect.
+//! Limits a step to motions in which no two bodies intersect, and none sinks into the ground.
 //!
-//! Contacts between bodies act at the end of the step: a correction displaces it as little as they need, and changes the
-//! velocities accordingly. A swept query then finds the pairs of triangles that have a point in common on the way to the
-//! corrected end. They become contacts, and the correction is computed again. Bodies that still meet after a few
-//! corrections move only a share of their way. So a state with intersections between bodies is never reached from one
-//! without (Harmon et al. 2009 and Li et al. 2020 argue for the same invariant).
+//! Contacts act at the end of the step: a correction displaces it as little as they need, and changes the velocities
+//! accordingly. A swept query then finds the pairs of triangles of different bodies that have a point in common on the way
+//! to the corrected end, and a search the vertices that sink there. They become contacts, and the correction is computed
+//! again. Bodies that still meet each other or the ground after a few corrections move only a share of their way. So a
+//! state with intersections is never reached from one without (Harmon et al. 2009 and Li et al. 2020 argue for the same
+//! invariant).
 
 use glam::DVec3;
+use rayon::prelude::*;
 
+use crate::body::Body;
 use crate::contact_constraint::Source;
+use crate::ground_contacts::GroundContacts;
 use crate::step_buffers::StepBuffers;
-use crate::{DynamicsError, World};
+use crate::world::first_error;
+use crate::{DynamicsError, Observer, Phase, Response, World};
 
 /// Maximum number of corrections of a step.
 const MAX_CORRECTIONS: usize = 8;
@@ -28,66 +33,141 @@ const MIN_SHARE: f64 = 1e-3;
 /// Maximum number of times for which bodies are moved a share of their way; then they keep their place.
 const MAX_SHORTENINGS: usize = 4;
 
-impl World<'_> {
-    /// Corrects the end of this step until no two bodies intersect on the way to it.
-    pub(crate) fn limit_step(&mut self, buffers: &mut StepBuffers) -> Result<(), DynamicsError> {
+impl<'a> World<'a> {
+    /// Corrects the end of this step until no two bodies intersect on the way to it, and none sinks into the ground.
+    pub(crate) fn limit_step(
+        &mut self,
+        buffers: &mut StepBuffers,
+        observer: &mut impl Observer,
+    ) -> Result<(), DynamicsError> {
         self.corrections.begin(&self.bodies);
         buffers.energies.clear();
         buffers.energies.resize(self.bodies.len(), None);
-        let rigid = self.rigid_contacts;
-        for contact in self.contacts.list.iter_mut().filter(|contact| contact.is_rigid) {
-            contact.min_gap = rigid.kept_gap(contact.gap);
-        }
-        self.mark_islands(buffers, |contact| contact.is_rigid);
+        self.recover_gaps(buffers);
+        self.mark_islands(buffers);
         self.correct(buffers);
         for (moves, body) in buffers.moves.iter_mut().zip(&self.bodies) {
             *moves = !body.is_asleep();
         }
         for round in 0.. {
-            self.find_impacts(buffers)?;
-            if buffers.impacts.is_empty() {
+            self.find_impacts(buffers, observer)?;
+            self.find_sinking(buffers, round < MAX_CORRECTIONS)?;
+            if buffers.impacts.is_empty() && !buffers.sinks.contains(&true) {
                 break;
             }
             if round == MAX_CORRECTIONS {
-                self.shorten(buffers)?;
+                self.shorten(buffers, observer)?;
                 break;
             }
             self.begin_contacts(buffers)?;
             self.correct(buffers);
         }
+        self.stop_contacts();
         self.limit_energy(&buffers.energies);
-        for one in &self.corrections.list {
-            if let Source::Contact(contact) = one.source {
-                let contact = &mut self.contacts.list[contact as usize];
-                contact.normal_impulse = one.normal_impulse;
-                contact.friction_impulse = one.friction_impulse;
-            }
-        }
+        self.keep_impulses();
         Ok(())
     }
 
-    /// Selects the bodies that are awake in islands with such contacts.
-    fn mark_islands(
-        &mut self,
-        buffers: &mut StepBuffers,
-        selects: impl Fn(&crate::contact::Contact) -> bool,
-    ) {
+    /// Stores the impulses of corrections in their contacts.
+    fn keep_impulses(&mut self) {
+        for one in &self.corrections.list {
+            let (normal_impulse, friction_impulse) = (one.normal_impulse, one.friction_impulse);
+            match one.source {
+                Source::Contact(contact) => {
+                    let contact = &mut self.contacts.list[contact as usize];
+                    (contact.normal_impulse, contact.friction_impulse) = (normal_impulse, friction_impulse);
+                }
+                Source::Vertex(vertex) => {
+                    let contacts = &mut self.ground_contacts[one.bodies[0] as usize];
+                    if let Ok(n) = contacts.find(vertex) {
+                        let point = &mut contacts.points[n];
+                        (point.normal_impulse, point.friction_impulse) = (normal_impulse, friction_impulse);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Selects the bodies that are awake in islands with rigid contacts or points on the ground.
+    fn mark_islands(&mut self, buffers: &mut StepBuffers) {
         let moves = &mut buffers.moves;
         moves.fill(false);
-        for contact in self.contacts.list.iter().filter(|contact| selects(contact)) {
+        for contact in self.contacts.list.iter().filter(|contact| contact.is_rigid) {
             moves[self.islands.of(contact.bodies[0] as usize)] = true;
         }
-        for n in 0..moves.len() {
+        for (n, ground) in self.ground_contacts.iter().enumerate() {
+            if !ground.points.is_empty() {
+                moves[self.islands.of(n)] = true;
+            }
+        }
+        for n in (0..moves.len()).rev() {
+            // The first body of an island decides, and is visited last.
             moves[n] = moves[self.islands.of(n)] && !self.bodies[n].is_asleep();
         }
     }
 
-    fn find_impacts(&mut self, buffers: &mut StepBuffers) -> Result<(), DynamicsError> {
-        self.body_collisions.find_impacts(&mut self.bodies, &buffers.moves)?;
-        let found = self.body_collisions.impacts();
+    /// Finds the impacts of the selected bodies with others and with themselves.
+    fn find_impacts(
+        &mut self,
+        buffers: &mut StepBuffers,
+        observer: &mut impl Observer,
+    ) -> Result<(), DynamicsError> {
         buffers.impacts.clear();
-        buffers.impacts.extend(found.flat_map(|(bodies, all)| all.iter().map(move |one| (bodies, *one))));
+        if self.bodies.len() > 1 {
+            self.body_collisions.find_impacts(&mut self.bodies, &buffers.moves)?;
+            let found = self.body_collisions.impacts();
+            buffers.impacts.extend(found.flat_map(|(bodies, all)| all.iter().map(move |one| (bodies, *one))));
+        }
+        if self.options.response != Response::Contact {
+            return Ok(());
+        }
+        // A comparison answers all others.
+        let is_uncertain =
+            self.bodies.iter().zip(&buffers.moves).any(|(body, moves)| *moves && !body.is_root_certified());
+        if is_uncertain {
+            observer.enter(Phase::SelfCollision);
+        }
+        let find = |(body, moves): (&mut Body<'_>, &bool)| {
+            if *moves { body.find_own_impacts() } else { Ok(()) }
+        };
+        match &mut self.bodies[..] {
+            [body] => find((body, &buffers.moves[0]))?,
+            bodies => first_error(bodies.par_iter_mut().zip(&buffers.moves).map(find).collect())?,
+        }
+        for (n, body) in self.bodies.iter().enumerate().filter(|(n, _)| buffers.moves[*n]) {
+            buffers.impacts.extend(body.impacts.iter().map(|one| ([n, n], *one)));
+        }
+        if is_uncertain {
+            observer.enter(if self.bodies.len() > 1 { Phase::InterObject } else { Phase::Dynamics });
+        }
         Ok(())
+    }
+
+    /// Finds the selected bodies that sink into the ground. `makes_points` makes points of their lowest vertices, and also
+    /// selects bodies that come too near.
+    fn find_sinking(&mut self, buffers: &mut StepBuffers, makes_points: bool) -> Result<(), DynamicsError> {
+        let StepBuffers { moves, sinks, .. } = buffers;
+        sinks.fill(false);
+        let Some(options) = self.ground_options() else { return Ok(()) };
+        let rigid = self.rigid_contacts;
+        let find = |((moves, sinks), (body, contacts)): (
+            (&bool, &mut bool),
+            (&mut Body<'a>, &mut GroundContacts),
+        )| {
+            if *moves {
+                contacts.update(body, &options)?;
+                let is_near = makes_points && contacts.add_sinking(body, &options.ground, &rigid);
+                *sinks = is_near || contacts.sinks_after().is_some();
+            }
+            Ok(())
+        };
+        match (&mut self.bodies[..], &mut self.ground_contacts[..]) {
+            ([body], [contacts]) => find(((&moves[0], &mut sinks[0]), (body, contacts))),
+            (bodies, contacts) => {
+                let all = bodies.par_iter_mut().zip(contacts);
+                first_error(moves.par_iter().zip(sinks).zip(all).map(find).collect())
+            }
+        }
     }
 
     /// Solves the contacts of the selected bodies, and moves these to the corrected end of their step.
@@ -96,23 +176,20 @@ impl World<'_> {
         if !moves.contains(&true) {
             return;
         }
-        for (n, body) in self.bodies.iter().enumerate() {
-            if moves[n] && energies[n].is_none() {
-                energies[n] = Some(body.energy() + body.potential(self.options.gravity));
-            }
-        }
+        let gravity = self.options.gravity;
+        let bodies = self.bodies.par_iter().zip(&*moves).zip(energies);
+        bodies.filter(|((_, moves), energies)| **moves && energies.is_none()).for_each(
+            |((body, _), energies)| {
+                *energies = Some(body.energies(gravity));
+            },
+        );
+        self.keep_impulses();
         let friction = self.options.contact.friction;
-        let (contacts, rigid) = (&mut self.contacts.list, &self.rigid_contacts);
-        for one in &self.corrections.list {
-            if let Source::Contact(contact) = one.source {
-                let contact = &mut contacts[contact as usize];
-                contact.normal_impulse = one.normal_impulse;
-                contact.friction_impulse = one.friction_impulse;
-            }
-        }
-        self.corrections.gather(&self.bodies, contacts, &self.solver, rigid, friction);
+        let (contacts, rigid) = (&self.contacts.list, &self.rigid_contacts);
+        let ground = (&self.ground_contacts[..], self.options.ground);
+        self.corrections.gather(&self.bodies, ground, contacts, rigid, friction);
         self.corrections.solve(&mut self.bodies, contacts, rigid, moves);
-        if self.options.response == crate::Response::Constrain {
+        if self.options.response == Response::Constrain {
             for (body, _) in self.bodies.iter_mut().zip(&*moves).filter(|(_, moves)| **moves) {
                 // A q that is not finite fails the next swept query.
                 let _ = crate::root_constraint::constrain_to_root(body);
@@ -122,7 +199,7 @@ impl World<'_> {
 
     /// Makes contacts of impacts and of triangles near them, and selects the islands of their bodies.
     fn begin_contacts(&mut self, buffers: &mut StepBuffers) -> Result<(), DynamicsError> {
-        let StepBuffers { moves, impacts, near, gathered, .. } = buffers;
+        let StepBuffers { moves, sinks, impacts, near, gathered, .. } = buffers;
         for ([a, b], _) in &*impacts {
             self.islands.join(*a, *b);
         }
@@ -130,12 +207,20 @@ impl World<'_> {
         for ([a, _], _) in &*impacts {
             moves[self.islands.of(*a)] = true;
         }
+        for n in (0..moves.len()).filter(|n| sinks[*n]) {
+            moves[self.islands.of(n)] = true;
+        }
         for n in 0..moves.len() {
             moves[n] = moves[self.islands.of(n)];
         }
         let corners: Vec<[[[DVec3; 3]; 2]; 2]> = impacts
             .iter()
             .map(|([a, b], impact)| {
+                if a == b {
+                    let body = &self.bodies[*a];
+                    let of = |triangle| [body.start_corners(triangle, true), body.corners(triangle)];
+                    return [of(impact.pair.0), of(impact.pair.1)];
+                }
                 let of = |body: usize, triangle: u32| {
                     let body = &self.bodies[body];
                     body.swept
@@ -149,11 +234,14 @@ impl World<'_> {
         near.clear();
         let skin = self.skin();
         for (bodies, _) in &*impacts {
-            if !gathered.contains(bodies) {
+            if bodies[0] != bodies[1] && !gathered.contains(bodies) {
                 gathered.push(*bodies);
                 self.body_collisions.find_near(&mut self.bodies, *bodies, NEAR_MARGIN * skin, near);
             }
         }
+        near.extend(
+            impacts.iter().filter(|(bodies, _)| bodies[0] == bodies[1]).map(|(n, one)| (*n, one.pair)),
+        );
         near.retain(|(bodies, pair)| {
             !self.contacts.has_rigid(bodies.map(|n| n as u32), *pair, self.sorted_contacts)
         });
@@ -179,14 +267,21 @@ impl World<'_> {
         Ok(())
     }
 
-    /// Moves bodies with impacts a share of their way, until none are left.
-    fn shorten(&mut self, buffers: &mut StepBuffers) -> Result<(), DynamicsError> {
+    /// Moves bodies with impacts or vertices below the ground a share of their way, until none are left.
+    fn shorten(
+        &mut self,
+        buffers: &mut StepBuffers,
+        observer: &mut impl Observer,
+    ) -> Result<(), DynamicsError> {
         let mut shares = vec![1.0_f64; self.bodies.len()];
         let mut is_shortened = vec![false; self.bodies.len()];
         for round in 0.. {
             let mut times = vec![f64::INFINITY; self.bodies.len()];
             for (bodies, impact) in &buffers.impacts {
                 bodies.iter().for_each(|n| times[*n] = times[*n].min(impact.time));
+            }
+            for (n, time) in times.iter_mut().enumerate().filter(|(n, _)| buffers.sinks[*n]) {
+                *time = time.min(self.ground_contacts[n].sinks_after().unwrap_or(f64::INFINITY));
             }
             buffers.moves.fill(false);
             for (n, time) in times.into_iter().enumerate() {
@@ -203,8 +298,9 @@ impl World<'_> {
             if !buffers.moves.contains(&true) {
                 break;
             }
-            self.find_impacts(buffers)?;
-            if buffers.impacts.is_empty() {
+            self.find_impacts(buffers, observer)?;
+            self.find_sinking(buffers, false)?;
+            if buffers.impacts.is_empty() && !buffers.sinks.contains(&true) {
                 break;
             }
         }

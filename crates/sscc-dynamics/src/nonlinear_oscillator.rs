@@ -24,9 +24,9 @@ const MAX_CHEAP_ITERATIONS: usize = 4;
 /// Minimum share of a Newton step in the line search.
 const MIN_STEP_SHARE: f64 = 1e-6;
 
-/// A step is solved when the residual is at most this share of the sum of its terms; this is close to the rounding
-/// error.
-const RELATIVE_TOLERANCE: f64 = 1e-11;
+/// A step is solved when the residual is at most this share of the sum of its terms: far below the error of the method, which
+/// is of second order in the step.
+const RELATIVE_TOLERANCE: f64 = 1e-9;
 
 /// Integrator for reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`. It uses the implicit Newmark method of
 /// average acceleration (second order, no numerical damping). The Rayleigh damping uses the stiffness at rest.

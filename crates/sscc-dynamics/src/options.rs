@@ -4,21 +4,19 @@ use glam::DVec3;
 
 use crate::{DynamicsError, Ground};
 
-/// Options of contacts. A contact is a spring with a damper that can only push. Its stiffness follows from the
-/// effective mass and the frequency. Contacts dissipate energy by damping and friction, and never return more than they
-/// have dissipated.
+/// Options of contacts. Contacts only push, dissipate energy by restitution and friction, and never return more than they have
+/// dissipated. Intersecting triangles make springs with dampers, whose stiffness follows from the effective mass and the
+/// frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOptions {
-    /// Frequency (Hz) of the effective mass on the spring. A contact lasts about half a period; an impact with speed v
-    /// penetrates by about `v / (2 pi frequency)`.
+    /// Frequency (Hz) of the effective mass on the spring, and rate at which contacts widen gaps that are too small.
     pub frequency: f64,
     /// Damping ratio. With 0 the contact is elastic; see [`ContactOptions::restitution`].
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// Distance that contacts keep between bodies (model unit). None: a thousandth of the smallest body's
-    /// radius. A spring holds a resting body within this distance, so it stays free of collisions if the spring can
-    /// bear the weight: `(2 pi frequency)^2 skin` must be well above the acceleration of gravity.
+    /// Distance within which surfaces are in contact (model unit); bodies at rest keep half of it. None: a thousandth of the
+    /// smallest body's radius.
     pub skin: Option<f64>,
     /// Maximum number of iterations of the impulse solver.
     pub iterations: usize,
@@ -74,9 +72,11 @@ impl Default for SleepOptions {
 /// Response of bodies to self-collisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Response {
-    /// Contact constraints push colliding triangles apart.
+    /// Contacts keep a body free of self-collisions: swept queries prove each step.
     #[default]
     Contact,
+    /// Springs push colliding triangles apart (penalty contacts; paper, section 7). Fast impacts and loads penetrate.
+    Penalty,
     /// q stays inside the ellipsoid that the certificate of the root proves free (paper, section 7). No detection is
     /// needed.
     Constrain,

@@ -2,7 +2,14 @@
 
 use glam::{DQuat, DVec3};
 
+use crate::displacement::displacement;
 use crate::{RigidMotion, Shape};
+
+/// Vertices of a body that vibrates near its reference state are tested once in so many steps.
+const CHECK_STEPS: u64 = 16;
+
+/// A body whose modes have moved by more than this multiple of the distance, summed over the modes, is not at rest.
+const MAX_BEND: f64 = 16.0;
 
 /// How long a body has been at rest, measured against a reference state.
 #[derive(Clone, Debug)]
@@ -18,7 +25,7 @@ pub(crate) struct Rest {
 
 impl Rest {
     /// Adds a step to the time, or, if some point may have moved farther than `distance` from the reference state, makes
-    /// the current state the reference.
+    /// the current state the reference. Costs O(r), and O(r) for each vertex where the modes move little, but many do.
     pub fn update(&mut self, shape: &Shape, rigid: &RigidMotion, q: &[f64], step: f64, distance: f64) {
         let before = self.orientation;
         let before = if before.dot(rigid.orientation) < 0.0 { -before } else { before };
@@ -29,13 +36,26 @@ impl Rest {
             reach += u * q.abs();
             bent += u * (q - before).abs();
         }
-        let moved = (rigid.position - self.position).length() + turned * reach + bent;
-        if moved <= distance {
+        let moved = (rigid.position - self.position).length() + turned * reach;
+        let is_due = ((self.time / step).round() as u64).is_multiple_of(CHECK_STEPS);
+        let is_near = moved <= distance && bent <= MAX_BEND * distance;
+        if moved + bent <= distance
+            || (is_near && (!is_due || self.is_bent_within(shape, q, distance - moved)))
+        {
             self.time += step;
             return;
         }
         self.time = 0.0;
         (self.position, self.orientation) = (rigid.position, rigid.orientation);
         self.q.copy_from_slice(q);
+    }
+
+    /// Whether the modes have moved all vertices by at most `distance` from the reference state. The sum of the largest
+    /// displacements by each mode is a bound, but vibrations of many modes have it at no vertex.
+    fn is_bent_within(&self, shape: &Shape, q: &[f64], distance: f64) -> bool {
+        let modes = shape.model().modes();
+        let change: Vec<f64> = q.iter().zip(&self.q).map(|(q, before)| q - before).collect();
+        let vertices = shape.model().mesh().rest_positions().len() as u32;
+        (0..vertices).all(|v| displacement(modes.of_vertex(v), &change).length() <= distance)
     }
 }

@@ -11,7 +11,7 @@ const ROLLING_FRICTION: f64 = 0.05;
 impl World<'_> {
     /// Lowers the angular momentum of each free body by at most the arm times its normal impulses from the ground.
     pub(crate) fn resist_rolling(&mut self) {
-        for constraint in &self.solver.constraints {
+        for constraint in &self.corrections.list {
             let body = &mut self.bodies[constraint.bodies[0] as usize];
             let length = body.rigid.angular_momentum.length();
             if !matches!(constraint.source, Source::Vertex(_)) || !body.is_free() || length == 0.0 {
@@ -19,7 +19,8 @@ impl World<'_> {
             }
             let before = body.rigid.energy();
             let arm = ROLLING_FRICTION * body.shape().radius();
-            body.rigid.angular_momentum *= (1.0 - arm * constraint.normal_impulse / length).max(0.0);
+            body.rigid.angular_momentum *=
+                (1.0 - arm * constraint.total_impulse().dot(constraint.normal) / length).max(0.0);
             body.energy_budget += (before - body.rigid.energy()).max(0.0);
         }
     }

@@ -16,7 +16,7 @@ impl World<'_> {
         }
     }
 
-    /// Wakes the sleeping ones of some bodies, which contain whole islands, and appends their contact constraints.
+    /// Wakes the sleeping ones of some bodies, which contain whole islands, and locates their contacts.
     pub(crate) fn wake(&mut self, bodies: &[bool]) -> Result<(), DynamicsError> {
         let woken: Vec<bool> =
             self.bodies.iter().zip(bodies).map(|(body, wakes)| *wakes && body.is_asleep()).collect();
@@ -29,8 +29,8 @@ impl World<'_> {
             self.bodies[n].save_trial();
             if let Some(options) = self.ground_options() {
                 let contacts = &mut self.ground_contacts[n];
-                contacts.update(n, &mut self.bodies[n], &options)?;
-                self.solver.constraints.extend_from_slice(&contacts.constraints);
+                contacts.update(&mut self.bodies[n], &options)?;
+                contacts.begin(&self.bodies[n], &options.ground, &self.rigid_contacts);
             }
         }
         for contact in &mut self.contacts.list {

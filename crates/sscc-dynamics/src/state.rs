@@ -4,6 +4,8 @@ use glam::{DQuat, DVec3};
 
 use crate::body::Body;
 use crate::contact::{Anchor, Contact};
+use crate::contact_constraint::GROUND;
+use crate::ground_point::GroundPoint;
 use crate::{DynamicsError, World};
 
 /// State of a world. A world with the same options and bodies continues from it with the same bits.
@@ -15,12 +17,13 @@ pub struct State {
     pub numbers: Vec<f64>,
 }
 
-/// Position, orientation, momentum, angular momentum, preload of the ground, number of vertices on the ground, whether q
-/// was moved, whether the body sleeps, time at rest, reference position and orientation of the rest, energy budget.
-const RIGID: usize = 13 + 12 + 1;
+/// Position, orientation, momentum, angular momentum, number of vertices on the ground, whether q was moved, whether the
+/// body sleeps, time at rest, reference position and orientation of the rest, energy budget.
+const RIGID: usize = 13 + 11 + 1;
 
 /// Bodies, triangles, weights, normal, offset, maximum slip, preload, age, whether it is rigid (2: a duplicate),
-/// features and impulses of a contact.
+/// features and impulses of a contact. A point on the ground, after all contacts, has [`GROUND`] for the second body and
+/// a vertex for the first triangle.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 10;
 
 impl World<'_> {
@@ -36,7 +39,7 @@ impl World<'_> {
             numbers.extend(rigid.angular_momentum.to_array());
             let flag = |x: bool| f64::from(u8::from(x));
             let rest = &body.rest;
-            numbers.extend([ground.preload, ground.count as f64, flag(body.has_moved)]);
+            numbers.extend([ground.count as f64, flag(body.has_moved)]);
             numbers.extend([flag(rest.is_asleep), rest.time]);
             numbers.extend(rest.position.to_array());
             numbers.extend(rest.orientation.to_array());
@@ -53,6 +56,15 @@ impl World<'_> {
             numbers.extend([f64::from(kind), f64::from(contact.features), contact.normal_impulse]);
             numbers.extend(contact.friction_impulse.to_array());
         }
+        for (n, ground) in self.ground_contacts.iter().enumerate() {
+            for point in &ground.points {
+                let mut one = [0.0; CONTACT];
+                one[..3].copy_from_slice(&[n as f64, f64::from(GROUND), f64::from(point.vertex)]);
+                one[19] = point.normal_impulse;
+                one[20..].copy_from_slice(&point.friction_impulse.to_array());
+                numbers.extend(one);
+            }
+        }
         State { step: self.step, numbers }
     }
 
@@ -68,10 +80,16 @@ impl World<'_> {
         if motion.len() < expected || !rest.is_empty() || state.numbers.iter().any(|x| !x.is_finite()) {
             return Err(DynamicsError::State { found, expected });
         }
+        let first_point = contacts.partition_point(|numbers| numbers[1] != f64::from(GROUND));
+        let (contacts, points) = contacts.split_at(first_point);
+        let points: Option<Vec<(usize, GroundPoint)>> =
+            points.iter().map(|numbers| self.ground_point(numbers)).collect();
+        let points = points.ok_or(DynamicsError::State { found, expected })?;
         let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
         let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
         // `ContactSet::update` requires contacts sorted by key.
-        let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key());
+        let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key())
+            && points.is_sorted_by(|(n, a), (m, b)| (n, a.vertex) < (m, b.vertex));
         if !in_order || !self.is_valid_motion(motion) {
             return Err(DynamicsError::State { found, expected });
         }
@@ -86,7 +104,6 @@ impl World<'_> {
             rigid.momentum = DVec3::from_array([(); 3].map(|()| next()));
             rigid.angular_momentum = DVec3::from_array([(); 3].map(|()| next()));
             ground.reset();
-            ground.preload = next();
             ground.count = next() as usize;
             body.has_moved = next() != 0.0;
             let rest = &mut body.rest;
@@ -96,11 +113,15 @@ impl World<'_> {
             body.energy_budget = next();
             rest.q.iter_mut().for_each(|x| *x = next());
             body.save_start();
+            body.is_proven_free = false;
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
         }
         self.contacts.list = contacts;
+        for (body, point) in points {
+            self.ground_contacts[body].points.push(point);
+        }
         self.body_collisions.reset();
         self.impulses.clear();
         Ok(())
@@ -114,15 +135,25 @@ impl World<'_> {
             at += numbers_of(body);
             let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
             let vertices = body.shape().model().mesh().rest_positions().len() as f64;
-            let is_count = (0.0..=vertices).contains(&rigid[14]);
+            let is_count = (0.0..=vertices).contains(&rigid[13]);
             (length - 1.0).abs() < 1e-9 && is_count && rigid[RIGID - 1] >= 0.0
         })
     }
 
+    /// Creates a point on the ground from its numbers, with its body. None if one of them is not valid.
+    fn ground_point(&self, numbers: &[f64; CONTACT]) -> Option<(usize, GroundPoint)> {
+        let body = index(numbers[0], self.bodies.len())?;
+        let vertices = self.bodies[body as usize].shape().model().mesh().rest_positions().len();
+        let vertex = index(numbers[2], vertices)?;
+        let is_point = numbers[1] == f64::from(GROUND) && numbers[3..19].iter().all(|x| *x == 0.0);
+        let friction_impulse = DVec3::new(numbers[20], numbers[21], numbers[22]);
+        let point =
+            GroundPoint { vertex, normal_impulse: numbers[19], friction_impulse, ..Default::default() };
+        is_point.then_some((body as usize, point))
+    }
+
     /// Creates a contact from its numbers. None if a body, a triangle or the age is not a valid number.
     fn contact(&self, numbers: &[f64; CONTACT]) -> Option<Contact> {
-        let index =
-            |x: f64, count: usize| (x >= 0.0 && x < count as f64 && x.fract() == 0.0).then_some(x as u32);
         let bodies = [index(numbers[0], self.bodies.len())?, index(numbers[1], self.bodies.len())?];
         let triangle = |n: usize| {
             let mesh = self.bodies[bodies[n] as usize].shape().model().mesh();
@@ -140,14 +171,19 @@ impl World<'_> {
             max_slip: numbers[14],
             preload: numbers[15],
             age: index(numbers[16], u32::MAX as usize)?,
-            is_rigid: index(numbers[17], 3)? > 0 && bodies[0] != bodies[1],
-            is_duplicate: numbers[17] == 2.0 && bodies[0] != bodies[1],
+            is_rigid: index(numbers[17], 3)? > 0,
+            is_duplicate: numbers[17] == 2.0,
             features: index(numbers[18], 32)? as u8,
             normal_impulse: numbers[19],
             friction_impulse: DVec3::new(numbers[20], numbers[21], numbers[22]),
             ..Contact::default()
         })
     }
+}
+
+/// Returns a number as an index below `count`. None if it is not one.
+fn index(x: f64, count: usize) -> Option<u32> {
+    (x >= 0.0 && x < count as f64 && x.fract() == 0.0).then_some(x as u32)
 }
 
 /// Returns the count of numbers of a body.

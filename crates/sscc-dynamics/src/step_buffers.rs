@@ -9,8 +9,13 @@ use crate::body::Body;
 pub(crate) struct StepBuffers {
     /// Whether each body moves in the current round of this step.
     pub moves: Vec<bool>,
-    /// Energy of each body before its correction; None where there is none.
-    pub energies: Vec<Option<f64>>,
+    /// Whether each body sinks into the ground in the current round.
+    pub sinks: Vec<bool>,
+    /// Energies of each body at the beginning of the step and before its correction; None where there is none.
+    pub energies: Vec<Option<[f64; 2]>>,
+    /// Energy that the recovery of all gaps of each island costs, and the budgets of its bodies, at the number of its first
+    /// body.
+    pub recovery: Vec<[f64; 2]>,
     /// Impacts of the current round, with their bodies.
     pub impacts: Vec<([usize; 2], Impact)>,
     /// Pairs of triangles near impacts, with their bodies.
@@ -28,6 +33,8 @@ impl StepBuffers {
     pub fn begin(&mut self, bodies: &[Body<'_>]) {
         self.moves.clear();
         self.moves.extend(bodies.iter().map(|body| !body.is_asleep()));
+        self.sinks.clear();
+        self.sinks.resize(bodies.len(), false);
         self.gathered.clear();
     }
 }

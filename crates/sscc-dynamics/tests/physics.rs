@@ -139,11 +139,12 @@ fn clapping<'a>(shape: &'a Shape, options: WorldOptions, damping: Damping) -> Wo
 }
 
 #[test]
-fn a_self_collision_conserves_momenta_and_ends() {
+fn penalties_within_a_body_conserve_momenta_and_end() {
     for large in [false, true] {
         let shape = elastic(&fork(6, 0.1, rubber()), 8, large, &[]);
         let damping = Damping { mass: 0.3, stiffness: 1e-4 };
-        let mut world = clapping(&shape, space(1e-3), damping);
+        let options = WorldOptions { response: Response::Penalty, ..space(1e-3) };
+        let mut world = clapping(&shape, options, damping);
         let (energy, before) = (world.energy(), momenta(&world));
         let (mut colliding, mut last) = (0, usize::MAX);
         for _ in 0..20_000 {
@@ -157,6 +158,32 @@ fn a_self_collision_conserves_momenta_and_ends() {
         assert_eq!(last, 0, "pairs at the end");
         assert!(world.energy() < 0.01 * energy, "{} of {energy}", world.energy());
         assert!(world.dissipated() > 0.01 * energy);
+    }
+}
+
+#[test]
+fn a_body_that_begins_free_of_self_collisions_stays_free() {
+    for large in [false, true] {
+        let shape = elastic(&fork(6, 0.1, rubber()), 8, large, &[]);
+        let damping = Damping { mass: 0.3, stiffness: 1e-4 };
+        let mut world = clapping(&shape, space(1e-3), damping);
+        let (energy, before) = (world.energy(), momenta(&world));
+        let mut query = sscc::Query::new(shape.model(), shape.certificates()).unwrap();
+        let (mut held, mut impulses) = (0, 0);
+        for step in 0..20_000 {
+            let counts = world.advance(&mut ()).unwrap();
+            assert_eq!(
+                (counts.self_pairs, query.count(world.bodies()[0].q()).unwrap()),
+                (0, 0),
+                "step {step}"
+            );
+            assert!(world.energy() + world.dissipated() <= energy * if large { 1.002 } else { 1.0 + 1e-9 });
+            held += world.shortened_bodies();
+            impulses += world.impulses().len();
+        }
+        assert_eq!(momenta(&world), before, "impulses within a body do not change its momenta");
+        assert!(impulses > 3 && held == 0, "{impulses} impulses, {held} shortened steps");
+        assert!(world.energy() < 0.01 * energy, "{} of {energy}", world.energy());
     }
 }
 
@@ -201,7 +228,8 @@ fn distant_resting_bodies_change_no_bounce() {
             world.bodies()[0].rigid().position.y
         };
         let heights: Vec<f64> = (0..5000).map(|_| height()).collect();
-        assert!(touched > 10 + 1000 * blocks, "{touched}");
+        // A rigid contact bounces in one step or two; a spring would touch for half of its period.
+        assert!(touched > 3 + 1000 * blocks, "{touched}");
         heights
     };
     let (alone, beside) = (heights(0), heights(3));

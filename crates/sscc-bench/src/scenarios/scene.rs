@@ -38,6 +38,7 @@ pub fn measure_scene(
     steps: usize,
 ) -> Result<SceneMeasurement, Error> {
     let mut scene = Scene::parse(format!("{name}.toml").as_ref(), text)?;
+    scene.penetrate();
     if setup.is_quick {
         scene.quicken();
     }

@@ -24,6 +24,7 @@ steps_per_second = 8000
 duration = 0.1
 gravity = [0, 0, -9.81]
 detection = "kinetic"
+response = "penalty"
 [ground]
 [contact]
 frequency = 500

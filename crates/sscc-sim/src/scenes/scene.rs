@@ -112,6 +112,15 @@ impl Scene {
         self.digest += " quick";
     }
 
+    /// Makes contacts within bodies penalties, as in the paper: the bodies then really collide with themselves, as benches of
+    /// queries need.
+    pub fn penetrate(&mut self) {
+        if self.response == Response::Contact {
+            self.response = Response::Penalty;
+            self.digest += " penalty";
+        }
+    }
+
     /// Reads a scene. Names of files in it are relative to its own folder.
     ///
     /// # Errors
@@ -219,8 +228,12 @@ fn contact(scene: &Section<'_>) -> Result<ContactOptions> {
 }
 
 fn response(scene: &Section<'_>) -> Result<Response> {
-    let words =
-        [("contact", Response::Contact), ("constrain", Response::Constrain), ("ignore", Response::Ignore)];
+    let words = [
+        ("contact", Response::Contact),
+        ("penalty", Response::Penalty),
+        ("constrain", Response::Constrain),
+        ("ignore", Response::Ignore),
+    ];
     Ok(scene.word("response", &words)?.unwrap_or_default())
 }
 

@@ -143,7 +143,11 @@ fn errors_name_the_line_and_the_cause() {
             "line 12: kind: the file has its modes already: leave this key out",
         ),
         ("duration", "detection = \"magic\"\nduration", "line 4: detection: one of certified, kinetic, "),
-        ("duration", "response = \"no\"\nduration", "line 4: response: one of contact, constrain, ignore"),
+        (
+            "duration",
+            "response = \"no\"\nduration",
+            "line 4: response: one of contact, penalty, constrain, ignore",
+        ),
     ] {
         let count = GOOD.matches(from).count();
         assert!(count == 1, "{from}: {count}");

@@ -32,6 +32,9 @@ impl Scope {
 
     /// `|S (q - center)|`, rounded up.
     pub(crate) fn norm(&self, q: &[f64]) -> f64 {
+        if self.center.iter().all(|x| *x == 0.0) {
+            return self.metric.norm(q);
+        }
         self.metric.norm_from(q, &self.center, &mut vec![0.0; q.len()])
     }
 
