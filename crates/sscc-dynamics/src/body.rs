@@ -35,7 +35,7 @@ pub struct Body<'a> {
     continuous: Option<Box<Query<'a>>>,
     /// Impacts of the body with itself, found by the last continuous query.
     pub(crate) impacts: Vec<Impact>,
-    /// Whether a continuous query has proven the last motion free of self-collisions.
+    /// Whether a continuous query has proven the last motion free of self-collisions, so that no discrete one is needed.
     pub(crate) is_proven_free: bool,
     pub(crate) posed: PosedShape<'a>,
     /// The motion of the last step; made when it is first needed.
@@ -318,6 +318,10 @@ impl<'a> Body<'a> {
     pub(crate) fn find_own_impacts(&mut self) -> Result<(), DynamicsError> {
         self.impacts.clear();
         if !self.pairs.is_empty() || self.detection == Detection::Off {
+            return Ok(());
+        }
+        if let Detector::Kinetic(query) = &mut self.detector {
+            self.impacts.extend_from_slice(query.continuous(&self.start.q, &self.q)?);
             return Ok(());
         }
         let query = match (&mut self.continuous, &self.detector) {

@@ -289,7 +289,7 @@ fn a_diverging_motion_is_named_and_kept() {
     let text = SCENE
         .replace("kind = \"linear\"\nrank = 10", "kind = \"nonlinear\"\nrank = 4")
         .replace("shake = [0.2, 0.5]", "shake = [1e15]")
-        .replace("detection = \"kinetic\"", "response = \"ignore\"");
+        .replace("response = \"penalty\"", "response = \"ignore\"");
     let folder = folder(&text);
     let run = simulate(folder.path(), &["scene.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
@@ -321,7 +321,7 @@ fn refusals() {
     };
     for (from, to, named) in [
         ("gravity", "gravty", "bad.toml: line 4: unknown key 'gravty'; did you mean 'gravity'?"),
-        ("density = 1000", "density = -1000", "bad.toml: line 14: density: a positive number"),
+        ("density = 1000", "density = -1000", "bad.toml: line 15: density: a positive number"),
         ("= 8000", "= -8000", "bad.toml: line 2: steps_per_second: a positive number"),
         ("= 8000", "= 2000", "bad.toml: line 2: steps_per_second: sound needs from 8000"),
         ("shape = \"spring-4k\"", "file = \"none.obj\"", "none.obj: not found"),

@@ -5,9 +5,10 @@ use super::configuration::Configuration;
 use super::context::QueryContext;
 use super::method::Method;
 use super::statistics::Statistics;
-use crate::Error;
+use crate::detect::broad_phase::Counters;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::DeformedMotion;
+use crate::{Error, Pair};
 
 /// Finds the hits between two configurations, and owns the memory for it.
 #[derive(Clone)]
@@ -19,6 +20,11 @@ pub(super) struct SweptSearch<N> {
 impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
         Self { certified: CertifiedSearch::new(context), narrow: N::default() }
+    }
+
+    /// What the last search did.
+    pub(super) fn counters(&self) -> &Counters {
+        &self.certified.broad.counters
     }
 
     /// Finds at most `limit` hits, in no particular order; all of them where the search is complete. `norm`: the larger one
@@ -55,5 +61,28 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
         }
         statistics.complete = narrow.hits().is_complete();
         Ok(())
+    }
+
+    /// Whether one of these pairs of triangles collides between two configurations.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    pub(super) fn collides(
+        &mut self,
+        context: &QueryContext<'_>,
+        [t0, t1]: [Configuration<'_>; 2],
+        pairs: &[Pair],
+    ) -> Result<bool, Error> {
+        let (broad, narrow) = (&mut self.certified.broad, &mut self.narrow);
+        narrow.hits().begin(1);
+        broad.begin();
+        let motion = DeformedMotion::new([t0.q, t1.q], t0.reach.max(t1.reach));
+        broad.begin_volumes(&context.detect, &motion);
+        for &(a, b) in pairs {
+            let [a, b] = [a, b].map(|t| broad.triangle(&context.detect, t));
+            broad.test_triangles(&context.detect, a, b, &motion, narrow);
+        }
+        broad.end(narrow)?;
+        Ok(!narrow.hits().list.is_empty())
     }
 }

@@ -102,6 +102,14 @@ impl BallPairs {
         self.travelled < self.end && reach <= self.reach
     }
 
+    /// Whether z stays in the ball, and all safe pairs within their safe distances, in a straight step from here.
+    pub(super) fn stays_safe(&self, step: f64, reach: f64) -> bool {
+        let travelled = right_or!(up(self.travelled + step), StepOfMotionForgotten, self.travelled);
+        travelled < self.end
+            && reach <= self.reach
+            && self.safe.peek().is_none_or(|pair| pair.key > travelled)
+    }
+
     /// Whether there is a ball.
     pub(super) fn has_ball(&self) -> bool {
         self.end > 0.0

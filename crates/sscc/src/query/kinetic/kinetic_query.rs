@@ -12,7 +12,8 @@ use crate::model::{ScaledModel, check_scaled_modes};
 use crate::query::configuration::Configuration;
 use crate::query::query::Query;
 use crate::query::statistics::Statistics;
-use crate::{Certificates, Error, Pair, Progress, ReducedModel};
+use crate::query::swept_search::SweptSearch;
+use crate::{Certificates, Error, Impact, Pair, Progress, ReducedModel};
 
 /// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
 const STEPS_WORTH_STORING: f64 = 8.0;
@@ -49,6 +50,8 @@ pub struct KineticQuery<'a> {
     pub(super) control: BallControl,
     /// The last q at which the root's certificate did not hold; empty if there was none.
     last_q: Vec<f64>,
+    /// The end of the last motion that a continuous query found free; empty if there was none.
+    pub(super) free_q: Vec<f64>,
     /// Scratch for differences of q.
     offset: Vec<f64>,
     /// Scratch: pairs whose safe distance is to be computed.
@@ -74,6 +77,7 @@ impl<'a> KineticQuery<'a> {
             ball_pairs: BallPairs::default(),
             control: BallControl::FIRST,
             last_q: Vec::new(),
+            free_q: Vec::new(),
             offset: vec![0.0; model.rank()],
             pending: Vec::new(),
             query,
@@ -101,6 +105,52 @@ impl<'a> KineticQuery<'a> {
             self.find_beyond_root(configuration)?;
         }
         Ok(self.query.pairs())
+    }
+
+    /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last query,
+    /// and what is known of all pairs proves them apart until `q_t1`, nothing is searched. Only pairs that come as close as
+    /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
+    /// this query.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`], for start and end.
+    pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
+        if self.proves_free(q_t0, q_t1)? {
+            self.query.forget();
+            self.query.statistics.complete = true;
+            return Ok(&[]);
+        }
+        self.free_q.clear();
+        self.query.continuous(q_t0, q_t1)?;
+        if self.query.pairs().is_empty() {
+            self.free_q.extend_from_slice(q_t1);
+        }
+        let Some(swept) = &self.query.swept else { return Ok(&[]) };
+        self.control.plain_cost = plain_cost(swept.counters());
+        Ok(&swept.narrow.0.list)
+    }
+
+    /// Whether all pairs stay apart while every vertex moves on a straight line from its position at `q_t0` to that at
+    /// `q_t1`, as far as that is known.
+    pub(super) fn proves_free(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<bool, Error> {
+        let [t0, t1] = [self.query.measure(q_t0)?, self.query.measure(q_t1)?];
+        let context = &self.query.context;
+        if context.is_proven_free(t0.norm.max(t1.norm)) {
+            return Ok(true);
+        }
+        if q_t0 != self.last_q || !context.detect.exceptions.is_empty() {
+            return Ok(false);
+        }
+        let step = context.scope.metric.norm_from(q_t1, q_t0, &mut self.offset);
+        if !self.ball_pairs.stays_safe(step, t0.reach.max(t1.reach)) {
+            return Ok(false);
+        }
+        let active = &self.ball_pairs.active;
+        if active.is_empty() {
+            return Ok(true);
+        }
+        let swept = self.query.swept.get_or_insert_with(|| Box::new(SweptSearch::new(context)));
+        Ok(!swept.collides(context, [t0, t1], active)?)
     }
 
     /// The pairs that the last query found.
@@ -149,6 +199,10 @@ impl<'a> KineticQuery<'a> {
             step = self.control.step_after_jump().unwrap_or(step);
         }
         if !self.ball_pairs.has_ball() && !self.begin_ball(configuration, step)? {
+            if q == self.free_q {
+                self.query.statistics.complete = true;
+                return Ok(());
+            }
             self.find_without_ball(configuration)?;
             self.control.plain_cost = plain_cost(&self.query.discrete.certified.broad.counters);
             return Ok(());

@@ -6,8 +6,8 @@ use sscc_testing::{cases, threshold};
 use super::kinetic_query::KineticQuery;
 use crate::test_models::Random;
 use crate::{
-    Certificates, CertifyOptions, ContactFilter, Method, Metric, MetricKind, Modes, Neighbours, Query,
-    ReducedModel, TriMesh,
+    Certificates, CertifyOptions, ContactFilter, Impact, Method, Metric, MetricKind, Modes, Neighbours,
+    Query, ReducedModel, TriMesh,
 };
 
 /// Two wavy sheets one above the other, in one piece with a third one between them every second time; modes bring them
@@ -67,6 +67,9 @@ struct Seen {
     begun: usize,
     begun_beyond: usize,
     root_certified_within: usize,
+    /// Motions that were proven free by a ball, and those that searches found free.
+    proven: usize,
+    known_free: usize,
     aimed: usize,
 }
 
@@ -80,6 +83,8 @@ struct Pairing<'a> {
     plain: bool,
     /// Of the ball.
     norm: f64,
+    /// The last q.
+    before: Vec<f64>,
 }
 
 impl Pairing<'_> {
@@ -89,6 +94,16 @@ impl Pairing<'_> {
         self.kinetic.control.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
         self.kinetic.control.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
         self.kinetic.control.plain_cost = self.kinetic.control.plain_cost.max(1_000_000);
+        // The way to here, before anything else is asked.
+        if !self.before.is_empty() && random.signed() > 0.5 {
+            let proven = self.kinetic.proves_free(&self.before, &q).unwrap();
+            seen.proven += usize::from(proven && self.kinetic.ball_pairs.has_ball());
+            let pairs = |impacts: &[Impact]| impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>();
+            let found = pairs(self.kinetic.continuous(&self.before, &q).unwrap());
+            assert_eq!(found, pairs(self.oracle.continuous(&self.before, &q).unwrap()), "{proven}");
+            seen.known_free += usize::from(self.kinetic.free_q == q);
+        }
+        self.before.clone_from(&q);
         let stood = self.kinetic.ball_pairs.has_ball();
         let apart = self.kinetic.ball_pairs.safe.len();
         let expected = self.oracle.discrete(&q).unwrap();
@@ -139,6 +154,7 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
             colliding: false,
             plain: false,
             norm: 0.0,
+            before: Vec::new(),
         };
         for _ in 0..3 {
             let mut way: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
@@ -229,6 +245,8 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
     assert!(
         seen.begun > threshold(50)
             && seen.begun_beyond > threshold(5)
+            && seen.proven > threshold(500)
+            && seen.known_free > threshold(300)
             && seen.root_certified_within > threshold(50),
         "{seen:?}"
     );
