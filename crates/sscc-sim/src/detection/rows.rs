@@ -1,10 +1,11 @@
 //! Queries of a model, one for each q of a trajectory.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use sscc::{Impact, Pair, Progress, Query, ReducedModel, Surface};
+use sscc::{Answer, Impact, Pair, Progress, Query, ReducedModel, Statistics, Surface};
 use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
@@ -26,7 +27,15 @@ pub struct RowQueries<'a> {
     pub contacts: ContactOptions,
 }
 
-/// Calls `take` with the answer to each query, in order. `take` can end that early.
+/// Maximum number of q that are answered together. The first one is answered alone, and then twice as many each time, so that
+/// answers come soon.
+const MAX_BLOCK: usize = 256;
+
+/// Blocks are smaller where the q of a block would have more pairs together than this, at the largest number so far.
+const MAX_BLOCK_PAIRS: usize = 1 << 24;
+
+/// Calls `take` with the answer to each query, in order. `take` can end that early. Discrete queries of several q are answered
+/// together, on all threads of the current pool ([`Query::batch`]), with the same answers.
 ///
 /// # Errors
 /// When a row is no q of the model, `progress` cancels, or `take` fails.
@@ -36,59 +45,140 @@ pub fn check_rows<E: From<SimError>>(
     progress: &dyn Progress,
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
-    let RowQueries { model, is_continuous, limit, .. } = *requests;
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
-    let queries = if is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
-    for index in 0..queries {
+    let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
+    let (mut next, mut block, mut most_pairs) = (0, 1, 1);
+    while next < queries {
         check_cancelled(progress)?;
+        let end = queries.min(next + if requests.is_continuous { 1 } else { block });
         let start = Instant::now();
-        let found = if is_continuous {
-            query.continuous(rows[index], rows[index + 1]).map(<[Impact]>::to_vec)
+        let answers = if end - next > 1 {
+            let limit = requests.limit.unwrap_or(usize::MAX);
+            query.batch_at_most(&rows[next..end], limit, None, &CancelledBy(progress)).map(Answers::Batch)
+        } else if requests.is_continuous {
+            query.continuous(rows[next], rows[next + 1]).map(|impacts| Answers::Motion(impacts.to_vec()))
         } else {
-            query.discrete_at_most(rows[index], limit.unwrap_or(usize::MAX)).map(|_| Vec::new())
+            query.discrete_at_most(rows[next], requests.limit.unwrap_or(usize::MAX)).map(|_| Answers::One)
         };
-        let microseconds = start.elapsed().as_secs_f64() * 1e6;
+        let microseconds = start.elapsed().as_secs_f64() * 1e6 / (end - next) as f64;
         check_cancelled(progress)?;
-        let all = found.map_err(SimError::from)?;
-        let kept = earliest_impacts(&all, limit);
-        let of_kept: Vec<Pair> = kept.iter().map(|impact| impact.pair).collect();
-        let times: Vec<f64> = kept.iter().map(|impact| impact.time).collect();
-        let statistics = query.statistics();
-        let curves = requests.contacts.curves && index + 1 == queries;
-        let options = ContactOptions { curves, ..requests.contacts };
-        let contacts = match options == ContactOptions::default() || is_continuous {
-            true => Contacts::default(),
-            false => contacts(model, rows[index], query.pairs(), options).map_err(SimError::from)?,
-        };
-        let next = take(&DetectionAnswer {
-            file: Path::new(""),
-            mesh: model.mesh(),
-            node: None,
-            index,
-            time: None,
-            pairs: if is_continuous { &of_kept } else { query.pairs() },
-            times: is_continuous.then_some(&times),
-            penetrations: contacts.penetrations.as_deref(),
-            curves: contacts.curves.as_ref(),
-            is_complete: statistics.complete && kept.len() == all.len(),
-            microseconds,
-            norm: Some(query.norm()),
-            root_certified: Some(statistics.root_certified),
-            opened: statistics.opened,
-            box_tests: statistics.box_tests,
-            triangle_tests: statistics.triangle_tests,
-            queries,
-            frames: rows.len(),
-            frame_times: None,
-            shape: None,
-            other: None,
-        })?;
-        progress.report(index + 1, queries);
-        if next.is_break() {
-            break;
+        let answers = answers.map_err(SimError::from)?;
+        for index in next..end {
+            let found = answers.get(index - next, query, requests.limit);
+            most_pairs = most_pairs.max(found.pairs.len());
+            let contacts = contacts_of(requests, &rows, index, queries, &found.pairs)?;
+            let next = take(&DetectionAnswer {
+                file: Path::new(""),
+                mesh: requests.model.mesh(),
+                node: None,
+                index,
+                time: None,
+                pairs: &found.pairs,
+                times: found.times.as_deref(),
+                penetrations: contacts.penetrations.as_deref(),
+                curves: contacts.curves.as_ref(),
+                is_complete: found.is_complete,
+                microseconds,
+                norm: Some(found.norm),
+                root_certified: Some(found.statistics.root_certified),
+                opened: found.statistics.opened,
+                box_tests: found.statistics.box_tests,
+                triangle_tests: found.statistics.triangle_tests,
+                queries,
+                frames: rows.len(),
+                frame_times: None,
+                shape: None,
+                other: None,
+            })?;
+            progress.report(index + 1, queries);
+            if next.is_break() {
+                return Ok(());
+            }
         }
+        next = end;
+        block = (2 * block).min(MAX_BLOCK).min(MAX_BLOCK_PAIRS / most_pairs).max(1);
     }
     Ok(())
+}
+
+/// Progress that only cancels.
+struct CancelledBy<'a>(&'a dyn Progress);
+
+impl Progress for CancelledBy<'_> {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+/// The answers to the queries of a block.
+enum Answers {
+    /// That to a single q, which the query holds.
+    One,
+    /// Those to several q.
+    Batch(Vec<Answer>),
+    /// All impacts of a motion.
+    Motion(Vec<Impact>),
+}
+
+/// What a query found.
+struct Found<'a> {
+    pairs: Cow<'a, [Pair]>,
+    times: Option<Vec<f64>>,
+    is_complete: bool,
+    norm: f64,
+    statistics: Statistics,
+}
+
+impl Answers {
+    /// Returns one answer of the block. Of a motion, it has the earliest impacts up to `limit`.
+    fn get<'a>(&'a self, number: usize, query: &'a Query<'_>, limit: Option<usize>) -> Found<'a> {
+        let of_query = |pairs: Cow<'a, [Pair]>, times| Found {
+            pairs,
+            times,
+            is_complete: query.statistics().complete,
+            norm: query.norm(),
+            statistics: query.statistics(),
+        };
+        match self {
+            Self::One => of_query(Cow::Borrowed(query.pairs()), None),
+            Self::Batch(answers) => {
+                let Answer { pairs, norm, statistics } = &answers[number];
+                Found {
+                    pairs: Cow::Borrowed(pairs),
+                    times: None,
+                    is_complete: statistics.complete,
+                    norm: *norm,
+                    statistics: *statistics,
+                }
+            }
+            Self::Motion(all) => {
+                let kept = earliest_impacts(all, limit);
+                let pairs = kept.iter().map(|impact| impact.pair).collect();
+                let times = kept.iter().map(|impact| impact.time).collect();
+                let mut found = of_query(Cow::Owned(pairs), Some(times));
+                found.is_complete &= kept.len() == all.len();
+                found
+            }
+        }
+    }
+}
+
+/// Returns what the requests want to know of the contacts at a q.
+fn contacts_of(
+    requests: &RowQueries<'_>,
+    rows: &[&[f64]],
+    index: usize,
+    queries: usize,
+    pairs: &[Pair],
+) -> Result<Contacts, SimError> {
+    let curves = requests.contacts.curves && index + 1 == queries;
+    let options = ContactOptions { curves, ..requests.contacts };
+    if options == ContactOptions::default() || requests.is_continuous {
+        return Ok(Contacts::default());
+    }
+    Ok(contacts(requests.model, rows[index], pairs, options)?)
 }
 
 /// Returns the contacts of the pairs that collide at q.
