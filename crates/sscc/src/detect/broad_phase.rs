@@ -129,15 +129,29 @@ impl<const E: usize> BroadPhase<E> {
         motion: &M,
         narrow: &mut N,
     ) {
+        let relation = context.filter.relation(a.triangle, b.triangle);
+        if relation != Relation::Adjacent {
+            self.test_related_triangles(context, relation, a, b, motion, narrow);
+        }
+    }
+
+    /// The same for two triangles that are not adjacent, whose relation is known.
+    #[inline]
+    pub(super) fn test_related_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        relation: Relation,
+        a: TriangleVertices,
+        b: TriangleVertices,
+        motion: &M,
+        narrow: &mut N,
+    ) {
         if self.is_cancelled {
             return;
         }
         let (a, b) = if a.triangle < b.triangle { (a, b) } else { (b, a) };
         let pair = (a.triangle, b.triangle);
-        let relation = context.filter.relation(pair.0, pair.1);
-        if relation == Relation::Adjacent {
-            return;
-        }
+        debug_assert_eq!(relation, context.filter.relation(pair.0, pair.1));
         self.count_triangle_test(context, narrow);
         [a, b].iter().for_each(|t| self.volumes.move_corners(t.vertices, motion));
         let [a, b] = [a, b].map(|t| self.volumes.corners(t.vertices));

@@ -45,7 +45,7 @@ impl<const E: usize> BroadPhase<E> {
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked: NOT_LATER };
         for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
-            self.test_packet_pair(context, first, second, motion, narrow);
+            self.test_packet_pair(context, first, second, false, motion, narrow);
         }
     }
 
@@ -71,26 +71,32 @@ impl<const E: usize> BroadPhase<E> {
         let pair = PacketPair { first, second, rows: first.overlapping(&y).0, masked: 0 };
         let overlaps = pair.overlaps(self.volumes.instructions);
         self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
+        let are_strangers =
+            context.filter.groups().is_none() && !self.volumes.layout.buckets.may_share_vertex(n, m);
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };
-            self.test_packet_pair(context, first, second, motion, narrow);
+            self.test_packet_pair(context, first, second, are_strangers, motion, narrow);
         }
     }
 
     /// Tests two packets whose boxes overlap, the second not before the first, or one packet against itself.
+    /// `are_strangers`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
+    /// in memory.
     #[inline]
     fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
         x: BucketLane,
         y: BucketLane,
+        are_strangers: bool,
         motion: &M,
         narrow: &mut N,
     ) {
         let buckets = &self.volumes.layout.buckets;
         let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
-        let (masked, has_adjacent) = buckets.masked_pairs(first, second);
+        let (masked, has_adjacent) =
+            if are_strangers { (0, true) } else { buckets.masked_pairs(first, second) };
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
         // Most triangles of a packet stay clear of the whole other packet.
         let outer = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
@@ -113,7 +119,11 @@ impl<const E: usize> BroadPhase<E> {
                 triangle: buckets.triangle(slot),
                 vertices: buckets.corners()[slot],
             });
-            self.test_triangles(context, a, b, motion, narrow);
+            if are_strangers {
+                self.test_related_triangles(context, Relation::NonAdjacent, a, b, motion, narrow);
+            } else {
+                self.test_triangles(context, a, b, motion, narrow);
+            }
         }
     }
 }

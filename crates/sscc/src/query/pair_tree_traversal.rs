@@ -88,7 +88,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         // The boxes of open buckets are tighter and cost less.
         let is_open = buckets.iter().all(|b| b.is_some_and(|b| broad.volumes.is_bucket_open(b)));
         if let Some((moved, pairs)) = &mut hulls
-            && moved.is_used()
+            && moved.is_useful()
             && !is_open
             && let Some(at_rest) = pairs.direction(entry)
         {
