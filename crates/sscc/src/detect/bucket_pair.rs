@@ -60,6 +60,7 @@ impl<const E: usize> BroadPhase<E> {
         self.counters.opened += 1;
         // Masks of adjacency are stored with the packet of the lower number.
         let (n, m) = (n.min(m), n.max(m));
+        [n, m].iter().for_each(|bucket| self.volumes.prefetch_bucket(*bucket));
         [n, m].iter().for_each(|bucket| self.volumes.open_bucket(*bucket, motion));
         let [x, y] = [n, m].map(|bucket| *self.volumes.node(self.volumes.layout.buckets.node(bucket)));
         self.counters.box_tests += 1;
@@ -104,6 +105,7 @@ impl<const E: usize> BroadPhase<E> {
         let overlaps =
             PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, outer);
         self.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
+        let mut open = 0;
         for (row, column) in PairsOfLanes(overlaps.pairs) {
             let slots = [start_x + row, start_y + column];
             if !has_adjacent && self.are_adjacent(context, slots) {
@@ -114,6 +116,12 @@ impl<const E: usize> BroadPhase<E> {
             if self.volumes.are_separated(a, b) {
                 continue;
             }
+            let corners = self.volumes.layout.buckets.corners();
+            slots.iter().for_each(|slot| self.volumes.prefetch_corners(corners[*slot]));
+            open |= 1 << (LANES * row + column);
+        }
+        for (row, column) in PairsOfLanes(open) {
+            let slots = [start_x + row, start_y + column];
             let buckets = &self.volumes.layout.buckets;
             let [a, b] = slots.map(|slot| TriangleVertices {
                 triangle: buckets.triangle(slot),

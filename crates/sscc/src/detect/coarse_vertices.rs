@@ -67,6 +67,13 @@ impl CoarseVertices {
         self.starts[bucket as usize] as usize..self.starts[bucket as usize + 1] as usize
     }
 
+    /// Prefetches what moves the vertices of a bucket.
+    #[inline]
+    pub(crate) fn prefetch(&self, bucket: u32, modes: usize) {
+        let groups = self.groups(bucket);
+        self.instructions.prefetch(&self.quantized[groups.start * modes..groups.end * modes]);
+    }
+
     /// Moves the vertices of a bucket.
     pub(crate) fn move_bucket<const E: usize>(
         &self,
