@@ -196,8 +196,12 @@ impl<const E: usize> NodeVolumes<E> {
     /// Prefetches what opens a bucket, unless it is open.
     #[inline]
     pub(crate) fn prefetch_bucket(&self, bucket: u32) {
-        let is_moved = || self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved);
-        if self.is_coarse && !self.is_bucket_open(bucket) && !is_moved() {
+        if !self.is_coarse || self.is_bucket_open(bucket) {
+            return;
+        }
+        if self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
+            self.layout.coarse.prefetch_moved(bucket, &self.coarse.positions);
+        } else {
             self.layout.coarse.prefetch(bucket, self.motion.factors.len());
         }
     }

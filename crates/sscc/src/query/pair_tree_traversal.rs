@@ -51,8 +51,6 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
 ) {
     stack.clear();
     stack.push(Visit { nodes: (0, 0), entry: NODE });
-    // The last two buckets to be tested. They wait while memory fetches what opens them.
-    let mut waiting: Option<(u32, u32)> = None;
     while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
         if !broad.continues(context, narrow) {
             break;
@@ -100,10 +98,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
         if let [Some(a), Some(b)] = buckets {
-            [a, b].iter().for_each(|bucket| broad.volumes.prefetch_bucket(*bucket));
-            if let Some(pair) = waiting.replace((a, b)) {
-                broad.test_bucket_pair(context, pair, motion, narrow);
-            }
+            broad.test_bucket_pair_later(context, (a, b), motion, narrow);
             continue;
         }
         broad.counters.opened += 1;
@@ -115,7 +110,5 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
-    if let Some(pair) = waiting {
-        broad.test_bucket_pair(context, pair, motion, narrow);
-    }
+    broad.test_waiting(context, motion, narrow);
 }

@@ -91,11 +91,6 @@ impl<const E: usize> MovedHulls<E> {
             }
         }
         let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return false };
-        for index in [i, j] {
-            if self.searches[index] != self.search {
-                hulls.prefetch(index, self.instructions);
-            }
-        }
         self.update(hulls, i, n, motion);
         self.update(hulls, j, m, motion);
         let [a, b] = [i, j].map(|i| &self.hulls[i]);

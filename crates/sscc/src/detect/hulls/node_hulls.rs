@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
 use crate::ReducedModel;
-use crate::detect::vectors::InstructionSet;
 use crate::hierarchy::{Hierarchy, NodePair};
 
 /// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
@@ -114,13 +113,6 @@ impl NodeHulls {
     #[inline]
     pub(super) fn frame(&self, index: usize) -> &[FrameRate] {
         &self.frames[index * (self.rank + 1)..][..self.rank + 1]
-    }
-
-    /// Prefetches what moves a hull.
-    #[inline]
-    pub(super) fn prefetch(&self, index: usize, instructions: InstructionSet) {
-        instructions.prefetch(self.frame(index));
-        instructions.prefetch(&self.shapes[index..=index]);
     }
 
     #[inline]
