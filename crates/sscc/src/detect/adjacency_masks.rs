@@ -15,6 +15,12 @@ pub(crate) struct AdjacencyMasks {
     starts: Vec<u32>,
     /// For each packet: the packets not before it, ascending, itself first, each with its mask.
     masks: Vec<PacketMask>,
+    /// For each bucket the start of its neighbours, and the end of all.
+    neighbour_starts: Vec<u32>,
+    /// For each bucket: the buckets after it that share a vertex class of few triangles with it, ascending.
+    neighbours: Vec<u32>,
+    /// For each bucket whether it has a vertex class of many triangles.
+    is_crowded: Vec<bool>,
 }
 
 /// The triangles around each vertex class, as `8 packet + lane`.
@@ -65,33 +71,58 @@ struct PacketMask {
 const NOT_AFTER: u64 = 0xff7f_3f1f_0f07_0301;
 
 impl AdjacencyMasks {
-    /// Computes the masks of triangles in packets: `slots[p]..slots[p + 1]` are the slots of packet p.
-    pub(crate) fn new(slots: &[u32], triangles: &[u32], filter: &PairFilter) -> Self {
+    /// Computes the masks of triangles in packets: `packets[b]..packets[b + 1]` are the packets of bucket b,
+    /// `slots[p]..slots[p + 1]` the slots of packet p.
+    pub(crate) fn new(packets: &[u32], slots: &[u32], triangles: &[u32], filter: &PairFilter) -> Self {
         let members = |packet: usize| &triangles[slots[packet] as usize..slots[packet + 1] as usize];
         let around = TrianglesAround::new(slots, triangles, filter);
-        let (mut starts, mut masks) = (vec![0], Vec::new());
-        let mut found: Vec<PacketMask> = Vec::new();
-        for first in 0..slots.len() - 1 {
-            found.push(PacketMask { other: first as u32, pairs: NOT_AFTER });
-            for (i, &t) in members(first).iter().enumerate() {
-                let around = filter.vertex_classes(t).map(|class| around.of_class(class));
-                for &other in around.into_iter().filter(|all| all.len() <= MAX_VERTEX_TRIANGLES).flatten() {
-                    let (second, j) = (other as usize / LANES, other as usize % LANES);
-                    if second >= first && filter.relation(t, members(second)[j]) == Relation::Adjacent {
-                        found.push(PacketMask { other: second as u32, pairs: 1 << (LANES * i + j) });
+        let mut all = Self { starts: vec![0], neighbour_starts: vec![0], ..Self::default() };
+        let (mut found, mut neighbours): (Vec<PacketMask>, Vec<u32>) = (Vec::new(), Vec::new());
+        for bucket in packets.windows(2) {
+            let mut is_crowded = false;
+            for first in bucket[0] as usize..bucket[1] as usize {
+                found.push(PacketMask { other: first as u32, pairs: NOT_AFTER });
+                for (i, &t) in members(first).iter().enumerate() {
+                    let around = filter.vertex_classes(t).map(|class| around.of_class(class));
+                    is_crowded |= around.iter().any(|all| all.len() > MAX_VERTEX_TRIANGLES);
+                    let of_few = around.into_iter().filter(|all| all.len() <= MAX_VERTEX_TRIANGLES);
+                    for &other in of_few.flatten() {
+                        let (second, j) = (other as usize / LANES, other as usize % LANES);
+                        if second >= bucket[1] as usize {
+                            neighbours.push(second as u32);
+                        }
+                        if second >= first && filter.relation(t, members(second)[j]) == Relation::Adjacent {
+                            found.push(PacketMask { other: second as u32, pairs: 1 << (LANES * i + j) });
+                        }
                     }
                 }
+                found.sort_unstable_by_key(|mask| mask.other);
+                let merged = |same: &[PacketMask]| PacketMask {
+                    other: same[0].other,
+                    pairs: same.iter().fold(0, |all, mask| all | mask.pairs),
+                };
+                all.masks.extend(found.chunk_by(|x, y| x.other == y.other).map(merged));
+                all.starts.push(all.masks.len() as u32);
+                found.clear();
             }
-            found.sort_unstable_by_key(|mask| mask.other);
-            let merged = |same: &[PacketMask]| PacketMask {
-                other: same[0].other,
-                pairs: same.iter().fold(0, |all, mask| all | mask.pairs),
-            };
-            masks.extend(found.chunk_by(|x, y| x.other == y.other).map(merged));
-            starts.push(masks.len() as u32);
-            found.clear();
+            let bucket_of = |packet: &u32| packets.partition_point(|start| start <= packet) as u32 - 1;
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            neighbours.iter_mut().for_each(|packet| *packet = bucket_of(packet));
+            neighbours.dedup();
+            all.neighbours.append(&mut neighbours);
+            all.neighbour_starts.push(all.neighbours.len() as u32);
+            all.is_crowded.push(is_crowded);
         }
-        Self { starts, masks }
+        all
+    }
+
+    /// Whether triangles of two buckets, the first before the second, may share a vertex class.
+    #[inline]
+    pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
+        let [start, end] = [0, 1].map(|i| self.neighbour_starts[first as usize + i] as usize);
+        self.neighbours[start..end].contains(&second)
+            || (self.is_crowded[first as usize] && self.is_crowded[second as usize])
     }
 
     /// The pairs of two packets, without the masks of adjacent triangles: of one packet with itself those with `j <= i`.
@@ -106,5 +137,51 @@ impl AdjacencyMasks {
     pub(crate) fn masked_pairs(&self, first: usize, second: usize) -> u64 {
         let all = &self.masks[self.starts[first] as usize..self.starts[first + 1] as usize];
         all.iter().find(|mask| mask.other == second as u32).map_or(0, |mask| mask.pairs)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ContactFilter;
+
+    /// A strip of triangles, and a fan of many around one vertex, in buckets of one to three packets of few triangles.
+    #[test]
+    fn buckets_that_share_a_vertex_are_neighbours() {
+        let strip = (0..90).map(|i| [i, i + 1, i + 2]);
+        let fan = (0..40).map(|i| [200, 201 + i, 202 + i]);
+        let faces: Vec<[u32; 3]> = strip.chain(fan).collect();
+        let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
+        // Every seventh triangle after each other, so that neighbours in the mesh are far apart in the order.
+        let triangles: Vec<u32> = (0..130).map(|i| i * 7 % 130).collect();
+        let mut slots = vec![0];
+        while *slots.last().unwrap() < 130 {
+            slots.push((slots.last().unwrap() + 1 + slots.len() as u32 % 4).min(130));
+        }
+        let mut packets = vec![0];
+        while *packets.last().unwrap() < slots.len() as u32 - 1 {
+            packets
+                .push((packets.last().unwrap() + 1 + packets.len() as u32 % 3).min(slots.len() as u32 - 1));
+        }
+        let masks = AdjacencyMasks::new(&packets, &slots, &triangles, &filter);
+        let of_bucket = |b: usize| {
+            &triangles[slots[packets[b] as usize] as usize..slots[packets[b + 1] as usize] as usize]
+        };
+        let (mut neighbours, mut strangers) = (0, 0);
+        for second in 0..packets.len() - 1 {
+            for first in 0..second {
+                let shares = |a: &u32| {
+                    of_bucket(second).iter().any(|b| filter.relation(*a, *b) != Relation::NonAdjacent)
+                };
+                let is_neighbour = of_bucket(first).iter().any(shares);
+                assert!(
+                    masks.may_share_vertex(first as u32, second as u32) || !is_neighbour,
+                    "{first} {second}"
+                );
+                neighbours += i32::from(is_neighbour);
+                strangers += i32::from(!masks.may_share_vertex(first as u32, second as u32));
+            }
+        }
+        assert!(neighbours > 20 && strangers > 20, "{neighbours} {strangers}");
     }
 }

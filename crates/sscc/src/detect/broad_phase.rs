@@ -46,6 +46,8 @@ pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) cones: Option<NormalCones>,
     /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
     pub(super) stack: Vec<NodePair>,
+    /// Two buckets that are tested after the next ones: meanwhile memory fetches what opens them.
+    waiting: Option<(u32, u32)>,
     visits: u32,
     is_cancelled: bool,
     pub(crate) counters: Counters,
@@ -59,6 +61,7 @@ impl<const E: usize> BroadPhase<E> {
             volumes: NodeVolumes::new(layout, is_lazy),
             cones: cones.filter(|_| E == 1),
             stack: Vec::new(),
+            waiting: None,
             visits: 0,
             is_cancelled: false,
             counters: Counters::default(),
@@ -69,6 +72,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn begin(&mut self) {
         self.is_cancelled = false;
+        self.waiting = None;
         self.counters = Counters::default();
     }
 
@@ -77,6 +81,34 @@ impl<const E: usize> BroadPhase<E> {
         self.volumes.begin(&context.hierarchy, motion);
         if let Some(cones) = &mut self.cones {
             cones.update(&context.hierarchy, &self.volumes);
+        }
+    }
+
+    /// Tests two buckets after the next two, or at [`Self::test_waiting`].
+    #[inline]
+    pub(crate) fn test_bucket_pair_later<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        (a, b): (u32, u32),
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        [a, b].iter().for_each(|bucket| self.volumes.prefetch_bucket(*bucket));
+        if let Some(pair) = self.waiting.replace((a, b)) {
+            self.test_bucket_pair(context, pair, motion, narrow);
+        }
+    }
+
+    /// Tests the buckets that wait, at the end of a traversal.
+    #[inline]
+    pub(crate) fn test_waiting<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        motion: &M,
+        narrow: &mut N,
+    ) {
+        if let Some(pair) = self.waiting.take() {
+            self.test_bucket_pair(context, pair, motion, narrow);
         }
     }
 
@@ -129,15 +161,29 @@ impl<const E: usize> BroadPhase<E> {
         motion: &M,
         narrow: &mut N,
     ) {
+        let relation = context.filter.relation(a.triangle, b.triangle);
+        if relation != Relation::Adjacent {
+            self.test_related_triangles(context, relation, a, b, motion, narrow);
+        }
+    }
+
+    /// The same for two triangles that are not adjacent, whose relation is known.
+    #[inline]
+    pub(super) fn test_related_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
+        &mut self,
+        context: &Context<'_>,
+        relation: Relation,
+        a: TriangleVertices,
+        b: TriangleVertices,
+        motion: &M,
+        narrow: &mut N,
+    ) {
         if self.is_cancelled {
             return;
         }
         let (a, b) = if a.triangle < b.triangle { (a, b) } else { (b, a) };
         let pair = (a.triangle, b.triangle);
-        let relation = context.filter.relation(pair.0, pair.1);
-        if relation == Relation::Adjacent {
-            return;
-        }
+        debug_assert_eq!(relation, context.filter.relation(pair.0, pair.1));
         self.count_triangle_test(context, narrow);
         [a, b].iter().for_each(|t| self.volumes.move_corners(t.vertices, motion));
         let [a, b] = [a, b].map(|t| self.volumes.corners(t.vertices));

@@ -45,7 +45,7 @@ impl<const E: usize> BroadPhase<E> {
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked: NOT_LATER };
         for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
-            self.test_packet_pair(context, first, second, motion, narrow);
+            self.test_packet_pair(context, first, second, false, motion, narrow);
         }
     }
 
@@ -60,6 +60,7 @@ impl<const E: usize> BroadPhase<E> {
         self.counters.opened += 1;
         // Masks of adjacency are stored with the packet of the lower number.
         let (n, m) = (n.min(m), n.max(m));
+        [n, m].iter().for_each(|bucket| self.volumes.prefetch_bucket(*bucket));
         [n, m].iter().for_each(|bucket| self.volumes.open_bucket(*bucket, motion));
         let [x, y] = [n, m].map(|bucket| *self.volumes.node(self.volumes.layout.buckets.node(bucket)));
         self.counters.box_tests += 1;
@@ -71,26 +72,32 @@ impl<const E: usize> BroadPhase<E> {
         let pair = PacketPair { first, second, rows: first.overlapping(&y).0, masked: 0 };
         let overlaps = pair.overlaps(self.volumes.instructions);
         self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
+        let are_strangers =
+            context.filter.groups().is_none() && !self.volumes.layout.buckets.may_share_vertex(n, m);
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };
-            self.test_packet_pair(context, first, second, motion, narrow);
+            self.test_packet_pair(context, first, second, are_strangers, motion, narrow);
         }
     }
 
     /// Tests two packets whose boxes overlap, the second not before the first, or one packet against itself.
+    /// `are_strangers`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
+    /// in memory.
     #[inline]
     fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
         x: BucketLane,
         y: BucketLane,
+        are_strangers: bool,
         motion: &M,
         narrow: &mut N,
     ) {
         let buckets = &self.volumes.layout.buckets;
         let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
-        let (masked, has_adjacent) = buckets.masked_pairs(first, second);
+        let (masked, has_adjacent) =
+            if are_strangers { (0, true) } else { buckets.masked_pairs(first, second) };
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
         // Most triangles of a packet stay clear of the whole other packet.
         let outer = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
@@ -98,6 +105,7 @@ impl<const E: usize> BroadPhase<E> {
         let overlaps =
             PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, outer);
         self.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
+        let mut open = 0;
         for (row, column) in PairsOfLanes(overlaps.pairs) {
             let slots = [start_x + row, start_y + column];
             if !has_adjacent && self.are_adjacent(context, slots) {
@@ -108,12 +116,22 @@ impl<const E: usize> BroadPhase<E> {
             if self.volumes.are_separated(a, b) {
                 continue;
             }
+            let corners = self.volumes.layout.buckets.corners();
+            slots.iter().for_each(|slot| self.volumes.prefetch_corners(corners[*slot]));
+            open |= 1 << (LANES * row + column);
+        }
+        for (row, column) in PairsOfLanes(open) {
+            let slots = [start_x + row, start_y + column];
             let buckets = &self.volumes.layout.buckets;
             let [a, b] = slots.map(|slot| TriangleVertices {
                 triangle: buckets.triangle(slot),
                 vertices: buckets.corners()[slot],
             });
-            self.test_triangles(context, a, b, motion, narrow);
+            if are_strangers {
+                self.test_related_triangles(context, Relation::NonAdjacent, a, b, motion, narrow);
+            } else {
+                self.test_triangles(context, a, b, motion, narrow);
+            }
         }
     }
 }

@@ -103,7 +103,15 @@ impl Buckets {
     /// Computes the masks of adjacent triangles, unless they are known. They take as long as four searches and save nearly
     /// half of each later one (docs/notes/2026-11-23-one-shot.md).
     pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
-        self.adjacency.get_or_init(|| AdjacencyMasks::new(&self.slots, &self.triangles, filter));
+        let masks = || AdjacencyMasks::new(&self.packets, &self.slots, &self.triangles, filter);
+        self.adjacency.get_or_init(masks);
+    }
+
+    /// Whether triangles of two buckets, the first before the second, may share a vertex class. Where masks are not known,
+    /// they may.
+    #[inline]
+    pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
+        self.adjacency.get().is_none_or(|masks| masks.may_share_vertex(first, second))
     }
 
     /// The pairs of two packets that need no test, see [`AdjacencyMasks::masked_pairs`]; and whether adjacent triangles are

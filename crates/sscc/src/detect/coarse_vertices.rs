@@ -67,6 +67,20 @@ impl CoarseVertices {
         self.starts[bucket as usize] as usize..self.starts[bucket as usize + 1] as usize
     }
 
+    /// Prefetches what moves the vertices of a bucket.
+    #[inline]
+    pub(crate) fn prefetch(&self, bucket: u32, modes: usize) {
+        let groups = self.groups(bucket);
+        self.instructions.prefetch(&self.quantized[groups.start * modes..groups.end * modes]);
+    }
+
+    /// Prefetches the moved vertices of a bucket.
+    #[inline]
+    pub(crate) fn prefetch_moved<const E: usize>(&self, bucket: u32, positions: &[[Vec4; E]]) {
+        let groups = self.groups(bucket);
+        self.instructions.prefetch(&positions[groups.start * LANES..groups.end * LANES]);
+    }
+
     /// Moves the vertices of a bucket.
     pub(crate) fn move_bucket<const E: usize>(
         &self,

@@ -62,6 +62,12 @@ impl<const E: usize> ExactPositions<E> {
         }
     }
 
+    /// Whether a vertex has been moved in this search.
+    #[inline]
+    pub(crate) fn is_moved(&self, vertex: u32) -> bool {
+        self.searches[vertex as usize] == self.search
+    }
+
     /// The position of a moved vertex, at the start of the motion.
     #[inline]
     pub(crate) fn position(&self, vertex: u32) -> DVec3 {

@@ -193,6 +193,19 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
+    /// Prefetches what opens a bucket, unless it is open.
+    #[inline]
+    pub(crate) fn prefetch_bucket(&self, bucket: u32) {
+        if !self.is_coarse || self.is_bucket_open(bucket) {
+            return;
+        }
+        if self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
+            self.layout.coarse.prefetch_moved(bucket, &self.coarse.positions);
+        } else {
+            self.layout.coarse.prefetch(bucket, self.motion.factors.len());
+        }
+    }
+
     /// Computes the AABB of a node that is a bucket or larger, unless it is current.
     #[inline]
     pub(crate) fn update_node<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
@@ -296,6 +309,16 @@ impl<const E: usize> NodeVolumes<E> {
             coarse.corners(bucket, slot, &self.coarse.positions)
         } else {
             self.positions.mapped(buckets.corners()[slot])
+        }
+    }
+
+    /// Prefetches what moves three vertices to their exact positions, unless they have been moved.
+    #[inline]
+    pub(crate) fn prefetch_corners(&self, vertices: [u32; 3]) {
+        for vertex in vertices {
+            if !self.positions.is_moved(vertex) {
+                self.layout.vertices.prefetch(vertex, self.instructions);
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::vectors::InstructionSet;
 use crate::ReducedModel;
 
 /// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket lie
@@ -82,6 +83,13 @@ impl VertexStore {
     /// The displacements of a vertex by each mode.
     pub(crate) fn modes(&self, index: u32) -> &[DVec3] {
         &self.modes[index as usize * self.rank..][..self.rank]
+    }
+
+    /// Prefetches what the position of a vertex is computed from.
+    #[inline]
+    pub(crate) fn prefetch(&self, index: u32, instructions: InstructionSet) {
+        instructions.prefetch(&self.rest[index as usize..=index as usize]);
+        instructions.prefetch(self.modes(index));
     }
 
     /// The position of a vertex at each q, bit for bit that of [`deformed_position`](crate::deformed_position).

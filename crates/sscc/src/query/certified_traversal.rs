@@ -36,4 +36,5 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
+    broad.test_waiting(context, motion, narrow);
 }

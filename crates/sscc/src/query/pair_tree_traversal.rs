@@ -88,7 +88,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         // The boxes of open buckets are tighter and cost less.
         let is_open = buckets.iter().all(|b| b.is_some_and(|b| broad.volumes.is_bucket_open(b)));
         if let Some((moved, pairs)) = &mut hulls
-            && moved.is_used()
+            && moved.is_useful()
             && !is_open
             && let Some(at_rest) = pairs.direction(entry)
         {
@@ -98,7 +98,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
         if let [Some(a), Some(b)] = buckets {
-            broad.test_bucket_pair(context, (a, b), motion, narrow);
+            broad.test_bucket_pair_later(context, (a, b), motion, narrow);
             continue;
         }
         broad.counters.opened += 1;
@@ -110,4 +110,5 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
+    broad.test_waiting(context, motion, narrow);
 }

@@ -9,12 +9,6 @@ use crate::detect::f32_frame::F32Frame;
 use crate::detect::vectors::InstructionSet;
 use crate::detect::vertex_motion::VertexMotion;
 
-/// Tests that may fail at the start of a search before hulls are no longer tested, and what a test adds or takes.
-/// In free states most tests succeed; where many triangles collide, most fail and only cost time.
-const FIRST_CREDIT: i32 = 64;
-const GAIN: i32 = 2;
-const LOSS: i32 = 1;
-
 /// A gap at the centre of less than so many radii seldom stays open: such pairs are not tested.
 const MIN_GAP: f32 = 2.0;
 
@@ -25,7 +19,8 @@ pub(crate) struct MovedHulls<const E: usize> {
     instructions: InstructionSet,
     /// Whether the motion is that of this search: it is set by the first test.
     has_begun: bool,
-    credit: i32,
+    /// Whether a test may succeed in this search.
+    is_useful: bool,
     search: u32,
     searches: Vec<u32>,
     pub(super) hulls: Vec<MovedHull<E>>,
@@ -47,7 +42,7 @@ impl<const E: usize> MovedHulls<E> {
             motion: HullMotion::default(),
             instructions: InstructionSet::default(),
             has_begun: false,
-            credit: 0,
+            is_useful: false,
             search: 0,
             searches: vec![0; hulls.count()],
             hulls: vec![empty; hulls.count()],
@@ -62,24 +57,21 @@ impl<const E: usize> MovedHulls<E> {
             self.searches.fill(0);
             self.search = 1;
         }
-        (self.credit, self.has_begun) = (FIRST_CREDIT, false);
+        (self.is_useful, self.has_begun) = (true, false);
     }
 
-    /// Sets the motion of this search. Where hulls are of no use, no more tests are worth while.
-    fn begin_motion<M: VertexMotion<E>>(&mut self, hulls: &NodeHulls, frame: &F32Frame, motion: &M) -> bool {
+    /// Sets the motion of this search.
+    fn begin_motion<M: VertexMotion<E>>(&mut self, hulls: &NodeHulls, frame: &F32Frame, motion: &M) {
         self.has_begun = true;
         let coordinates = motion.coarse_coordinates();
-        let is_useful = coordinates.is_some_and(|q| self.motion.begin(hulls, q, frame, motion.rounding()));
-        if !is_useful {
-            self.credit = 0;
-        }
-        is_useful
+        self.is_useful = coordinates.is_some_and(|q| self.motion.begin(hulls, q, frame, motion.rounding()));
     }
 
-    /// Whether hulls are worth a test in this search.
+    /// Whether a test may succeed in this search. Where many triangles collide most tests fail, but those that succeed save
+    /// more (docs/notes/2026-11-25-growth-of-queries.md).
     #[inline]
-    pub(crate) fn is_used(&self) -> bool {
-        self.credit > 0
+    pub(crate) fn is_useful(&self) -> bool {
+        self.is_useful
     }
 
     /// Whether the hulls of two nodes prove that no triangle of one has a point in common with one of the other.
@@ -92,8 +84,11 @@ impl<const E: usize> MovedHulls<E> {
         frame: &F32Frame,
         motion: &M,
     ) -> bool {
-        if !self.has_begun && !self.begin_motion(hulls, frame, motion) {
-            return false;
+        if !self.has_begun {
+            self.begin_motion(hulls, frame, motion);
+            if !self.is_useful {
+                return false;
+            }
         }
         let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return false };
         self.update(hulls, i, n, motion);
@@ -101,9 +96,7 @@ impl<const E: usize> MovedHulls<E> {
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
         let points = [i, j].map(|i| self.points(hulls, i));
-        let is_apart = self.instructions.run(PlaneTest { points, distance: a.radius + b.radius, normal });
-        self.credit += if is_apart { GAIN } else { -LOSS };
-        is_apart
+        self.instructions.run(PlaneTest { points, distance: a.radius + b.radius, normal })
     }
 
     /// Moves all hulls.

@@ -50,7 +50,7 @@ impl Case {
         let frame = F32Frame::around(motion.overall_aabb(&self.layout));
         let mut moved = MovedHulls::<E>::new(&self.hulls);
         moved.update_all(&self.hulls, &frame, motion);
-        if !moved.is_used() {
+        if !moved.is_useful() {
             return None;
         }
         let (mut share, mut smallest) = (0.0_f64, f64::INFINITY);
