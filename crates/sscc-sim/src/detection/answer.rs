@@ -28,7 +28,8 @@ pub struct DetectionAnswer<'a> {
     pub curves: Option<&'a ContactCurves>,
     /// Whether `pairs` are all.
     pub is_complete: bool,
-    /// Duration of the query on its thread, without reading files and evaluating animations.
+    /// Duration of the query on its thread, without reading files and evaluating animations. Where several q of a model are
+    /// answered together, the time of all of them divided by their number.
     pub microseconds: f64,
     /// |z|, of a model.
     pub norm: Option<f64>,

@@ -23,6 +23,8 @@ pub struct RowQueries<'a> {
     pub is_continuous: bool,
     /// Maximum number of pairs for each query; of continuous queries the earliest. None: all.
     pub limit: Option<usize>,
+    /// Number of threads for discrete queries of several q. None: all cores.
+    pub threads: Option<usize>,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
 }
@@ -31,11 +33,14 @@ pub struct RowQueries<'a> {
 /// answers come soon.
 const MAX_BLOCK: usize = 256;
 
+/// Queries that take less time than this are answered one by one, because threads do not start as fast.
+const MIN_MICROSECONDS: f64 = 20.0;
+
 /// Blocks are smaller where the q of a block would have more pairs together than this, at the largest number so far.
 const MAX_BLOCK_PAIRS: usize = 1 << 24;
 
 /// Calls `take` with the answer to each query, in order. `take` can end that early. Discrete queries of several q are answered
-/// together, on all threads of the current pool ([`Query::batch`]), with the same answers.
+/// together ([`Query::batch`]), with the same answers.
 ///
 /// # Errors
 /// When a row is no q of the model, `progress` cancels, or `take` fails.
@@ -54,7 +59,9 @@ pub fn check_rows<E: From<SimError>>(
         let start = Instant::now();
         let answers = if end - next > 1 {
             let limit = requests.limit.unwrap_or(usize::MAX);
-            query.batch_at_most(&rows[next..end], limit, None, &CancelledBy(progress)).map(Answers::Batch)
+            query
+                .batch_at_most(&rows[next..end], limit, requests.threads, &CancelledBy(progress))
+                .map(Answers::Batch)
         } else if requests.is_continuous {
             query.continuous(rows[next], rows[next + 1]).map(|impacts| Answers::Motion(impacts.to_vec()))
         } else {
@@ -96,7 +103,8 @@ pub fn check_rows<E: From<SimError>>(
             }
         }
         next = end;
-        block = (2 * block).min(MAX_BLOCK).min(MAX_BLOCK_PAIRS / most_pairs).max(1);
+        let is_slow = microseconds >= MIN_MICROSECONDS;
+        block = if is_slow { (2 * block).min(MAX_BLOCK).min(MAX_BLOCK_PAIRS / most_pairs).max(1) } else { 1 };
     }
     Ok(())
 }

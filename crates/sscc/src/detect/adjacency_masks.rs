@@ -19,7 +19,7 @@ pub(crate) struct AdjacencyMasks {
     neighbour_starts: Vec<u32>,
     /// For each bucket: the buckets after it that share a vertex class of few triangles with it, ascending.
     neighbours: Vec<u32>,
-    /// For each bucket whether it has a vertex class of many triangles.
+    /// For each bucket whether it has a vertex class of many triangles. Two such buckets may share it.
     is_crowded: Vec<bool>,
 }
 
@@ -121,8 +121,8 @@ impl AdjacencyMasks {
     #[inline]
     pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
         let [start, end] = [0, 1].map(|i| self.neighbour_starts[first as usize + i] as usize);
-        self.neighbours[start..end].contains(&second)
-            || (self.is_crowded[first as usize] && self.is_crowded[second as usize])
+        let are_crowded = self.is_crowded[first as usize] && self.is_crowded[second as usize];
+        self.neighbours[start..end].contains(&second) || right_or!(are_crowded, CrowdedVertexForgotten, false)
     }
 
     /// The pairs of two packets, without the masks of adjacent triangles: of one packet with itself those with `j <= i`.
@@ -167,7 +167,7 @@ mod tests {
         let of_bucket = |b: usize| {
             &triangles[slots[packets[b] as usize] as usize..slots[packets[b + 1] as usize] as usize]
         };
-        let (mut neighbours, mut strangers) = (0, 0);
+        let (mut neighbours, mut others) = (0, 0);
         for second in 0..packets.len() - 1 {
             for first in 0..second {
                 let shares = |a: &u32| {
@@ -179,9 +179,9 @@ mod tests {
                     "{first} {second}"
                 );
                 neighbours += i32::from(is_neighbour);
-                strangers += i32::from(!masks.may_share_vertex(first as u32, second as u32));
+                others += i32::from(!masks.may_share_vertex(first as u32, second as u32));
             }
         }
-        assert!(neighbours > 20 && strangers > 20, "{neighbours} {strangers}");
+        assert!(neighbours > 20 && others > 20, "{neighbours} {others}");
     }
 }

@@ -72,17 +72,17 @@ impl<const E: usize> BroadPhase<E> {
         let pair = PacketPair { first, second, rows: first.overlapping(&y).0, masked: 0 };
         let overlaps = pair.overlaps(self.volumes.instructions);
         self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
-        let are_strangers =
+        let share_no_vertex =
             context.filter.groups().is_none() && !self.volumes.layout.buckets.may_share_vertex(n, m);
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };
-            self.test_packet_pair(context, first, second, are_strangers, motion, narrow);
+            self.test_packet_pair(context, first, second, share_no_vertex, motion, narrow);
         }
     }
 
     /// Tests two packets whose boxes overlap, the second not before the first, or one packet against itself.
-    /// `are_strangers`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
+    /// `share_no_vertex`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
     /// in memory.
     #[inline]
     fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
@@ -90,14 +90,14 @@ impl<const E: usize> BroadPhase<E> {
         context: &Context<'_>,
         x: BucketLane,
         y: BucketLane,
-        are_strangers: bool,
+        share_no_vertex: bool,
         motion: &M,
         narrow: &mut N,
     ) {
         let buckets = &self.volumes.layout.buckets;
         let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
         let (masked, has_adjacent) =
-            if are_strangers { (0, true) } else { buckets.masked_pairs(first, second) };
+            if share_no_vertex { (0, true) } else { buckets.masked_pairs(first, second) };
         let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
         // Most triangles of a packet stay clear of the whole other packet.
         let outer = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
@@ -127,7 +127,7 @@ impl<const E: usize> BroadPhase<E> {
                 triangle: buckets.triangle(slot),
                 vertices: buckets.corners()[slot],
             });
-            if are_strangers {
+            if share_no_vertex {
                 self.test_related_triangles(context, Relation::NonAdjacent, a, b, motion, narrow);
             } else {
                 self.test_triangles(context, a, b, motion, narrow);

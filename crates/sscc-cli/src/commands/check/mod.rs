@@ -65,6 +65,7 @@ fn check_model(args: &Check) -> Result<bool> {
         rows: &rows,
         is_continuous: args.continuous,
         limit: args.max_pairs(),
+        threads: Some(load::threads(&args.options.threads)),
         contacts: shapes::contacts(args),
     };
     check_rows(&mut query, &requests, &bar, take)?;
