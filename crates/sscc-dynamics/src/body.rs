@@ -46,6 +46,9 @@ pub struct Body<'a> {
     pub(crate) root_failed: bool,
     /// Whether q was moved since the last step.
     pub(crate) has_moved: bool,
+    /// The elastic energy of nonlinear forces at q, and at the beginning of the step, where they are known.
+    elastic_energy: Option<f64>,
+    start_energy: Option<f64>,
     /// Energy budget: the body's share of the energy that contacts have dissipated, less the energy that they have
     /// returned.
     pub(crate) energy_budget: f64,
@@ -174,6 +177,8 @@ impl<'a> Body<'a> {
             pairs: Vec::new(),
             root_failed: false,
             has_moved: false,
+            elastic_energy: None,
+            start_energy: None,
             energy_budget: 0.0,
             start: now.clone(),
             trial: now,
@@ -223,20 +228,22 @@ impl<'a> Body<'a> {
 
     /// Returns kinetic and elastic energy, without the potential energy of gravity.
     pub fn energy(&self) -> f64 {
-        let elastic = match &self.oscillator {
-            Oscillator::Linear(oscillator) => oscillator.energy(&self.q, &self.v),
-            Oscillator::Nonlinear(oscillator) => oscillator.energy(&self.q, &self.v),
-        };
-        elastic + self.rigid.energy()
+        self.energy_of_modes(&self.q, &self.v, self.elastic_energy) + self.rigid.energy()
+    }
+
+    /// Returns the kinetic and elastic energy of modes.
+    fn energy_of_modes(&self, q: &[f64], v: &[f64], elastic_energy: Option<f64>) -> f64 {
+        match (&self.oscillator, elastic_energy) {
+            (Oscillator::Linear(oscillator), _) => oscillator.energy(q, v),
+            (Oscillator::Nonlinear(_), Some(energy)) => energy + v.iter().map(|v| v * v / 2.0).sum::<f64>(),
+            (Oscillator::Nonlinear(oscillator), None) => oscillator.energy(q, v),
+        }
     }
 
     /// Returns the total energy at the beginning of the step and now.
     pub(crate) fn energies(&self, gravity: DVec3) -> [f64; 2] {
         let Kinematics { rigid, q, v } = &self.start;
-        let elastic = match &self.oscillator {
-            Oscillator::Linear(oscillator) => oscillator.energy(q, v),
-            Oscillator::Nonlinear(oscillator) => oscillator.energy(q, v),
-        };
+        let elastic = self.energy_of_modes(q, v, self.start_energy);
         let load: f64 = self.load.iter().zip(q).map(|(f, q)| f * q).sum();
         let weight = self.shape.mass().mass * gravity.dot(rigid.position);
         [elastic + rigid.energy() - weight - load, self.energy() + self.potential(gravity)]
@@ -356,11 +363,11 @@ impl<'a> Body<'a> {
             Oscillator::Nonlinear(oscillator) => {
                 if has_moved {
                     // The stored acceleration belongs to the old q.
-                    let (r, new) =
-                        (self.q.len(), oscillator.undamped_acceleration(&self.q, &self.load, buffers));
-                    self.a[..r].copy_from_slice(&new[..r]);
+                    oscillator.update(&self.q, &mut self.a, &self.load, buffers);
                 }
-                oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load, buffers)?;
+                let energy =
+                    oscillator.advance(&mut self.q, &mut self.v, &mut self.a, &self.load, buffers)?;
+                self.elastic_energy = Some(energy);
             }
         }
         if self.is_free {
@@ -372,9 +379,15 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
+    /// Forgets the elastic energy of another q.
+    pub(crate) fn forget_energy(&mut self) {
+        self.elastic_energy = None;
+    }
+
     /// Makes the current state the beginning of the step.
     pub(crate) fn save_start(&mut self) {
         self.start.set(&self.rigid, &self.q, &self.v);
+        self.start_energy = self.elastic_energy;
     }
 
     /// Makes the current state the trial end of the step.
@@ -428,8 +441,17 @@ impl<'a> Body<'a> {
         Ok(swept.place((&self.start.q, &t0), (&self.q, &t1))?)
     }
 
+    /// Computes what belongs to the q to which the body was moved: the elastic energy, and the acceleration with which the next
+    /// step begins. One evaluation of nonlinear forces gives both.
+    pub(crate) fn update_forces(&mut self, buffers: &mut NewmarkBuffers) {
+        if let (true, Oscillator::Nonlinear(oscillator)) = (self.has_moved, &self.oscillator) {
+            self.elastic_energy = Some(oscillator.update(&self.q, &mut self.a, &self.load, buffers));
+            self.has_moved = false;
+        }
+    }
+
     /// Records that q was moved between steps. The next step then computes the acceleration again.
     pub(crate) fn mark_moved(&mut self) {
-        self.has_moved = true;
+        (self.has_moved, self.elastic_energy) = (true, None);
     }
 }

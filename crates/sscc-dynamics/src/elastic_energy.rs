@@ -61,6 +61,12 @@ impl Evaluation {
         &self.gradient[1..]
     }
 
+    /// Returns the energy.
+    pub fn energy(&self) -> f64 {
+        // Euler's theorem for a form of degree 4.
+        self.p.iter().zip(&self.gradient).map(|(p, g)| p * g).sum::<f64>() / 4.0
+    }
+
     /// Returns row i of the stiffness, the Hessian with respect to q (r numbers).
     pub fn stiffness(&self, i: usize) -> &[f64] {
         let n = self.gradient.len();
@@ -161,8 +167,7 @@ impl ElasticEnergy {
     /// Returns the energy at q (r numbers). Costs O(r^4).
     pub fn at(&self, q: &[f64], evaluation: &mut Evaluation) -> f64 {
         self.evaluate_forces(q, evaluation);
-        // Euler's theorem for a form of degree 4.
-        evaluation.p.iter().zip(&evaluation.gradient).map(|(p, g)| p * g).sum::<f64>() / 4.0
+        evaluation.energy()
     }
 
     /// Computes the forces at q (r numbers): see [`Evaluation::forces`]. Costs O(r^4).

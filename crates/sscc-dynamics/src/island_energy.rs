@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::World;
 use crate::body::Body;
+use crate::nonlinear_oscillator::NewmarkBuffers;
 
 impl World<'_> {
     /// Charges the change of energy by the corrections of this step to energy budgets. Velocities are scaled down where
@@ -22,10 +23,14 @@ impl World<'_> {
         }
         corrected.sort_unstable();
         let gravity = self.options.gravity;
-        let energy = |(body, before): (&Body<'_>, &Option<_>)| {
-            before.as_ref().map_or(0.0, |_| body.energy() + body.potential(gravity))
+        let energy = |buffers: &mut NewmarkBuffers, (body, before): (&mut Body<'_>, &Option<_>)| {
+            before.as_ref().map_or(0.0, |_| {
+                body.update_forces(buffers);
+                body.energy() + body.potential(gravity)
+            })
         };
-        let energies: Vec<f64> = self.bodies.par_iter().zip(before).map(energy).collect();
+        let bodies = self.bodies.par_iter_mut().zip(before);
+        let energies: Vec<f64> = bodies.map_init(NewmarkBuffers::default, energy).collect();
         for island in corrected.chunk_by(|a, b| a.0 == b.0) {
             let members = || island.iter().map(|(_, n)| *n);
             let [start, trial] =

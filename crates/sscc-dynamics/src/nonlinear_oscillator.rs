@@ -101,9 +101,25 @@ impl<'a> NonlinearOscillator<'a> {
         undamped.chain(q.iter().map(|_| 0.0)).collect()
     }
 
+    /// Computes the undamped acceleration at a q that was moved between steps: the first r numbers of `undamped`. Returns the
+    /// elastic energy there.
+    pub(crate) fn update(
+        &self,
+        q: &[f64],
+        undamped: &mut [f64],
+        g: &[f64],
+        buffers: &mut NewmarkBuffers,
+    ) -> f64 {
+        self.energy.evaluate_forces(q, &mut buffers.evaluation);
+        let forces = buffers.evaluation.forces();
+        undamped.iter_mut().zip(g).zip(forces).for_each(|((undamped, g), f)| *undamped = g - f);
+        buffers.evaluation.energy()
+    }
+
     /// Advances q, v and the undamped acceleration by one step under the forces g (r numbers each). `undamped` has 2 r
     /// numbers: the undamped acceleration, and the q whose derivative the step begins with. The first depends on q alone,
-    /// so impulses may change v between steps. The same numbers give the same bits, whatever the last step was.
+    /// so impulses may change v between steps. The same numbers give the same bits, whatever the last step was. Returns the
+    /// elastic energy at the end of the step.
     ///
     /// # Errors
     /// When the iterations do not converge; then q, v and `undamped` are unchanged.
@@ -114,7 +130,7 @@ impl<'a> NonlinearOscillator<'a> {
         undamped: &mut [f64],
         g: &[f64],
         buffers: &mut NewmarkBuffers,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<f64, DynamicsError> {
         let NewmarkBuffers { evaluation, acceleration, trial, next, broyden } = buffers;
         self.set_damping_forces(v, acceleration);
         acceleration.iter_mut().zip(&*undamped).for_each(|(a, e)| *a = e - *a);
@@ -135,7 +151,7 @@ impl<'a> NonlinearOscillator<'a> {
                 trial.finish(q, v, undamped);
                 let is_old = iteration > MAX_CHEAP_ITERATIONS;
                 undamped[r..].copy_from_slice(if is_old { &trial.q } else { &self.linearised_at });
-                return Ok(());
+                return Ok(trial.elastic_energy);
             }
             if is_slow {
                 self.linearise(&trial.q, evaluation);
@@ -148,8 +164,7 @@ impl<'a> NonlinearOscillator<'a> {
                 let moved = |(b, change): (&f64, &f64)| b - share * change;
                 next.acceleration.extend(trial.acceleration.iter().zip(&broyden.change).map(moved));
                 self.place(start, next);
-                self.energy.evaluate_forces(&next.q, evaluation);
-                next.set_residual(evaluation.forces().iter().copied(), start.g);
+                self.evaluate(next, start.g, evaluation);
                 next.residual_sum
             };
             let mut residual_sum = step(1.0);
@@ -189,14 +204,19 @@ impl<'a> NonlinearOscillator<'a> {
         trial.acceleration.clear();
         trial.acceleration.extend(still.acceleration.iter().zip(&*change).map(|(a, c)| a - c));
         self.place(start, trial);
-        self.energy.evaluate_forces(&trial.q, evaluation);
-        trial.set_residual(evaluation.forces().iter().copied(), start.g);
+        self.evaluate(trial, start.g, evaluation);
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
-            self.energy.evaluate_forces(&trial.q, evaluation);
             // The given acceleration may belong to another q.
-            trial.set_residual(evaluation.forces().iter().copied(), start.g);
+            self.evaluate(trial, start.g, evaluation);
         }
+    }
+
+    /// Computes residual and elastic energy of a trial.
+    fn evaluate(&self, trial: &mut Trial, g: &[f64], evaluation: &mut Evaluation) {
+        self.energy.evaluate_forces(&trial.q, evaluation);
+        trial.set_residual(evaluation.forces().iter().copied(), g);
+        trial.elastic_energy = evaluation.energy();
     }
 
     /// Computes q, v and damping forces of a trial from its acceleration.

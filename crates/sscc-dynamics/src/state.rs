@@ -112,6 +112,7 @@ impl World<'_> {
             rest.orientation = DQuat::from_array([(); 4].map(|()| next()));
             body.energy_budget = next();
             rest.q.iter_mut().for_each(|x| *x = next());
+            body.forget_energy();
             body.save_start();
             body.is_proven_free = false;
         }

@@ -14,6 +14,8 @@ pub(crate) struct Trial {
     pub residual_sum: f64,
     /// Sum of the absolute values of all terms of the residual.
     pub term_sum: f64,
+    /// Elastic energy at q, where the residual was computed from an evaluation.
+    pub elastic_energy: f64,
 }
 
 impl Trial {
