@@ -1,10 +1,12 @@
 //! Collisions between different bodies: a sweep over the AABBs of bodies, then a traversal of two BVHs down to triangle
 //! pairs.
 
+use rayon::prelude::*;
 use sscc::{Aabb, Impact, Pair};
 
 use crate::DynamicsError;
 use crate::body::Body;
+use crate::error::first_error;
 use crate::sweep_and_prune::SweepAndPrune;
 
 /// Two bodies that collide, with their colliding triangle pairs.
@@ -87,12 +89,16 @@ impl BodyCollisions {
         let boxes = &mut self.swept.boxes;
         boxes.resize(bodies.len(), Aabb::EMPTY);
         self.is_placed.resize(bodies.len(), false);
-        for (n, body) in bodies.iter_mut().enumerate() {
-            if has_moved[n] || !self.is_placed[n] {
-                boxes[n] = body.sweep()?;
-                self.is_placed[n] = true;
-            }
-        }
+        let place =
+            |((body, has_moved), (aabb, is_placed)): ((&mut Body<'_>, &bool), (&mut Aabb, &mut bool))| {
+                if *has_moved || !*is_placed {
+                    *aabb = body.sweep()?;
+                    *is_placed = true;
+                }
+                Ok(())
+            };
+        let placed = boxes.par_iter_mut().zip(&mut self.is_placed);
+        first_error(bodies.par_iter_mut().zip(has_moved).zip(placed).map(place).collect())?;
         self.swept.find();
         let all = boxes_union(&self.swept.boxes);
         let around = match self.around {

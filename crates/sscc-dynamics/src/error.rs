@@ -139,3 +139,8 @@ impl std::fmt::Display for Obstacle {
         }
     }
 }
+
+/// Returns the error of the first body that has one.
+pub(crate) fn first_error(results: Vec<Result<(), DynamicsError>>) -> Result<(), DynamicsError> {
+    results.into_iter().collect()
+}

@@ -15,6 +15,9 @@ const SEARCH_STEPS: f64 = 64.0;
 /// Minimum margin of a search, as a share of the body's radius.
 const MIN_MARGIN: f64 = 1e-3;
 
+/// Number of vertices that are skipped together while all of them are outside the skin.
+const CHUNK: usize = 32;
+
 /// Factor on the travel in a step. It covers the rounding errors of a million additions.
 const TRAVEL_ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -43,6 +46,8 @@ pub(crate) struct GroundContacts {
     vertices: Vec<u32>,
     /// The `near_travel` up to which each of them is outside the skin.
     limits: Vec<f64>,
+    /// The smallest limit of each [`CHUNK`] vertices.
+    chunk_limits: Vec<f64>,
     /// The skin of the last update.
     pub(crate) skin: f64,
     /// Vertices within the skin, ascending, each with its gap, in the state of the last update.
@@ -147,19 +152,25 @@ impl GroundContacts {
         self.skin = skin;
         self.touching.clear();
         let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
-        for (n, limit) in self.limits.iter_mut().enumerate() {
-            if *limit > self.near_travel {
+        let chunks = self.limits.chunks_mut(CHUNK).zip(self.vertices.chunks(CHUNK));
+        for ((limits, vertices), chunk_limit) in chunks.zip(&mut self.chunk_limits) {
+            if *chunk_limit > self.near_travel {
                 continue;
             }
-            let v = self.vertices[n];
-            let modes = modes.of_vertex(v);
-            let point = rest[v as usize] - shape.mass().center + displacement(modes, &body.q);
-            let gap = height + local.dot(point);
-            if gap >= skin {
-                *limit = self.near_travel + (gap - skin - rounding);
-                continue;
+            for (limit, v) in limits.iter_mut().zip(vertices) {
+                if *limit > self.near_travel {
+                    continue;
+                }
+                let modes = modes.of_vertex(*v);
+                let point = rest[*v as usize] - shape.mass().center + displacement(modes, &body.q);
+                let gap = height + local.dot(point);
+                if gap >= skin {
+                    *limit = self.near_travel + (gap - skin - rounding);
+                } else {
+                    self.touching.push((*v, gap));
+                }
             }
-            self.touching.push((v, gap));
+            *chunk_limit = limits.iter().copied().fold(f64::INFINITY, f64::min);
         }
         Ok(())
     }
@@ -186,6 +197,8 @@ impl GroundContacts {
         self.near_reach.set(body.shape(), &self.vertices, body.rotation().transpose() * ground.normal);
         self.limits.clear();
         self.limits.resize(self.vertices.len(), f64::NEG_INFINITY);
+        self.chunk_limits.clear();
+        self.chunk_limits.resize(self.vertices.len().div_ceil(CHUNK), f64::NEG_INFINITY);
         Ok(())
     }
 

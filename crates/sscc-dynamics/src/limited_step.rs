@@ -12,9 +12,9 @@ use rayon::prelude::*;
 
 use crate::body::Body;
 use crate::contact_constraint::Source;
+use crate::error::first_error;
 use crate::ground_contacts::GroundContacts;
 use crate::step_buffers::StepBuffers;
-use crate::world::first_error;
 use crate::{DynamicsError, Observer, Phase, Response, World};
 
 /// Maximum number of corrections of a step.

@@ -9,6 +9,7 @@ use crate::contact_constraint::{GROUND, Source};
 use crate::contact_set::ContactSet;
 use crate::contact_solver::{ContactSolver, Spring};
 use crate::correction::CorrectionSolver;
+use crate::error::first_error;
 use crate::ground_contacts::{GroundContacts, GroundOptions};
 use crate::islands::Islands;
 use crate::nonlinear_oscillator::NewmarkBuffers;
@@ -376,9 +377,4 @@ impl<'a> World<'a> {
             Err(DynamicsError::Diverged { step: self.step, body: fastest.0, energy: fastest.1 })
         }
     }
-}
-
-/// Returns the error of the first body that has one.
-pub(crate) fn first_error(results: Vec<Result<(), DynamicsError>>) -> Result<(), DynamicsError> {
-    results.into_iter().collect()
 }
