@@ -2,7 +2,7 @@
 //! pairs.
 
 use rayon::prelude::*;
-use sscc::{Aabb, Impact, Pair};
+use sscc::{Aabb, Impact, Pair, SweptShape};
 
 use crate::DynamicsError;
 use crate::body::Body;
@@ -107,20 +107,30 @@ impl BodyCollisions {
             _ => widened(all),
         };
         self.around = Some(around);
-        for &[a, b] in &self.swept.candidates {
-            let is_colliding =
-                || self.colliding_bodies.binary_search_by_key(&[a, b], |found| found.bodies).is_ok();
-            if !(has_moved[a] || has_moved[b]) || is_colliding() {
-                continue;
+        let is_tested = |[a, b]: &[usize; 2]| {
+            let is_colliding = self.colliding_bodies.binary_search_by_key(&[*a, *b], |found| found.bodies);
+            (has_moved[*a] || has_moved[*b]) && is_colliding.is_err()
+        };
+        let mut open: Vec<[usize; 2]> = self.swept.candidates.iter().copied().filter(is_tested).collect();
+        let mut found: Vec<([usize; 2], Vec<Impact>)> = Vec::new();
+        while !open.is_empty() {
+            let mut round = disjoint_pairs(bodies, &mut open);
+            round.par_iter_mut().for_each(|one| {
+                let [x, y] = &mut one.motions;
+                x.impacts(y, around, &mut one.impacts);
+            });
+            for MotionPair { bodies: [a, b], motions: [x, y], impacts } in round {
+                (bodies[a].swept, bodies[b].swept) = (Some(x), Some(y));
+                if !impacts.is_empty() {
+                    found.push(([a, b], impacts));
+                }
             }
+        }
+        found.sort_unstable_by_key(|(bodies, _)| *bodies);
+        for (bodies, impacts) in found {
             let first = self.impacts.len();
-            let (left, right) = bodies.split_at_mut(b);
-            if let (Some(x), Some(y)) = (&mut left[a].swept, &mut right[0].swept) {
-                x.impacts(y, around, &mut self.impacts);
-            }
-            if self.impacts.len() > first {
-                self.impact_bodies.push(Found { bodies: [a, b], first, end: self.impacts.len() });
-            }
+            self.impacts.extend(impacts);
+            self.impact_bodies.push(Found { bodies, first, end: self.impacts.len() });
         }
         Ok(())
     }
@@ -165,6 +175,34 @@ impl BodyCollisions {
             *is_placed = false;
         }
     }
+}
+
+/// The motions of two bodies, taken from them, and their impacts.
+struct MotionPair<'a> {
+    bodies: [usize; 2],
+    motions: [Box<SweptShape<'a>>; 2],
+    impacts: Vec<Impact>,
+}
+
+/// Takes pairs from a list in which no body occurs twice: they can be tested at the same time.
+fn disjoint_pairs<'a>(bodies: &mut [Body<'a>], open: &mut Vec<[usize; 2]>) -> Vec<MotionPair<'a>> {
+    let mut is_taken = vec![false; bodies.len()];
+    let mut pairs = Vec::new();
+    open.retain(|&[a, b]| {
+        if is_taken[a] || is_taken[b] {
+            return true;
+        }
+        match (bodies[a].swept.take(), bodies[b].swept.take()) {
+            (Some(x), Some(y)) => {
+                (is_taken[a], is_taken[b]) = (true, true);
+                pairs.push(MotionPair { bodies: [a, b], motions: [x, y], impacts: Vec::new() });
+            }
+            // A body without a motion has no impact.
+            (x, y) => (bodies[a].swept, bodies[b].swept) = (x, y),
+        }
+        false
+    });
+    pairs
 }
 
 fn boxes_union(boxes: &[Aabb]) -> Aabb {
