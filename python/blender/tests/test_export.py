@@ -82,6 +82,7 @@ SCENE = """
 steps_per_second = 2000
 duration = 0.2
 frames_per_second = 100
+response = "penalty"
 [models.spring]
 shape = "spring-4k"
 kind = "linear"
