@@ -48,7 +48,7 @@ pub struct Body<'a> {
     pub(crate) has_moved: bool,
     /// The elastic energy of nonlinear forces at q, and at the beginning of the step, where they are known.
     elastic_energy: Option<f64>,
-    start_energy: Option<f64>,
+    start_elastic_energy: Option<f64>,
     /// Energy budget: the body's share of the energy that contacts have dissipated, less the energy that they have
     /// returned.
     pub(crate) energy_budget: f64,
@@ -178,7 +178,7 @@ impl<'a> Body<'a> {
             root_failed: false,
             has_moved: false,
             elastic_energy: None,
-            start_energy: None,
+            start_elastic_energy: None,
             energy_budget: 0.0,
             start: now.clone(),
             trial: now,
@@ -243,7 +243,7 @@ impl<'a> Body<'a> {
     /// Returns the total energy at the beginning of the step and now.
     pub(crate) fn energies(&self, gravity: DVec3) -> [f64; 2] {
         let Kinematics { rigid, q, v } = &self.start;
-        let elastic = self.energy_of_modes(q, v, self.start_energy);
+        let elastic = self.energy_of_modes(q, v, self.start_elastic_energy);
         let load: f64 = self.load.iter().zip(q).map(|(f, q)| f * q).sum();
         let weight = self.shape.mass().mass * gravity.dot(rigid.position);
         [elastic + rigid.energy() - weight - load, self.energy() + self.potential(gravity)]
@@ -387,7 +387,7 @@ impl<'a> Body<'a> {
     /// Makes the current state the beginning of the step.
     pub(crate) fn save_start(&mut self) {
         self.start.set(&self.rigid, &self.q, &self.v);
-        self.start_energy = self.elastic_energy;
+        self.start_elastic_energy = self.elastic_energy;
     }
 
     /// Makes the current state the trial end of the step.
@@ -441,8 +441,8 @@ impl<'a> Body<'a> {
         Ok(swept.place((&self.start.q, &t0), (&self.q, &t1))?)
     }
 
-    /// Computes what belongs to the q to which the body was moved: the elastic energy, and the acceleration with which the next
-    /// step begins. One evaluation of nonlinear forces gives both.
+    /// Evaluates the nonlinear forces at a q to which the body was moved. They give its elastic energy, and the acceleration with
+    /// which the next step begins.
     pub(crate) fn update_forces(&mut self, buffers: &mut NewmarkBuffers) {
         if let (true, Oscillator::Nonlinear(oscillator)) = (self.has_moved, &self.oscillator) {
             self.elastic_energy = Some(oscillator.update(&self.q, &mut self.a, &self.load, buffers));

@@ -1,8 +1,8 @@
 //! Energy of corrections: what a correction adds to the energy of an island is paid from the energy budgets of its bodies.
 //!
-//! Without contacts, bodies would move in the step, and damping would take energy that no motion loses in truth. A
-//! correction that prevents this motion gives this energy back. So it adds what exceeds the energy of the island both before
-//! and after the motion without it, and dissipates what falls short of both.
+//! Damping may dissipate energy in the motion without contacts. A correction that prevents this motion also prevents that
+//! loss, which is no energy added by contacts. So a correction adds only the energy above both that at the beginning of the
+//! step and that at its end without the correction, and dissipates only the energy below both.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;

@@ -39,8 +39,10 @@
 //!
 //! # Guarantees
 //!
-//! - **Determinism.** A world has the same bits in every run, for any number of threads, for every exact method of
-//!   [`Detection`], and after a restart.
+//! - **Determinism.** A world has the same bits in every run and for any number of threads. It also has the same bits for
+//!   every exact method of [`Detection`] and after a restart, except where triangles of a body pass each other within
+//!   [`sscc::Impact::TOLERANCE`] without contact: there methods may differ in whether this is an impact, and so may kinetic
+//!   detection after a restart.
 //! - **Exact collisions.** Collisions within a body are those of [`sscc::Query`]. Collisions between bodies are those
 //!   of the f64 positions [`Body::pose`] applied to `p + U q`, down to pairs of triangles.
 //! - **Contacts never add energy**, up to rounding: they return at most the energy that they have dissipated

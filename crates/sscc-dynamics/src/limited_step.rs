@@ -1,11 +1,11 @@
-//! Limits a step to motions in which no two bodies intersect, and none sinks into the ground.
+//! Limits a step to motions in which no body intersects itself or another one, and none sinks into the ground.
 //!
 //! Contacts act at the end of the step: a correction displaces it as little as they need, and changes the velocities
-//! accordingly. A swept query then finds the pairs of triangles of different bodies that have a point in common on the way
-//! to the corrected end, and a search the vertices that sink there. They become contacts, and the correction is computed
-//! again. Bodies that still meet each other or the ground after a few corrections move only a share of their way. So a
-//! state with intersections is never reached from one without (Harmon et al. 2009 and Li et al. 2020 argue for the same
-//! invariant).
+//! accordingly. Swept queries then find the pairs of triangles, of different bodies and of the same one, that have a point in
+//! common on the way to the corrected end, and a search finds the vertices that sink there. They become contacts, and the
+//! correction is computed again. Bodies that still meet themselves, each other or the ground after a few corrections move
+//! only a share of their way. So a state with intersections is never reached from one without (Harmon et al. 2009 and Li et
+//! al. 2020 argue for the same invariant).
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -96,9 +96,9 @@ impl<'a> NonlinearOscillator<'a> {
     /// Returns the undamped acceleration `g - f(q)` under the forces g (r numbers each), then r zeros (rest): the first
     /// step needs both.
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
-        self.energy.evaluate_forces(q, &mut buffers.evaluation);
-        let undamped = g.iter().zip(buffers.evaluation.forces()).map(|(g, f)| g - f);
-        undamped.chain(q.iter().map(|_| 0.0)).collect()
+        let mut undamped = vec![0.0; 2 * q.len()];
+        self.update(q, &mut undamped, g, buffers);
+        undamped
     }
 
     /// Computes the undamped acceleration at a q that was moved between steps: the first r numbers of `undamped`. Returns the

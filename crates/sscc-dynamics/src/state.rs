@@ -8,7 +8,8 @@ use crate::contact_constraint::GROUND;
 use crate::ground_point::GroundPoint;
 use crate::{DynamicsError, World};
 
-/// State of a world. A world with the same options and bodies continues from it with the same bits.
+/// State of a world. A world with the same options and bodies continues from it with the same bits (see "Determinism" in
+/// [the crate's guarantees](crate#guarantees)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Number of completed steps.

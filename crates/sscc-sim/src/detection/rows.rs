@@ -25,7 +25,7 @@ pub struct RowQueries<'a> {
     pub limit: Option<usize>,
     /// Number of threads for discrete queries of several q. None: all cores.
     pub threads: Option<usize>,
-    /// What discrete queries compute of the contacts of their pairs.
+    /// Options for the contacts of the pairs that discrete queries find.
     pub contacts: ContactOptions,
 }
 
@@ -109,7 +109,7 @@ pub fn check_rows<E: From<SimError>>(
     Ok(())
 }
 
-/// Progress that only cancels.
+/// Progress that passes on cancellation and ignores reports: a batch counts its own q.
 struct CancelledBy<'a>(&'a dyn Progress);
 
 impl Progress for CancelledBy<'_> {
@@ -130,7 +130,7 @@ enum Answers {
     Motion(Vec<Impact>),
 }
 
-/// What a query found.
+/// The answer to one query.
 struct Found<'a> {
     pairs: Cow<'a, [Pair]>,
     times: Option<Vec<f64>>,
@@ -173,7 +173,7 @@ impl Answers {
     }
 }
 
-/// Returns what the requests want to know of the contacts at a q.
+/// Returns the contacts at a q that the requests ask for.
 fn contacts_of(
     requests: &RowQueries<'_>,
     rows: &[&[f64]],

@@ -20,7 +20,7 @@ pub(crate) struct AdjacencyMasks {
     /// For each bucket: the buckets after it that share a vertex class of few triangles with it, ascending.
     neighbours: Vec<u32>,
     /// For each bucket whether it has a vertex class of many triangles. Two such buckets may share it.
-    is_crowded: Vec<bool>,
+    has_large_class: Vec<bool>,
 }
 
 /// The triangles around each vertex class, as `8 packet + lane`.
@@ -79,12 +79,12 @@ impl AdjacencyMasks {
         let mut all = Self { starts: vec![0], neighbour_starts: vec![0], ..Self::default() };
         let (mut found, mut neighbours): (Vec<PacketMask>, Vec<u32>) = (Vec::new(), Vec::new());
         for bucket in packets.windows(2) {
-            let mut is_crowded = false;
+            let mut has_large_class = false;
             for first in bucket[0] as usize..bucket[1] as usize {
                 found.push(PacketMask { other: first as u32, pairs: NOT_AFTER });
                 for (i, &t) in members(first).iter().enumerate() {
                     let around = filter.vertex_classes(t).map(|class| around.of_class(class));
-                    is_crowded |= around.iter().any(|all| all.len() > MAX_VERTEX_TRIANGLES);
+                    has_large_class |= around.iter().any(|all| all.len() > MAX_VERTEX_TRIANGLES);
                     let of_few = around.into_iter().filter(|all| all.len() <= MAX_VERTEX_TRIANGLES);
                     for &other in of_few.flatten() {
                         let (second, j) = (other as usize / LANES, other as usize % LANES);
@@ -112,7 +112,7 @@ impl AdjacencyMasks {
             neighbours.dedup();
             all.neighbours.append(&mut neighbours);
             all.neighbour_starts.push(all.neighbours.len() as u32);
-            all.is_crowded.push(is_crowded);
+            all.has_large_class.push(has_large_class);
         }
         all
     }
@@ -121,8 +121,9 @@ impl AdjacencyMasks {
     #[inline]
     pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
         let [start, end] = [0, 1].map(|i| self.neighbour_starts[first as usize + i] as usize);
-        let are_crowded = self.is_crowded[first as usize] && self.is_crowded[second as usize];
-        self.neighbours[start..end].contains(&second) || right_or!(are_crowded, CrowdedVertexForgotten, false)
+        let have_large_class = self.has_large_class[first as usize] && self.has_large_class[second as usize];
+        self.neighbours[start..end].contains(&second)
+            || right_or!(have_large_class, LargeClassForgotten, false)
     }
 
     /// The pairs of two packets, without the masks of adjacent triangles: of one packet with itself those with `j <= i`.

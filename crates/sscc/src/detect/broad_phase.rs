@@ -46,8 +46,8 @@ pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) cones: Option<NormalCones>,
     /// Nodes `(n, n)` and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
     pub(super) stack: Vec<NodePair>,
-    /// Two buckets that are tested after the next ones: meanwhile memory fetches what opens them.
-    waiting: Option<(u32, u32)>,
+    /// A bucket pair whose test is deferred until the next one is found. Meanwhile its memory is fetched.
+    deferred: Option<(u32, u32)>,
     visits: u32,
     is_cancelled: bool,
     pub(crate) counters: Counters,
@@ -61,7 +61,7 @@ impl<const E: usize> BroadPhase<E> {
             volumes: NodeVolumes::new(layout, is_lazy),
             cones: cones.filter(|_| E == 1),
             stack: Vec::new(),
-            waiting: None,
+            deferred: None,
             visits: 0,
             is_cancelled: false,
             counters: Counters::default(),
@@ -72,7 +72,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn begin(&mut self) {
         self.is_cancelled = false;
-        self.waiting = None;
+        self.deferred = None;
         self.counters = Counters::default();
     }
 
@@ -84,9 +84,10 @@ impl<const E: usize> BroadPhase<E> {
         }
     }
 
-    /// Tests two buckets after the next two, or at [`Self::test_waiting`].
+    /// Defers the test of a bucket pair until the next call, or until [`Self::test_deferred_bucket_pair`], and prefetches its
+    /// memory.
     #[inline]
-    pub(crate) fn test_bucket_pair_later<M: VertexMotion<E>, N: NarrowPhase<E>>(
+    pub(crate) fn defer_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
         (a, b): (u32, u32),
@@ -94,20 +95,20 @@ impl<const E: usize> BroadPhase<E> {
         narrow: &mut N,
     ) {
         [a, b].iter().for_each(|bucket| self.volumes.prefetch_bucket(*bucket));
-        if let Some(pair) = self.waiting.replace((a, b)) {
+        if let Some(pair) = self.deferred.replace((a, b)) {
             self.test_bucket_pair(context, pair, motion, narrow);
         }
     }
 
-    /// Tests the buckets that wait, at the end of a traversal.
+    /// Tests the deferred bucket pair, at the end of a traversal.
     #[inline]
-    pub(crate) fn test_waiting<M: VertexMotion<E>, N: NarrowPhase<E>>(
+    pub(crate) fn test_deferred_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &Context<'_>,
         motion: &M,
         narrow: &mut N,
     ) {
-        if let Some(pair) = self.waiting.take() {
+        if let Some(pair) = self.deferred.take() {
             self.test_bucket_pair(context, pair, motion, narrow);
         }
     }

@@ -67,7 +67,7 @@ impl CoarseVertices {
         self.starts[bucket as usize] as usize..self.starts[bucket as usize + 1] as usize
     }
 
-    /// Prefetches what moves the vertices of a bucket.
+    /// Prefetches the quantized modes of the vertices of a bucket.
     #[inline]
     pub(crate) fn prefetch(&self, bucket: u32, modes: usize) {
         let groups = self.groups(bucket);

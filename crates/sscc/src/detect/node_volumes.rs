@@ -193,7 +193,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Prefetches what opens a bucket, unless it is open.
+    /// Prefetches the vertex data of a bucket, unless the bucket is open.
     #[inline]
     pub(crate) fn prefetch_bucket(&self, bucket: u32) {
         if !self.is_coarse || self.is_bucket_open(bucket) {
@@ -312,7 +312,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Prefetches what moves three vertices to their exact positions, unless they have been moved.
+    /// Prefetches the rest positions and modes of three vertices, of those that have not been moved.
     #[inline]
     pub(crate) fn prefetch_corners(&self, vertices: [u32; 3]) {
         for vertex in vertices {

@@ -30,7 +30,7 @@ impl<const E: usize> BroadPhase<E> {
                 node.child_pairs().for_each(|pair| self.push_overlapping(n, node.first_child, pair));
             }
         }
-        self.test_waiting(context, motion, narrow);
+        self.test_deferred_bucket_pair(context, motion, narrow);
     }
 
     /// Puts a node `(n, n)` or a node pair on the empty stack.
@@ -101,7 +101,7 @@ impl<const E: usize> BroadPhase<E> {
         let first_child = |n: u32| context.hierarchy.nodes()[n as usize].first_child;
         // A bucket comes second.
         let [n, m] = match [n, m].map(|n| self.volumes.layout.buckets.of_node(n)) {
-            [Some(a), Some(b)] => return self.test_bucket_pair_later(context, (a, b), motion, narrow),
+            [Some(a), Some(b)] => return self.defer_bucket_pair(context, (a, b), motion, narrow),
             [Some(_), None] => [m, n],
             [None, _] => [n, m],
         };

@@ -85,7 +85,7 @@ impl VertexStore {
         &self.modes[index as usize * self.rank..][..self.rank]
     }
 
-    /// Prefetches what the position of a vertex is computed from.
+    /// Prefetches the rest position and the modes of a vertex.
     #[inline]
     pub(crate) fn prefetch(&self, index: u32, instructions: InstructionSet) {
         instructions.prefetch(&self.rest[index as usize..=index as usize]);

@@ -127,7 +127,7 @@ mutants! {
     /// The travelled distance of z is not rounded up.
     TravelledToNearest: CaughtBy("lib query::kinetic::ball_pairs::tests::the_travelled_distance_is_never_short");
     /// Buckets share no vertex of many triangles.
-    CrowdedVertexForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
+    LargeClassForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
     /// A motion from one q to the next stays in the ball and in safe distances if its start does.
     StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_balls_there_are");
     /// A safe distance that is exactly used up still holds.

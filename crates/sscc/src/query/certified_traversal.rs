@@ -36,5 +36,5 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
-    broad.test_waiting(context, motion, narrow);
+    broad.test_deferred_bucket_pair(context, motion, narrow);
 }

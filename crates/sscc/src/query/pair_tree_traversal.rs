@@ -98,7 +98,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
         if let [Some(a), Some(b)] = buckets {
-            broad.test_bucket_pair_later(context, (a, b), motion, narrow);
+            broad.defer_bucket_pair(context, (a, b), motion, narrow);
             continue;
         }
         broad.counters.opened += 1;
@@ -110,5 +110,5 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
-    broad.test_waiting(context, motion, narrow);
+    broad.test_deferred_bucket_pair(context, motion, narrow);
 }

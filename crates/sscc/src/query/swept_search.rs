@@ -22,7 +22,7 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
         Self { certified: CertifiedSearch::new(context), narrow: N::default() }
     }
 
-    /// What the last search did.
+    /// Counters of the last search.
     pub(super) fn counters(&self) -> &Counters {
         &self.certified.broad.counters
     }

@@ -108,40 +108,47 @@ impl<'a> KineticQuery<'a> {
     }
 
     /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last query,
-    /// and what is known of all pairs proves them apart until `q_t1`, nothing is searched. Only pairs that come as close as
+    /// and the ball around it proves all pairs apart until `q_t1`, nothing is searched. Only pairs that come as close as
     /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
     /// this query.
     ///
     /// # Errors
     /// As [`Query::discrete`], for start and end.
     pub fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error> {
-        if self.proves_free(q_t0, q_t1)? {
-            self.query.forget();
+        self.query.forget();
+        self.free_q.clear();
+        let ends = [self.query.measure(q_t0)?, self.query.measure(q_t1)?];
+        self.query.norm = ends[0].norm.max(ends[1].norm);
+        if self.query.context.is_proven_free(self.query.norm) {
+            self.query.statistics = Statistics::PROVEN_FREE;
+            return Ok(&[]);
+        }
+        if self.is_free_within_ball(ends)? {
             self.query.statistics.complete = true;
             return Ok(&[]);
         }
-        self.free_q.clear();
         self.query.continuous(q_t0, q_t1)?;
-        if self.query.pairs().is_empty() {
+        let swept = self.query.swept.as_ref().filter(|_| !self.query.discrete.narrow.0.list.is_empty());
+        if let Some(swept) = &self.query.swept {
+            self.control.plain_cost = plain_cost(swept.counters());
+        }
+        if swept.is_none() {
             self.free_q.extend_from_slice(q_t1);
         }
-        let Some(swept) = &self.query.swept else { return Ok(&[]) };
-        self.control.plain_cost = plain_cost(swept.counters());
-        Ok(&swept.narrow.0.list)
+        Ok(swept.map_or(&[], |swept| &swept.narrow.0.list))
     }
 
-    /// Whether all pairs stay apart while every vertex moves on a straight line from its position at `q_t0` to that at
-    /// `q_t1`, as far as that is known.
-    pub(super) fn proves_free(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<bool, Error> {
-        let [t0, t1] = [self.query.measure(q_t0)?, self.query.measure(q_t1)?];
+    /// Whether safe distances and tests of the active pairs prove all pairs apart while every vertex moves on a straight line
+    /// from its position at the last q to that at another one.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    pub(super) fn is_free_within_ball(&mut self, [t0, t1]: [Configuration<'_>; 2]) -> Result<bool, Error> {
         let context = &self.query.context;
-        if context.is_proven_free(t0.norm.max(t1.norm)) {
-            return Ok(true);
-        }
-        if q_t0 != self.last_q || !context.detect.exceptions.is_empty() {
+        if t0.q != self.last_q || !context.detect.exceptions.is_empty() {
             return Ok(false);
         }
-        let step = context.scope.metric.norm_from(q_t1, q_t0, &mut self.offset);
+        let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);
         if !self.ball_pairs.stays_safe(step, t0.reach.max(t1.reach)) {
             return Ok(false);
         }

@@ -7,7 +7,7 @@ use super::kinetic_query::KineticQuery;
 use crate::test_models::Random;
 use crate::{
     Certificates, CertifyOptions, ContactFilter, Impact, Method, Metric, MetricKind, Modes, Neighbours,
-    Query, ReducedModel, TriMesh,
+    Query, ReducedModel, Statistics, TriMesh,
 };
 
 /// Two wavy sheets one above the other, in one piece with a third one between them every second time; modes bring them
@@ -55,7 +55,7 @@ fn sheets(random: &mut Random, case: usize) -> ReducedModel {
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
 
-/// What happened, to see that all of it did.
+/// How often each case of a kinetic query occurred.
 #[derive(Debug, Default)]
 struct Seen {
     steps: usize,
@@ -67,7 +67,7 @@ struct Seen {
     begun: usize,
     begun_beyond: usize,
     root_certified_within: usize,
-    /// Motions that were proven free by a ball, and those that searches found free.
+    /// Motions that a ball proved free, and those that searches found free.
     proven: usize,
     known_free: usize,
     aimed: usize,
@@ -94,14 +94,17 @@ impl Pairing<'_> {
         self.kinetic.control.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
         self.kinetic.control.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
         self.kinetic.control.plain_cost = self.kinetic.control.plain_cost.max(1_000_000);
-        // The way to here, before anything else is asked.
+        // The motion to this q, before the discrete query at its end.
         if !self.before.is_empty() && random.signed() > 0.5 {
-            let proven = self.kinetic.proves_free(&self.before, &q).unwrap();
-            seen.proven += usize::from(proven && self.kinetic.ball_pairs.has_ball());
             let pairs = |impacts: &[Impact]| impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>();
             let found = pairs(self.kinetic.continuous(&self.before, &q).unwrap());
-            assert_eq!(found, pairs(self.oracle.continuous(&self.before, &q).unwrap()), "{proven}");
+            assert_eq!(found, self.kinetic.pairs());
+            assert_eq!(found, pairs(self.oracle.continuous(&self.before, &q).unwrap()));
+            assert_eq!(self.kinetic.norm(), self.oracle.norm());
+            let Statistics { root_certified, complete, .. } = self.kinetic.statistics();
+            assert!(complete);
             seen.known_free += usize::from(self.kinetic.free_q == q);
+            seen.proven += usize::from(found.is_empty() && !root_certified && self.kinetic.free_q.is_empty());
         }
         self.before.clone_from(&q);
         let stood = self.kinetic.ball_pairs.has_ball();
@@ -187,8 +190,14 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                 let z: Vec<f64> = at(share * t).iter().map(|z| z + noise * random.signed()).collect();
                 pairing.ask(&z, random, &mut seen);
                 if random.signed() > 0.98 {
-                    assert!(pairing.kinetic.discrete(&[f64::NAN]).is_err());
+                    let wrong = [f64::NAN];
+                    let is_refused = match random.signed() > 0.0 {
+                        true => pairing.kinetic.discrete(&wrong).is_err(),
+                        false => pairing.kinetic.continuous(&pairing.before, &wrong).is_err(),
+                    };
+                    assert!(is_refused);
                     assert_eq!(pairing.kinetic.pairs(), []);
+                    assert_eq!(pairing.kinetic.statistics(), Statistics::default());
                 }
                 // There and back, under the root's certificate.
                 if random.signed() > 0.97 {
