@@ -10,12 +10,12 @@
 
 pub(crate) mod aabb8;
 mod adjacency_masks;
-pub(crate) mod ball_motion;
 mod bd_tree;
 pub(crate) mod broad_phase;
 mod brute_force;
 pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
+pub(crate) mod capsule_motion;
 mod coarse_vertices;
 mod colliding_pairs;
 pub(crate) mod contact_curves;

@@ -1,8 +1,8 @@
 //! The motion of vertices in one search: the source of positions and AABBs, over which the detector is generic.
 //!
 //! A search has `E` configurations: one, or the start and the end of a motion. Sources are dispatched statically:
-//! positions deformed by modes ([`DeformedMotion`]), all positions in a ball of configurations
-//! ([`BallMotion`](super::ball_motion::BallMotion)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
+//! positions deformed by modes ([`DeformedMotion`]), all positions in a capsule of configurations
+//! ([`CapsuleMotion`](super::capsule_motion::CapsuleMotion)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
 //! given positions ([`Detector`](crate::Detector)).
 
 use glam::DVec3;

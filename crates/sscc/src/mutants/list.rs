@@ -12,8 +12,8 @@ mutants! {
     NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// Vertices that are welded at rest are taken to be at one position always.
     WeldedVerticesStayTogether: CaughtBy("it detector::welded_vertices_can_move_apart");
-    /// A search for all that can meet in a kinetic ball compares radii with |z| at its centre.
-    KineticBallAtCenter: CaughtBy("it kinetic::radii_are_crossed_inside_a_ball");
+    /// A search for all that can meet in a kinetic region compares radii with |z| at its start.
+    KineticRegionAtCenter: CaughtBy("lib query::kinetic::tests::radii_are_crossed_inside_a_region");
     /// The rounding bound of positions about a centre omits the displacement of the centre.
     RestErrorWithoutCenter: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
     /// Safe distances include the rounding error at rest, but not that at z.
@@ -98,8 +98,8 @@ mutants! {
     SweptCoarseNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The norm of a continuous query is that of its end.
     SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
-    /// Vertices go half as far in a kinetic ball.
-    BallVerticesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
+    /// Vertices go half as far within the radius of a capsule.
+    CapsuleVerticesHalfAsFar: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The radius of a moving hull omits the distance of vertices from the core points' hull.
     HullCoreExact: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The radius of a moving hull omits the residuals of the modes.
@@ -112,24 +112,28 @@ mutants! {
     HullSinglePrecisionExact: CaughtBy("lib detect::hulls::tests::radii_cover_single_precision");
     /// The radius of a moving hull omits the rounding of the shape's positions.
     HullShapeExact: CaughtBy("lib detect::hulls::tests::radii_cover_the_rounding_of_the_shape");
-    /// Hulls in a kinetic ball have the radius at its centre.
-    HullBallNotWidened: CaughtBy("lib detect::hulls::tests::motions_and_balls_are_covered");
+    /// Hulls in a capsule have the radius on its segment.
+    HullCapsuleNotWidened: CaughtBy("lib detect::hulls::tests::motions_and_capsules_are_covered");
     /// A plane separates hulls of any radius.
     HullsTouch: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// The gap along a normal is compared as if the normal had length 1.
     HullNormalTakenAsUnit: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// A plane separates hulls at the start of a motion alone.
     HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
-    /// Nodes go half as far in a kinetic ball.
-    BallNodesHalfAsFar: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
-    /// A kinetic ball omits the rounding error of positions.
-    BallExact: CaughtBy("lib detect::ball_motion::tests::vertices_stay_in_the_ball");
+    /// Nodes go half as far within the radius of a capsule.
+    CapsuleNodesHalfAsFar: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    /// The volumes of a capsule are those of a ball around its start.
+    CapsuleWithoutEnd: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    /// A capsule contains what is near the line through its segment.
+    SegmentWithoutEnds: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
+    /// A capsule omits the rounding error of positions.
+    CapsuleExact: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The travelled distance of z is not rounded up.
-    TravelledToNearest: CaughtBy("lib query::kinetic::ball_pairs::tests::the_travelled_distance_is_never_short");
+    TravelledToNearest: CaughtBy("lib query::kinetic::region_pairs::tests::the_travelled_distance_is_never_short");
     /// Buckets share no vertex of many triangles.
     LargeClassForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
-    /// A motion from one q to the next stays in the ball and in safe distances if its start does.
-    StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_balls_there_are");
+    /// A motion from one q to the next stays in the region and in safe distances if its start does.
+    StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
     /// A safe distance that is exactly used up still holds.
     SafeDistanceReached: Covered("the end of a safe distance has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.

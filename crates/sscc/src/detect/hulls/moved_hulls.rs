@@ -160,7 +160,7 @@ impl<const E: usize> MovedHulls<E> {
             }
         }
         let slack = motion.coarse_slack(node).map_or(0.0, |slack| self.motion.distance(slack));
-        hull.radius += error + right_or!(slack, HullBallNotWidened, 0.0);
+        hull.radius += error + right_or!(slack, HullCapsuleNotWidened, 0.0);
         hull.radius *= 1.0 + 1e-6;
     }
 }

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3, Vec4};
 use super::core_points::CORE_POINTS;
 use super::separation::{AffineMap, MovedPoints, PlaneTest, Points};
 use super::{MovedHulls, NodeHulls};
-use crate::detect::ball_motion::{BallMotion, BallRates};
+use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::layout::{Layout, Needs};
 use crate::detect::vectors::{Baseline, InstructionSet};
@@ -72,6 +72,28 @@ impl Case {
             }
         }
         Some((share, smallest))
+    }
+
+    /// Checks that all vertices at q are within the radius of the hulls of both ends of a motion together, along several
+    /// directions. False where the error bound is too large for hulls.
+    fn check_extents(&self, motion: &impl VertexMotion<2>, q: &[f64]) -> bool {
+        let frame = F32Frame::around(motion.overall_aabb(&self.layout));
+        let mut moved = MovedHulls::<2>::new(&self.hulls);
+        moved.update_all(&self.hulls, &frame, motion);
+        for (node, index) in self.hulls.all().filter(|_| moved.is_useful()) {
+            let points = moved.points(&self.hulls, index);
+            let radius = f64::from(moved.hulls[index].radius);
+            let of_node = &self.hierarchy.nodes()[node as usize];
+            for v in self.hierarchy.vertices(of_node, self.model.mesh().faces()) {
+                let x = frame.linear(self.model.position(v, q));
+                for dir in [Vec3::X, Vec3::Y, Vec3::NEG_Z, x.as_vec3().normalize_or(Vec3::NEG_X)] {
+                    let along = x.dot(dir.as_dvec3()) / dir.as_dvec3().length();
+                    let extent = f64::from(points.extent(Baseline, dir)) / dir.as_dvec3().length();
+                    assert!(along <= extent + radius, "node {node}: {along} {extent} {radius}");
+                }
+            }
+        }
+        moved.is_useful()
     }
 
     fn check_at(&self, q: &[f64], label: &str) -> Option<(f64, f64)> {
@@ -199,10 +221,10 @@ fn radii_cover_the_rounding_of_the_shape() {
     assert!(farthest > 0.001, "{farthest}");
 }
 
-/// At both ends of a motion, and anywhere in a ball.
+/// At both ends of a motion, and anywhere in a capsule.
 #[test]
-fn motions_and_balls_are_covered() {
-    let (mut balls, mut farthest) = (0, 0.0_f64);
+fn motions_and_capsules_are_covered() {
+    let (mut balls, mut capsules, mut farthest) = (0, 0, 0.0_f64);
     for case in 0..20 {
         let random = &mut Random(case as u64 + 40);
         let model = random_sheet(random, case);
@@ -211,29 +233,35 @@ fn motions_and_balls_are_covered() {
         let size = model.mesh().rest_positions()[0].length();
         let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
         let case_of = Case::new(model, &vec![0.0; rank]);
-        let rates = BallRates::new(&scaled, &case_of.hierarchy, &case_of.layout);
+        let rates = CapsuleRates::new(&scaled, &case_of.hierarchy, &case_of.layout);
         let mut q = || -> Vec<f64> { sizes.iter().map(|s| random.signed() * 0.3 * size / s).collect() };
         let (t0, t1) = (q(), q());
         let ends = [&t0[..], &t1[..]];
         let reach = ends.map(|q| case_of.model.check_coordinates(q).unwrap()).into_iter().fold(0.0, f64::max);
         assert!(case_of.check(&DeformedMotion::new(ends, reach), ends, "two ends").is_some());
         let radius = 0.1 * scope.metric.norm(&t0);
-        let motion = BallMotion::new(&rates, &t0, radius, 2.0 * reach);
+        let ball = CapsuleMotion::new(&rates, [&t0, &t0], radius, 2.0 * reach);
+        let capsule = CapsuleMotion::new(&rates, ends, radius, 2.0 * reach);
         for v in (0..case_of.model.mesh().rest_positions().len() as u32).step_by(7) {
             let mut rows = vec![DVec3::ZERO; rank];
             scope.metric.scaled_modes(case_of.model.modes().of_vertex(v), &mut rows);
             let axis = v as usize % 3;
             let length = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
             let z: Vec<f64> = rows.iter().map(|a| a[axis] / length * radius * 0.999).collect();
-            let there: Vec<f64> = t0.iter().zip(scope.metric.unscaled(&z)).map(|(q, d)| q + d).collect();
-            if there.iter().all(|x| x.is_finite())
-                && let Some((share, _)) = case_of.check(&motion, [&there, &there], "in a ball")
-            {
+            let d = scope.metric.unscaled(&z);
+            if d.iter().any(|x| !x.is_finite()) {
+                continue;
+            }
+            let there: Vec<f64> = t0.iter().zip(&d).map(|(q, d)| q + d).collect();
+            if let Some((share, _)) = case_of.check(&ball, [&there, &there], "in a ball") {
                 (balls, farthest) = (balls + 1, farthest.max(share));
             }
+            let share = f64::from(v % 11) / 10.0;
+            let there: Vec<f64> = (0..rank).map(|k| t0[k] + share * (t1[k] - t0[k]) + d[k]).collect();
+            capsules += usize::from(case_of.check_extents(&capsule, &there));
         }
     }
-    assert!(balls > 100 && farthest > 0.5, "{balls} {farthest}");
+    assert!(balls > 100 && capsules > 100 && farthest > 0.5, "{balls} {capsules} {farthest}");
 }
 
 /// Coordinates along a direction are those of the moved points, within their error bound.

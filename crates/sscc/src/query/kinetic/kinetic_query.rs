@@ -1,12 +1,14 @@
-//! `KineticQuery`: tests only active pairs while z stays in a ball, searches a new ball when z leaves it, and falls
-//! back to an ordinary query where no ball pays.
+//! `KineticQuery`: tests only active pairs while z stays in a region, searches a new region when z leaves it, and falls
+//! back to an ordinary query where no region pays.
 
-use super::ball_control::{BallControl, MAX_SHARE, MIN_STEPS};
-use super::ball_pairs::{BallPairs, up};
-use super::ball_search::BallSearch;
+use super::region::Region;
+use super::region_control::{MAX_BALL, MIN_STEPS, RegionControl, RegionKind};
+use super::region_pairs::RegionPairs;
+use super::region_search::RegionSearch;
 use super::safe_distance::SafeDistances;
-use crate::detect::ball_motion::{BallMotion, BallRates};
+use super::step_history::StepHistory;
 use crate::detect::broad_phase::Counters;
+use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::detect::vertex_motion::DeformedMotion;
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::query::configuration::Configuration;
@@ -24,32 +26,37 @@ const RETRY_STEPS: u64 = 16;
 /// Safe distances computed between two checks whether the query was cancelled.
 const DISTANCES_PER_CHECK: u64 = 1024;
 
-/// A ball search may find at most this many pairs for each triangle ...
+/// A search may find at most this many pairs for each triangle, and so many more ...
 const MAX_PAIRS_PER_TRIANGLE: usize = 8;
+const MAX_MORE_PAIRS: usize = 1024;
 
-/// ... and at most as many as cost this many plain queries.
-const MAX_PLAIN_QUERIES: u64 = 64;
+/// ... and at most so many more than its cost allows.
+const CHEAP_PAIRS: usize = 64;
+
+/// A motion is a jump where a step is longer than this share of `|z|`.
+const MAX_STEP: f64 = 0.25;
 
 /// The cost, in boxes compared, of opening a node, of comparing two hulls, of computing the safe distance of two
-/// triangles, of testing them, and of finding them in a ball.
+/// triangles, of testing them, and of finding them in a region.
 const OPEN_COST: u64 = 50;
 const HULL_COST: u64 = 30;
 const DISTANCE_COST: u64 = 150;
 const TEST_COST: u64 = 20;
-const FIND_COST: u64 = 10;
+const FIND_COST: u64 = 150;
 
 /// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
 /// cost the same as in a [`Query`]. Takes three times its memory.
 pub struct KineticQuery<'a> {
     query: Query<'a>,
-    search: BallSearch,
-    rates: BallRates,
+    search: RegionSearch,
+    rates: CapsuleRates,
     distances: SafeDistances,
-    pub(super) ball_pairs: BallPairs,
-    pub(super) control: BallControl,
-    /// The last q at which the root's certificate did not hold; empty if there was none.
-    last_q: Vec<f64>,
+    pub(super) region: Region,
+    pub(super) region_pairs: RegionPairs,
+    pub(super) control: RegionControl,
+    /// The motion of q where the root's certificate does not hold.
+    history: StepHistory,
     /// The end of the last motion that a continuous query found free; empty if there was none.
     pub(super) free_q: Vec<f64>,
     /// Scratch for differences of q.
@@ -71,12 +78,13 @@ impl<'a> KineticQuery<'a> {
         let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
         let layout = &query.context.detect.layout;
         Ok(Self {
-            search: BallSearch::new(&query.context),
-            rates: BallRates::new(&scaled, certificates.hierarchy(), layout),
+            search: RegionSearch::new(&query.context),
+            rates: CapsuleRates::new(&scaled, certificates.hierarchy(), layout),
             distances: SafeDistances::new(scaled),
-            ball_pairs: BallPairs::default(),
-            control: BallControl::FIRST,
-            last_q: Vec::new(),
+            region: Region::new(model.rank()),
+            region_pairs: RegionPairs::default(),
+            control: RegionControl::FIRST,
+            history: StepHistory::new(model.rank()),
             free_q: Vec::new(),
             offset: vec![0.0; model.rank()],
             pending: Vec::new(),
@@ -100,7 +108,7 @@ impl<'a> KineticQuery<'a> {
         let configuration = self.query.measure(q)?;
         self.query.norm = configuration.norm;
         if self.query.context.is_root_certified(configuration.norm) {
-            self.find_without_ball(configuration)?;
+            self.find_without_region(configuration)?;
         } else {
             self.find_beyond_root(configuration)?;
         }
@@ -108,7 +116,7 @@ impl<'a> KineticQuery<'a> {
     }
 
     /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last query,
-    /// and the ball around it proves all pairs apart until `q_t1`, nothing is searched. Only pairs that come as close as
+    /// and the region around it proves all pairs apart until `q_t1`, nothing is searched. Only pairs that come as close as
     /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
     /// this query.
     ///
@@ -123,7 +131,7 @@ impl<'a> KineticQuery<'a> {
             self.query.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);
         }
-        if self.is_free_within_ball(ends)? {
+        if self.is_free_within_region(ends)? {
             self.query.statistics.complete = true;
             return Ok(&[]);
         }
@@ -143,16 +151,17 @@ impl<'a> KineticQuery<'a> {
     ///
     /// # Errors
     /// When it was cancelled.
-    pub(super) fn is_free_within_ball(&mut self, [t0, t1]: [Configuration<'_>; 2]) -> Result<bool, Error> {
+    pub(super) fn is_free_within_region(&mut self, [t0, t1]: [Configuration<'_>; 2]) -> Result<bool, Error> {
         let context = &self.query.context;
-        if t0.q != self.last_q || !context.detect.exceptions.is_empty() {
+        if t0.q != self.history.last_q || !context.detect.exceptions.is_empty() {
             return Ok(false);
         }
         let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);
-        if !self.ball_pairs.stays_safe(step, t0.reach.max(t1.reach)) {
+        // The region is convex, and contains the start.
+        if !(self.region_pairs.stays_safe(step) && self.region.contains(&context.scope.metric, t1)) {
             return Ok(false);
         }
-        let active = &self.ball_pairs.active;
+        let active = &self.region_pairs.active;
         if active.is_empty() {
             return Ok(true);
         }
@@ -175,79 +184,100 @@ impl<'a> KineticQuery<'a> {
         self.query.norm()
     }
 
-    fn find_without_ball(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
+    fn find_without_region(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
         let Query { context, discrete, statistics, .. } = &mut self.query;
         discrete.find(context, configuration, statistics)
     }
 
     fn find_beyond_root(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
-        let Configuration { q, norm, reach } = configuration;
-        let mut step = if self.last_q.is_empty() {
-            f64::INFINITY
+        let Configuration { q, norm, .. } = configuration;
+        let metric = &self.query.context.scope.metric;
+        let mut step = self.history.distance(metric, q);
+        let is_jump = step > MAX_STEP * norm;
+        self.history.record(q, is_jump);
+        let had_region = self.region_pairs.has_region();
+        if is_jump {
+            self.region_pairs.forget()
         } else {
-            self.query.context.scope.metric.norm_from(q, &self.last_q, &mut self.offset)
-        };
-        self.last_q.clear();
-        self.last_q.extend_from_slice(q);
-        let had_ball = self.ball_pairs.has_ball();
-        let is_small_step = step <= MAX_SHARE * norm;
-        if is_small_step {
-            self.ball_pairs.advance(step);
-        } else {
-            self.ball_pairs.forget();
+            self.region_pairs.advance(step)
         }
-        if had_ball && !self.ball_pairs.is_in_ball(reach) {
-            self.ball_pairs.leave_ball();
-            self.control.end_ball(self.ball_pairs.steps);
+        if had_region && !(self.region_pairs.lasts() && self.region.contains(metric, configuration)) {
+            self.region_pairs.leave_region();
+            self.control.end_region(self.region_pairs.steps);
         }
-        if is_small_step {
-            self.control.record_step(step);
-        } else {
+        if is_jump {
             step = self.control.step_after_jump().unwrap_or(step);
+        } else {
+            self.control.record_step(step);
         }
-        if !self.ball_pairs.has_ball() && !self.begin_ball(configuration, step)? {
+        if !self.region_pairs.has_region() && !self.begin_region(configuration, step, is_jump)? {
             if q == self.free_q {
                 self.query.statistics.complete = true;
                 return Ok(());
             }
-            self.find_without_ball(configuration)?;
+            self.find_without_region(configuration)?;
             self.control.plain_cost = plain_cost(&self.query.discrete.certified.broad.counters);
             return Ok(());
         }
         // After an error nothing is known of any pair.
-        self.find_active(configuration, step).inspect_err(|_| self.ball_pairs.forget())
+        self.find_active(configuration, step).inspect_err(|_| self.region_pairs.forget())
     }
 
-    /// Searches a ball around this z; false if no ball would pay.
-    fn begin_ball(
-        &mut self,
-        Configuration { q, norm, reach }: Configuration<'_>,
-        step: f64,
-    ) -> Result<bool, Error> {
-        if self.control.pause > 0 {
-            self.control.pause -= 1;
-            return Ok(false);
-        }
+    /// Chooses a region around this z. Returns its size in units of `|z|`, and whether it was cut at the limit of the pair
+    /// tree; none if no region would pay.
+    fn choose_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> Option<(f64, bool)> {
         let context = &self.query.context;
-        let mut radius = (self.control.share * norm).max(2.0 * MIN_STEPS * step);
-        // Where the pair tree is complete, it must be so in the whole ball.
+        let metric = &context.scope.metric;
+        let norm = start.norm;
+        self.control.count_pause();
+        // Where the pair tree is complete, it must be so in the whole region.
         let limit = context.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit());
+        let least = 2.0 * MIN_STEPS;
+        let steps = (self.control.capsules.share * norm / step).max(least);
+        let steps = self.history.straight_steps(metric, steps);
+        if steps >= least && !self.control.prefers_ball() {
+            if self.control.capsules.pause > 0 {
+                return None;
+            }
+            let radius = self.history.predict(metric, steps, &mut self.region.end);
+            let end = self.query.check.measure(context, &self.region.end).ok();
+            if let Some(end) = end.map(|end| (end.norm, end.reach)) {
+                self.region.set_capsule(metric, start, end, radius);
+                if self.region.norm < limit {
+                    self.control.begin_search(RegionKind::Capsule);
+                    return Some((self.region.size() / norm, false));
+                }
+            }
+        }
+        if self.control.balls.pause > 0 || !(is_jump || self.history.is_known()) {
+            return None;
+        }
+        let mut radius = (self.control.balls.share * norm).max(least * step);
         let left = (limit - norm) * (1.0 - 1e-9);
         let is_cut = radius >= left && left > MIN_STEPS * step;
         if is_cut {
             radius = left;
         }
-        if !(radius > 0.0 && radius.is_finite() && radius <= MAX_SHARE * norm) {
-            return Ok(false);
+        if !(radius > 0.0 && radius.is_finite() && radius <= MAX_BALL * norm) {
+            return None;
         }
-        let share = radius / norm;
-        let norm = right_or!(up(norm + radius), KineticBallAtCenter, norm);
-        let reach = 2.0 * reach;
+        self.region.set_ball(start, radius);
+        self.control.begin_search(RegionKind::Ball);
+        Some((radius / norm, is_cut))
+    }
+
+    /// Searches a region around this z; false if no region would pay.
+    fn begin_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> Result<bool, Error> {
+        let Some((share, is_cut)) = self.choose_region(start, step, is_jump) else { return Ok(false) };
+        let Region { reach, radius, .. } = self.region;
+        let norm = right_or!(self.region.norm, KineticRegionAtCenter, start.norm);
         self.distances.begin(norm);
-        let most = MAX_PAIRS_PER_TRIANGLE * context.model.mesh().faces().len();
-        let worth = MAX_PLAIN_QUERIES.saturating_mul(self.control.plain_cost) / (DISTANCE_COST + FIND_COST);
-        let limit = most.min(usize::try_from(worth).unwrap_or(usize::MAX)).saturating_add(1024);
-        let motion = BallMotion::new(&self.rates, q, radius, reach);
+        let context = &self.query.context;
+        let most = MAX_PAIRS_PER_TRIANGLE * context.model.mesh().faces().len() + MAX_MORE_PAIRS;
+        let worth = self.control.largest_cost(self.region.size() / step) / (DISTANCE_COST + FIND_COST);
+        let worth = usize::try_from(worth).unwrap_or(usize::MAX).saturating_add(CHEAP_PAIRS);
+        let limit = most.min(worth);
+        let motion = CapsuleMotion::new(&self.rates, [&self.region.start, &self.region.end], radius, reach);
         let is_complete = self.search.find(context, &motion, norm, limit)?;
         let found = &self.search.narrow.0.list;
         let counters = &self.search.certified.broad.counters;
@@ -256,13 +286,13 @@ impl<'a> KineticQuery<'a> {
             self.control.record_overflow(cost, share);
             return Ok(false);
         }
-        self.ball_pairs.begin_ball(radius, reach);
-        self.ball_pairs.take(found, &mut self.pending);
+        self.region_pairs.begin_region(self.region.path());
+        self.region_pairs.take(found, &mut self.pending);
         self.control.cost = cost;
         if !is_cut {
             self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
         }
-        // The counters of this step begin with those of the ball search.
+        // The counters of this step begin with those of the search.
         let broad = &mut self.query.discrete.certified.broad;
         broad.counters = Counters { triangle_tests: 0, ..*counters };
         Ok(true)
@@ -275,24 +305,24 @@ impl<'a> KineticQuery<'a> {
         step: f64,
     ) -> Result<(), Error> {
         let context = &self.query.context.detect;
-        let (search, ball_pairs) = (&mut self.query.discrete, &mut self.ball_pairs);
+        let (search, region_pairs) = (&mut self.query.discrete, &mut self.region_pairs);
         let (broad, narrow) = (&mut search.certified.broad, &mut search.narrow);
         let motion = DeformedMotion::new([q], reach);
         let mut cost = 0;
         broad.begin_volumes(context, &motion);
         broad.test_exceptions(context, &motion, narrow);
-        if ball_pairs.steps.is_multiple_of(RETRY_STEPS) {
-            self.pending.append(&mut ball_pairs.active);
+        if region_pairs.steps.is_multiple_of(RETRY_STEPS) {
+            self.pending.append(&mut region_pairs.active);
         }
-        while let Some(pair) = self.pending.pop().or_else(|| ball_pairs.next_expired()) {
+        while let Some(pair) = self.pending.pop().or_else(|| region_pairs.next_expired()) {
             let corners = [pair.0, pair.1].map(|t| {
                 let vertices = broad.triangle(context, t).vertices;
                 broad.volumes.move_corners(vertices, &motion);
                 broad.volumes.corners(vertices)[0]
             });
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
-            if distance < STEPS_WORTH_STORING * step || !ball_pairs.store(pair, distance) {
-                ball_pairs.active.push(pair);
+            if distance < STEPS_WORTH_STORING * step || !region_pairs.store(pair, distance) {
+                region_pairs.active.push(pair);
             }
             cost += DISTANCE_COST;
             if cost.is_multiple_of(DISTANCES_PER_CHECK * DISTANCE_COST) {
@@ -300,10 +330,10 @@ impl<'a> KineticQuery<'a> {
                 broad.end(narrow)?;
             }
         }
-        ball_pairs.end_step();
+        region_pairs.end_step();
         self.control.cost =
-            self.control.cost.saturating_add(cost + TEST_COST * ball_pairs.active.len() as u64);
-        for &(a, b) in &ball_pairs.active {
+            self.control.cost.saturating_add(cost + TEST_COST * region_pairs.active.len() as u64);
+        for &(a, b) in &region_pairs.active {
             let [x, y] = [a, b].map(|t| broad.triangle(context, t));
             broad.test_triangles(context, x, y, &motion, narrow);
         }

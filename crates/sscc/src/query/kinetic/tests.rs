@@ -1,4 +1,4 @@
-//! Kinetic queries whose balls are of all sizes against brute force, and models to try their parts on.
+//! Kinetic queries whose regions are of all sizes against brute force.
 
 use glam::DVec3;
 use sscc_testing::{cases, threshold};
@@ -60,29 +60,26 @@ fn sheets(random: &mut Random, case: usize) -> ReducedModel {
 struct Seen {
     steps: usize,
     balls: usize,
+    capsules: usize,
     known: usize,
     expired: usize,
-    /// Pairs that began to collide in a step without a search; and those of them that no certificate at the ball's
-    /// centre would have let through.
+    /// Pairs that began to collide in a step without a search.
     begun: usize,
-    begun_beyond: usize,
     root_certified_within: usize,
-    /// Motions that a ball proved free, and those that searches found free.
+    /// Motions that a region proved free, and those that searches found free.
     proven: usize,
     known_free: usize,
     aimed: usize,
 }
 
-/// A kinetic query whose balls are of all sizes, beside the traditional one.
+/// A kinetic query whose regions are of all sizes, beside one by brute force.
 struct Pairing<'a> {
     kinetic: KineticQuery<'a>,
     oracle: Query<'a>,
     certificates: &'a Certificates,
     colliding: bool,
-    /// Whether there is to be no ball.
+    /// Whether there is to be no region.
     plain: bool,
-    /// Of the ball.
-    norm: f64,
     /// The last q.
     before: Vec<f64>,
 }
@@ -91,8 +88,10 @@ impl Pairing<'_> {
     fn ask(&mut self, z: &[f64], random: &mut Random, seen: &mut Seen) {
         let scope = &self.certificates.parts().scope;
         let q: Vec<f64> = scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect();
-        self.kinetic.control.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
-        self.kinetic.control.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
+        for sizes in [&mut self.kinetic.control.balls, &mut self.kinetic.control.capsules] {
+            sizes.pause = u64::from(self.plain || random.signed() > 0.98) * 3;
+            sizes.share = 10.0_f64.powf(random.signed() * 1.7 - 2.3);
+        }
         self.kinetic.control.plain_cost = self.kinetic.control.plain_cost.max(1_000_000);
         // The motion to this q, before the discrete query at its end.
         if !self.before.is_empty() && random.signed() > 0.5 {
@@ -107,25 +106,23 @@ impl Pairing<'_> {
             seen.proven += usize::from(found.is_empty() && !root_certified && self.kinetic.free_q.is_empty());
         }
         self.before.clone_from(&q);
-        let stood = self.kinetic.ball_pairs.has_ball();
-        let apart = self.kinetic.ball_pairs.safe.len();
+        let stood = self.kinetic.region_pairs.has_region();
+        let apart = self.kinetic.region_pairs.safe.len();
         let expected = self.oracle.discrete(&q).unwrap();
         let found = self.kinetic.discrete(&q).unwrap();
         assert_eq!(found, expected);
         let begins = !self.colliding && !found.is_empty();
         self.colliding = !found.is_empty();
-        let ball_pairs = &self.kinetic.ball_pairs;
+        let region_pairs = &self.kinetic.region_pairs;
         seen.steps += 1;
         seen.root_certified_within += usize::from(stood && self.kinetic.statistics().root_certified);
-        if ball_pairs.steps == 1 && ball_pairs.has_ball() {
-            seen.balls += 1;
-            seen.known += ball_pairs.remembered.len();
-            self.norm = self.kinetic.norm();
-        } else if stood && ball_pairs.has_ball() {
-            seen.expired += apart.saturating_sub(ball_pairs.safe.len());
+        if region_pairs.steps == 1 && region_pairs.has_region() {
+            let is_capsule = self.kinetic.region.size() > self.kinetic.region.radius;
+            *(if is_capsule { &mut seen.capsules } else { &mut seen.balls }) += 1;
+            seen.known += region_pairs.remembered.len();
+        } else if stood && region_pairs.has_region() {
+            seen.expired += apart.saturating_sub(region_pairs.safe.len());
             seen.begun += usize::from(begins);
-            let root = self.certificates.root_radius();
-            seen.begun_beyond += usize::from(begins && self.norm < 1.02 * root);
         }
     }
 }
@@ -133,7 +130,7 @@ impl Pairing<'_> {
 /// Out through the first contact and back, in steps of all sizes; towards pairs that stand by a margin; jumps, returns,
 /// errors, and queries that the root certifies in between.
 #[test]
-fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
+fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
     let mut seen = Seen::default();
     for case in 0..cases(60) {
         let random = &mut Random(case as u64 + 1000);
@@ -156,7 +153,6 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
             certificates: &certificates,
             colliding: false,
             plain: false,
-            norm: 0.0,
             before: Vec::new(),
         };
         for _ in 0..3 {
@@ -183,11 +179,14 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                 if collides(&mut pairing.oracle, middle) { t = middle } else { free = middle }
             }
             let stride = 10.0_f64.powf(random.signed() * 0.8 - 3.2);
-            let noise = if random.signed() > 0.0 { 0.1 * stride * t } else { 0.0 };
+            // Straight, in a bow, or with noise.
+            let noise = if random.signed() > 0.3 { 0.1 * stride * t } else { 0.0 };
+            let bow: Vec<f64> = (0..rank).map(|_| random.signed().max(0.0) * 30.0 * t).collect();
             let count = ((0.06 / stride) as usize).min(150);
             for i in (0..count).chain((0..count).rev()) {
                 let share = 1.0 + (i as f64 - 0.5 * count as f64) * stride;
-                let z: Vec<f64> = at(share * t).iter().map(|z| z + noise * random.signed()).collect();
+                let bent = at(share * t).into_iter().zip(&bow).map(|(z, b)| z + b * (share - 1.0).powi(2));
+                let z: Vec<f64> = bent.map(|z| z + noise * random.signed()).collect();
                 pairing.ask(&z, random, &mut seen);
                 if random.signed() > 0.98 {
                     let wrong = [f64::NAN];
@@ -204,12 +203,12 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
                     pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
                 }
                 // Towards a pair within its safe distance.
-                let Some(standing) = pairing.kinetic.ball_pairs.safe.peek().copied() else { continue };
+                let Some(standing) = pairing.kinetic.region_pairs.safe.peek().copied() else { continue };
                 if random.signed() < 0.8 {
                     continue;
                 }
                 seen.aimed += 1;
-                let margin = standing.key - pairing.kinetic.ball_pairs.travelled;
+                let margin = standing.key - pairing.kinetic.region_pairs.travelled;
                 let [a, b] = [standing.order.0, standing.order.1]
                     .map(|f| model.mesh().faces()[f as usize][(random.signed().abs() * 3.0) as usize % 3]);
                 let q: Vec<f64> =
@@ -246,6 +245,7 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
     }
     assert!(
         seen.balls > threshold(300)
+            && seen.capsules > threshold(100)
             && seen.known > threshold(1000)
             && seen.expired > threshold(1000)
             && seen.aimed > threshold(100),
@@ -253,7 +253,6 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
     );
     assert!(
         seen.begun > threshold(50)
-            && seen.begun_beyond > threshold(5)
             && seen.proven > threshold(500)
             && seen.known_free > threshold(300)
             && seen.root_certified_within > threshold(50),
@@ -261,9 +260,79 @@ fn answers_are_those_of_plain_queries_whatever_balls_there_are() {
     );
 }
 
-/// Only a ball that paid, over some steps, makes the next jump begin one; of unrelated q none does.
+/// A sheet of triangles over a square, at a height, of which every second row lies by `fold` higher.
+fn sheet(side: u32, height: f64, fold: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let row = |i: u32| i / (side + 1);
+    let at = |i: u32| {
+        DVec3::new(f64::from(i % (side + 1)), f64::from(row(i)), height + fold * f64::from(row(i) % 2))
+    };
+    let p = (0..(side + 1) * (side + 1)).map(at).collect();
+    let square = |i: u32| {
+        let a = i / side * (side + 1) + i % side;
+        [[a, a + 1, a + side + 2], [a, a + side + 2, a + side + 1]]
+    };
+    (p, (0..side * side).flat_map(square).collect())
+}
+
+/// Three sheets, of several buckets each or of one. Modes lower and raise the outer ones as a whole, so that the radii of
+/// pairs of nodes are those of contact, nearly to the last digit; sideways modes make no difference to it. q goes to where
+/// the middle sheet and one of the others touch, beyond the root's radius, straight or in a zigzag, in steps so small that
+/// regions begin before a radius and end beyond it.
 #[test]
-fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
+fn radii_are_crossed_inside_a_region() {
+    let mut crossed = [0, 0];
+    for case in 0..cases(24) {
+        let random = &mut Random(case as u64 + 700_000);
+        let mut uniform = || 0.5 + 0.5 * random.signed();
+        let side = [10, 8, 5][case % 3];
+        let heights = [-1.0 - uniform(), 0.0, 2.5 + uniform()];
+        let (mut p, mut faces) = (Vec::new(), Vec::new());
+        for (height, fold) in heights.into_iter().zip([-0.5, 0.0, 0.5]) {
+            let (more, squares) = sheet(side, height, fold);
+            faces.extend(squares.into_iter().map(|face| face.map(|v| v + p.len() as u32)));
+            p.extend(more);
+        }
+        let each = (side as usize + 1) * (side as usize + 1);
+        let aside = DVec3::new(1e-3, 2e-3, 0.0);
+        let modes = (0..p.len()).flat_map(|v| match v / each {
+            0 => [DVec3::Z, DVec3::ZERO, aside],
+            1 => [DVec3::ZERO; 3],
+            _ => [DVec3::ZERO, DVec3::NEG_Z, aside],
+        });
+        let modes = Modes::new(3, modes.collect()).unwrap();
+        let mesh = TriMesh::new(p, faces).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(3)).unwrap();
+        let budget = [0, 1 << 10][case / 3 % 2];
+        let options = CertifyOptions { budget, epsilon: 0.01, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        // The lower sheets meet at the root's radius, the upper ones at this.
+        let contact = heights[2];
+        assert!(certificates.root_radius() < 0.9 * contact);
+        let stride = contact * 10.0_f64.powf(-3.0 - uniform());
+        let begin = contact - stride * (10.0 + 20.0 * uniform());
+        for (zigzag, crossed) in [0.0, 1.0].into_iter().zip(&mut crossed) {
+            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+            let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+            let (mut colliding, mut first) = (0, false);
+            for i in 0..60 {
+                kinetic.control.plain_cost = 1_000_000;
+                let q = [0.0, begin + stride * f64::from(i), zigzag * stride * f64::from(i % 2)];
+                let expected = oracle.discrete(&q).unwrap();
+                assert_eq!(kinetic.discrete(&q).unwrap(), expected);
+                // The first pairs are found in a region that began before the radius.
+                first |= colliding == 0 && !expected.is_empty() && kinetic.region_pairs.steps > 1;
+                colliding += usize::from(!expected.is_empty());
+            }
+            assert!((20..55).contains(&colliding));
+            *crossed += usize::from(first);
+        }
+    }
+    assert!(crossed.iter().all(|crossed| *crossed > threshold(16)), "{crossed:?}");
+}
+
+/// Only a region that paid, over some steps, makes the next jump begin one; of unrelated q none does.
+#[test]
+fn after_a_jump_a_region_begins_where_the_last_one_paid() {
     let random = &mut Random(7);
     let model = sheets(random, 1);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
@@ -275,20 +344,20 @@ fn after_a_jump_a_ball_begins_where_the_last_one_paid() {
     };
     for t in [2.0, -3.0, 1.5, -2.0] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.ball_pairs.has_ball() && !kinetic.control.has_paid);
+        assert!(!kinetic.region_pairs.has_region() && !kinetic.control.has_paid);
     }
-    kinetic.control.plain_cost = 1_000_000;
     for i in 0..40 {
+        kinetic.control.plain_cost = 1_000_000;
         kinetic.discrete(&q(-2.0 + f64::from(i) * 1e-6)).unwrap();
     }
-    assert!(kinetic.ball_pairs.has_ball());
+    assert!(kinetic.region_pairs.has_region());
     kinetic.discrete(&q(2.0)).unwrap();
-    assert!(kinetic.ball_pairs.has_ball());
+    assert!(kinetic.region_pairs.has_region());
     kinetic.discrete(&q(2.0 + 1e-6)).unwrap();
-    assert_eq!(kinetic.ball_pairs.steps, 2);
-    // A ball of two steps tells nothing, however dear plain queries were.
+    assert_eq!(kinetic.region_pairs.steps, 2);
+    // A region of two steps tells nothing, however dear plain queries were.
     for t in [-2.0, 2.0, -1.5] {
         kinetic.discrete(&q(t)).unwrap();
-        assert!(!kinetic.ball_pairs.has_ball());
+        assert!(!kinetic.region_pairs.has_region());
     }
 }

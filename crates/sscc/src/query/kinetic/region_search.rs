@@ -1,23 +1,23 @@
-//! The ball search: all pairs that can collide at some z in a ball around that of one q.
+//! The region search: all pairs that can collide at some z of a region.
 
 use crate::Error;
-use crate::detect::ball_motion::BallMotion;
+use crate::detect::capsule_motion::CapsuleMotion;
 use crate::detect::narrow_phase::BallHits;
 use crate::query::certified_search::CertifiedSearch;
 use crate::query::context::QueryContext;
 
-/// Finds the pairs whose boxes overlap in a ball, and owns the memory for it.
-pub(super) struct BallSearch {
+/// Finds the pairs whose boxes overlap in a region, and owns the memory for it.
+pub(super) struct RegionSearch {
     pub(super) certified: CertifiedSearch<2>,
     pub(super) narrow: BallHits,
 }
 
-impl BallSearch {
+impl RegionSearch {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
         Self { certified: CertifiedSearch::new(context), narrow: BallHits::default() }
     }
 
-    /// Finds at most `limit` pairs, sorted, exceptions apart. `norm`: the largest `|z|` in the ball. False if there are
+    /// Finds at most `limit` pairs, sorted, exceptions apart. `norm`: the largest `|z|` in the region. False if there are
     /// more.
     ///
     /// # Errors
@@ -25,7 +25,7 @@ impl BallSearch {
     pub(super) fn find(
         &mut self,
         context: &QueryContext<'_>,
-        motion: &BallMotion<'_>,
+        motion: &CapsuleMotion<'_>,
         norm: f64,
         limit: usize,
     ) -> Result<bool, Error> {

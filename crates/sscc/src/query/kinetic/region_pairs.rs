@@ -1,4 +1,4 @@
-//! The pairs that a ball search found. A pair is safe until z has travelled its safe distance; an active pair is tested
+//! The pairs that a region search found. A pair is safe until z has travelled its safe distance; an active pair is tested
 //! in every step.
 //!
 //! Time here is the travelled distance of z, which is never shorter than the distance between two of its positions.
@@ -9,23 +9,21 @@ use crate::Pair;
 use crate::min_heap::MinHeapEntry;
 use crate::model::rounding::ROUND_DOWN;
 
-/// Safe distances that are remembered from one ball to the next, for each pair that a search finds.
+/// Safe distances that are remembered from one region to the next, for each pair that a search finds.
 const MAX_REMEMBERED: usize = 8;
 
 /// A pair that stays free until z has travelled as far as its key. The next to expire comes first, equal ones by their
 /// triangles.
 pub(super) type SafePair = MinHeapEntry<Pair>;
 
-/// All pairs that can collide in the ball. All other pairs are free in the whole ball.
+/// All pairs that can collide in the region. All other pairs are free in the whole region.
 #[derive(Debug, Default)]
-pub(super) struct BallPairs {
+pub(super) struct RegionPairs {
     /// The distance that z has travelled since the last jump, rounded up.
     pub(super) travelled: f64,
-    /// The travelled distance at which z may leave the ball; 0: there is no ball.
+    /// The travelled distance at which the region ends; 0: there is no region.
     end: f64,
-    /// An upper bound of the magnitude of every term of every position in the ball.
-    reach: f64,
-    /// Queries that were answered in the ball.
+    /// Queries that were answered in the region.
     pub(super) steps: u64,
     /// Pairs within their safe distance.
     pub(super) safe: BinaryHeap<SafePair>,
@@ -36,19 +34,19 @@ pub(super) struct BallPairs {
     next_remembered: Vec<SafePair>,
 }
 
-impl BallPairs {
+impl RegionPairs {
     /// z moves by a step.
     pub(super) fn advance(&mut self, step: f64) {
         self.travelled = right_or!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
     }
 
-    /// Begins a ball of this radius around the current z.
-    pub(super) fn begin_ball(&mut self, radius: f64, reach: f64) {
-        (self.end, self.reach, self.steps) = (self.travelled_after(radius), reach, 0);
+    /// Begins a region around the current z, which ends at the latest when z has travelled a distance.
+    pub(super) fn begin_region(&mut self, distance: f64) {
+        (self.end, self.steps) = (self.travelled_after(distance), 0);
     }
 
-    /// Ends the ball.
-    pub(super) fn leave_ball(&mut self) {
+    /// Ends the region.
+    pub(super) fn leave_region(&mut self) {
         self.end = 0.0;
     }
 
@@ -97,26 +95,24 @@ impl BallPairs {
         self.remembered.clear();
     }
 
-    /// Whether z is in the ball, and the reach of the shape at most that in it.
-    pub(super) fn is_in_ball(&self, reach: f64) -> bool {
-        self.travelled < self.end && reach <= self.reach
+    /// Whether z has not travelled as far as the region lasts.
+    pub(super) fn lasts(&self) -> bool {
+        self.travelled < self.end
     }
 
-    /// Whether z stays in the ball, and all safe pairs within their safe distances, in a straight step from here.
-    pub(super) fn stays_safe(&self, step: f64, reach: f64) -> bool {
+    /// Whether the region lasts for a straight step from here, and all safe pairs stay within their safe distances.
+    pub(super) fn stays_safe(&self, step: f64) -> bool {
         let travelled = right_or!(up(self.travelled + step), StepOfMotionForgotten, self.travelled);
-        travelled < self.end
-            && reach <= self.reach
-            && self.safe.peek().is_none_or(|pair| pair.key > travelled)
+        travelled < self.end && self.safe.peek().is_none_or(|pair| pair.key > travelled)
     }
 
-    /// Whether there is a ball.
-    pub(super) fn has_ball(&self) -> bool {
+    /// Whether there is a region.
+    pub(super) fn has_region(&self) -> bool {
         self.end > 0.0
     }
 
-    /// Takes the sorted pairs of a ball search. Pushes to `pending` those that no remembered safe distance keeps
-    /// separate throughout the ball.
+    /// Takes the sorted pairs of a region search. Pushes to `pending` those that no remembered safe distance keeps
+    /// separate throughout the region.
     pub(super) fn take(&mut self, found: &[Pair], pending: &mut Vec<Pair>) {
         self.safe.clear();
         self.active.clear();
@@ -155,57 +151,57 @@ mod tests {
     #[test]
     fn the_travelled_distance_is_never_short() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
-        let (mut ball_pairs, mut sum) = (BallPairs::default(), exact(0.0));
+        let (mut region_pairs, mut sum) = (RegionPairs::default(), exact(0.0));
         for i in 0..500 {
             let step = f64::from(i * i % 37 + 1).sqrt() * 0.1_f64.powi(i % 7);
-            ball_pairs.advance(step);
+            region_pairs.advance(step);
             sum += exact(step);
-            assert!(exact(ball_pairs.travelled) >= sum, "{i}");
+            assert!(exact(region_pairs.travelled) >= sum, "{i}");
         }
     }
 
     #[test]
     fn pairs_expire_in_order_and_never_late() {
-        let mut ball_pairs = BallPairs::default();
+        let mut region_pairs = RegionPairs::default();
         let mut pending = Vec::new();
-        ball_pairs.begin_ball(8.0, 1.0);
-        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
+        region_pairs.begin_region(8.0);
+        region_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)], &mut pending);
         assert_eq!(pending, [(0, 1), (0, 2), (0, 3), (0, 4), (0, 5)]);
         for (pair, margin) in pending.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
-            ball_pairs.store(*pair, margin);
+            region_pairs.store(*pair, margin);
         }
         // A distance that vanishes in rounding is none.
-        ball_pairs.advance(1.0);
-        assert!(!ball_pairs.store((0, 5), 1e-18) && !ball_pairs.store((0, 5), 0.0));
-        ball_pairs.end_step();
-        assert_eq!(ball_pairs.next_expired(), Some((0, 5)));
-        assert_eq!(ball_pairs.next_expired(), None);
-        ball_pairs.advance(0.5);
-        assert_eq!(ball_pairs.next_expired(), None);
+        region_pairs.advance(1.0);
+        assert!(!region_pairs.store((0, 5), 1e-18) && !region_pairs.store((0, 5), 0.0));
+        region_pairs.end_step();
+        assert_eq!(region_pairs.next_expired(), Some((0, 5)));
+        assert_eq!(region_pairs.next_expired(), None);
+        region_pairs.advance(0.5);
+        assert_eq!(region_pairs.next_expired(), None);
         // A margin used up exactly no longer holds.
-        ball_pairs.advance(0.5);
-        assert_eq!(ball_pairs.next_expired(), Some((0, 2)));
-        ball_pairs.advance(5.0);
-        assert_eq!(ball_pairs.next_expired(), Some((0, 1)));
-        assert!(ball_pairs.has_ball() && ball_pairs.is_in_ball(1.0) && !ball_pairs.is_in_ball(1.1));
-        ball_pairs.advance(1.0);
-        assert!(!ball_pairs.is_in_ball(1.0));
-        // In the next ball (8 to 12) one of the others is known to stay apart; one only up to 9.
-        ball_pairs.leave_ball();
-        ball_pairs.begin_ball(4.0, 1.0);
-        ball_pairs.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        region_pairs.advance(0.5);
+        assert_eq!(region_pairs.next_expired(), Some((0, 2)));
+        region_pairs.advance(5.0);
+        assert_eq!(region_pairs.next_expired(), Some((0, 1)));
+        assert!(region_pairs.has_region() && region_pairs.lasts());
+        region_pairs.advance(1.0);
+        assert!(!region_pairs.lasts());
+        // In the next region (8 to 12) one of the others is known to stay apart; one only up to 9.
+        region_pairs.leave_region();
+        region_pairs.begin_region(4.0);
+        region_pairs.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
         assert_eq!(pending, [(0, 2), (0, 3), (1, 2)]);
-        pending.drain(..).for_each(|pair| assert!(ball_pairs.store(pair, 50.0)));
-        ball_pairs.end_step();
-        ball_pairs.advance(3.0);
-        ball_pairs.begin_ball(4.0, 1.0);
-        ball_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
+        pending.drain(..).for_each(|pair| assert!(region_pairs.store(pair, 50.0)));
+        region_pairs.end_step();
+        region_pairs.advance(3.0);
+        region_pairs.begin_region(4.0);
+        region_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
         assert_eq!(pending, [(0, 1)]);
         // After a jump nothing is known.
-        ball_pairs.forget();
-        assert!(!ball_pairs.has_ball());
-        ball_pairs.begin_ball(4.0, 1.0);
-        ball_pairs.take(&[(0, 4)], &mut pending);
+        region_pairs.forget();
+        assert!(!region_pairs.has_region());
+        region_pairs.begin_region(4.0);
+        region_pairs.take(&[(0, 4)], &mut pending);
         assert_eq!(pending, [(0, 4)]);
     }
 }

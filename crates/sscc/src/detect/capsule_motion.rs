@@ -1,0 +1,196 @@
+//! The vertex motion of kinetic searches: an AABB of each vertex for all z in a capsule.
+
+use glam::DVec3;
+
+use super::layout::Layout;
+use super::vertex_motion::{VertexMotion, rounding_bound};
+use crate::geometry::Aabb;
+use crate::hierarchy::Hierarchy;
+use crate::model::ScaledModel;
+use crate::model::rounding::norm_up;
+
+/// For each vertex and each node how fast positions can change with z. By Cauchy and Schwarz, a vertex moves along an axis
+/// by at most `|A| |dz|`, where A is its scaled row of that axis; the rounding of both computed positions is added.
+pub(crate) struct CapsuleRates {
+    /// The norms of the three rows of each vertex, by its index in the layout, rounded up.
+    vertices: Vec<DVec3>,
+    /// The largest norms of all vertices of each node that is a bucket or larger.
+    nodes: Vec<DVec3>,
+}
+
+impl CapsuleRates {
+    pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy, layout: &Layout) -> Self {
+        let row_len = model.row_len;
+        let rounded = DVec3::from_array(DVec3::AXES.map(|axis| model.rounding.per_norm(axis)));
+        let mut vertices = vec![DVec3::ZERO; layout.vertices.count()];
+        for v in model.faces.as_flattened() {
+            let modes = model.modes(*v);
+            let norm = |axis: usize| {
+                norm_up(modes[axis * row_len..][..row_len].iter().map(|a| a * a).sum(), row_len)
+            };
+            vertices[layout.vertices.index_of(*v) as usize] = DVec3::new(norm(0), norm(1), norm(2)) + rounded;
+        }
+        let mut nodes = vec![DVec3::ZERO; hierarchy.nodes().len()];
+        // Parents come before their children.
+        for (n, node) in hierarchy.nodes().iter().enumerate().rev() {
+            nodes[n] = match layout.buckets.of_node(n as u32) {
+                Some(bucket) => {
+                    let own = layout.buckets.vertices(bucket).iter();
+                    own.fold(DVec3::ZERO, |most, v| most.max(vertices[*v as usize]))
+                }
+                None => node.children().fold(DVec3::ZERO, |most, n| most.max(nodes[n as usize])),
+            };
+        }
+        Self { vertices, nodes }
+    }
+}
+
+/// A capsule in z: all z within a radius of the segment between the z of two q, which are the same for a ball. Its two
+/// configurations have the lowest and the highest coordinates of each vertex.
+///
+/// On the segment each position is a convex combination of the positions at its ends.
+#[derive(Clone, Copy)]
+pub(crate) struct CapsuleMotion<'q> {
+    rates: &'q CapsuleRates,
+    ends: [&'q [f64]; 2],
+    radius: f64,
+    rounding: f64,
+    /// Five times the rounding: of the positions at both ends, of one anywhere in the capsule, and of the point of the segment
+    /// from which its distance was measured.
+    widening: f64,
+}
+
+impl<'q> CapsuleMotion<'q> {
+    /// `ends`: the q at the ends of the segment. `reach`: an upper bound of the magnitude of every term of every position
+    /// in the capsule.
+    pub(crate) fn new(
+        rates: &'q CapsuleRates,
+        [start, end]: [&'q [f64]; 2],
+        radius: f64,
+        reach: f64,
+    ) -> Self {
+        let rounding = rounding_bound(reach, start.len());
+        let widening = right_or!(5.0 * rounding, CapsuleExact, 0.0);
+        let ends = [start, right_or!(end, CapsuleWithoutEnd, start)];
+        Self { rates, ends, radius, rounding, widening }
+    }
+
+    /// An upper bound of the change of a vertex's coordinates within the radius.
+    #[inline]
+    fn vertex_change(&self, vertex: u32) -> DVec3 {
+        let radius = right_or!(self.radius, CapsuleVerticesHalfAsFar, 0.5 * self.radius);
+        self.rates.vertices[vertex as usize] * radius + self.widening
+    }
+
+    /// The same for all vertices of a node.
+    #[inline]
+    fn node_change(&self, node: u32) -> DVec3 {
+        let radius = right_or!(self.radius, CapsuleNodesHalfAsFar, 0.5 * self.radius);
+        self.rates.nodes[node as usize] * radius + self.widening
+    }
+}
+
+impl VertexMotion<2> for CapsuleMotion<'_> {
+    const HAS_ERROR_BOUND: bool = false;
+
+    #[inline]
+    fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
+    fn overall_aabb(&self, layout: &Layout) -> Aabb {
+        layout.bd_tree.root(self.ends, DVec3::splat(self.rounding))
+    }
+
+    #[inline]
+    fn coarse_coordinates(&self) -> Option<[&[f64]; 2]> {
+        Some(self.ends)
+    }
+
+    #[inline]
+    fn coarse_slack(&self, node: u32) -> Option<DVec3> {
+        Some(self.node_change(node))
+    }
+
+    #[inline]
+    fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; 2] {
+        let [x, y] = layout.vertices.position(vertex, self.ends);
+        let change = self.vertex_change(vertex);
+        [x.min(y) - change, x.max(y) + change]
+    }
+
+    #[inline]
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+        layout.bd_tree.at(node, self.ends, self.node_change(node) + self.rounding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::layout::Needs;
+    use crate::test_models::{Random, strips};
+    use crate::{ContactFilter, Scope};
+
+    /// Vertices stay where the capsule says, about any point of its segment, also for the direction that moves them farthest; and
+    /// some nearly leave.
+    #[test]
+    fn vertices_stay_in_the_capsule() {
+        let (mut checked, mut farthest, mut longest) = (0, 0.0_f64, 0);
+        for case in 0..100 {
+            let random = &mut Random(case as u64 + 77);
+            let (model, _) = strips(random, case);
+            let (rank, scope) = (model.rank(), Scope::of(&model));
+            let hierarchy = Hierarchy::build(&model, &scope.metric);
+            let filter = crate::filter::PairFilter::new(&model, &ContactFilter::default());
+            let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+            let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
+            let rates = CapsuleRates::new(&scaled, &hierarchy, &layout);
+            let start: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            let radius = 10.0_f64.powf(random.signed() * 8.0 - 7.0);
+            let length = if case % 2 == 0 { 0.0 } else { 10.0_f64.powf(random.signed() * 4.0 - 3.0) };
+            let end: Vec<f64> = start.iter().map(|q| q + length * random.signed()).collect();
+            let reach = [&start, &end].map(|q| 2.0 * model.check_coordinates(q).unwrap());
+            let reach = reach[0].max(reach[1]);
+            let capsule = CapsuleMotion::new(&rates, [&start, &end], radius, reach);
+            let node = layout.buckets.node(0);
+            for v in model.mesh().used_vertices() {
+                let index = layout.vertices.index_of(v);
+                let [lower, upper] = capsule.positions(&layout, index);
+                let aabb = capsule.node_aabb(&layout, node).unwrap();
+                let mut rows = vec![DVec3::ZERO; rank];
+                scope.metric.scaled_modes(model.modes().of_vertex(v), &mut rows);
+                for (axis, t) in (0..3).flat_map(|axis| [0.0, 1.0, random.signed().abs()].map(|t| (axis, t)))
+                {
+                    let most = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
+                    for sign in [-1.0, 1.0] {
+                        let z: Vec<f64> = rows.iter().map(|a| sign * a[axis] / most * radius).collect();
+                        let d = scope.metric.unscaled(&z);
+                        let q: Vec<f64> =
+                            (0..rank).map(|k| start[k] + t * (end[k] - start[k]) + d[k]).collect();
+                        if model.check_coordinates(&q).unwrap() > reach {
+                            continue;
+                        }
+                        let x = model.position(v, &q);
+                        assert!(
+                            x.cmpge(lower).all() && x.cmple(upper).all(),
+                            "case {case}: {x} {lower} {upper}"
+                        );
+                        // All triangles are in one bucket.
+                        assert!(x.cmpge(aabb.lower).all() && x.cmple(aabb.upper).all());
+                        let [x0, x1] = [&start, &end].map(|q| model.position(v, q));
+                        let on_segment = x0 + (x1 - x0) * t;
+                        let moved = (x - on_segment).abs();
+                        let allowed = capsule.vertex_change(index);
+                        assert!(moved.cmple(allowed).all(), "case {case}: {moved} {allowed}");
+                        assert!(moved.cmple(capsule.node_change(node)).all());
+                        farthest = farthest.max(moved[axis] / allowed[axis]);
+                        checked += 1;
+                        longest += usize::from((x1 - x0).length() > allowed.length());
+                    }
+                }
+            }
+        }
+        assert!(checked > 10_000 && farthest > 0.999 && longest > 1000, "{checked} {farthest} {longest}");
+    }
+}

@@ -1,0 +1,154 @@
+//! The region of z in which the pairs of a search are known.
+
+use crate::Metric;
+use crate::query::configuration::Configuration;
+use crate::query::kinetic::region_pairs::up;
+
+/// How much farther than from one end to the other z may travel in a capsule.
+const MAX_DETOUR: f64 = 1.1;
+
+/// All z within a radius of the segment between the z of two q: a capsule, or, where both are the same, a ball.
+#[derive(Debug)]
+pub(super) struct Region {
+    pub(super) start: Vec<f64>,
+    /// Where the motion is expected to leave the region. Any q of finite numbers.
+    pub(super) end: Vec<f64>,
+    /// `|S (end - start)|`, rounded up.
+    length: f64,
+    pub(super) radius: f64,
+    /// The largest norm in the region.
+    pub(super) norm: f64,
+    /// An upper bound of the magnitude of every term of every position in the region.
+    pub(super) reach: f64,
+    /// Scratch: a point of the segment, and a difference of q.
+    point: Vec<f64>,
+    offset: Vec<f64>,
+}
+
+impl Region {
+    pub(super) fn new(rank: usize) -> Self {
+        let [start, end, point, offset] = [(); 4].map(|()| vec![0.0; rank]);
+        Self { start, end, length: 0.0, radius: 0.0, norm: 0.0, reach: 0.0, point, offset }
+    }
+
+    /// Sets a ball around a configuration.
+    pub(super) fn set_ball(&mut self, Configuration { q, norm, reach }: Configuration<'_>, radius: f64) {
+        self.start.copy_from_slice(q);
+        self.end.copy_from_slice(q);
+        (self.length, self.radius) = (0.0, radius);
+        (self.norm, self.reach) = (up(norm + radius), 2.0 * reach);
+    }
+
+    /// Sets a capsule from a configuration to the end that is set, whose norm and reach are given.
+    pub(super) fn set_capsule(
+        &mut self,
+        metric: &Metric,
+        start: Configuration<'_>,
+        (norm, reach): (f64, f64),
+        radius: f64,
+    ) {
+        self.start.copy_from_slice(start.q);
+        self.length = metric.norm_from(&self.end, start.q, &mut self.offset);
+        self.radius = radius;
+        (self.norm, self.reach) = (up(start.norm.max(norm) + radius), 2.0 * start.reach.max(reach));
+    }
+
+    /// The radius of a ball, the length of a capsule.
+    pub(super) fn size(&self) -> f64 {
+        if self.length > 0.0 { self.length } else { self.radius }
+    }
+
+    /// The distance that z may travel before the region ends, even if z stays in it.
+    pub(super) fn path(&self) -> f64 {
+        MAX_DETOUR * self.length + self.radius
+    }
+
+    /// Whether the z of a configuration is in the region.
+    ///
+    /// The distance from any point of the segment is an upper bound of the distance from the segment. The point's rounding
+    /// moves vertices by less than the rounding bound of positions, which
+    /// [`CapsuleMotion`](crate::detect::capsule_motion::CapsuleMotion) adds.
+    pub(super) fn contains(&mut self, metric: &Metric, at: Configuration<'_>) -> bool {
+        if !(at.norm <= self.norm && at.reach <= self.reach) {
+            return false;
+        }
+        let Self { start, end, length, point, offset, .. } = self;
+        let mut distance = metric.norm_from(at.q, start, offset);
+        if *length > 0.0 {
+            let rest = metric.norm_from(at.q, end, offset);
+            // The nearest point divides the segment so, by the theorem of Pythagoras.
+            let share = 0.5 + 0.5 * ((distance - rest) / *length) * ((distance + rest) / *length);
+            // NaN fails the comparison below.
+            let share = right_or!(share.clamp(0.0, 1.0), SegmentWithoutEnds, share);
+            for ((x, a), b) in point.iter_mut().zip(&*start).zip(&*end) {
+                *x = a + share * (b - a);
+            }
+            distance = metric.norm_from(at.q, point, offset);
+        }
+        distance <= self.radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::MetricKind;
+    use crate::test_models::Random;
+
+    /// Points at known distances from segments, in diagonal and dense metrics.
+    #[test]
+    fn points_within_the_radius_are_contained_and_no_others() {
+        for case in 0..300 {
+            let random = &mut Random(case + 5);
+            let rank = 2 + case as usize % 5;
+            let metric = if case % 2 == 0 {
+                let scales = (0..rank).map(|_| 0.1 + random.signed().abs()).collect();
+                Metric::from_scales(MetricKind::Given, scales).unwrap()
+            } else {
+                let mut entry = |i: usize, j: usize| match i.cmp(&j) {
+                    std::cmp::Ordering::Less => 0.5 * random.signed(),
+                    std::cmp::Ordering::Equal => 1.0,
+                    std::cmp::Ordering::Greater => 0.0,
+                };
+                let factor = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
+                Metric::from_factor(MetricKind::Given, rank, factor).unwrap()
+            };
+            // In z the segment lies along the first axis.
+            let q = |along: f64, across: f64| {
+                let mut z = vec![0.0; rank];
+                (z[0], z[1]) = (along, across);
+                metric.unscaled(&z)
+            };
+            let (start, end) = (q(1.0, 0.0), q(3.0, 0.0));
+            let mut region = Region::new(rank);
+            region.end.copy_from_slice(&end);
+            let first = Configuration { q: &start, norm: metric.norm(&start), reach: 1.0 };
+            region.set_capsule(&metric, first, (metric.norm(&end), 1.0), 0.5);
+            for (along, across, is_in) in [
+                (1.0, 0.499, true),
+                (1.0, 0.501, false),
+                (2.2, -0.499, true),
+                (2.2, 0.501, false),
+                (0.501, 0.0, true),
+                (0.499, 0.0, false),
+                (3.499, 0.0, true),
+                (3.501, 0.0, false),
+                (3.3, 0.399, true),
+                (3.3, 0.401, false),
+                (0.7, 0.399, true),
+                (0.7, -0.401, false),
+            ] {
+                let q = q(along, across);
+                let at = |reach| Configuration { q: &q, norm: metric.norm(&q), reach };
+                assert_eq!(region.contains(&metric, at(2.0)), is_in, "case {case}: {along} {across}");
+                assert!(!region.contains(&metric, at(2.1)));
+            }
+            region.set_ball(Configuration { q: &end, norm: metric.norm(&end), reach: 1.0 }, 0.5);
+            for (along, across, is_in) in [(3.3, 0.399, true), (3.3, 0.401, false), (f64::NAN, 0.0, false)] {
+                let q = q(along, across);
+                let at = Configuration { q: &q, norm: metric.norm(&q), reach: 1.0 };
+                assert_eq!(region.contains(&metric, at), is_in);
+            }
+        }
+    }
+}

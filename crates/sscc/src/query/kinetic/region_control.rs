@@ -1,0 +1,164 @@
+//! Chooses the size of the next region, and whether regions pay.
+
+/// A region of fewer steps does not pay: its search costs two or three plain queries.
+pub(super) const MIN_STEPS: f64 = 8.0;
+
+/// The size of a region in units of `|z|`: at first, at least, at most.
+const FIRST_BALL: f64 = 1.0 / 32.0;
+const FIRST_CAPSULE: f64 = 1.0 / 8.0;
+const MIN_SHARE: f64 = FIRST_BALL / 1024.0;
+pub(super) const MAX_BALL: f64 = 0.25;
+const MAX_CAPSULE: f64 = 1.0;
+
+/// The factors from one size to the next.
+const GROWTH: f64 = 1.25;
+const SHRINKAGE: f64 = 1.0 / 1.5;
+
+/// A search may cost this share of the plain queries that it is expected to save, within limits.
+const LARGEST_SHARE: f64 = 0.25;
+const FEW: u64 = 8;
+const MANY: u64 = 64;
+
+/// Where no price of balls is known, they are expected to cost this share of a plain query for each step.
+const UNKNOWN_PRICE: f64 = 0.2;
+
+/// A region that cost more than it saved delays the next one: by 2 queries for each plain query that was lost, after another one
+/// by 4, and so on, up to 2 to this power.
+const MAX_FAILURES: u32 = 5;
+
+/// The shape of regions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RegionKind {
+    /// For motions that bend.
+    Ball,
+    /// For motions that are nearly straight.
+    Capsule,
+}
+
+/// The sizes of the regions of one kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SizeControl {
+    /// The size of the next region, in units of `|z|`, and the factor to the one after it.
+    pub(super) share: f64,
+    factor: f64,
+    largest: f64,
+    /// The cost of the last search for each unit of its share.
+    rate: f64,
+    /// Queries until the next region.
+    pub(super) pause: u64,
+    /// Number of regions that cost more than they saved since the last one that did not.
+    failures: u32,
+    /// The cost of the last region for each of its steps; none after one that did not pay.
+    price: Option<f64>,
+}
+
+impl SizeControl {
+    const fn new(share: f64, largest: f64) -> Self {
+        Self { share, factor: GROWTH, largest, rate: f64::INFINITY, pause: 0, failures: 0, price: None }
+    }
+}
+
+/// The size of regions, and whether they pay. Costs are in boxes compared.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RegionControl {
+    pub(super) balls: SizeControl,
+    pub(super) capsules: SizeControl,
+    /// The kind of the last region.
+    kind: RegionKind,
+    /// The cost of the last plain query, and of the last region with all its steps.
+    pub(super) plain_cost: u64,
+    pub(super) cost: u64,
+    /// The last step within a motion.
+    step: f64,
+    /// Whether the last region paid, over enough steps. A few steps prove nothing, since the plain query by which they are
+    /// judged may be long ago.
+    pub(super) has_paid: bool,
+}
+
+impl RegionControl {
+    pub(super) const FIRST: Self = Self {
+        balls: SizeControl::new(FIRST_BALL, MAX_BALL),
+        capsules: SizeControl::new(FIRST_CAPSULE, MAX_CAPSULE),
+        kind: RegionKind::Ball,
+        plain_cost: 0,
+        cost: 0,
+        step: 0.0,
+        has_paid: false,
+    };
+
+    /// Begins a search for a region of this kind.
+    pub(super) fn begin_search(&mut self, kind: RegionKind) {
+        self.kind = kind;
+    }
+
+    /// The largest cost of a search for a region that is expected to last for so many steps.
+    pub(super) fn largest_cost(&self, steps: f64) -> u64 {
+        self.plain_cost.saturating_mul(((LARGEST_SHARE * steps) as u64).clamp(FEW, MANY))
+    }
+
+    /// Whether a ball may cost less for each step than a capsule. Motions that return stay long in balls.
+    pub(super) fn prefers_ball(&self) -> bool {
+        let unknown = UNKNOWN_PRICE * self.plain_cost as f64;
+        self.balls.pause == 0 && self.balls.price.unwrap_or(unknown) < self.capsules.price.unwrap_or(0.0)
+    }
+
+    fn sizes(&mut self) -> &mut SizeControl {
+        match self.kind {
+            RegionKind::Ball => &mut self.balls,
+            RegionKind::Capsule => &mut self.capsules,
+        }
+    }
+
+    /// Counts a query without a region.
+    pub(super) fn count_pause(&mut self) {
+        for sizes in [&mut self.balls, &mut self.capsules] {
+            sizes.pause = sizes.pause.saturating_sub(1);
+        }
+    }
+
+    /// Records a step within a motion.
+    pub(super) fn record_step(&mut self, step: f64) {
+        self.step = step;
+    }
+
+    /// The length to expect of the steps after a jump, once for each region that paid: the motion that begins there is
+    /// often like the last one.
+    pub(super) fn step_after_jump(&mut self) -> Option<f64> {
+        std::mem::take(&mut self.has_paid).then_some(self.step)
+    }
+
+    /// Records a complete search. Sizes go on growing or shrinking while the cost per size falls; else the trend reverses.
+    pub(super) fn record_search(&mut self, cost: u64, share: f64) {
+        let sizes = self.sizes();
+        let rate = cost as f64 / share;
+        if rate > sizes.rate {
+            sizes.factor = if sizes.factor > 1.0 { SHRINKAGE } else { GROWTH };
+        }
+        sizes.rate = rate;
+        sizes.share = (share * sizes.factor).clamp(MIN_SHARE, sizes.largest);
+    }
+
+    /// Records a search that found more pairs than its limit.
+    pub(super) fn record_overflow(&mut self, cost: u64, share: f64) {
+        self.cost = cost;
+        self.end_region(0);
+        let sizes = self.sizes();
+        (sizes.share, sizes.factor, sizes.rate) = ((share / 4.0).max(MIN_SHARE), SHRINKAGE, f64::INFINITY);
+    }
+
+    /// Records the end of a region after `steps` steps. A region that cost more than plain queries delays the next one of its
+    /// kind in proportion.
+    pub(super) fn end_region(&mut self, steps: u64) {
+        let lost = self.cost.saturating_sub(steps.saturating_mul(self.plain_cost));
+        let plain_cost = self.plain_cost.max(1);
+        self.has_paid = lost == 0 && steps as f64 >= MIN_STEPS;
+        let cost = self.cost;
+        let sizes = self.sizes();
+        sizes.price = (lost == 0).then(|| cost as f64 / steps as f64);
+        sizes.failures = if lost > 0 { (sizes.failures + 1).min(MAX_FAILURES) } else { 0 };
+        sizes.pause = lost.saturating_mul(1 << sizes.failures) / plain_cost;
+        if lost > 0 {
+            sizes.share = (sizes.share / 2.0).max(MIN_SHARE);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The last steps of z: where they lead, and how much the motion bends.
+
+use crate::Metric;
+
+/// A capsule ends where its radius would be more than a quarter of its length: the step divided by its change.
+const MAX_BEND: f64 = 1.0;
+
+/// The radius of a capsule in units of the expected distance of z from its segment, and the share of the length that is added.
+const RADIUS_FACTOR: f64 = 2.0;
+const RADIUS_SHARE: f64 = 1.0 / 64.0;
+
+/// More steps are not predicted.
+const MAX_STEPS: f64 = 1000.0;
+
+/// The last q at which a search was needed, the step to it, and the difference between the last two steps.
+#[derive(Debug)]
+pub(super) struct StepHistory {
+    /// Empty if there was none.
+    pub(super) last_q: Vec<f64>,
+    step: Vec<f64>,
+    change: Vec<f64>,
+    /// Number of steps since the last jump, at most 2.
+    count: u32,
+    /// Scratch for a difference of q.
+    offset: Vec<f64>,
+}
+
+impl StepHistory {
+    pub(super) fn new(rank: usize) -> Self {
+        let [step, change, offset] = [(); 3].map(|()| vec![0.0; rank]);
+        Self { last_q: Vec::with_capacity(rank), step, change, count: 0, offset }
+    }
+
+    /// The distance of z from the last one, rounded up; infinite if there was none.
+    pub(super) fn distance(&mut self, metric: &Metric, q: &[f64]) -> f64 {
+        if self.last_q.is_empty() {
+            return f64::INFINITY;
+        }
+        metric.norm_from(q, &self.last_q, &mut self.offset)
+    }
+
+    /// Records the next q. After a jump nothing is known of the motion.
+    pub(super) fn record(&mut self, q: &[f64], is_jump: bool) {
+        if is_jump {
+            self.count = 0;
+        } else {
+            self.count = (self.count + 1).min(2);
+            let steps = self.step.iter_mut().zip(&mut self.change);
+            for ((step, change), (q, last)) in steps.zip(q.iter().zip(&self.last_q)) {
+                *change = (q - last) - *step;
+                *step = q - last;
+            }
+        }
+        self.last_q.clear();
+        self.last_q.extend_from_slice(q);
+    }
+
+    /// Whether the last two steps are known.
+    pub(super) fn is_known(&self) -> bool {
+        self.count == 2
+    }
+
+    /// The number of steps, at most `steps`, for which the motion is expected to be nearly straight.
+    pub(super) fn straight_steps(&self, metric: &Metric, steps: f64) -> f64 {
+        if !self.is_known() {
+            return 0.0;
+        }
+        let bend = metric.norm(&self.change) / metric.norm(&self.step);
+        // No direction is known at rest.
+        if bend.is_finite() { steps.min(MAX_BEND / bend).min(MAX_STEPS).floor() } else { 0.0 }
+    }
+
+    /// Predicts the q after so many steps. Returns the radius within which z is expected to stay of the straight line to it.
+    pub(super) fn predict(&self, metric: &Metric, steps: f64, end: &mut [f64]) -> f64 {
+        let weight = 0.5 * steps * (steps + 1.0);
+        for (((end, q), step), change) in end.iter_mut().zip(&self.last_q).zip(&self.step).zip(&self.change) {
+            *end = q + steps * step + weight * change;
+        }
+        // The sagitta of a parabola.
+        let distance = metric.norm(&self.change) * steps * steps / 8.0;
+        RADIUS_FACTOR * distance + RADIUS_SHARE * steps * metric.norm(&self.step)
+    }
+}
