@@ -295,23 +295,21 @@ impl<'a> Body<'a> {
     /// Detects self-collisions and stores the pairs in `pairs`.
     pub(crate) fn detect(&mut self) -> Result<(), DynamicsError> {
         self.pairs.clear();
+        self.measure_root();
         if std::mem::take(&mut self.is_proven_free) {
-            self.root_failed = !self.is_root_certified();
             return Ok(());
         }
-        let statistics = match &mut self.detector {
-            Detector::Off => return Ok(()),
-            Detector::Discrete(query) => {
-                self.pairs.extend_from_slice(query.discrete(&self.q)?);
-                query.statistics()
-            }
-            Detector::Kinetic(query) => {
-                self.pairs.extend_from_slice(query.discrete(&self.q)?);
-                query.statistics()
-            }
-        };
-        self.root_failed = !statistics.root_certified;
+        match &mut self.detector {
+            Detector::Off => {}
+            Detector::Discrete(query) => self.pairs.extend_from_slice(query.discrete(&self.q)?),
+            Detector::Kinetic(query) => self.pairs.extend_from_slice(query.discrete(&self.q)?),
+        }
         Ok(())
+    }
+
+    /// Notes whether q is outside the certificate of the root, if self-collisions are detected.
+    pub(crate) fn measure_root(&mut self) {
+        self.root_failed = !matches!(self.detector, Detector::Off) && !self.is_root_certified();
     }
 
     /// Whether the certificate of the root holds at q.

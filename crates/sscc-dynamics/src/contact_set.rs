@@ -145,10 +145,13 @@ impl ContactSet {
         self.found = found;
     }
 
-    /// Whether the list, of which the first `sorted` contacts are sorted, has a rigid contact of these triangles.
-    pub fn has_rigid(&self, indices: [u32; 2], pair: Pair, sorted: usize) -> bool {
-        let at = self.list[..sorted].partition_point(|contact| contact.key() < (indices, pair, 1));
-        self.list[..sorted].get(at).is_some_and(|contact| (contact.bodies, contact.pair()) == (indices, pair))
+    /// Whether the list, of which the first `sorted` contacts are sorted, has a rigid contact of these triangles. `begun`: also
+    /// among the contacts that began in this step.
+    pub fn has_rigid(&self, indices: [u32; 2], pair: Pair, sorted: usize, begun: bool) -> bool {
+        let (before, new) = self.list.split_at(sorted);
+        let is_same = |contact: &Contact| (contact.bodies, contact.pair()) == (indices, pair);
+        let at = before.partition_point(|contact| contact.key() < (indices, pair, 1));
+        before.get(at).is_some_and(is_same) || begun && new.iter().any(is_same)
     }
 
     /// Begins a rigid contact of the nearest points of two triangles whose corners in the world are `corners`, or moves

@@ -15,6 +15,7 @@ use crate::body::Body;
 use crate::contact::{Contact, ModalInverseMass};
 use crate::contact_constraint::{ContactConstraint, Side};
 use crate::displacement::displacement;
+use crate::friction_cone::stop_sliding;
 
 /// Constants of a constraint in the solver.
 #[derive(Clone, Copy, Debug)]
@@ -151,9 +152,7 @@ impl ContactSolver {
         let sliding = after - normal * normal.dot(after);
         let mut friction_impulse = constraint.friction_impulse;
         if constraint.friction > 0.0 {
-            if let Some(direction) = sliding.try_normalize() {
-                friction_impulse -= direction * (sliding.length() / direction.dot(inverse_mass * direction));
-            }
+            friction_impulse += stop_sliding(sliding, &inverse_mass);
             friction_impulse = friction_impulse.clamp_length_max(constraint.friction * normal_impulse);
             let friction_change = friction_impulse - constraint.friction_impulse;
             let after_friction = after + inverse_mass * friction_change;

@@ -16,7 +16,7 @@ use crate::contact::Contact;
 use crate::contact_constraint::{GROUND, Side, Source, sides};
 use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::displacement::displacement;
-use crate::friction_cone::limit_friction;
+use crate::friction_cone::{limit_friction, stop_sliding};
 use crate::ground_contacts::GroundContacts;
 use crate::ground_point::{GroundPoint, rest_position};
 use crate::rigid_contacts::RigidContacts;
@@ -310,10 +310,7 @@ impl CorrectionSolver {
         if one.friction > 0.0 && (normal_impulse > 0.0 || friction_impulse != DVec3::ZERO) {
             let after = one.slip + w + one.inverse_mass * impulse;
             let sliding = after - normal * normal.dot(after);
-            if let Some(direction) = sliding.try_normalize() {
-                friction_impulse -=
-                    direction * (sliding.length() / direction.dot(one.inverse_mass * direction));
-            }
+            friction_impulse += stop_sliding(sliding, &one.inverse_mass);
             friction_impulse =
                 limit_friction(friction_impulse, one.friction, normal, normal_impulse, &one.inverse_mass);
             impulse += friction_impulse - one.friction_impulse;

@@ -8,6 +8,19 @@ use glam::{DMat3, DVec3};
 /// sliding contact holds them apart at all (Painlevé's paradox). Vertices of thin parts that bend in few modes do this.
 const MAX_COUPLING: f64 = 0.75;
 
+/// Where modes alone move the points of a contact, their mobility along a direction may be 0 up to rounding: this share of the
+/// whole mobility.
+const MIN_MOBILITY: f64 = 1e-10;
+
+/// Returns the change of the friction impulse that stops points from sliding with a velocity; zero where no impulse along it
+/// moves them. `inverse_mass` is the matrix from impulse to velocity.
+pub(crate) fn stop_sliding(sliding: DVec3, inverse_mass: &DMat3) -> DVec3 {
+    let Some(direction) = sliding.try_normalize() else { return DVec3::ZERO };
+    let mobility = direction.dot(*inverse_mass * direction);
+    let whole = inverse_mass.x_axis.x + inverse_mass.y_axis.y + inverse_mass.z_axis.z;
+    if mobility > MIN_MOBILITY * whole { direction * (-sliding.length() / mobility) } else { DVec3::ZERO }
+}
+
 /// Returns the friction impulse, shortened into the cone of this normal impulse. `inverse_mass` is the matrix from impulse
 /// to velocity.
 pub(crate) fn limit_friction(
@@ -28,6 +41,19 @@ pub(crate) fn limit_friction(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sliding_stops_where_an_impulse_can_stop_it() {
+        let inverse_mass = DMat3::from_diagonal(DVec3::new(2.0, 0.5, 0.0));
+        let sliding = DVec3::new(0.0, 3.0, 0.0);
+        assert_eq!(sliding + inverse_mass * stop_sliding(sliding, &inverse_mass), DVec3::ZERO);
+        // One mode moves the points along x alone, up to rounding.
+        let one_mode = DMat3::from_diagonal(DVec3::new(2.0, 1e-17, -1e-17));
+        for sliding in [DVec3::Y, DVec3::Z, DVec3::ZERO, DVec3::Y * 1e-17] {
+            assert_eq!(stop_sliding(sliding, &one_mode), DVec3::ZERO);
+            assert_eq!(stop_sliding(sliding, &DMat3::ZERO), DVec3::ZERO);
+        }
+    }
 
     #[test]
     fn friction_stays_in_the_cone_and_changes_the_normal_velocity_little() {

@@ -243,7 +243,10 @@ impl<'a> World<'a> {
             impacts.iter().filter(|(bodies, _)| bodies[0] == bodies[1]).map(|(n, one)| (*n, one.pair)),
         );
         near.retain(|(bodies, pair)| {
-            !self.contacts.has_rigid(bodies.map(|n| n as u32), *pair, self.sorted_contacts)
+            // A pair of one body may meet again after a correction, those of two bodies are gathered once.
+            let may_begin_again = bodies[0] == bodies[1];
+            let indices = bodies.map(|n| n as u32);
+            !self.contacts.has_rigid(indices, *pair, self.sorted_contacts, may_begin_again)
         });
         self.wake(moves)?;
         let first = self.contacts.list.len();
@@ -291,7 +294,10 @@ impl<'a> World<'a> {
                         share = 0.0;
                     }
                     shares[n] *= share;
-                    self.bodies[n].shorten(share);
+                    // A body that no correction has moved pays for its energy, too.
+                    let body = &mut self.bodies[n];
+                    buffers.energies[n].get_or_insert_with(|| body.energies(self.options.gravity));
+                    body.shorten(share);
                     (buffers.moves[n], is_shortened[n]) = (true, true);
                 }
             }

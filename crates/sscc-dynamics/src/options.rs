@@ -47,7 +47,8 @@ impl ContactOptions {
             libm::exp(-2.0)
         } else {
             let d = (zeta * zeta - 1.0).sqrt();
-            let t = libm::atanh(2.0 * zeta * d / (2.0 * zeta * zeta - 1.0)) / d;
+            // Rounding may carry the argument beyond 1.
+            let t = libm::atanh((2.0 * zeta * d / (2.0 * zeta * zeta - 1.0)).min(1.0)) / d;
             libm::exp(-zeta * t)
         }
     }

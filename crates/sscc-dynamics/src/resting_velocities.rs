@@ -19,7 +19,7 @@ use crate::contact_constraint::{Side, Source, sides};
 use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::correction::Correction;
 use crate::displacement::displacement;
-use crate::friction_cone::limit_friction;
+use crate::friction_cone::{limit_friction, stop_sliding};
 use crate::ground_point::rest_position;
 
 /// Maximum number of iterations.
@@ -167,10 +167,7 @@ impl World<'_> {
         let mut impulse = normal * (load.normal_impulse - before);
         let after = v + inverse_mass * impulse;
         let sliding = after - normal * normal.dot(after);
-        let mut friction_impulse = load.friction_impulse;
-        if let Some(direction) = sliding.try_normalize() {
-            friction_impulse -= direction * (sliding.length() / direction.dot(inverse_mass * direction));
-        }
+        let mut friction_impulse = load.friction_impulse + stop_sliding(sliding, &inverse_mass);
         let (total, total_normal) =
             (load.given_friction + friction_impulse, load.given_normal + load.normal_impulse);
         friction_impulse =

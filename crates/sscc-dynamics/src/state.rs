@@ -116,6 +116,8 @@ impl World<'_> {
             body.forget_energy();
             body.save_start();
             body.is_proven_free = false;
+            body.measure_root();
+            body.pairs.clear();
         }
         for contact in &mut contacts {
             contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));

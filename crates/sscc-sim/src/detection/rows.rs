@@ -53,9 +53,12 @@ pub fn check_rows<E: From<SimError>>(
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
     let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
     let (mut next, mut block, mut most_pairs) = (0, 1, 1);
+    // Rows before this one are answered one by one.
+    let mut single = 0;
     while next < queries {
         check_cancelled(progress)?;
-        let end = queries.min(next + if requests.is_continuous { 1 } else { block });
+        let is_single = requests.is_continuous || next < single;
+        let end = queries.min(next + if is_single { 1 } else { block });
         let start = Instant::now();
         let answers = if end - next > 1 {
             let limit = requests.limit.unwrap_or(usize::MAX);
@@ -69,6 +72,11 @@ pub fn check_rows<E: From<SimError>>(
         };
         let microseconds = start.elapsed().as_secs_f64() * 1e6 / (end - next) as f64;
         check_cancelled(progress)?;
+        // One row is no configuration: those before it have answers.
+        if answers.is_err() && end - next > 1 {
+            single = end;
+            continue;
+        }
         let answers = answers.map_err(SimError::from)?;
         for index in next..end {
             let found = answers.get(index - next, query, requests.limit);
