@@ -4,7 +4,7 @@
 //! the wrong one:
 //!
 //! ```text
-//! let norm = right_or!(up(ends.norm + radius), KineticBallAtCenter, ends.norm);
+//! let norm = right_or!(self.region.norm, KineticRegionAtCenter, start.norm);
 //! ```
 //!
 //! Without the feature `mutants`, and in every build without debug assertions, the macro expands to its first argument

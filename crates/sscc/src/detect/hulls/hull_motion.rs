@@ -90,6 +90,22 @@ impl<const E: usize> HullMotion<E> {
 
     /// A displacement along each axis as a distance in the frame, rounded up.
     pub(super) fn distance(&self, displacement: DVec3) -> f32 {
-        ((displacement.length() * self.scale * (1.0 + 1e-6)) as f32).min(f32::MAX)
+        // Scaled first: in the units of a tiny model squares would underflow.
+        (((displacement * self.scale).length() * (1.0 + 1e-6)) as f32).min(f32::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In the units of tiny and huge models, whose squares are no normal numbers.
+    #[test]
+    fn displacements_are_never_short_in_the_frame() {
+        for size in [1e-300, 1e-165, 1e-160, 1e-157, 1.0, 1e157, 1e165] {
+            let motion = HullMotion::<1> { scale: 1.0 / size, ..HullMotion::default() };
+            let distance = f64::from(motion.distance(DVec3::new(3.0, 4.0, 12.0) * size));
+            assert!((13.0..13.001).contains(&distance), "{size}: {distance}");
+        }
     }
 }

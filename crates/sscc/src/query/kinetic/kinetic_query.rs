@@ -193,7 +193,7 @@ impl<'a> KineticQuery<'a> {
         let Configuration { q, norm, .. } = configuration;
         let metric = &self.query.context.scope.metric;
         let mut step = self.history.distance(metric, q);
-        let is_jump = step > MAX_STEP * norm;
+        let is_jump = !(step.is_finite() && step <= MAX_STEP * norm);
         self.history.record(q, is_jump);
         let had_region = self.region_pairs.has_region();
         if is_jump {
