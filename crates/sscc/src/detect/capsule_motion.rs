@@ -38,7 +38,10 @@ impl CapsuleRates {
                     let own = layout.buckets.vertices(bucket).iter();
                     own.fold(DVec3::ZERO, |most, v| most.max(vertices[*v as usize]))
                 }
-                None => node.children().fold(DVec3::ZERO, |most, n| most.max(nodes[n as usize])),
+                None => {
+                    let most = node.children().fold(DVec3::ZERO, |most, n| most.max(nodes[n as usize]));
+                    right_or!(most, CapsuleInnerNodesStill, DVec3::ZERO)
+                }
             };
         }
         Self { vertices, nodes }
@@ -129,8 +132,9 @@ impl VertexMotion<2> for CapsuleMotion<'_> {
 mod tests {
     use super::*;
     use crate::detect::layout::Needs;
+    use crate::detect::node_volumes::NodeVolumes;
     use crate::test_models::{Random, strips};
-    use crate::{ContactFilter, Scope};
+    use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
 
     /// Vertices stay where the capsule says, about any point of its segment, also for the direction that moves them farthest; and
     /// some nearly leave.
@@ -192,5 +196,77 @@ mod tests {
             }
         }
         assert!(checked > 10_000 && farthest > 0.999 && longest > 1000, "{checked} {farthest} {longest}");
+    }
+
+    /// A rolled sheet of many buckets, with smooth modes.
+    fn rolled_sheet(side: u32, random: &mut Random) -> ReducedModel {
+        let ways: Vec<[DVec3; 2]> = (0..5).map(|_| [random.vector(), random.vector() * 2.0]).collect();
+        let positions: Vec<DVec3> = (0..side * side)
+            .map(|i| {
+                let [u, v] = [i % side, i / side].map(|i| f64::from(i) / f64::from(side - 1));
+                DVec3::new((4.0 * u).cos(), (4.0 * u).sin(), 2.0 * v)
+            })
+            .collect();
+        let modes = positions.iter().flat_map(|x| ways.iter().map(|[w, k]| *w * 0.3 * x.dot(*k).sin()));
+        let modes = Modes::new(5, modes.collect()).unwrap();
+        let squares = (0..(side - 1) * (side - 1)).map(|i| i + i / (side - 1));
+        let faces = squares.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]);
+        ReducedModel::new(TriMesh::new(positions, faces.collect()).unwrap(), modes).unwrap()
+    }
+
+    /// Refitted AABBs of triangles, buckets and larger nodes, from coarse positions, and BD-tree AABBs of nodes contain the
+    /// positions at all z of a capsule.
+    #[test]
+    fn node_volumes_contain_the_capsule() {
+        let mut checked = 0;
+        for case in 0..24 {
+            let random = &mut Random(case + 3000);
+            let model = rolled_sheet(16, random);
+            let (rank, scope) = (model.rank(), Scope::of(&model));
+            let hierarchy = Hierarchy::build(&model, &scope.metric);
+            let filter = crate::filter::PairFilter::new(&model, &ContactFilter::default());
+            let layout = std::sync::Arc::new(Layout::new(&model, &hierarchy, &filter, Needs::LAZY));
+            assert!(layout.buckets.count() > 4);
+            let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
+            let rates = CapsuleRates::new(&scaled, &hierarchy, &layout);
+            let mut q = |size: f64| -> Vec<f64> { (0..rank).map(|_| size * random.signed()).collect() };
+            let start = q(0.5);
+            let end: Vec<f64> = start.iter().zip(q(0.3)).map(|(a, b)| a + b).collect();
+            let radius = [0.0, 1e-3, 0.2][case as usize % 3];
+            let reach = [&start, &end].map(|q| 2.0 * model.check_coordinates(q).unwrap());
+            let capsule = CapsuleMotion::new(&rates, [&start, &end], radius, reach[0].max(reach[1]));
+            let mut volumes = NodeVolumes::<2>::new(&layout, true);
+            volumes.begin(&hierarchy, &capsule);
+            if case % 2 == 0 {
+                volumes.refit(&hierarchy, &capsule);
+            }
+            for (n, node) in hierarchy.nodes().iter().enumerate() {
+                let n = n as u32;
+                let is_volume = node.child_count > 0 || layout.buckets.of_node(n).is_some();
+                let Some(own) = capsule.node_aabb(&layout, n).filter(|_| is_volume) else { continue };
+                volumes.update_node(n, &capsule);
+                for v in hierarchy.vertices(node, model.mesh().faces()).into_iter().step_by(5) {
+                    let mut rows = vec![DVec3::ZERO; rank];
+                    scope.metric.scaled_modes(model.modes().of_vertex(v), &mut rows);
+                    for axis in 0..3 {
+                        let most = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
+                        for (sign, t) in [(-1.0, 0.0), (1.0, 0.4), (-1.0, 0.7), (1.0, 1.0)] {
+                            let z: Vec<f64> = rows.iter().map(|a| sign * a[axis] / most * radius).collect();
+                            let d = scope.metric.unscaled(&z);
+                            let q: Vec<f64> =
+                                (0..rank).map(|k| start[k] + t * (end[k] - start[k]) + d[k]).collect();
+                            let x = model.position(v, &q);
+                            assert!(x.cmpge(own.lower).all() && x.cmple(own.upper).all(), "case {case}");
+                            let y = volumes.frame().map(x);
+                            let aabb = volumes.node(n);
+                            let is_in = y.cmpge(aabb.lower) & y.cmple(aabb.upper);
+                            assert_eq!(is_in.bitmask() & 0b111, 0b111, "case {case}, node {n}: {y} {aabb:?}");
+                            checked += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(checked > 10_000, "{checked}");
     }
 }

@@ -268,7 +268,8 @@ impl<const E: usize> NodeVolumes<E> {
         motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
             let slack = slack * (self.positions.frame().scale() * (1.0 + 1e-5));
             // Finite, as all corners of AABBs are that contain something.
-            slack.as_vec3().extend(0.0).min(Vec4::MAX)
+            let slack = slack.as_vec3().extend(0.0).min(Vec4::MAX);
+            right_or!(slack, CoarseSlackForgotten, Vec4::ZERO)
         })
     }
 

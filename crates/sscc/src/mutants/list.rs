@@ -126,6 +126,18 @@ mutants! {
     CapsuleWithoutEnd: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// A capsule contains what is near the line through its segment.
     SegmentWithoutEnds: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
+    /// z stays in the region that a search was made for, wherever it moves.
+    RegionNeverLeft: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
+    /// A motion that begins in a region ends there.
+    MotionLeavesRegion: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
+    /// Motions within a region do not touch pairs that touch at rest.
+    KineticExceptionsForgotten: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
+    /// The reach of a capsule is that of its start.
+    RegionReachAtStart: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
+    /// Nodes larger than buckets do not move within the radius of a capsule.
+    CapsuleInnerNodesStill: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
+    /// AABBs from coarse positions are those of the segment of a capsule.
+    CoarseSlackForgotten: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// A capsule omits the rounding error of positions.
     CapsuleExact: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The travelled distance of z is not rounded up.

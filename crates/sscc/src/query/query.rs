@@ -9,7 +9,7 @@ use super::discrete_search::DiscreteSearch;
 use super::method::Method;
 use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
-use crate::detect::narrow_phase::{BallHits, SweptHits};
+use crate::detect::narrow_phase::{AabbHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
 use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
@@ -29,7 +29,7 @@ pub struct Query<'a> {
     /// Made by the first continuous query.
     pub(super) swept: Option<Box<SweptSearch<SweptHits>>>,
     /// Made by the first sweep.
-    pub(super) candidates: Option<Box<SweptSearch<BallHits>>>,
+    pub(super) candidates: Option<Box<SweptSearch<AabbHits>>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) check: ConfigurationCheck,

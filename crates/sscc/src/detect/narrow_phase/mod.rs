@@ -2,11 +2,10 @@
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
-//! - ball ([`BallHits`]): whether their boxes, around all positions in a ball or on the way between two configurations,
-//!   overlap;
+//! - AABB ([`AabbHits`]): whether their AABBs, around all positions in a region of z or between two configurations, overlap;
 //! - near ([`NearHits`]): none; all pairs whose widened boxes overlap.
 
-mod ball;
+mod aabb;
 mod discrete;
 mod hits;
 mod impact;
@@ -16,7 +15,7 @@ mod near;
 mod separating_axis;
 mod swept;
 
-pub(crate) use ball::BallHits;
+pub(crate) use aabb::AabbHits;
 pub(crate) use discrete::DiscreteHits;
 pub use impact::Impact;
 pub(crate) use narrow_phase::NarrowPhase;

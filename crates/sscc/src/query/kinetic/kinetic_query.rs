@@ -2,7 +2,7 @@
 //! back to an ordinary query where no region pays.
 
 use super::region::Region;
-use super::region_control::{MAX_BALL, MIN_STEPS, RegionControl, RegionKind};
+use super::region_control::{MAX_BALL, MAX_CAPSULE, MIN_STEPS, RegionControl, RegionKind};
 use super::region_pairs::RegionPairs;
 use super::region_search::RegionSearch;
 use super::safe_distance::SafeDistances;
@@ -36,7 +36,7 @@ const CHEAP_PAIRS: usize = 64;
 /// A motion is a jump where a step is longer than this share of `|z|`.
 const MAX_STEP: f64 = 0.25;
 
-/// The cost, in boxes compared, of opening a node, of comparing two hulls, of computing the safe distance of two
+/// The cost, in AABBs compared, of opening a node, of comparing two hulls, of computing the safe distance of two
 /// triangles, of testing them, and of finding them in a region.
 const OPEN_COST: u64 = 50;
 const HULL_COST: u64 = 30;
@@ -136,14 +136,16 @@ impl<'a> KineticQuery<'a> {
             return Ok(&[]);
         }
         self.query.continuous(q_t0, q_t1)?;
-        let swept = self.query.swept.as_ref().filter(|_| !self.query.discrete.narrow.0.list.is_empty());
-        if let Some(swept) = &self.query.swept {
-            self.control.plain_cost = plain_cost(swept.counters());
-        }
-        if swept.is_none() {
+        let is_free = self.query.pairs().is_empty();
+        if is_free {
             self.free_q.extend_from_slice(q_t1);
         }
-        Ok(swept.map_or(&[], |swept| &swept.narrow.0.list))
+        let Some(swept) = &self.query.swept else { return Ok(&[]) };
+        // Tests of the exceptions alone tell nothing of plain queries.
+        if !self.query.statistics.root_certified {
+            self.control.plain_cost = plain_cost(swept.counters());
+        }
+        Ok(if is_free { &[] } else { &swept.narrow.0.list })
     }
 
     /// Whether safe distances and tests of the active pairs prove all pairs apart while every vertex moves on a straight line
@@ -153,12 +155,15 @@ impl<'a> KineticQuery<'a> {
     /// When it was cancelled.
     pub(super) fn is_free_within_region(&mut self, [t0, t1]: [Configuration<'_>; 2]) -> Result<bool, Error> {
         let context = &self.query.context;
-        if t0.q != self.history.last_q || !context.detect.exceptions.is_empty() {
+        // No region has the exceptions.
+        let has_exceptions = !context.detect.exceptions.is_empty();
+        if t0.q != self.history.last_q || right_or!(has_exceptions, KineticExceptionsForgotten, false) {
             return Ok(false);
         }
         let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);
         // The region is convex, and contains the start.
-        if !(self.region_pairs.stays_safe(step) && self.region.contains(&context.scope.metric, t1)) {
+        let is_contained = self.region.contains(&context.scope.metric, t1);
+        if !(self.region_pairs.stays_safe(step) && right_or!(is_contained, MotionLeavesRegion, true)) {
             return Ok(false);
         }
         let active = &self.region_pairs.active;
@@ -201,9 +206,12 @@ impl<'a> KineticQuery<'a> {
         } else {
             self.region_pairs.advance(step)
         }
-        if had_region && !(self.region_pairs.lasts() && self.region.contains(metric, configuration)) {
-            self.region_pairs.leave_region();
-            self.control.end_region(self.region_pairs.steps);
+        if had_region {
+            let is_contained = self.region.contains(metric, configuration);
+            if !(self.region_pairs.lasts() && right_or!(is_contained, RegionNeverLeft, true)) {
+                self.region_pairs.leave_region();
+                self.control.end_region(self.region_pairs.steps);
+            }
         }
         if is_jump {
             step = self.control.step_after_jump().unwrap_or(step);
@@ -223,13 +231,12 @@ impl<'a> KineticQuery<'a> {
         self.find_active(configuration, step).inspect_err(|_| self.region_pairs.forget())
     }
 
-    /// Chooses a region around this z. Returns its size in units of `|z|`, and whether it was cut at the limit of the pair
-    /// tree; none if no region would pay.
-    fn choose_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> Option<(f64, bool)> {
+    /// Sets a region that contains this z. False if no region would pay; then the region has no meaning, as before the first
+    /// search.
+    fn choose_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> bool {
         let context = &self.query.context;
         let metric = &context.scope.metric;
         let norm = start.norm;
-        self.control.count_pause();
         // Where the pair tree is complete, it must be so in the whole region.
         let limit = context.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit());
         let least = 2.0 * MIN_STEPS;
@@ -237,20 +244,20 @@ impl<'a> KineticQuery<'a> {
         let steps = self.history.straight_steps(metric, steps);
         if steps >= least && !self.control.prefers_ball() {
             if self.control.capsules.pause > 0 {
-                return None;
+                return false;
             }
             let radius = self.history.predict(metric, steps, &mut self.region.end);
             let end = self.query.check.measure(context, &self.region.end).ok();
             if let Some(end) = end.map(|end| (end.norm, end.reach)) {
                 self.region.set_capsule(metric, start, end, radius);
-                if self.region.norm < limit {
-                    self.control.begin_search(RegionKind::Capsule);
-                    return Some((self.region.size() / norm, false));
+                if self.region.norm < limit && self.region.size() <= MAX_CAPSULE * norm {
+                    self.control.begin_search(RegionKind::Capsule, false);
+                    return true;
                 }
             }
         }
         if self.control.balls.pause > 0 || !(is_jump || self.history.is_known()) {
-            return None;
+            return false;
         }
         let mut radius = (self.control.balls.share * norm).max(least * step);
         let left = (limit - norm) * (1.0 - 1e-9);
@@ -259,17 +266,22 @@ impl<'a> KineticQuery<'a> {
             radius = left;
         }
         if !(radius > 0.0 && radius.is_finite() && radius <= MAX_BALL * norm) {
-            return None;
+            return false;
         }
         self.region.set_ball(start, radius);
-        self.control.begin_search(RegionKind::Ball);
-        Some((radius / norm, is_cut))
+        self.control.begin_search(RegionKind::Ball, is_cut);
+        true
     }
 
     /// Searches a region around this z; false if no region would pay.
     fn begin_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> Result<bool, Error> {
-        let Some((share, is_cut)) = self.choose_region(start, step, is_jump) else { return Ok(false) };
+        let is_chosen = self.choose_region(start, step, is_jump);
+        self.control.count_pause();
+        if !is_chosen {
+            return Ok(false);
+        }
         let Region { reach, radius, .. } = self.region;
+        let share = self.region.size() / start.norm;
         let norm = right_or!(self.region.norm, KineticRegionAtCenter, start.norm);
         self.distances.begin(norm);
         let context = &self.query.context;
@@ -286,12 +298,10 @@ impl<'a> KineticQuery<'a> {
             self.control.record_overflow(cost, share);
             return Ok(false);
         }
-        self.region_pairs.begin_region(self.region.path());
+        self.region_pairs.begin_region(self.region.largest_travel());
         self.region_pairs.take(found, &mut self.pending);
         self.control.cost = cost;
-        if !is_cut {
-            self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
-        }
+        self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
         // The counters of this step begin with those of the search.
         let broad = &mut self.query.discrete.certified.broad;
         broad.counters = Counters { triangle_tests: 0, ..*counters };

@@ -4,7 +4,7 @@ use crate::Metric;
 use crate::query::configuration::Configuration;
 use crate::query::kinetic::region_pairs::up;
 
-/// How much farther than from one end to the other z may travel in a capsule.
+/// The distance that z may travel in a capsule, in units of its length.
 const MAX_DETOUR: f64 = 1.1;
 
 /// All z within a radius of the segment between the z of two q: a capsule, or, where both are the same, a ball.
@@ -50,7 +50,8 @@ impl Region {
         self.start.copy_from_slice(start.q);
         self.length = metric.norm_from(&self.end, start.q, &mut self.offset);
         self.radius = radius;
-        (self.norm, self.reach) = (up(start.norm.max(norm) + radius), 2.0 * start.reach.max(reach));
+        let reach = right_or!(start.reach.max(reach), RegionReachAtStart, start.reach);
+        (self.norm, self.reach) = (up(start.norm.max(norm) + radius), 2.0 * reach);
     }
 
     /// The radius of a ball, the length of a capsule.
@@ -58,8 +59,8 @@ impl Region {
         if self.length > 0.0 { self.length } else { self.radius }
     }
 
-    /// The distance that z may travel before the region ends, even if z stays in it.
-    pub(super) fn path(&self) -> f64 {
+    /// The distance after which the region ends, even if z stays in it.
+    pub(super) fn largest_travel(&self) -> f64 {
         MAX_DETOUR * self.length + self.radius
     }
 
@@ -75,13 +76,12 @@ impl Region {
         let Self { start, end, length, point, offset, .. } = self;
         let mut distance = metric.norm_from(at.q, start, offset);
         if *length > 0.0 {
-            let rest = metric.norm_from(at.q, end, offset);
-            // The nearest point divides the segment so, by the theorem of Pythagoras.
-            let share = 0.5 + 0.5 * ((distance - rest) / *length) * ((distance + rest) / *length);
-            // NaN fails the comparison below.
-            let share = right_or!(share.clamp(0.0, 1.0), SegmentWithoutEnds, share);
+            let to_end = metric.norm_from(at.q, end, offset);
+            // The parameter of the nearest point, from its distances to both ends. NaN fails the comparison below.
+            let t = 0.5 + 0.5 * ((distance - to_end) / *length) * ((distance + to_end) / *length);
+            let t = right_or!(t.clamp(0.0, 1.0), SegmentWithoutEnds, t);
             for ((x, a), b) in point.iter_mut().zip(&*start).zip(&*end) {
-                *x = a + share * (b - a);
+                *x = a + t * (b - a);
             }
             distance = metric.norm_from(at.q, point, offset);
         }
@@ -123,7 +123,10 @@ mod tests {
             let mut region = Region::new(rank);
             region.end.copy_from_slice(&end);
             let first = Configuration { q: &start, norm: metric.norm(&start), reach: 1.0 };
-            region.set_capsule(&metric, first, (metric.norm(&end), 1.0), 0.5);
+            // The end has the larger reach, 1.5, or the start.
+            let (reach_t0, reach_t1) = if case % 3 == 0 { (1.0, 1.5) } else { (1.5, 0.5) };
+            let first = Configuration { reach: reach_t0, ..first };
+            region.set_capsule(&metric, first, (metric.norm(&end), reach_t1), 0.5);
             for (along, across, is_in) in [
                 (1.0, 0.499, true),
                 (1.0, 0.501, false),
@@ -140,8 +143,8 @@ mod tests {
             ] {
                 let q = q(along, across);
                 let at = |reach| Configuration { q: &q, norm: metric.norm(&q), reach };
-                assert_eq!(region.contains(&metric, at(2.0)), is_in, "case {case}: {along} {across}");
-                assert!(!region.contains(&metric, at(2.1)));
+                assert_eq!(region.contains(&metric, at(3.0)), is_in, "case {case}: {along} {across}");
+                assert!(!region.contains(&metric, at(3.1)));
             }
             region.set_ball(Configuration { q: &end, norm: metric.norm(&end), reach: 1.0 }, 0.5);
             for (along, across, is_in) in [(3.3, 0.399, true), (3.3, 0.401, false), (f64::NAN, 0.0, false)] {

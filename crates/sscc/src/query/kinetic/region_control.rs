@@ -1,4 +1,5 @@
-//! Chooses the size of the next region, and whether regions pay.
+//! Chooses the size of the next region, and whether regions pay: whether they cost less than plain queries, those without a
+//! region, at the same steps.
 
 /// A region of fewer steps does not pay: its search costs two or three plain queries.
 pub(super) const MIN_STEPS: f64 = 8.0;
@@ -8,7 +9,7 @@ const FIRST_BALL: f64 = 1.0 / 32.0;
 const FIRST_CAPSULE: f64 = 1.0 / 8.0;
 const MIN_SHARE: f64 = FIRST_BALL / 1024.0;
 pub(super) const MAX_BALL: f64 = 0.25;
-const MAX_CAPSULE: f64 = 1.0;
+pub(super) const MAX_CAPSULE: f64 = 1.0;
 
 /// The factors from one size to the next.
 const GROWTH: f64 = 1.25;
@@ -19,12 +20,15 @@ const LARGEST_SHARE: f64 = 0.25;
 const FEW: u64 = 8;
 const MANY: u64 = 64;
 
-/// Where no price of balls is known, they are expected to cost this share of a plain query for each step.
-const UNKNOWN_PRICE: f64 = 0.2;
+/// Where the cost of a ball for each step is not known, this share of a plain query is expected.
+const UNKNOWN_COST_PER_STEP: f64 = 0.2;
 
 /// A region that cost more than it saved delays the next one: by 2 queries for each plain query that was lost, after another one
 /// by 4, and so on, up to 2 to this power.
 const MAX_FAILURES: u32 = 5;
+
+/// The longest pause: the plain query by which a region is judged may be an unusual one.
+const MAX_PAUSE: u64 = 4096;
 
 /// The shape of regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,27 +48,36 @@ pub(super) struct SizeControl {
     largest: f64,
     /// The cost of the last search for each unit of its share.
     rate: f64,
-    /// Queries until the next region.
+    /// Queries without a region before the next one of this kind.
     pub(super) pause: u64,
     /// Number of regions that cost more than they saved since the last one that did not.
     failures: u32,
     /// The cost of the last region for each of its steps; none after one that did not pay.
-    price: Option<f64>,
+    cost_per_step: Option<f64>,
 }
 
 impl SizeControl {
     const fn new(share: f64, largest: f64) -> Self {
-        Self { share, factor: GROWTH, largest, rate: f64::INFINITY, pause: 0, failures: 0, price: None }
+        Self {
+            share,
+            factor: GROWTH,
+            largest,
+            rate: f64::INFINITY,
+            pause: 0,
+            failures: 0,
+            cost_per_step: None,
+        }
     }
 }
 
-/// The size of regions, and whether they pay. Costs are in boxes compared.
+/// The size of regions, and whether they pay. Costs are in AABBs compared.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegionControl {
     pub(super) balls: SizeControl,
     pub(super) capsules: SizeControl,
-    /// The kind of the last region.
+    /// The kind of the last region, and whether it was smaller than its chosen size.
     kind: RegionKind,
+    is_cut: bool,
     /// The cost of the last plain query, and of the last region with all its steps.
     pub(super) plain_cost: u64,
     pub(super) cost: u64,
@@ -80,15 +93,16 @@ impl RegionControl {
         balls: SizeControl::new(FIRST_BALL, MAX_BALL),
         capsules: SizeControl::new(FIRST_CAPSULE, MAX_CAPSULE),
         kind: RegionKind::Ball,
+        is_cut: false,
         plain_cost: 0,
         cost: 0,
         step: 0.0,
         has_paid: false,
     };
 
-    /// Begins a search for a region of this kind.
-    pub(super) fn begin_search(&mut self, kind: RegionKind) {
-        self.kind = kind;
+    /// Begins a search for a region of this kind. `is_cut`: it is smaller than its chosen size.
+    pub(super) fn begin_search(&mut self, kind: RegionKind, is_cut: bool) {
+        (self.kind, self.is_cut) = (kind, is_cut);
     }
 
     /// The largest cost of a search for a region that is expected to last for so many steps.
@@ -98,8 +112,9 @@ impl RegionControl {
 
     /// Whether a ball may cost less for each step than a capsule. Motions that return stay long in balls.
     pub(super) fn prefers_ball(&self) -> bool {
-        let unknown = UNKNOWN_PRICE * self.plain_cost as f64;
-        self.balls.pause == 0 && self.balls.price.unwrap_or(unknown) < self.capsules.price.unwrap_or(0.0)
+        let unknown = UNKNOWN_COST_PER_STEP * self.plain_cost as f64;
+        self.balls.pause == 0
+            && self.balls.cost_per_step.unwrap_or(unknown) < self.capsules.cost_per_step.unwrap_or(0.0)
     }
 
     fn sizes(&mut self) -> &mut SizeControl {
@@ -109,7 +124,7 @@ impl RegionControl {
         }
     }
 
-    /// Counts a query without a region.
+    /// Counts a query for which no region was known.
     pub(super) fn count_pause(&mut self) {
         for sizes in [&mut self.balls, &mut self.capsules] {
             sizes.pause = sizes.pause.saturating_sub(1);
@@ -127,8 +142,12 @@ impl RegionControl {
         std::mem::take(&mut self.has_paid).then_some(self.step)
     }
 
-    /// Records a complete search. Sizes go on growing or shrinking while the cost per size falls; else the trend reverses.
+    /// Records a complete search. Sizes go on growing or shrinking while the cost per size falls; else the trend reverses. A
+    /// region that was cut has no influence.
     pub(super) fn record_search(&mut self, cost: u64, share: f64) {
+        if self.is_cut {
+            return;
+        }
         let sizes = self.sizes();
         let rate = cost as f64 / share;
         if rate > sizes.rate {
@@ -154,9 +173,9 @@ impl RegionControl {
         self.has_paid = lost == 0 && steps as f64 >= MIN_STEPS;
         let cost = self.cost;
         let sizes = self.sizes();
-        sizes.price = (lost == 0).then(|| cost as f64 / steps as f64);
+        sizes.cost_per_step = (lost == 0).then(|| cost as f64 / steps as f64);
         sizes.failures = if lost > 0 { (sizes.failures + 1).min(MAX_FAILURES) } else { 0 };
-        sizes.pause = lost.saturating_mul(1 << sizes.failures) / plain_cost;
+        sizes.pause = (lost.saturating_mul(1 << sizes.failures) / plain_cost).min(MAX_PAUSE);
         if lost > 0 {
             sizes.share = (sizes.share / 2.0).max(MIN_SHARE);
         }

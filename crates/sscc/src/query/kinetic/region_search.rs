@@ -2,19 +2,19 @@
 
 use crate::Error;
 use crate::detect::capsule_motion::CapsuleMotion;
-use crate::detect::narrow_phase::BallHits;
+use crate::detect::narrow_phase::AabbHits;
 use crate::query::certified_search::CertifiedSearch;
 use crate::query::context::QueryContext;
 
 /// Finds the pairs whose boxes overlap in a region, and owns the memory for it.
 pub(super) struct RegionSearch {
     pub(super) certified: CertifiedSearch<2>,
-    pub(super) narrow: BallHits,
+    pub(super) narrow: AabbHits,
 }
 
 impl RegionSearch {
     pub(super) fn new(context: &QueryContext<'_>) -> Self {
-        Self { certified: CertifiedSearch::new(context), narrow: BallHits::default() }
+        Self { certified: CertifiedSearch::new(context), narrow: AabbHits::default() }
     }
 
     /// Finds at most `limit` pairs, sorted, exceptions apart. `norm`: the largest `|z|` in the region. False if there are

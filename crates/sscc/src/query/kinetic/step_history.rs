@@ -2,21 +2,23 @@
 
 use crate::Metric;
 
-/// A capsule ends where its radius would be more than a quarter of its length: the step divided by its change.
+/// A motion is nearly straight while the change of its step is expected to be at most this share of the step. The radius of a
+/// capsule is then about a quarter of its length.
 const MAX_BEND: f64 = 1.0;
 
-/// The radius of a capsule in units of the expected distance of z from its segment, and the share of the length that is added.
+/// The radius of a capsule in units of the expected distance of z from its segment, and the part of its length that is added.
 const RADIUS_FACTOR: f64 = 2.0;
-const RADIUS_SHARE: f64 = 1.0 / 64.0;
+const ADDED_RADIUS: f64 = 1.0 / 64.0;
 
 /// More steps are not predicted.
 const MAX_STEPS: f64 = 1000.0;
 
-/// The last q at which a search was needed, the step to it, and the difference between the last two steps.
+/// The last steps of discrete queries that the root's certificate does not answer.
 #[derive(Debug)]
 pub(super) struct StepHistory {
-    /// Empty if there was none.
+    /// The last q; empty if there was none.
     pub(super) last_q: Vec<f64>,
+    /// The step to it, and the difference between the last two steps.
     step: Vec<f64>,
     change: Vec<f64>,
     /// Number of steps since the last jump, at most 2.
@@ -78,6 +80,6 @@ impl StepHistory {
         }
         // The sagitta of a parabola.
         let distance = metric.norm(&self.change) * steps * steps / 8.0;
-        RADIUS_FACTOR * distance + RADIUS_SHARE * steps * metric.norm(&self.step)
+        RADIUS_FACTOR * distance + ADDED_RADIUS * steps * metric.norm(&self.step)
     }
 }

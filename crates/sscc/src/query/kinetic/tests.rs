@@ -274,37 +274,53 @@ fn sheet(side: u32, height: f64, fold: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (p, (0..side * side).flat_map(square).collect())
 }
 
-/// Three sheets, of several buckets each or of one. Modes lower and raise the outer ones as a whole, so that the radii of
-/// pairs of nodes are those of contact, nearly to the last digit; sideways modes make no difference to it. q goes to where
-/// the middle sheet and one of the others touch, beyond the root's radius, straight or in a zigzag, in steps so small that
-/// regions begin before a radius and end beyond it.
+/// Three sheets of `side` squares one above the other, and, on request, two triangles aside that intersect at rest. Modes raise the
+/// lower one, lower the upper one, and move both sideways, so that the radii of pairs of nodes are those of contact, nearly to
+/// the last digit.
+fn three_sheets(side: u32, heights: [f64; 3], intersects_at_rest: bool) -> ReducedModel {
+    let (mut p, mut faces) = (Vec::new(), Vec::new());
+    for (height, fold) in heights.into_iter().zip([-0.5, 0.0, 0.5]) {
+        let (more, squares) = sheet(side, height, fold);
+        faces.extend(squares.into_iter().map(|face| face.map(|v| v + p.len() as u32)));
+        p.extend(more);
+    }
+    let each = p.len() / 3;
+    let aside = DVec3::new(1e-3, 2e-3, 0.0);
+    let mut modes: Vec<DVec3> = (0..p.len())
+        .flat_map(|v| match v / each {
+            0 => [DVec3::Z, DVec3::ZERO, aside],
+            1 => [DVec3::ZERO; 3],
+            _ => [DVec3::ZERO, DVec3::NEG_Z, aside],
+        })
+        .collect();
+    if intersects_at_rest {
+        let first = p.len() as u32;
+        faces.extend([[first, first + 1, first + 2], [first + 3, first + 4, first + 5]]);
+        let corners = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, -1], [1, 1, 1], [1, 1, -1]];
+        p.extend(corners.map(|x| DVec3::from_array(x.map(f64::from)) - DVec3::X * 50.0));
+        modes.extend([DVec3::ZERO; 18]);
+    }
+    let modes = Modes::new(3, modes).unwrap();
+    ReducedModel::with_metric(TriMesh::new(p, faces).unwrap(), modes, Metric::identity(3)).unwrap()
+}
+
+/// Certificates with a small error.
+fn tight_certificates(model: &ReducedModel, budget: usize) -> Certificates {
+    let options = CertifyOptions { budget, epsilon: 0.01, ..CertifyOptions::default() };
+    Certificates::compute(model, &options, &()).unwrap()
+}
+
+/// q goes to where the middle sheet and one of the others touch, beyond the root's radius, straight or in a zigzag, in steps so
+/// small that regions begin before a radius and end beyond it. The sheets have several buckets each or one.
 #[test]
 fn radii_are_crossed_inside_a_region() {
     let mut crossed = [0, 0];
     for case in 0..cases(24) {
         let random = &mut Random(case as u64 + 700_000);
         let mut uniform = || 0.5 + 0.5 * random.signed();
-        let side = [10, 8, 5][case % 3];
         let heights = [-1.0 - uniform(), 0.0, 2.5 + uniform()];
-        let (mut p, mut faces) = (Vec::new(), Vec::new());
-        for (height, fold) in heights.into_iter().zip([-0.5, 0.0, 0.5]) {
-            let (more, squares) = sheet(side, height, fold);
-            faces.extend(squares.into_iter().map(|face| face.map(|v| v + p.len() as u32)));
-            p.extend(more);
-        }
-        let each = (side as usize + 1) * (side as usize + 1);
-        let aside = DVec3::new(1e-3, 2e-3, 0.0);
-        let modes = (0..p.len()).flat_map(|v| match v / each {
-            0 => [DVec3::Z, DVec3::ZERO, aside],
-            1 => [DVec3::ZERO; 3],
-            _ => [DVec3::ZERO, DVec3::NEG_Z, aside],
-        });
-        let modes = Modes::new(3, modes.collect()).unwrap();
-        let mesh = TriMesh::new(p, faces).unwrap();
-        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(3)).unwrap();
-        let budget = [0, 1 << 10][case / 3 % 2];
-        let options = CertifyOptions { budget, epsilon: 0.01, ..CertifyOptions::default() };
-        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let model = three_sheets([10, 8, 5][case % 3], heights, false);
+        let certificates = tight_certificates(&model, [0, 1 << 10][case / 3 % 2]);
         // The lower sheets meet at the root's radius, the upper ones at this.
         let contact = heights[2];
         assert!(certificates.root_radius() < 0.9 * contact);
@@ -328,6 +344,45 @@ fn radii_are_crossed_inside_a_region() {
         }
     }
     assert!(crossed.iter().all(|crossed| *crossed > threshold(16)), "{crossed:?}");
+}
+
+/// z moves along a capsule, away from any contact, and then leaves it sideways to where sheets touch that its search did not
+/// find. The step is shorter than the capsule. Motions and states are those of brute force, also where pairs intersect all the
+/// time, which no region has.
+#[test]
+fn capsules_are_left_sideways() {
+    let mut left = 0;
+    for case in 0..cases(24) {
+        let random = &mut Random(case as u64 + 800_000);
+        let heights = [-1.2, 0.0, 2.5 + 0.5 * random.signed()];
+        let model = three_sheets([10, 5, 4][case % 3], heights, case % 4 == 3);
+        let certificates = tight_certificates(&model, [0, 1 << 10][case / 3 % 2]);
+        let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        let contact = heights[2];
+        let gap = contact * 0.05;
+        let along = |i: i32| [0.0, contact - gap, contact * 0.01 * f64::from(i)];
+        let mut last = along(-8);
+        for i in -8..8 {
+            kinetic.control.plain_cost = 1_000_000;
+            kinetic.control.capsules.share = 0.5;
+            let q = along(i);
+            let expected = oracle.continuous(&last, &q).unwrap().to_vec();
+            assert_eq!(kinetic.continuous(&last, &q).unwrap(), expected);
+            assert_eq!(kinetic.discrete(&q).unwrap(), oracle.discrete(&q).unwrap());
+            last = q;
+        }
+        let is_capsule = kinetic.region_pairs.steps > 1
+            && kinetic.region.size() > 2.0 * gap
+            && kinetic.region.radius < 0.9 * gap;
+        left += usize::from(is_capsule);
+        let aside = [0.0, contact + 0.01 * gap, last[2]];
+        let expected = oracle.continuous(&last, &aside).unwrap().to_vec();
+        assert_eq!(kinetic.continuous(&last, &aside).unwrap(), expected, "case {case}");
+        assert!(!oracle.discrete(&aside).unwrap().is_empty());
+        assert_eq!(kinetic.discrete(&aside).unwrap(), oracle.discrete(&aside).unwrap(), "case {case}");
+    }
+    assert!(left > threshold(20), "{left}");
 }
 
 /// Only a region that paid, over some steps, makes the next jump begin one; of unrelated q none does.

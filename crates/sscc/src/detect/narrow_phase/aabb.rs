@@ -1,5 +1,5 @@
-//! The narrow phase of kinetic searches and of sweeps: triangles that may collide at some configuration in a ball, or
-//! between two configurations.
+//! The narrow phase of kinetic searches and of sweeps: triangles that may collide at some z of a region, or between
+//! two configurations.
 
 use glam::DVec3;
 
@@ -9,12 +9,12 @@ use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 use crate::geometry::Aabb;
 
-/// The pairs whose boxes overlap; the two configurations have the lowest and the highest coordinates of each corner, in any
+/// The pairs whose AABBs overlap; the two configurations have the lowest and the highest coordinates of each corner, in any
 /// order.
 #[derive(Clone, Default)]
-pub(crate) struct BallHits(pub(crate) Hits<Pair>);
+pub(crate) struct AabbHits(pub(crate) Hits<Pair>);
 
-impl NarrowPhase<2> for BallHits {
+impl NarrowPhase<2> for AabbHits {
     type Hit = Pair;
 
     #[inline]
