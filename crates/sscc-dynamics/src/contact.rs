@@ -124,6 +124,16 @@ impl Contact {
         self.bodies[0] == self.bodies[1]
     }
 
+    /// Whether it belongs to these triangles of these bodies.
+    pub fn is_of(&self, indices: [u32; 2], pair: Pair) -> bool {
+        (self.bodies, self.pair()) == (indices, pair)
+    }
+
+    /// Whether it holds its points apart: it is rigid, and no duplicate, which has no points.
+    pub fn is_rigid_constraint(&self) -> bool {
+        self.is_rigid && !self.is_duplicate
+    }
+
     /// Key that identifies the contact and orders the list of contacts.
     pub fn key(&self) -> ([u32; 2], Pair, u8) {
         (self.bodies, self.pair(), self.features)

@@ -145,13 +145,16 @@ impl ContactSet {
         self.found = found;
     }
 
-    /// Whether the list, of which the first `sorted` contacts are sorted, has a rigid contact of these triangles. `begun`: also
-    /// among the contacts that began in this step.
-    pub fn has_rigid(&self, indices: [u32; 2], pair: Pair, sorted: usize, begun: bool) -> bool {
-        let (before, new) = self.list.split_at(sorted);
-        let is_same = |contact: &Contact| (contact.bodies, contact.pair()) == (indices, pair);
+    /// Whether these triangles have a rigid contact among the first `sorted` contacts of the list, which are sorted.
+    pub fn has_rigid(&self, indices: [u32; 2], pair: Pair, sorted: usize) -> bool {
+        let before = &self.list[..sorted];
         let at = before.partition_point(|contact| contact.key() < (indices, pair, 1));
-        before.get(at).is_some_and(is_same) || begun && new.iter().any(is_same)
+        before.get(at).is_some_and(|contact| contact.is_of(indices, pair))
+    }
+
+    /// Whether these triangles have a contact that began in this step, after the first `sorted` contacts of the list.
+    pub fn has_begun(&self, indices: [u32; 2], pair: Pair, sorted: usize) -> bool {
+        self.list[sorted..].iter().any(|contact| contact.is_of(indices, pair))
     }
 
     /// Begins a rigid contact of the nearest points of two triangles whose corners in the world are `corners`, or moves

@@ -124,7 +124,7 @@ impl CorrectionSolver {
         }
         for (n, contact) in contacts.iter().enumerate() {
             let both = contact.bodies.map(|body| &bodies[body as usize]);
-            if !contact.is_rigid || contact.is_duplicate || both.iter().all(|body| body.is_asleep()) {
+            if !contact.is_rigid_constraint() || both.iter().all(|body| body.is_asleep()) {
                 continue;
             }
             if contact.is_within() {

@@ -243,10 +243,10 @@ impl<'a> World<'a> {
             impacts.iter().filter(|(bodies, _)| bodies[0] == bodies[1]).map(|(n, one)| (*n, one.pair)),
         );
         near.retain(|(bodies, pair)| {
+            let (indices, sorted) = (bodies.map(|n| n as u32), self.sorted_contacts);
             // A pair of one body may meet again after a correction, those of two bodies are gathered once.
-            let may_begin_again = bodies[0] == bodies[1];
-            let indices = bodies.map(|n| n as u32);
-            !self.contacts.has_rigid(indices, *pair, self.sorted_contacts, may_begin_again)
+            let has_begun = bodies[0] == bodies[1] && self.contacts.has_begun(indices, *pair, sorted);
+            !has_begun && !self.contacts.has_rigid(indices, *pair, sorted)
         });
         self.wake(moves)?;
         let first = self.contacts.list.len();

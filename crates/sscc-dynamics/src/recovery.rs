@@ -1,7 +1,6 @@
 //! Recovery of gaps: contacts whose points are too near part slowly, as far as energy budgets pay for it.
 
 use crate::World;
-use crate::contact::Contact;
 use crate::step_buffers::StepBuffers;
 
 impl World<'_> {
@@ -10,8 +9,6 @@ impl World<'_> {
         let rigid = self.rigid_contacts;
         // The force of a contact at rest: half of its impulse displaces the end of a step, the other half acts there.
         let cost = |normal_impulse: f64, gap: f64| 2.0 * normal_impulse / rigid.step * rigid.recovery(gap);
-        // Duplicates have no points.
-        let is_constraint = |contact: &&Contact| contact.is_rigid && !contact.is_duplicate;
         let islands = &mut buffers.recovery;
         islands.clear();
         islands.resize(self.bodies.len(), [0.0; 2]);
@@ -20,7 +17,7 @@ impl World<'_> {
             island[0] += ground.points.iter().map(|one| cost(one.normal_impulse, one.gap)).sum::<f64>();
             island[1] += body.energy_budget;
         }
-        for contact in self.contacts.list.iter().filter(is_constraint) {
+        for contact in self.contacts.list.iter().filter(|contact| contact.is_rigid_constraint()) {
             islands[self.islands.of(contact.bodies[0] as usize)][0] +=
                 cost(contact.normal_impulse, contact.gap);
         }
@@ -36,7 +33,7 @@ impl World<'_> {
                 one.min_gap = min_gap(one.normal_impulse, one.gap, island);
             }
         }
-        for contact in self.contacts.list.iter_mut().filter(|contact| is_constraint(&&**contact)) {
+        for contact in self.contacts.list.iter_mut().filter(|contact| contact.is_rigid_constraint()) {
             let island = islands[self.islands.of(contact.bodies[0] as usize)];
             contact.min_gap = min_gap(contact.normal_impulse, contact.gap, island);
         }

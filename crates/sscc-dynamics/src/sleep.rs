@@ -35,7 +35,7 @@ impl World<'_> {
         }
         for contact in &mut self.contacts.list {
             let [a, b] = contact.bodies.map(|n| n as usize);
-            if contact.is_rigid && !contact.is_duplicate && woken[a] && woken[b] {
+            if contact.is_rigid_constraint() && woken[a] && woken[b] {
                 contact.locate([&self.bodies[a], &self.bodies[b]]);
                 contact.min_gap = self.rigid_contacts.kept_gap(contact.gap);
             }
