@@ -11,8 +11,8 @@ use super::leaf_bounds::{BoundedTriangles, LeafBounds};
 use super::radius_bound::{BoundedNodePair, RadiusBound};
 use super::radius_search_context::RadiusSearchContext;
 use super::search_goal::{
-    COARSE_EPSILON, COARSE_SUBDIVISIONS, FINE_EPSILON, FINE_SUBDIVISIONS, FULL_SUBDIVISIONS,
-    PAIR_TREE_EPSILON, Precision, SearchGoal,
+    COARSE_EPSILON, COARSE_SUBDIVISIONS, FINE_EPSILON, FINE_SUBDIVISIONS, FINE_TRIANGLE_PAIRS,
+    FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
 };
 use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
 use crate::filter::Hulls;
@@ -42,6 +42,8 @@ pub(crate) struct RadiusSearch<'a> {
     triangle_pairs: Vec<BoundedTriangles>,
     queue: BinaryHeap<MinHeapEntry<Candidate>>,
     target: RefinementTarget,
+    /// How many more triangle pairs may be subdivided.
+    triangle_pairs_left: usize,
     /// The smallest certified radius among the pairs that need no more refinement.
     certified: f64,
     /// The triangle pair with the smallest upper bound.
@@ -60,6 +62,7 @@ impl<'a> RadiusSearch<'a> {
             triangle_pairs: Vec::new(),
             queue: BinaryHeap::new(),
             target: RefinementTarget { cap: 0.0, upper: f64::INFINITY, epsilon, subdivisions: 0 },
+            triangle_pairs_left: 0,
             certified: 0.0,
             closest: None,
             progress,
@@ -142,6 +145,8 @@ impl<'a> RadiusSearch<'a> {
         };
         let cap = goal.cap.min(goal.refine_up_to);
         self.target = RefinementTarget { cap, upper: f64::INFINITY, epsilon, subdivisions };
+        self.triangle_pairs_left =
+            if goal.precision == Precision::Fine { FINE_TRIANGLE_PAIRS } else { usize::MAX };
         self.certified = goal.cap;
         self.closest = None;
     }
@@ -155,7 +160,8 @@ impl<'a> RadiusSearch<'a> {
             if self.progress.is_cancelled() {
                 return None;
             }
-            if lower >= self.refine_up_to() {
+            let is_last = matches!(candidate, Candidate::Triangles(..)) && self.triangle_pairs_left == 0;
+            if is_last || lower >= self.refine_up_to() {
                 break lower.min(self.certified);
             }
             self.refine(candidate, lower);
@@ -216,8 +222,13 @@ impl<'a> RadiusSearch<'a> {
     /// Refines a triangle pair by subdivision, as far as it matters.
     fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
         let upper = self.target.upper;
+        self.triangle_pairs_left = self.triangle_pairs_left.saturating_sub(1);
         for Hulls { a: x, b: y } in self.context.filter.hulls(a, b) {
-            let refined = self.refiner.refine(x, y, &mut self.target);
+            // A larger bound than the certified radius would not change the result.
+            let cap = self.target.cap.min(self.certified);
+            let mut target = RefinementTarget { cap, ..self.target };
+            let refined = self.refiner.refine(x, y, &mut target);
+            self.target.upper = target.upper;
             self.certified = self.certified.min(refined.max(lower));
         }
         if self.target.upper < upper {

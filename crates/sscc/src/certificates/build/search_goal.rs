@@ -10,7 +10,8 @@
 pub(crate) enum Precision {
     /// To [`COARSE_EPSILON`], as far as [`COARSE_SUBDIVISIONS`] suffice.
     Coarse,
-    /// To [`FINE_EPSILON`], or the tolerance of the options if that is smaller, as far as [`FINE_SUBDIVISIONS`] suffice.
+    /// To [`FINE_EPSILON`], or the tolerance of the options if that is smaller, as far as [`FINE_SUBDIVISIONS`] and
+    /// [`FINE_TRIANGLE_PAIRS`] suffice.
     Fine,
     /// To the tolerance of the options.
     Full,
@@ -24,10 +25,14 @@ pub(super) const COARSE_SUBDIVISIONS: usize = 4;
 
 /// The relative error of fine searches: the less, the fewer node pairs queries open
 /// (docs/notes/2026-11-25-fine-radii.md).
-pub(super) const FINE_EPSILON: f64 = 0.02;
+pub(super) const FINE_EPSILON: f64 = 0.03;
 
 /// The maximum number of subdivisions of one triangle pair in fine searches.
-pub(super) const FINE_SUBDIVISIONS: usize = 16;
+pub(super) const FINE_SUBDIVISIONS: usize = 8;
+
+/// The maximum number of triangle pairs that one fine search subdivides: without it, one search in twenty takes most of the
+/// time.
+pub(super) const FINE_TRIANGLE_PAIRS: usize = 32;
 
 /// The maximum number of subdivisions of one triangle pair in full searches. When they are used up the search takes the
 /// best lower bound so far: still certified, only less tight. Mostly modes of rank 1 and 2 need so many.
