@@ -209,7 +209,7 @@ pub struct Options {
     /// Which certificates to store [default: full; paper where check or view computes them]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
-    /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 16]
+    /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
     #[command(flatten)]
@@ -272,7 +272,7 @@ pub enum Scheme {
 #[command(
     help_template = with_examples!(
         "sscc certify bunny.model.safetensors -o bunny.sscc.safetensors"
-        "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 64"
+        "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 256"
         "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
         "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
     )

@@ -272,6 +272,7 @@ mod query;
 #[cfg(test)]
 mod test_models;
 mod thread_pool;
+mod vectors;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{

@@ -5,9 +5,11 @@ use glam::{DMat3, DVec3};
 use crate::model::RoundingBound;
 use crate::model::mode_rows::{dot, padded_rank, squared_distance};
 use crate::model::rounding::norm_up;
+use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// An affine map of the modes of some points, `A_i = A_0 + G (p_i - p_0) + E_i`, with residuals E. Owns its memory.
 pub(super) struct AffineFit {
+    instructions: InstructionSet,
     row_len: usize,
     /// Nine rows: `G_cj` at `3 c + j`.
     gradient: Vec<f64>,
@@ -24,6 +26,7 @@ impl AffineFit {
     pub(super) fn new(row_len: usize) -> Self {
         debug_assert_eq!(row_len, padded_rank(row_len));
         Self {
+            instructions: InstructionSet::default(),
             row_len,
             gradient: vec![0.0; 9 * row_len],
             residuals: Vec::new(),
@@ -35,8 +38,16 @@ impl AffineFit {
 
     /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
     pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
-        let row_len = self.row_len;
         let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
+        self.instructions.run(FitModes { fit: self, plane, offsets, modes });
+        self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
+        true
+    }
+
+    /// Sets the gradient and the residuals.
+    #[inline(always)]
+    fn fit_modes<'m>(&mut self, plane: Plane, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) {
+        let row_len = self.row_len;
         // Gradient: G[c][j] = sum_i weight_i[j] (A_i - A_0)[c], a row over the modes for each of 3 x 3 entries.
         let first = modes(0);
         self.gradient.fill(0.0);
@@ -74,8 +85,6 @@ impl AffineFit {
             }
         }
         self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row_len);
-        self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
-        true
     }
 
     /// Nine rows: `G_cj` at `3 c + j`.
@@ -104,6 +113,23 @@ impl AffineFit {
         let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
         norm_up(squared_residual, 3 * self.row_len)
             + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
+    }
+}
+
+/// Fits the modes of points whose weights and plane are known.
+struct FitModes<'f, F> {
+    fit: &'f mut AffineFit,
+    plane: Plane,
+    offsets: &'f [DVec3],
+    modes: F,
+}
+
+impl<'m, F: Fn(usize) -> &'m [f64]> Kernel for FitModes<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        self.fit.fit_modes(self.plane, self.offsets, self.modes);
     }
 }
 
@@ -148,6 +174,7 @@ fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
 /// Sets the undetermined part of the gradient, across the plane of the points, so that the whole is as close to a
 /// rotation as possible: `t' G n = -n' G t` for all t in the plane. If it were zero, every rotation of the plane
 /// would look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
+#[inline(always)]
 fn complete_as_rotation(gradient: &mut [f64], row_len: usize, Plane { normal: n, undetermined }: Plane) {
     for k in 0..row_len {
         let entry = |c: usize, j: usize| gradient[(3 * c + j) * row_len + k];

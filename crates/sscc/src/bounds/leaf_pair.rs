@@ -8,10 +8,12 @@ use super::separating_direction::{bound_points_along, bound_rest_distance};
 use crate::geometry::nearest_to_origin;
 use crate::model::mode_rows::project;
 use crate::model::{ScaledModel, scale_direction};
+use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// The vertices of two leaves a and b (or of one, twice) and the bounds of their pairs. Owns its memory.
 pub(crate) struct LeafPair<'m> {
     model: &'m ScaledModel,
+    instructions: InstructionSet,
     /// Vertices of leaf a, ascending.
     vertices_a: Vec<u32>,
     /// Vertices of leaf b, ascending.
@@ -24,10 +26,42 @@ pub(crate) struct LeafPair<'m> {
     squared_residuals: Vec<f64>,
 }
 
+/// Bounds every pair of vertices along a direction.
+struct BoundVertices<'p, 'm> {
+    pair: &'p mut LeafPair<'m>,
+    dir: DVec3,
+}
+
+impl Kernel for BoundVertices<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        let Self { pair: LeafPair { model, vertices_a, vertices_b, projections, direction_bounds, .. }, dir } =
+            self;
+        let row_len = model.row_len;
+        projections.resize((vertices_a.len() + vertices_b.len()) * row_len, 0.0);
+        let vertices = vertices_a.iter().chain(&*vertices_b);
+        for (&i, out) in vertices.zip(projections.chunks_exact_mut(row_len)) {
+            project(model.modes(i), dir, out);
+        }
+        let (of_a, of_b) = projections.split_at(vertices_a.len() * row_len);
+        direction_bounds.clear();
+        let rounding = model.rounding.along(dir);
+        for (i, projected_i) in vertices_a.iter().zip(of_a.chunks_exact(row_len)) {
+            for (j, projected_j) in vertices_b.iter().zip(of_b.chunks_exact(row_len)) {
+                let gap = dir.dot(model.positions[*j as usize] - model.positions[*i as usize]);
+                direction_bounds.push(bound_points_along(gap, projected_i, projected_j, rounding));
+            }
+        }
+    }
+}
+
 impl<'m> LeafPair<'m> {
     pub(crate) fn new(model: &'m ScaledModel) -> Self {
         Self {
             model,
+            instructions: InstructionSet::default(),
             vertices_a: Vec::new(),
             vertices_b: Vec::new(),
             projections: Vec::new(),
@@ -50,21 +84,7 @@ impl<'m> LeafPair<'m> {
 
     /// Bounds every pair of vertices along a direction (from [`scale_direction`]).
     pub(crate) fn set_direction(&mut self, dir: DVec3) {
-        let (model, row_len) = (self.model, self.model.row_len);
-        let vertices = self.vertices_a.iter().chain(&self.vertices_b);
-        self.projections.resize((self.vertices_a.len() + self.vertices_b.len()) * row_len, 0.0);
-        for (&i, out) in vertices.zip(self.projections.chunks_exact_mut(row_len)) {
-            project(model.modes(i), dir, out);
-        }
-        let (of_a, of_b) = self.projections.split_at(self.vertices_a.len() * row_len);
-        self.direction_bounds.clear();
-        let rounding = model.rounding.along(dir);
-        for (i, projected_i) in self.vertices_a.iter().zip(of_a.chunks_exact(row_len)) {
-            for (j, projected_j) in self.vertices_b.iter().zip(of_b.chunks_exact(row_len)) {
-                let gap = dir.dot(model.positions[*j as usize] - model.positions[*i as usize]);
-                self.direction_bounds.push(bound_points_along(gap, projected_i, projected_j, rounding));
-            }
-        }
+        self.instructions.run(BoundVertices { pair: self, dir });
     }
 
     /// The bound of two triangles (or hulls of three of the vertices) along the direction.

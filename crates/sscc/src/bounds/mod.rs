@@ -32,4 +32,4 @@ pub(crate) use leaf_pair::LeafPair;
 pub(crate) use node_pair::{NodePairBounds, NodePairScratch};
 pub(crate) use pair_corners::PairCorners;
 pub(crate) use pair_refiner::{PairRefiner, RefinementTarget};
-pub(crate) use separating_direction::bound_along;
+pub(crate) use separating_direction::{CornerProjections, bound_along};

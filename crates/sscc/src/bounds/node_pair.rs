@@ -20,6 +20,7 @@ use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::mode_rows::{dot, gram, project};
 use crate::model::rounding::{ROUND_UP, quotient_down};
 use crate::model::{ScaledModel, scale_direction};
+use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// The affine modes of every node, from which pairs of nodes are bounded.
 pub(crate) struct NodePairBounds {
@@ -28,6 +29,7 @@ pub(crate) struct NodePairBounds {
 
 /// Scratch of one node pair.
 pub(crate) struct NodePairScratch {
+    pub(super) instructions: InstructionSet,
     /// The relative modes at the centres: three rows.
     difference: Vec<f64>,
     /// `B_0' dir` at the centres, then its change along the three axes of each box: seven rows.
@@ -67,7 +69,11 @@ const SIDES: [[f64; CORNERS]; 3] = {
 
 impl NodePairScratch {
     pub(crate) fn new(row_len: usize) -> Self {
-        Self { difference: vec![0.0; 3 * row_len], projections: vec![0.0; 7 * row_len] }
+        Self {
+            instructions: InstructionSet::default(),
+            difference: vec![0.0; 3 * row_len],
+            projections: vec![0.0; 7 * row_len],
+        }
     }
 }
 
@@ -106,6 +112,25 @@ impl NodePairBounds {
         scratch: &mut NodePairScratch,
     ) -> f64 {
         let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
+        scratch.instructions.run(NodeBound { n, m, sufficient, model, scratch })
+    }
+}
+
+/// The bound of two nodes.
+struct NodeBound<'n> {
+    n: &'n NodeModes,
+    m: &'n NodeModes,
+    sufficient: f64,
+    model: &'n ScaledModel,
+    scratch: &'n mut NodePairScratch,
+}
+
+impl Kernel for NodeBound<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> f64 {
+        let Self { n, m, sufficient, model, scratch } = self;
         let between = m.center - n.center;
         let half = n.half + m.half;
         let gap = n.gap(m);
@@ -131,6 +156,7 @@ impl NodePairBounds {
 
 /// The inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for
 /// points with the difference d is `gram^-1 d`.
+#[inline(always)]
 fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> DMat3 {
     for ((d, a), b) in scratch.difference.iter_mut().zip(&m.modes).zip(&n.modes) {
         *d = a - b;
@@ -145,6 +171,7 @@ fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> 
 }
 
 /// The bound along one direction: the smallest of the 64 pairs of corners.
+#[inline(always)]
 fn bound_corners_along(
     n: &NodeModes,
     m: &NodeModes,

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 
 use super::affine_bound::{AffineBound, is_near};
 use super::pair_corners::PairCorners;
-use super::separating_direction::{bound_along, bound_rest_distance};
+use super::separating_direction::{CornerProjections, bound_along, bound_rest_distance};
 use super::sub_triangle::{MAX_DEPTH, SubPair};
 use super::upper_bound::RelativeModes;
 use crate::geometry::nearest_to_origin;
@@ -49,8 +49,7 @@ pub(crate) struct PairRefiner<'m> {
     model: &'m ScaledModel,
     /// The modes of the corners of sub-triangles: 18 rows.
     corner_modes: Vec<f64>,
-    /// Scratch of six rows.
-    projections: Vec<f64>,
+    projections: CornerProjections,
     relative: RelativeModes,
     affine: AffineBound,
     /// Sub-triangles by their lower bound and, to break ties, a serial number.
@@ -65,7 +64,7 @@ impl<'m> PairRefiner<'m> {
         Self {
             model,
             corner_modes: vec![0.0; 6 * 3 * row_len],
-            projections: vec![0.0; 6 * row_len],
+            projections: CornerProjections::new(row_len),
             relative: RelativeModes::new(row_len),
             affine: AffineBound::new(row_len),
             open: BinaryHeap::new(),
@@ -115,7 +114,7 @@ impl<'m> PairRefiner<'m> {
                 // As far as the triangles may move: to the cap, or well beyond the lower bound.
                 let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
                 let part = part.corners(pair, &mut corner_modes);
-                let z = &mut self.projections[..self.model.row_len];
+                let z = &mut self.projections.rows[..self.model.row_len];
                 if let Some(upper) = self.relative.bound_along_ray(pair, &part, farthest, z) {
                     target.lower_upper_bound(upper);
                 }

@@ -16,37 +16,68 @@ use super::pair_corners::PairCorners;
 use crate::model::mode_rows::{project, squared_distance};
 use crate::model::rounding::{ROUND_UP, norm_up, radius_down};
 use crate::model::{RoundingAlong, RoundingBound};
+use crate::vectors::{InstructionSet, Kernel, Vectors};
 
-/// The bound along a direction (from [`scale_direction`](crate::model::scale_direction)). `projections` is scratch of six
-/// rows.
+/// The modes of six corners along a direction: scratch of six rows.
+pub(crate) struct CornerProjections {
+    pub(super) instructions: InstructionSet,
+    pub(super) rows: Vec<f64>,
+}
+
+impl CornerProjections {
+    pub(crate) fn new(row_len: usize) -> Self {
+        Self { instructions: InstructionSet::default(), rows: vec![0.0; 6 * row_len] }
+    }
+}
+
+/// The bound along a direction (from [`scale_direction`](crate::model::scale_direction)).
 pub(crate) fn bound_along(
     pair: &PairCorners<'_>,
     differences: &[DVec3; 9],
     dir: DVec3,
     rounding: &RoundingBound,
-    projections: &mut [f64],
+    projections: &mut CornerProjections,
 ) -> f64 {
     let smallest = differences.iter().map(|d| dir.dot(*d)).fold(f64::INFINITY, f64::min);
     let at_rest = rounding.at_rest(dir);
     if smallest.is_nan() || smallest <= at_rest {
         return 0.0;
     }
-    let row_len = projections.len() / 6;
-    for (i, modes) in pair.modes_a.iter().chain(&pair.modes_b).enumerate() {
-        project(modes, dir, &mut projections[i * row_len..][..row_len]);
-    }
     let rounding = RoundingAlong { at_rest, per_norm: rounding.per_norm(dir) };
-    let mut bound = f64::INFINITY;
-    for (ij, d) in differences.iter().enumerate() {
-        let [modes_i, modes_j] =
-            [ij / 3, 3 + ij % 3].map(|corner| &projections[corner * row_len..][..row_len]);
-        bound = bound.min(bound_points_along(dir.dot(*d), modes_i, modes_j, rounding));
+    let CornerProjections { instructions, rows } = projections;
+    instructions.run(CornerBound { pair, differences, dir, rounding, rows })
+}
+
+/// The smallest bound of nine pairs of corners along a direction.
+struct CornerBound<'p, 'm> {
+    pair: &'p PairCorners<'m>,
+    differences: &'p [DVec3; 9],
+    dir: DVec3,
+    rounding: RoundingAlong,
+    rows: &'p mut [f64],
+}
+
+impl Kernel for CornerBound<'_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> f64 {
+        let Self { pair, differences, dir, rounding, rows } = self;
+        let row_len = rows.len() / 6;
+        for (i, modes) in pair.modes_a.iter().chain(&pair.modes_b).enumerate() {
+            project(modes, dir, &mut rows[i * row_len..][..row_len]);
+        }
+        let mut bound = f64::INFINITY;
+        for (ij, d) in differences.iter().enumerate() {
+            let [modes_i, modes_j] = [ij / 3, 3 + ij % 3].map(|corner| &rows[corner * row_len..][..row_len]);
+            bound = bound.min(bound_points_along(dir.dot(*d), modes_i, modes_j, rounding));
+        }
+        bound
     }
-    bound
 }
 
 /// The bound of two points along a direction, from their gap and their modes projected on the direction.
-#[inline]
+#[inline(always)]
 pub(super) fn bound_points_along(
     gap: f64,
     projected_i: &[f64],

@@ -9,7 +9,7 @@ pub struct CertifyOptions {
     /// other radius that may be as small. The smallest radii of buckets and of pairs of buckets are fine: their tolerance
     /// is min(epsilon, 0.03), larger where only many subdivisions would help. Other radii are coarse: their tolerance is
     /// max(epsilon, 0.25) if the pair tree has bounded them, larger where only subdivision would help, else
-    /// max(epsilon, 0.4). A capped radius, or one whose search ran out of subdivisions or queue, may be smaller. Paper,
+    /// max(epsilon, 0.4); radii above two thirds of the pair tree's limit have none. A capped radius, or one whose search ran out of subdivisions or queue, may be smaller. Paper,
     /// section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
@@ -27,7 +27,8 @@ pub struct CertifyOptions {
     /// Memory for the pair tree ([`PairTree`](crate::PairTree)), in bytes for each triangle of the mesh; a node pair
     /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
     /// ([`PairTree::limit`](crate::PairTree::limit)): queries with `|z|` below that never open two nodes only because
-    /// their boxes touch. 0: no tree, which is the paper's scheme of one radius for each node and each pair of the root's
+    /// their boxes touch. A quarter of the budget is for radii that are searched; the others are those of larger radii, up
+    /// to 1.5 times the limit of the first, and mostly bounded by the nodes alone. 0: no tree, which is the paper's scheme of one radius for each node and each pair of the root's
     /// children; this suits certificates that serve a few queries only, since the tree takes most of the time.
     pub budget: usize,
     /// Number of threads; none: all cores. The result is the same for any number.
@@ -51,7 +52,7 @@ impl Default for CertifyOptions {
 
 impl CertifyOptions {
     /// The default of [`CertifyOptions::budget`], in bytes for each triangle.
-    pub const DEFAULT_BUDGET: usize = 16;
+    pub const DEFAULT_BUDGET: usize = 64;
 
     /// The default of [`CertifyOptions::max_exceptions`] for a mesh: half the number of its triangles. Testing more in
     /// every query costs as much as radii can save.

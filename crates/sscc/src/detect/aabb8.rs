@@ -6,10 +6,10 @@
 
 use glam::{Mat4, Vec4};
 
-use super::vectors::{InstructionSet, Kernel, Vectors};
+use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// AABBs in a packet.
-pub(crate) use super::vectors::LANES;
+pub(crate) use crate::vectors::LANES;
 
 /// An AABB in the single-precision coordinates of an [`F32Frame`](crate::detect::f32_frame::F32Frame): lower and upper
 /// corner; the fourth components mean nothing.

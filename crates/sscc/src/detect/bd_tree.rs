@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::aabb8::AabbF32;
 use super::quantization::{CoarseMotion, Quantization};
-use super::vectors::{InstructionSet, Kernel, LANES, Vectors};
 use crate::ReducedModel;
 use crate::geometry::Aabb;
 use crate::hierarchy::{Hierarchy, Node};
+use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// Components of a mean and a growth.
 const COMPONENTS: usize = 6;

@@ -7,8 +7,8 @@ use glam::Vec4;
 
 use super::buckets::Buckets;
 use super::quantization::{CoarseMotion, Quantization};
-use super::vectors::{InstructionSet, Kernel, LANES, Vectors};
 use super::vertex_store::VertexStore;
+use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of
 /// them, so that a bucket is read from contiguous memory (docs/notes/2026-11-23-packets-of-buckets.md).

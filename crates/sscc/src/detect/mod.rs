@@ -34,7 +34,6 @@ pub(crate) mod normal_cones;
 mod quantization;
 mod traversal;
 pub(crate) mod two_meshes;
-mod vectors;
 pub(crate) mod vertex_motion;
 mod vertex_store;
 

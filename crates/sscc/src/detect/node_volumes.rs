@@ -17,10 +17,10 @@ use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
 use super::quantization::CoarseMotion;
-use super::vectors::InstructionSet;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BRANCHING, Hierarchy};
+use crate::vectors::InstructionSet;
 
 // The children of a node are compared as the first four lanes of a packet.
 const _: () = assert!(BRANCHING <= LANES / 2);

@@ -5,10 +5,10 @@
 use glam::{DVec3, Vec4};
 
 use super::f32_frame::F32Frame;
-use super::vectors::LANES;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
+use crate::vectors::LANES;
 
 /// How displacements are quantized: as multiples of the largest displacement by the same mode. The rest pose is one more
 /// mode, the first, whose coordinate is 1.

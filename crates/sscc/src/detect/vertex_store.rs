@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::vectors::InstructionSet;
 use crate::ReducedModel;
+use crate::vectors::InstructionSet;
 
 /// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket lie
 /// far apart in memory. A vertex is named by its index in this store, which is not its number in the mesh.

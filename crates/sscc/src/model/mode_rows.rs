@@ -1,7 +1,8 @@
 //! Sums over the modes, for the bounds of section 5.
 //!
 //! A row has one number for each mode, padded with zeros to a multiple of four. Sums run over four lanes in a fixed order,
-//! so that they have the same bits on every machine. The modes of a vertex are three rows: x, y, z.
+//! so that they have the same bits on every machine, in any instruction set
+//! (`vectors.rs`). The modes of a vertex are three rows: x, y, z.
 
 use glam::{DMat3, DVec3};
 
@@ -13,12 +14,13 @@ pub(crate) fn padded_rank(rank: usize) -> usize {
     rank.div_ceil(LANES) * LANES
 }
 
+#[inline(always)]
 fn sum(lanes: [f64; LANES]) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
 /// `a . b`
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
@@ -30,7 +32,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `|a - b|^2`
-#[inline]
+#[inline(always)]
 pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
@@ -43,7 +45,7 @@ pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `out = A' dir` for the modes `A` of a point (three rows: x, y, z).
-#[inline]
+#[inline(always)]
 pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
     let row_len = out.len();
     let (x, rest) = modes.split_at(row_len);
@@ -54,13 +56,13 @@ pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
 }
 
 /// `out += weight * a`
-#[inline]
+#[inline(always)]
 pub(crate) fn add_scaled(out: &mut [f64], weight: f64, a: &[f64]) {
     out.iter_mut().zip(a).for_each(|(o, a)| *o += weight * a);
 }
 
 /// The 3 x 3 Gram matrix `B B'` of three rows.
-#[inline]
+#[inline(always)]
 pub(crate) fn gram(rows: &[f64]) -> DMat3 {
     let row_len = rows.len() / 3;
     let (x, rest) = rows.split_at(row_len);

@@ -138,6 +138,8 @@ mutants! {
     CapsuleInnerNodesStill: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// AABBs from coarse positions are those of the segment of a capsule.
     CoarseSlackForgotten: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
+    /// Pairs of the outer round are bounded.
+    OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
     /// A capsule omits the rounding error of positions.
     CapsuleExact: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The travelled distance of z is not rounded up.

@@ -38,7 +38,16 @@ fn residuals_hold_what_rounding_moves_corners_by() {
         let modes = [part.modes_a, part.modes_b].concat();
         let offsets: Vec<DVec3> = points.iter().map(|p| *p - points[0]).collect();
         let mut affine = AffineFit::new(row_len);
+        affine.instructions = InstructionSet::Baseline;
         assert!(affine.fit(&offsets, |i| modes[i]));
+        let bits = |affine: &AffineFit| -> Vec<u64> {
+            let residuals = affine.residuals.iter().chain([&affine.frobenius, &affine.longest]);
+            affine.gradient.iter().chain(residuals).map(|x| x.to_bits()).collect()
+        };
+        let in_baseline = bits(&affine);
+        affine.instructions = InstructionSet::default();
+        assert!(affine.fit(&offsets, |i| modes[i]));
+        assert_eq!(in_baseline, bits(&affine));
         // Both sides exactly: sums over the corners of the triangles, whose weights are exact.
         let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> BigRational {
             (0..3).map(|corner| exact(weights[corner]) * exact(of(corner))).sum()

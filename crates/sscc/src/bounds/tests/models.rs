@@ -6,11 +6,12 @@ use super::random::Random;
 use super::true_minimum::OraclePair;
 use crate::bounds::affine_bound::AffineBound;
 use crate::bounds::pair_corners::PairCorners;
-use crate::bounds::separating_direction::{bound_along, bound_rest_distance};
+use crate::bounds::separating_direction::{CornerProjections, bound_along, bound_rest_distance};
 use crate::bounds::{LeafPair, NodePairBounds, NodePairScratch, PairRefiner, RefinementTarget};
 use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, Node};
 use crate::model::{ScaledModel, scale_direction};
+use crate::vectors::InstructionSet;
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
 /// Room for the rounding of the search for the true minimum.
@@ -156,7 +157,7 @@ pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'st
     let pair = pair_corners(&scaled);
     let differences = pair.differences();
     let row_len = scaled.row_len;
-    let mut projections = vec![0.0; 6 * row_len];
+    let mut projections = CornerProjections::new(row_len);
     let mut affine = AffineBound::new(row_len);
     let mut bounds = Vec::new();
     let among_others = with_others(model, random);
@@ -182,6 +183,10 @@ pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'st
         let shared = leaves.bound_along_direction([0, 1, 2], [3, 4, 5]);
         let alone = bound_along(&pair, &differences, dir, &scaled_others.rounding, &mut projections);
         assert_eq!(shared.to_bits(), alone.to_bits());
+        projections.instructions = InstructionSet::Baseline;
+        let in_baseline = bound_along(&pair, &differences, dir, &scaled_others.rounding, &mut projections);
+        projections.instructions = InstructionSet::default();
+        assert_eq!(in_baseline.to_bits(), alone.to_bits());
         let distance = bound_rest_distance(&differences, dir, &scaled.rounding);
         if distance > 0.0 {
             for sufficient in [0.0, f64::INFINITY, random.power(-6.0, 6.0)] {
@@ -217,5 +222,10 @@ pub(super) fn node_pair_bound(model: &ReducedModel, split: u32) -> f64 {
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);
     let bounds = NodePairBounds::new(&scaled, &hierarchy);
-    bounds.bound(&scaled, 1, 2, f64::INFINITY, &mut NodePairScratch::new(scaled.row_len))
+    let mut scratch = NodePairScratch::new(scaled.row_len);
+    let bound = bounds.bound(&scaled, 1, 2, f64::INFINITY, &mut scratch);
+    scratch.instructions = InstructionSet::Baseline;
+    let in_baseline = bounds.bound(&scaled, 1, 2, f64::INFINITY, &mut scratch);
+    assert_eq!(in_baseline.to_bits(), bound.to_bits());
+    bound
 }

@@ -4,6 +4,10 @@
 //! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
 //! threads, as it would with one shared priority queue. The rounds end when the budget is used up. All pairs below the
 //! last limit are known. Some of their radii are then searched again (`fine_radii.rs`).
+//!
+//! The outer round adds the pairs beyond the last limit, up to a larger one, with bounds that take less time and may be
+//! smaller. Without them queries beyond the last limit would open every two buckets whose AABBs overlap
+//! (docs/notes/2026-11-26-outer-pairs.md).
 
 use std::ops::Range;
 
@@ -19,21 +23,38 @@ use super::task::{Task, TaskResult};
 use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
 use crate::hierarchy::{Hierarchy, NodePair};
+use crate::model::rounding::to_f32_down;
 
-/// The maximum number of node pairs of the BVTT for each entry that the budget allows: most turn out not to be needed.
+/// The maximum number of node pairs of the BVTT for each entry that the inner budget allows: most turn out not to be needed.
 /// In tests the limit is small, so that they reach it.
-const PAIRS_PER_ENTRY: usize = if cfg!(test) { 1 } else { 32 };
+const PAIRS_PER_ENTRY: usize = if cfg!(test) { 4 } else { 32 };
 
 /// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
 const MAX_PAIRS: usize = 1 << 31;
 
+/// The entries that rounds before the outer one may use are the budget over this: twice to three times as many follow.
+const OUTER_ENTRIES: usize = 4;
+
+/// The outer limit is this many times the last one, at most the global radius.
+const OUTER_FACTOR: f64 = 1.5;
+
 /// Open pairs that a thread takes at once.
 const SPLIT_GRAIN: usize = 8;
+
+/// One round of the construction.
+#[derive(Clone, Copy)]
+struct Round {
+    /// Pairs with smaller bounds are split.
+    limit: f64,
+    is_outer: bool,
+    /// The maximum number of pairs of the BVTT.
+    max_pairs: usize,
+}
 
 /// Lower bounds of node pairs, from which the pair tree is made.
 pub(super) struct PairTreeBuilder {
     bvtt: Bvtt,
-    /// Radii below this are known; 0: none is.
+    /// All pairs with smaller radii are known; 0: none is.
     pub(super) complete_below: f64,
     /// The maximum number of entries of the tree.
     budget: usize,
@@ -53,27 +74,37 @@ impl PairTreeBuilder {
             return Ok(builder);
         };
         builder.bvtt = Bvtt::new(hierarchy);
-        let most = budget.saturating_mul(PAIRS_PER_ENTRY).max(2 * builder.bvtt.pairs.len()).min(MAX_PAIRS);
+        let inner_budget = (budget / OUTER_ENTRIES).max(1);
+        let max_pairs =
+            inner_budget.saturating_mul(PAIRS_PER_ENTRY).max(2 * builder.bvtt.pairs.len()).min(MAX_PAIRS);
         loop {
-            let has_room = builder.run_round(hierarchy, schedule.limit(), most, executor)?;
+            let round = Round { limit: schedule.limit(), is_outer: false, max_pairs };
+            let has_room = builder.run_round(hierarchy, round, executor)?;
             let pairs = &builder.bvtt.pairs;
             let count_below = |radius: f64| pairs.iter().filter(|p| f64::from(p.lower) < radius).count();
-            if !schedule.advance(has_room, budget, count_below) {
+            if !schedule.advance(has_room, inner_budget, count_below) {
                 break;
             }
         }
         builder.complete_below = schedule.complete_below();
         refine_pairs(&mut builder.bvtt, builder.complete_below, preparation, executor)?;
+        let outer = (OUTER_FACTOR * builder.complete_below).min(preparation.global_radius);
+        let round = Round {
+            limit: f64::from(to_f32_down(outer)),
+            is_outer: true,
+            max_pairs: max_pairs.saturating_mul(2),
+        };
+        if round.limit > builder.complete_below && builder.run_round(hierarchy, round, executor)? {
+            builder.complete_below = round.limit;
+        }
         Ok(builder)
     }
 
-    /// Splits or bounds every pair below the limit. Returns false, with the BVTT unchanged, if it would have more than
-    /// `most` pairs.
+    /// Splits or bounds every pair below the limit. Returns false, with the BVTT unchanged, if it would have too many pairs.
     fn run_round(
         &mut self,
         hierarchy: &Hierarchy,
-        limit: f64,
-        most: usize,
+        Round { limit, is_outer, max_pairs }: Round,
         executor: &mut dyn Executor,
     ) -> Result<bool, Error> {
         let bvtt = &mut self.bvtt;
@@ -83,13 +114,13 @@ impl PairTreeBuilder {
         while !open.is_empty() {
             let task = |index: usize| {
                 let BvttPair { nodes, lower, .. } = bvtt.pairs[open[index] as usize];
-                Task::Split(SplitTask { nodes, lower, limit })
+                Task::Split(SplitTask { nodes, lower, limit, is_outer })
             };
             let stage = Stage {
                 count: open.len(),
                 task: &task,
                 grain: SPLIT_GRAIN,
-                max_added_pairs: most.saturating_sub(bvtt.pairs.len()),
+                max_added_pairs: max_pairs.saturating_sub(bvtt.pairs.len()),
                 on_finished: &|_| {},
             };
             let Some(results) = executor.run(&stage)? else {

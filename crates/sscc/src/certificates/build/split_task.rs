@@ -10,6 +10,10 @@ use crate::model::rounding::to_f32_down;
 /// A pair of buckets is bounded up to this many times the limit, so that most need no further search in the next round.
 const BUCKET_LOOKAHEAD: f64 = 2.0;
 
+/// In the outer round a pair of buckets is searched where its bound by the nodes alone is below this share of the limit.
+/// Moving hulls separate most of the others until close to their radius (docs/notes/2026-11-26-outer-pairs.md).
+const OUTER_SEARCH_SHARE: f64 = 0.75;
+
 /// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
 /// finish together. Tests have small models, and should leave some open, too.
 const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
@@ -25,6 +29,8 @@ pub(crate) struct SplitTask {
     pub(crate) lower: f32,
     /// Pairs with a lower bound below this are split.
     pub(crate) limit: f64,
+    /// Whether this is the outer round, the last one, with less precise bounds of pairs of buckets.
+    pub(crate) is_outer: bool,
 }
 
 /// Splits a pair breadth first. The result begins with the pair itself, and its indices refer to the result. After
@@ -35,7 +41,7 @@ pub(super) fn split(
     search: &mut RadiusSearch<'_>,
     progress: &dyn Progress,
 ) -> Option<Vec<BvttPair>> {
-    let SplitTask { limit, .. } = task;
+    let SplitTask { limit, is_outer, .. } = task;
     let mut subtree = vec![BvttPair::open(task.nodes, task.lower)];
     let mut next = 0;
     while next < subtree.len().min(MAX_BOUNDED) {
@@ -46,6 +52,14 @@ pub(super) fn split(
         let first = subtree.len() as u32;
         let pair = &mut subtree[next];
         match preparation.hierarchy.split_above_buckets(n, m) {
+            None if is_outer => {
+                let mut radius = right_or!(search.bound_nodes(nodes, limit), OuterPairUnbounded, limit);
+                if radius < OUTER_SEARCH_SHARE * limit {
+                    radius = radius.max(search.between_coarse(nodes, limit)?.radius);
+                }
+                pair.set_state(PairState::Bounded);
+                pair.lower = pair.lower.max(to_f32_down(radius));
+            }
             None => {
                 let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
                 let radius = search.between_coarse(nodes, cap)?.radius;

@@ -20,6 +20,7 @@ const SPLIT: u8 = 0;
 const COARSE_RADIUS: u8 = 1;
 const FULL_RADIUS: u8 = 2;
 const FINE_RADIUS: u8 = 3;
+const OUTER_SPLIT: u8 = 4;
 
 /// Writes a job, task by task, so that not all of them need be in memory at once.
 pub(super) struct JobWriter(Vec<u8>);
@@ -41,7 +42,7 @@ impl JobWriter {
     }
 
     fn add_split(&mut self, task: &SplitTask) {
-        self.0.push(SPLIT);
+        self.0.push(if task.is_outer { OUTER_SPLIT } else { SPLIT });
         self.add_nodes(task.nodes);
         self.0.extend(task.lower.to_le_bytes());
         self.0.extend(task.limit.to_le_bytes());
@@ -78,7 +79,8 @@ impl Job {
         let mut tasks = Vec::new();
         while !from.is_at_end() {
             tasks.push(match from.u8()? {
-                SPLIT => Task::Split(read_split(hierarchy, &mut from)?),
+                SPLIT => Task::Split(read_split(hierarchy, false, &mut from)?),
+                OUTER_SPLIT => Task::Split(read_split(hierarchy, true, &mut from)?),
                 COARSE_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Coarse, &mut from)?),
                 FINE_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Fine, &mut from)?),
                 FULL_RADIUS => Task::NodeRadius(read_radius(hierarchy, Precision::Full, &mut from)?),
@@ -89,9 +91,9 @@ impl Job {
     }
 }
 
-fn read_split(hierarchy: &Hierarchy, from: &mut ByteReader<'_>) -> Option<SplitTask> {
+fn read_split(hierarchy: &Hierarchy, is_outer: bool, from: &mut ByteReader<'_>) -> Option<SplitTask> {
     let nodes = read_nodes(hierarchy, from)?;
-    Some(SplitTask { nodes, lower: from.single_radius()?, limit: from.radius()? })
+    Some(SplitTask { nodes, lower: from.single_radius()?, limit: from.radius()?, is_outer })
 }
 
 fn read_radius(

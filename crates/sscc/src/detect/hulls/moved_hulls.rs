@@ -6,8 +6,8 @@ use super::hull_motion::HullMotion;
 use super::node_hulls::NodeHulls;
 use super::separation::{AffineMap, MovedPoints, PlaneTest, widest_gap};
 use crate::detect::f32_frame::F32Frame;
-use crate::detect::vectors::InstructionSet;
 use crate::detect::vertex_motion::VertexMotion;
+use crate::vectors::InstructionSet;
 
 /// A gap at the centre of less than so many radii seldom stays open: such pairs are not tested.
 const MIN_GAP: f32 = 2.0;

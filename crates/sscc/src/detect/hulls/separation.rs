@@ -9,8 +9,8 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use crate::detect::vectors::{Baseline, Kernel, LANES, Vectors};
 use crate::geometry::nearest_to_origin;
+use crate::vectors::{Baseline, Kernel, LANES, Vectors};
 
 /// The coordinates of core points along each axis.
 pub(super) type Points = [[f32; CORE_POINTS]; 3];

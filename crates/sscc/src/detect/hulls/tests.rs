@@ -10,13 +10,13 @@ use super::{MovedHulls, NodeHulls};
 use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::layout::{Layout, Needs};
-use crate::detect::vectors::{Baseline, InstructionSet};
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::filter::PairFilter;
 use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::ScaledModel;
 use crate::test_models::Random;
+use crate::vectors::{Baseline, InstructionSet};
 use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
 
 /// A model with all that its hulls need.

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::Pair;
-use crate::bounds::{PairCorners, bound_along};
+use crate::bounds::{CornerProjections, PairCorners, bound_along};
 use crate::filter::PairFilter;
 use crate::geometry::{TwoTriangles, nearest_to_origin};
 use crate::model::{RoundingBound, ScaledModel, scale_direction};
@@ -18,7 +18,7 @@ pub(super) struct SafeDistances {
     error: RoundingBound,
     /// No distance is larger: the rounding bound holds that far.
     largest: f64,
-    projections: Vec<f64>,
+    projections: CornerProjections,
 }
 
 impl SafeDistances {
@@ -26,7 +26,7 @@ impl SafeDistances {
         Self {
             error: model.rounding.between_configurations(0.0),
             largest: 0.0,
-            projections: vec![0.0; 6 * model.row_len],
+            projections: CornerProjections::new(model.row_len),
             model,
         }
     }
