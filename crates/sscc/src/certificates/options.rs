@@ -7,7 +7,7 @@ use crate::{ContactFilter, Metric};
 pub struct CertifyOptions {
     /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
     /// other radius that may be as small. The smallest radii of buckets and of pairs of buckets are fine: their tolerance
-    /// is min(epsilon, 0.03), larger where only many subdivisions would help. Other radii are coarse: their tolerance is
+    /// is min(epsilon, 0.03), larger where only many subdivisions or triangle pairs would help. Other radii are coarse: their tolerance is
     /// max(epsilon, 0.25) if the pair tree has bounded them, larger where only subdivision would help, else
     /// max(epsilon, 0.4); radii above two thirds of the pair tree's limit have none. A capped radius, or one whose search ran out of subdivisions or queue, may be smaller. Paper,
     /// section 5.1: 0.1.

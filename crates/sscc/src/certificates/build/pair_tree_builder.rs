@@ -92,7 +92,7 @@ impl PairTreeBuilder {
         let round = Round {
             limit: f64::from(to_f32_down(outer)),
             is_outer: true,
-            max_pairs: max_pairs.saturating_mul(2),
+            max_pairs: max_pairs.saturating_mul(2).min(MAX_PAIRS),
         };
         if round.limit > builder.complete_below && builder.run_round(hierarchy, round, executor)? {
             builder.complete_below = round.limit;

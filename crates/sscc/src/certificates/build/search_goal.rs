@@ -30,7 +30,7 @@ pub(super) const FINE_EPSILON: f64 = 0.03;
 /// The maximum number of subdivisions of one triangle pair in fine searches.
 pub(super) const FINE_SUBDIVISIONS: usize = 8;
 
-/// The maximum number of triangle pairs that one fine search subdivides: without it, one search in twenty takes most of the
+/// The maximum number of triangle pairs that one fine search subdivides, within a bucket for each of its nodes: without it, one search in twenty takes most of the
 /// time.
 pub(super) const FINE_TRIANGLE_PAIRS: usize = 32;
 
