@@ -1,8 +1,9 @@
 //! Vectors of eight single-precision numbers, in the instruction set that the processor has: AVX2, or the baseline.
 //!
-//! A [`Kernel`] is written once, over [`Vectors`]. [`InstructionSet`] chooses the vectors at run time. Both kinds round
-//! each operation to nearest, and no product is fused with a sum, so a kernel gives the same bits with both
-//! (docs/notes/2026-11-25-explicit-vectors.md).
+//! A [`Kernel`] is written once, over [`Vectors`], or over plain numbers that the compiler puts into vectors of the
+//! instruction set, as the bounds of certificates do (docs/notes/2026-11-26-time-of-certificates.md). [`InstructionSet`]
+//! chooses the vectors at run time. Both kinds round each operation to nearest, and no product is fused with a sum, so a
+//! kernel gives the same bits with both (docs/notes/2026-11-25-explicit-vectors.md).
 
 use glam::{BVec4A, Mat4, Vec4};
 

@@ -27,9 +27,10 @@ pub struct CertifyOptions {
     /// Memory for the pair tree ([`PairTree`](crate::PairTree)), in bytes for each triangle of the mesh; a node pair
     /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
     /// ([`PairTree::limit`](crate::PairTree::limit)): queries with `|z|` below that never open two nodes only because
-    /// their boxes touch. A quarter of the budget is for radii that are searched; the others are those of larger radii, up
-    /// to 1.5 times the limit of the first, and mostly bounded by the nodes alone. 0: no tree, which is the paper's scheme of one radius for each node and each pair of the root's
-    /// children; this suits certificates that serve a few queries only, since the tree takes most of the time.
+    /// their boxes touch. Node pairs up to two thirds of the limit may use a quarter of the budget, and their radii are
+    /// searched; those beyond mostly have the bound of the two nodes alone. 0: no tree, which is the paper's scheme of one
+    /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
+    /// since the tree takes most of the time.
     pub budget: usize,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,

@@ -1,8 +1,8 @@
 //! Sums over the modes, for the bounds of section 5.
 //!
 //! A row has one number for each mode, padded with zeros to a multiple of four. Sums run over four lanes in a fixed order,
-//! so that they have the same bits on every machine, in any instruction set
-//! (`vectors.rs`). The modes of a vertex are three rows: x, y, z.
+//! so that they have the same bits on every machine and in any instruction set (`vectors.rs`). The modes of a vertex are
+//! three rows: x, y, z.
 
 use glam::{DMat3, DVec3};
 

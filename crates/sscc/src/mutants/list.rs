@@ -138,6 +138,10 @@ mutants! {
     CapsuleInnerNodesStill: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// AABBs from coarse positions are those of the segment of a capsule.
     CoarseSlackForgotten: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
+    /// A search that ends with open triangle pairs has their bounds, too.
+    OpenTrianglesForgotten: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
+    /// A refused outer round leaves the limit as it was.
+    RefusedOuterRoundComplete: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
     /// Pairs of the outer round are bounded.
     OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
     /// A capsule omits the rounding error of positions.

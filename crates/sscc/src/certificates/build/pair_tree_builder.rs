@@ -32,8 +32,8 @@ const PAIRS_PER_ENTRY: usize = if cfg!(test) { 4 } else { 32 };
 /// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
 const MAX_PAIRS: usize = 1 << 31;
 
-/// The entries that rounds before the outer one may use are the budget over this: twice to three times as many follow.
-const OUTER_ENTRIES: usize = 4;
+/// The rounds before the outer one may use the budget over this: the outer round adds two to three times as many entries.
+const INNER_DIVISOR: usize = 4;
 
 /// The outer limit is this many times the last one, at most the global radius.
 const OUTER_FACTOR: f64 = 1.5;
@@ -74,7 +74,7 @@ impl PairTreeBuilder {
             return Ok(builder);
         };
         builder.bvtt = Bvtt::new(hierarchy);
-        let inner_budget = (budget / OUTER_ENTRIES).max(1);
+        let inner_budget = (budget / INNER_DIVISOR).max(1);
         let max_pairs =
             inner_budget.saturating_mul(PAIRS_PER_ENTRY).max(2 * builder.bvtt.pairs.len()).min(MAX_PAIRS);
         loop {
@@ -94,8 +94,11 @@ impl PairTreeBuilder {
             is_outer: true,
             max_pairs: max_pairs.saturating_mul(2).min(MAX_PAIRS),
         };
-        if round.limit > builder.complete_below && builder.run_round(hierarchy, round, executor)? {
-            builder.complete_below = round.limit;
+        if round.limit > builder.complete_below {
+            let has_room = builder.run_round(hierarchy, round, executor)?;
+            if right_or!(has_room, RefusedOuterRoundComplete, true) {
+                builder.complete_below = round.limit;
+            }
         }
         Ok(builder)
     }

@@ -160,9 +160,9 @@ impl<'a> RadiusSearch<'a> {
             if self.progress.is_cancelled() {
                 return None;
             }
-            let is_last = matches!(candidate, Candidate::Triangles(..)) && self.triangle_pairs_left == 0;
-            if is_last || lower >= self.refine_up_to() {
-                break lower.min(self.certified);
+            let has_ended = matches!(candidate, Candidate::Triangles(..)) && self.triangle_pairs_left == 0;
+            if has_ended || lower >= self.refine_up_to() {
+                break right_or!(lower.min(self.certified), OpenTrianglesForgotten, self.certified);
             }
             self.refine(candidate, lower);
             if self.certified <= 0.0 {
