@@ -25,7 +25,7 @@ pub struct Record {
     pub share: f64,
     /// The largest `|z|` over the root's radius, where this is what scales the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub root_radii: Option<f64>,
+    pub times_root: Option<f64>,
     /// Triangles of one body.
     pub triangles: usize,
     /// Modes of one body.
@@ -160,7 +160,7 @@ impl Record {
             source: model.source.clone(),
             note: notes(model.note.clone(), strata.missing()),
             share,
-            root_radii: None,
+            times_root: None,
             triangles: model.model.mesh().faces().len(),
             rank: model.model.rank(),
             objects,

@@ -25,16 +25,16 @@ pub fn measure(
     samples: usize,
 ) -> Result<Vec<Record>, Error> {
     let unit = unit_motion(model, samples);
-    let record = |root_radii: f64| {
+    let record = |times_root: f64| {
         setup.begin_measuring();
-        let factor = root_radii * model.full.certificates.root_radius();
+        let factor = times_root * model.full.certificates.root_radius();
         let steps = displacement_steps(&unit, 100.0 * factor);
         let comparison = compare(model, &steps, None, Kinds::Both, setup.watch)?;
         let displacement = |q: &Vec<f64>| largest_displacement(&model.model, &scaled(q, factor));
         let largest = unit.iter().map(displacement).fold(0.0, f64::max);
         let share = 100.0 * largest / half_diagonal(&model.model);
         let record = Record::new(format!("mixed/{name}"), share, model, &comparison, 1, None);
-        Ok(Record { root_radii: Some(root_radii), ..record })
+        Ok(Record { times_root: Some(times_root), ..record })
     };
     ROOT_RADII.into_iter().map(record).collect()
 }

@@ -119,9 +119,9 @@ fn measurements() {
     let run = bench(folder.path(), &mixed);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
     let motions = run.json();
-    motions.iter().for_each(|report| check(report, "note, root_radii"));
+    motions.iter().for_each(|report| check(report, "note, times_root"));
     let of = |key: &str| -> Vec<Value> { motions.iter().map(|report| report[key].clone()).collect() };
-    assert_eq!(of("root_radii"), [2.0, 4.0, 8.0].map(|times| json!(times)));
+    assert_eq!(of("times_root"), [2.0, 4.0, 8.0].map(|times| json!(times)));
     let share = |report: &Value| report["share"].as_f64().unwrap();
     assert!((share(&motions[2]) / share(&motions[1]) - 2.0).abs() < 1e-9, "{motions:?}");
 

@@ -225,7 +225,8 @@ impl Kernel for NestedPacketPair<'_> {
             return Overlaps::default();
         }
         let columns = pair.second.compare_all(v, first.0, first.1);
-        pair.masked |= u64::from(!columns & 0xff) * 0x0101_0101_0101_0101;
+        let clear = right_or!(!columns & 0xff, PacketColumnsSwapped, columns & 0xff);
+        pair.masked |= u64::from(clear) * 0x0101_0101_0101_0101;
         pair.run(v)
     }
 }

@@ -108,7 +108,7 @@ impl<const E: usize> BroadPhase<E> {
         motion: &M,
         narrow: &mut N,
     ) {
-        if let Some(pair) = self.deferred.take() {
+        if let Some(pair) = right_or!(self.deferred.take(), LastBucketPairForgotten, None) {
             self.test_bucket_pair(context, pair, motion, narrow);
         }
     }

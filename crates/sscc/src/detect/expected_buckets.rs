@@ -51,7 +51,9 @@ impl<const E: usize> ExpectedBuckets<E> {
             begin_coarse(layout, motion, &F32Frame::around(motion.overall_aabb(layout)), coarse)
         };
         let is_coarse = self.motions.iter_mut().zip(searches).fold(true, |all, both| all & begins(both));
-        self.positions.iter_mut().for_each(|positions| positions.moved.clear());
+        if right_or!(true, MovedBucketsKept, false) {
+            self.positions.iter_mut().for_each(|positions| positions.moved.clear());
+        }
         // A search alone gains nothing.
         if !is_coarse || self.expected.is_empty() || searches.len() < 2 {
             return;
@@ -115,4 +117,47 @@ pub(crate) fn begin_coarse<const E: usize, M: VertexMotion<E>>(
         && motion
             .coarse_coordinates()
             .is_some_and(|q| layout.quantization.begin(coarse, q, frame, motion.rounding()))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::detect::layout::Needs;
+    use crate::detect::vertex_motion::DeformedMotion;
+    use crate::filter::PairFilter;
+    use crate::hierarchy::Hierarchy;
+    use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
+
+    /// A group has the buckets that were expected for it, and no others of an earlier group.
+    #[test]
+    fn only_expected_buckets_are_moved_ahead() {
+        let positions: Vec<DVec3> =
+            (0..602).map(|i| DVec3::new(f64::from(i / 2), f64::from(i % 2), 0.0)).collect();
+        let faces = (0..600).map(|i| [i, i + 1, i + 2]).collect();
+        let modes = Modes::new(1, vec![DVec3::Z; positions.len()]).unwrap();
+        let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+        let q = [0.01];
+        let reach = model.check_coordinates(&q).unwrap();
+        let searches = [(); 2].map(|()| DeformedMotion::new([&q[..]], reach));
+        let mut ahead = ExpectedBuckets::<1>::new(&layout);
+        let count = layout.buckets.count() as u32;
+        assert!(count > 2);
+        for round in 0..5 {
+            let is_opened = |bucket: u32| bucket % count == round % count;
+            ahead.begin(&layout, &searches);
+            for i in 0..2 {
+                let moved = &ahead.of_search(i).moved;
+                let expected = |bucket: u32| round > 0 && bucket == (round - 1) % count;
+                let is_right = moved.iter().zip(0..).all(|(moved, bucket)| *moved == expected(bucket));
+                assert!(is_right && moved.is_empty() == (round == 0), "{round}: {moved:?}");
+                ahead.count(is_opened);
+            }
+            ahead.end(2);
+        }
+    }
 }

@@ -88,6 +88,8 @@ mutants! {
     CoarseTrianglesNotWidened: CaughtBy("it rounding::exact_contacts_are_found_in_single_precision");
     /// The buckets moved ahead for one group are those of the last group.
     BucketsOfLastGroup: CaughtBy("it batch::answers_are_those_of_single_queries");
+    /// Buckets that were moved for one group count as moved for the next one.
+    MovedBucketsKept: CaughtBy("lib detect::expected_buckets::tests::only_expected_buckets_are_moved_ahead");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Swept AABBs of triangles contain the start only.
@@ -106,6 +108,14 @@ mutants! {
     HullResidualForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The bound of residuals by a few vectors omits the remainder.
     HullRemainderForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// The bound of residuals by a few vectors omits what they bound.
+    HullVectorsForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// Sums over the modes of residuals have no rounding error.
+    HullSumsExact: CaughtBy("lib detect::hulls::tests::radii_cover_sums_that_cancel");
+    /// A moving hull does not stretch the distance of vertices from the core points' hull.
+    HullNotStretched: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    /// The radius of a moving hull is that at the end of a motion.
+    HullRadiusAtEnd: CaughtBy("lib detect::hulls::tests::motions_and_capsules_are_covered");
     /// Hulls about a configuration move by q, not by the difference from it.
     HullWithoutConfiguration: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The radius of a moving hull omits the error of single precision.
@@ -118,6 +128,12 @@ mutants! {
     HullsTouch: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// The gap along a normal is compared as if the normal had length 1.
     HullNormalTakenAsUnit: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    /// The gap of two hulls is not rounded down.
+    HullGapToNearest: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
+    /// Squares of the lengths of normals may be no normal numbers.
+    HullNormalOfAnyLength: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
+    /// In the units of a model, squares of displacements may underflow.
+    HullSlackUnscaled: CaughtBy("lib detect::hulls::hull_motion::tests::displacements_are_never_short_in_the_frame");
     /// A plane separates hulls at the start of a motion alone.
     HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// Nodes go half as far within the radius of a capsule.
@@ -144,12 +160,30 @@ mutants! {
     RefusedOuterRoundComplete: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
     /// Pairs of the outer round are bounded.
     OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
+    /// Pairs of the outer round that are searched are free below the limit.
+    OuterSearchForgotten: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
+    /// After a refused round, pairs that it has split stay split.
+    RefusedRoundNotUndone: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
+    /// The limit of a pair tree whose budget is full is that of its construction.
+    TreeLimitNotLowered: CaughtBy("lib certificates::build::pair_tree_builder::tests::the_limit_falls_with_the_budget");
+    /// A fine radius is stored for another pair.
+    FineRadiusOfAnother: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
     /// A capsule omits the rounding error of positions.
     CapsuleExact: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The travelled distance of z is not rounded up.
     TravelledToNearest: CaughtBy("lib query::kinetic::region_pairs::tests::the_travelled_distance_is_never_short");
+    /// Safe distances still hold after a jump.
+    SafeDistancesSurviveJumps: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
     /// Buckets share no vertex of many triangles.
     LargeClassForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
+    /// The triangles of a packet are not tested with each other.
+    PacketNotTestedAgainstItself: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
+    /// The bucket pair that was deferred last is not tested.
+    LastBucketPairForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
+    /// Of a second packet, the triangles that are clear of the first one are tested.
+    PacketColumnsSwapped: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
+    /// Kernels for AVX2 round a product and a sum once.
+    MultiplyAddFused: CaughtBy("lib vectors::tests::bits_do_not_depend_on_the_instruction_set");
     /// A motion from one q to the next stays in the region and in safe distances if its start does.
     StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
     /// A safe distance that is exactly used up still holds.

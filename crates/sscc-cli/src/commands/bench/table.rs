@@ -68,7 +68,7 @@ impl<'a> Table<'a> {
                 scene[0], compared[0], scene[1], compared[1], scene[2], compared[2]
             ));
         }
-        let label = |record: &Record| match record.root_radii {
+        let label = |record: &Record| match record.times_root {
             Some(times) => format!("{times} root radii"),
             None => format!("{}%", (record.share * 10.0).round() / 10.0),
         };

@@ -128,7 +128,9 @@ impl PairTreeBuilder {
             };
             let Some(results) = executor.run(&stage)? else {
                 bvtt.pairs.truncate(before_round);
-                replaced.into_iter().for_each(|(index, pair)| bvtt.pairs[index] = pair);
+                if right_or!(true, RefusedRoundNotUndone, false) {
+                    replaced.into_iter().for_each(|(index, pair)| bvtt.pairs[index] = pair);
+                }
                 return Ok(false);
             };
             let of_before = open.iter().map(|index| *index as usize).filter(|index| *index < before_round);
@@ -180,4 +182,36 @@ impl PairTreeBuilder {
 /// The indices of the open pairs that may collide below a limit.
 fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
     indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CertifyOptions;
+    use crate::certificates::build::executor::ThreadExecutor;
+    use crate::certificates::test_models::ring;
+
+    /// However small the budget is, the tree has all pairs below its limit, and no more than the budget allows.
+    #[test]
+    fn the_limit_falls_with_the_budget() {
+        let mut lowered = 0;
+        for case in 0..3 {
+            let model = ring(300, 3, 1.3 + f64::from(case));
+            let preparation = Preparation::new(&model, &CertifyOptions::default(), &()).unwrap();
+            let hierarchy = &preparation.hierarchy;
+            let most = hierarchy.order().len();
+            for budget in [1, 2, 7, 40, most / 8, most / 2, most] {
+                let mut executor = ThreadExecutor { preparation: &preparation, progress: &() };
+                let mut builder = PairTreeBuilder::build(&preparation, most, &mut executor).unwrap();
+                builder.budget = budget;
+                let (complete_below, pairs) = (builder.complete_below, builder.bvtt.pairs.clone());
+                let tree = builder.finish(hierarchy, &vec![0.0; hierarchy.nodes().len()]);
+                assert!(tree.len() <= budget && tree.limit() <= complete_below);
+                let below = pairs.iter().filter(|pair| f64::from(pair.lower) < tree.limit()).count();
+                assert_eq!(tree.len(), below, "case {case}, budget {budget}");
+                lowered += usize::from(!tree.is_empty() && tree.limit() < complete_below);
+            }
+        }
+        assert!(lowered >= 6, "{lowered}");
+    }
 }

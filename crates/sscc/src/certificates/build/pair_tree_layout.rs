@@ -8,7 +8,8 @@ use crate::hierarchy::Hierarchy;
 
 /// The tree of all pairs below a limit, which is lowered until at most `budget` pairs are left.
 pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, limit: f64, budget: usize) -> PairTree {
-    let limit = fitting_limit(&bvtt.pairs, limit, budget);
+    let known_below = limit;
+    let limit = fitting_limit(&bvtt.pairs, known_below, budget);
     if limit <= 0.0 {
         return PairTree::default();
     }
@@ -33,7 +34,7 @@ pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, limit: f64, budget: us
         }
         next += 1;
     }
-    PairTree::new(limit, starts, entries)
+    PairTree::new(right_or!(limit, TreeLimitNotLowered, known_below), starts, entries)
 }
 
 fn is_below(pair: &BvttPair, limit: f64) -> bool {

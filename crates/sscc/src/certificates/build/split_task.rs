@@ -55,7 +55,8 @@ pub(super) fn split(
             None if is_outer => {
                 let mut radius = right_or!(search.bound_nodes(nodes, limit), OuterPairUnbounded, limit);
                 if radius < OUTER_SEARCH_SHARE * limit {
-                    radius = radius.max(search.between_coarse(nodes, limit)?.radius);
+                    let searched = search.between_coarse(nodes, limit)?.radius;
+                    radius = right_or!(radius.max(searched), OuterSearchForgotten, limit);
                 }
                 pair.set_state(PairState::Bounded);
                 pair.lower = pair.lower.max(to_f32_down(radius));

@@ -84,14 +84,16 @@ impl<const E: usize> HullMotion<E> {
         let double = (rounding + rounding_bound(hulls.reach, hulls.rank)) * self.scale;
         let error = 1.01 * DIAGONAL * (single + right_or!(double, HullShapeExact, 0.0)) + 1e-15;
         self.error = error as f32;
-        self.relative = (2.0 * (rank + 16.0) * unit) as f32;
+        self.relative = right_or!((2.0 * (rank + 16.0) * unit) as f32, HullSumsExact, 0.0);
         error <= MAX_ERROR
     }
 
     /// A displacement along each axis as a distance in the frame, rounded up.
     pub(super) fn distance(&self, displacement: DVec3) -> f32 {
         // Scaled first: in the units of a tiny model squares would underflow.
-        (((displacement * self.scale).length() * (1.0 + 1e-6)) as f32).min(f32::MAX)
+        let scaled = (displacement * self.scale).length();
+        let length = right_or!(scaled, HullSlackUnscaled, displacement.length() * self.scale);
+        ((length * (1.0 + 1e-6)) as f32).min(f32::MAX)
     }
 }
 

@@ -147,10 +147,12 @@ impl<const E: usize> MovedHulls<E> {
             let sum = sums[end].x * (1.0 + relative);
             let along =
                 (0..3).map(|j| shape.along[j] * (sums[end][j + 1].abs() + relative * sum)).sum::<f32>();
+            let along = right_or!(along, HullVectorsForgotten, 0.0);
             let split = (along + shape.remainder * squares[end].sqrt()) * (1.0 + 2.0 * relative);
             let residual = right_or!(sum.min(split), HullResidualForgotten, 0.0);
-            let radius = shape.distance * norm_bound(&columns) + residual;
-            hull.radius = hull.radius.max(radius * (1.0 + 1e-6));
+            let stretch = right_or!(norm_bound(&columns), HullNotStretched, 1.0);
+            let radius = (shape.distance * stretch + residual) * (1.0 + 1e-6);
+            hull.radius = right_or!(hull.radius.max(radius), HullRadiusAtEnd, radius);
             if end == 0 {
                 let [x, y, z] = [columns.x_axis, columns.y_axis, columns.z_axis];
                 let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));

@@ -105,12 +105,12 @@ impl<const E: usize> Kernel for PlaneTest<'_, E> {
         let Self { points: [a, b], distance, normal } = self;
         let square = normal.length_squared();
         // NaN and infinity fail this test or one of the gap.
-        if !SQUARES.contains(&square) {
+        if !right_or!(SQUARES.contains(&square), HullNormalOfAnyLength, square > 0.0) {
             return false;
         }
         let gap = -b.extent(vectors, -normal) - a.extent(vectors, normal);
         let reached = distance * distance * right_or!(square, HullNormalTakenAsUnit, 1.0);
-        let is_wide = gap * gap > reached * ROUND_UP;
+        let is_wide = gap * gap > reached * right_or!(ROUND_UP, HullGapToNearest, 1.0);
         gap > 0.0 && gap.is_finite() && right_or!(is_wide, HullsTouch, true)
     }
 }

@@ -102,14 +102,19 @@ impl Case {
     }
 }
 
-/// A rolled sheet of `2 (side - 1)^2` triangles. `modes`: the displacements of each vertex, from its place on the unit
-/// sheet and its position.
-fn sheet(side: u32, size: f64, mut modes: impl FnMut([f64; 2], DVec3) -> Vec<DVec3>) -> ReducedModel {
+/// A rolled sheet of `2 (side - 1)^2` triangles. `place`: the position of each vertex, from its place on the unit sheet and on
+/// the rolled one. `modes`: its displacements, from its place on the unit sheet and its position.
+fn sheet(
+    side: u32,
+    size: f64,
+    place: impl Fn([f64; 2], DVec3) -> DVec3,
+    mut modes: impl FnMut([f64; 2], DVec3) -> Vec<DVec3>,
+) -> ReducedModel {
     let (mut positions, mut rows, mut rank) = (Vec::new(), Vec::new(), 0);
     for i in 0..side * side {
         let [u, v] = [i % side, i / side].map(|i| f64::from(i) / f64::from(side - 1));
         let angle = 1.5 * PI * u;
-        let x = DVec3::new(angle.cos(), angle.sin(), 2.0 * v) * size;
+        let x = place([u, v], DVec3::new(angle.cos(), angle.sin(), 2.0 * v) * size);
         let of_vertex = modes([u, v], x);
         rank = of_vertex.len();
         rows.extend(of_vertex);
@@ -123,17 +128,30 @@ fn sheet(side: u32, size: f64, mut modes: impl FnMut([f64; 2], DVec3) -> Vec<DVe
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
 }
 
-/// Smooth, affine, rigid, planar and noisy modes of any size.
+/// Smooth, affine, rigid, planar and noisy modes of any size, on a rolled sheet, a plane curve, a line, or a sheet of which a
+/// part is a point.
 fn random_sheet(random: &mut Random, case: usize) -> ReducedModel {
     let rank = [1, 2, 3, 7, 20][case % 5];
     let size = [1.0, 1e-60, 1e40, 1e-165][case / 5 % 4];
     let ways: Vec<[DVec3; 4]> = (0..rank).map(|_| std::array::from_fn(|_| random.vector())).collect();
     let mut noise = Random(case as u64 + 1);
-    sheet([4, 9, 14][case % 3], size, |[u, v], x| {
+    let place = |[u, _]: [f64; 2], x: DVec3| match case / 20 % 4 {
+        0 => x,
+        1 => DVec3::new(x.x, x.y, 0.0),
+        2 => DVec3::new(0.3 * x.x, x.x, -0.2 * x.x),
+        _ => {
+            if u < 0.6 {
+                DVec3::splat(size)
+            } else {
+                x
+            }
+        }
+    };
+    sheet([4, 9, 14][case % 3], size, place, |[u, v], x| {
         let x = x / size;
         let mode = |(k, [a, b, c, d]): (usize, &[DVec3; 4])| {
             let k_f64 = k as f64;
-            let shape = match k % 6 {
+            let shape = match (k + case / 5) % 6 {
                 0 => *a * (3.0 * u + k_f64).sin() + *b * v * v,
                 1 => *a * x.dot(*b) + *c * x.dot(*d),
                 2 => *a,
@@ -152,20 +170,38 @@ fn random_sheet(random: &mut Random, case: usize) -> ReducedModel {
 fn vertices_are_within_the_radius_of_their_hull() {
     let random = &mut Random(5);
     let (mut checked, mut tight) = (0, 0);
-    for case in 0..60 {
+    for case in 0..80 {
         let model = random_sheet(random, case);
         let rank = model.rank();
         let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
-        let size = model.mesh().rest_positions()[0].length();
+        let size = model.mesh().rest_positions().iter().map(|x| x.length()).fold(0.0, f64::max);
+        // The direction that moves two random vertices farthest apart, with the same largest coordinate.
+        let apart: Vec<Vec<f64>> = (0..4)
+            .map(|axis| {
+                let mut any = || {
+                    let count = model.mesh().rest_positions().len() as f64;
+                    (count * 0.999 * random.signed().abs()) as u32
+                };
+                let [v, w] = [any(), any()].map(|v| model.modes().of_vertex(v));
+                let along = |k: usize| (v[k] - w[k])[axis % 3] / sizes[k].max(f64::MIN_POSITIVE);
+                let most = (0..rank).map(|k| along(k).abs()).fold(f64::MIN_POSITIVE, f64::max);
+                (0..rank).map(|k| along(k) / most).collect()
+            })
+            .collect();
         // Each mode moves the shape by up to about so many times its size.
         let mut q = |most: f64| -> Vec<f64> {
             sizes.iter().map(|s| random.signed() * most * size / s.max(f64::MIN_POSITIVE)).collect()
         };
         let configuration = if case % 2 == 0 { vec![0.0; rank] } else { q(0.7) };
         let case_of = Case::new(model, &configuration);
-        for i in 0..16 {
-            let mut at = q([1e-9, 0.02, 0.3, 2.0][i % 4]);
-            if i % 3 == 0 {
+        for i in 0..24 {
+            let most = [1e-9, 0.02, 0.3, 2.0][i % 4];
+            let mut at = q(most);
+            if i >= 16 {
+                let factors = apart[i % 4].iter().zip(&sizes);
+                let far = factors.map(|(x, s)| x * most * size / s.max(f64::MIN_POSITIVE));
+                at = far.collect();
+            } else if i % 3 == 0 {
                 // One mode alone.
                 let only = i % rank;
                 at.iter_mut().enumerate().filter(|(k, _)| *k != only).for_each(|(_, x)| *x = 0.0);
@@ -177,7 +213,27 @@ fn vertices_are_within_the_radius_of_their_hull() {
             }
         }
     }
-    assert!(checked > 700 && tight > 200, "{checked} {tight}");
+    assert!(checked > 1400 && tight > 400, "{checked} {tight}");
+}
+
+/// Residuals that cancel over the modes, where no affine map has any part of them: all that is left is the rounding of their
+/// sums.
+#[test]
+fn radii_cover_sums_that_cancel() {
+    let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    // Corners of a square, up and down in turn. Four modes, so that the vector of the residuals is exact.
+    let rows =
+        (0..4).flat_map(|v| (0..4).map(move |k| if (v + k) % 2 == 0 { DVec3::Z } else { DVec3::NEG_Z }));
+    let mesh = TriMesh::new(positions.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(4, rows.collect()).unwrap()).unwrap();
+    let case = Case::new(model, &[0.0; 4]);
+    let (random, mut farthest) = (&mut Random(21), 0.0_f64);
+    for i in 0..200 {
+        let q: Vec<f64> = (0..4).map(|_| 1e4 * (1.0 + 1e-7 * random.signed())).collect();
+        let (share, _) = case.check_at(&q, &format!("cancelling residuals, {i}")).unwrap();
+        farthest = farthest.max(share);
+    }
+    assert!(farthest > 0.01, "{farthest}");
 }
 
 /// With as many core points as vertices and affine modes nothing but rounding is left. Modes that cancel make it large.
@@ -188,7 +244,8 @@ fn radii_cover_single_precision() {
         let random = &mut Random(case + 1);
         let [a, b, c, d] = std::array::from_fn(|_| random.vector());
         // Two modes that are nearly opposite.
-        let model = sheet(4, 1.0, |_, x| vec![a + b * x.dot(c), -a - b * x.dot(c) + d * x.x * 1e-3]);
+        let model =
+            sheet(4, 1.0, |_, x| x, |_, x| vec![a + b * x.dot(c), -a - b * x.dot(c) + d * x.x * 1e-3]);
         let case_of = Case::new(model, &[0.0; 2]);
         for size in [1.0, 30.0, 500.0] {
             let q = size * random.signed();
@@ -207,7 +264,7 @@ fn radii_cover_the_rounding_of_the_shape() {
     for case in 0..20 {
         let random = &mut Random(case + 1);
         let far = DVec3::splat(1e11 * (1.0 + random.signed().abs()));
-        let model = sheet(4, 1.0, |_, x| vec![DVec3::ONE, x.cross(DVec3::Z)]);
+        let model = sheet(4, 1.0, |_, x| x, |_, x| vec![DVec3::ONE, x.cross(DVec3::Z)]);
         let positions: Vec<DVec3> = model.mesh().rest_positions().iter().map(|x| *x + far).collect();
         let mesh = TriMesh::new(positions, model.mesh().faces().to_vec()).unwrap();
         let model = ReducedModel::new(mesh, model.modes().clone()).unwrap();
@@ -324,4 +381,25 @@ fn only_gaps_wider_than_the_radii_separate() {
     assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
     assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));
     assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
+}
+
+/// Points whose distance is known apart from rounding, along normals of any length.
+#[test]
+fn gaps_are_rounded_down() {
+    let points = [[0.0; CORE_POINTS]; 3];
+    let at = |x: f32| [[Vec4::new(1.0, 0.0, 0.0, x), Vec4::Y, Vec4::Z]];
+    let (low, high) = (at(0.0), at(1.0));
+    let random = &mut Random(31);
+    for case in 0..20_000 {
+        let length = 10.0_f64.powi(case % 40 - 28);
+        let normal = DVec3::new(1.0 + random.signed(), random.signed(), random.signed()) * length;
+        let normal = normal.as_vec3();
+        if normal.x <= 0.0 {
+            continue;
+        }
+        let normal_f64 = normal.as_dvec3();
+        let distance = ((normal_f64.x / normal_f64.length()) as f32).next_up();
+        let points = [&low, &high].map(|maps| MovedPoints::<1> { points: &points, maps });
+        assert!(!InstructionSet::Baseline.run(PlaneTest { points, distance, normal }), "{normal} {distance}");
+    }
 }

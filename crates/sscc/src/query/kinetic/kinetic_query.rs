@@ -237,7 +237,7 @@ impl<'a> KineticQuery<'a> {
         let context = &self.query.context;
         let metric = &context.scope.metric;
         let norm = start.norm;
-        // Where the pair tree is complete, it must be so in the whole region.
+        // Where the pair tree is complete, it should be so in the whole region: beyond its limit a search takes longer.
         let limit = context.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit());
         let least = 2.0 * MIN_STEPS;
         let steps = (self.control.capsules.share * norm / step).max(least);

@@ -92,7 +92,9 @@ impl RegionPairs {
     /// Forgets everything: z has jumped.
     pub(super) fn forget(&mut self) {
         (self.travelled, self.end) = (0.0, 0.0);
-        self.remembered.clear();
+        if right_or!(true, SafeDistancesSurviveJumps, false) {
+            self.remembered.clear();
+        }
     }
 
     /// Whether z has not travelled as far as the region lasts.
