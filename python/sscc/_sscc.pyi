@@ -71,7 +71,7 @@ class Model:
         epsilon: allowed relative error of the root's radius; None: 0.1.
         metric: as in ``Model``; None: the model's own.
         center: the q from which radii are measured (r,); None: 0, the rest pose.
-        scheme: "full" (default) stores a pair tree of up to ``budget`` (16) bytes for each triangle; "paper" does not.
+        scheme: "full" (default) stores a pair tree of up to ``budget`` (64) bytes for each triangle; "paper" does not.
         neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
         ignore_rest: whether pairs that collide at rest never count.

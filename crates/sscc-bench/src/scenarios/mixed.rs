@@ -24,7 +24,8 @@ pub fn measure(
     setup: &Setup<'_>,
     samples: usize,
 ) -> Result<Vec<Record>, Error> {
-    let unit = unit_motion(model, samples);
+    let norm = |q: &[f64]| model.full.certificates.norm(q);
+    let unit = unit_motion(&Oscillators::of(model), norm, samples);
     let record = |times_root: f64| {
         setup.begin_measuring();
         let factor = times_root * model.full.certificates.root_radius();
@@ -39,13 +40,34 @@ pub fn measure(
     ROOT_RADII.into_iter().map(record).collect()
 }
 
-/// Returns so many states of the motion, scaled so that the largest `|z|` of them is 1.
-fn unit_motion(model: &CertifiedModel, samples: usize) -> Vec<Vec<f64>> {
-    let oscillators = Oscillators::of(model);
+/// Returns so many states of the motion, scaled so that the largest norm of them is 1.
+fn unit_motion(oscillators: &Oscillators, norm: impl Fn(&[f64]) -> f64, samples: usize) -> Vec<Vec<f64>> {
     let amplitudes = oscillators.amplitudes_of_equal_speed();
     let at = |i: usize| oscillators.at(&amplitudes, PERIODS * i as f64 / samples as f64);
     let states: Vec<Vec<f64>> = (0..samples).map(at).collect();
-    let norm = |q: &Vec<f64>| model.full.certificates.norm(q);
-    let largest = states.iter().map(norm).fold(0.0, f64::max);
+    let largest = states.iter().map(|q| norm(q)).fold(0.0, f64::max);
     states.iter().map(|q| scaled(q, 1.0 / largest)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten periods of the first mode, all modes at the same largest speed, and a largest norm of 1.
+    #[test]
+    fn states_are_those_of_the_stated_motion() {
+        let frequencies = [3.0, 7.5, 20.0];
+        let norm =
+            |q: &[f64]| q.iter().zip([1.0, 4.0, 9.0]).map(|(x, weight)| weight * x * x).sum::<f64>().sqrt();
+        let states = unit_motion(&Oscillators::new(frequencies.to_vec()), norm, 20_000);
+        let largest = states.iter().map(|q| norm(q)).fold(0.0, f64::max);
+        assert!((largest - 1.0).abs() < 1e-12, "{largest}");
+        for q in &states[..1000] {
+            let next = &states[2000 + states.iter().position(|x| x == q).unwrap()];
+            assert!((q[0] - next[0]).abs() < 1e-9, "the first mode is not periodic");
+        }
+        let most = |k: usize| frequencies[k] * states.iter().map(|q| q[k].abs()).fold(0.0, f64::max);
+        let speeds = [0, 1, 2].map(most);
+        assert!(speeds.iter().all(|speed| (speed / speeds[0] - 1.0).abs() < 1e-4), "{speeds:?}");
+    }
 }

@@ -17,12 +17,14 @@ pub struct Oscillators {
 impl Oscillators {
     /// Returns the oscillators of a model's modes, with random phases.
     pub fn of(model: &CertifiedModel) -> Self {
+        Self::new(model.elasticity.stiffness().diagonal().map(|k| k.max(0.0).sqrt()).collect())
+    }
+
+    /// Returns oscillators of these angular frequencies (1/s), with random phases.
+    pub fn new(frequencies: Vec<f64>) -> Self {
         let random = &mut Random(SEED);
-        let (rank, stiffness) = (model.model.rank(), model.elasticity.stiffness());
-        Self {
-            frequencies: stiffness.diagonal().map(|k| k.max(0.0).sqrt()).collect(),
-            phases: (0..rank).map(|_| TAU * random.uniform()).collect(),
-        }
+        let phases = frequencies.iter().map(|_| TAU * random.uniform()).collect();
+        Self { frequencies, phases }
     }
 
     /// Returns the frequency of the first mode (Hz).

@@ -6,11 +6,16 @@ use crate::{ContactFilter, Metric};
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
     /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
-    /// other radius that may be as small. The smallest radii of buckets and of pairs of buckets are fine: their tolerance
-    /// is min(epsilon, 0.03), larger where only many subdivisions or triangle pairs would help. Other radii are coarse: their tolerance is
-    /// max(epsilon, 0.25) if the pair tree has bounded them, larger where only subdivision would help, else
-    /// max(epsilon, 0.4); radii above two thirds of the pair tree's limit have none. A capped radius, or one whose search ran out of subdivisions or queue, may be smaller. Paper,
-    /// section 5.1: 0.1.
+    /// radius that may be as small. Other radii may be smaller than that:
+    ///
+    /// - the smallest radii of buckets and of pairs of buckets: tolerance `min(epsilon, 0.03)`, as far as a limited number of
+    ///   subdivisions and triangle pairs suffices;
+    /// - other pairs of buckets that the rounds before the outer one bound: `max(epsilon, 0.25)`, as far as no subdivision is
+    ///   needed;
+    /// - pairs of buckets that the outer round adds, up to 1.5 times the limit before it: lower bounds without a tolerance;
+    /// - radii of nodes that are searched apart: `max(epsilon, 0.4)`.
+    ///
+    /// A radius at the cap, or one whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1: 0.1.
     pub epsilon: f64,
     /// The metric; none: the model's default.
     pub metric: Option<Metric>,
@@ -27,8 +32,8 @@ pub struct CertifyOptions {
     /// Memory for the pair tree ([`PairTree`](crate::PairTree)), in bytes for each triangle of the mesh; a node pair
     /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
     /// ([`PairTree::limit`](crate::PairTree::limit)): queries with `|z|` below that never open two nodes only because
-    /// their boxes touch. Node pairs up to two thirds of the limit may use a quarter of the budget, and their radii are
-    /// searched; those beyond mostly have the bound of the two nodes alone. 0: no tree, which is the paper's scheme of one
+    /// their AABBs touch. The rounds before the outer one may use a quarter of the budget, and search the radii of their pairs;
+    /// pairs of the outer round mostly have the bound of the two nodes alone. 0: no tree, which is the paper's scheme of one
     /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
     /// since the tree takes most of the time.
     pub budget: usize,

@@ -4,7 +4,7 @@
 //! their AABBs always overlap. The pair tree stores the radius of every node pair below a limit, so a query ends at a
 //! pair whose radius it has not reached. The splitting rule ([`Hierarchy::split_above_buckets`]) alone decides which
 //! pairs there are, never AABBs: AABBs that are disjoint at rest may overlap later. Below the limit a pair that is not
-//! stored is certified. At the limit and beyond, nothing follows. The tree has no pairs within buckets.
+//! stored is certified. At the limit and beyond, a missing pair proves nothing. The tree has no pairs within buckets.
 
 use crate::hierarchy::{Hierarchy, Node, NodePair};
 

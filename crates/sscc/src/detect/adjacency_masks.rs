@@ -119,7 +119,7 @@ impl AdjacencyMasks {
 
     /// Whether triangles of two buckets, the first before the second, may share a vertex class.
     #[inline]
-    pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
+    pub(crate) fn can_share_vertex(&self, first: u32, second: u32) -> bool {
         let [start, end] = [0, 1].map(|i| self.neighbour_starts[first as usize + i] as usize);
         let have_large_class = self.has_large_class[first as usize] && self.has_large_class[second as usize];
         self.neighbours[start..end].contains(&second)
@@ -176,11 +176,11 @@ mod tests {
                 };
                 let is_neighbour = of_bucket(first).iter().any(shares);
                 assert!(
-                    masks.may_share_vertex(first as u32, second as u32) || !is_neighbour,
+                    masks.can_share_vertex(first as u32, second as u32) || !is_neighbour,
                     "{first} {second}"
                 );
                 neighbours += i32::from(is_neighbour);
-                others += i32::from(!masks.may_share_vertex(first as u32, second as u32));
+                others += i32::from(!masks.can_share_vertex(first as u32, second as u32));
             }
         }
         assert!(neighbours > 20 && others > 20, "{neighbours} {others}");

@@ -123,7 +123,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// Counts a visit of a node, and checks now and then. False if the search is to end.
     #[inline]
-    pub(crate) fn continues<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
+    pub(crate) fn can_continue<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
         self.visits = self.visits.wrapping_add(1);
         if self.visits.is_multiple_of(VISITS_PER_CHECK) {
             self.check_cancelled(context, narrow);

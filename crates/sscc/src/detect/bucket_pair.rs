@@ -28,7 +28,7 @@ impl<const E: usize> BroadPhase<E> {
     fn are_adjacent(&self, context: &Context<'_>, slots: [usize; 2]) -> bool {
         let buckets = &self.volumes.layout.buckets;
         if context.filter.is_adjacency_alone() {
-            return buckets.share_vertex(slots);
+            return buckets.has_shared_vertex(slots);
         }
         let [a, b] = slots.map(|slot| buckets.triangle(slot));
         context.filter.relation(a, b) == Relation::Adjacent
@@ -78,7 +78,7 @@ impl<const E: usize> BroadPhase<E> {
         let overlaps = pair.overlaps(self.volumes.instructions);
         self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
         let share_no_vertex =
-            context.filter.groups().is_none() && !self.volumes.layout.buckets.may_share_vertex(n, m);
+            context.filter.groups().is_none() && !self.volumes.layout.buckets.can_share_vertex(n, m);
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };

@@ -110,8 +110,8 @@ impl Buckets {
     /// Whether triangles of two buckets, the first before the second, may share a vertex class. Where masks are not known,
     /// they may.
     #[inline]
-    pub(crate) fn may_share_vertex(&self, first: u32, second: u32) -> bool {
-        self.adjacency.get().is_none_or(|masks| masks.may_share_vertex(first, second))
+    pub(crate) fn can_share_vertex(&self, first: u32, second: u32) -> bool {
+        self.adjacency.get().is_none_or(|masks| masks.can_share_vertex(first, second))
     }
 
     /// The pairs of two packets that need no test, see [`AdjacencyMasks::masked_pairs`]; and whether adjacent triangles are
@@ -126,7 +126,7 @@ impl Buckets {
 
     /// Whether the triangles in two slots share a vertex class.
     #[inline]
-    pub(crate) fn share_vertex(&self, slots: [usize; 2]) -> bool {
+    pub(crate) fn has_shared_vertex(&self, slots: [usize; 2]) -> bool {
         let ([a, b, c], other) = (self.classes[slots[0]], self.classes[slots[1]]);
         // Without branches: most triangles whose boxes overlap share a vertex, but not the same one.
         other.into_iter().fold(false, |shared, x| shared | (x == a) | (x == b) | (x == c))

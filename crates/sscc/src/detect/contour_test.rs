@@ -26,14 +26,14 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
                 break;
             }
             let is_free = if next(i) == j {
-                go_on(polygon[i], polygon[j], end(j), moved)
+                has_one_common_point(polygon[i], polygon[j], end(j), moved)
             } else if next(j) == i {
-                go_on(polygon[j], polygon[i], end(i), moved)
+                has_one_common_point(polygon[j], polygon[i], end(i), moved)
             } else {
                 low(j, 1) > high(i, 1)
                     || low(i, 1) > high(j, 1)
-                    || on_one_side(polygon[i], end(i), [polygon[j], end(j)], moved)
-                    || on_one_side(polygon[j], end(j), [polygon[i], end(i)], moved)
+                    || is_on_one_side(polygon[i], end(i), [polygon[j], end(j)], moved)
+                    || is_on_one_side(polygon[j], end(j), [polygon[i], end(i)], moved)
             };
             if !is_free {
                 return false;
@@ -69,13 +69,13 @@ fn area_sign(a: [f64; 2], b: [f64; 2], c: [f64; 2], moved: f64) -> f64 {
 }
 
 /// Whether two points are certainly on the same side of a line, and not on it.
-fn on_one_side(a: [f64; 2], b: [f64; 2], points: [[f64; 2]; 2], moved: f64) -> bool {
+fn is_on_one_side(a: [f64; 2], b: [f64; 2], points: [[f64; 2]; 2], moved: f64) -> bool {
     let [x, y] = points.map(|p| area_sign(a, b, p, moved));
     x * y > 0.0
 }
 
 /// Whether two edges, a to b and b to c, certainly have b alone in common: c is off the line, or ahead.
-fn go_on(a: [f64; 2], b: [f64; 2], c: [f64; 2], moved: f64) -> bool {
+fn has_one_common_point(a: [f64; 2], b: [f64; 2], c: [f64; 2], moved: f64) -> bool {
     let (u, v) = (difference(a, b), difference(b, c));
     let (p, q) = (u[0] * v[0], u[1] * v[1]);
     area_sign(a, b, c, moved) != 0.0 || p + q > error(u, v, p.abs() + q.abs(), moved)

@@ -27,7 +27,8 @@ const BOUNDED: u32 = u32::MAX;
 pub(crate) enum PairState {
     /// Not split; only the lower bound is known.
     Open,
-    /// A pair of buckets whose radius is known.
+    /// A pair of buckets that needs no further task: its lower bound was searched, or, in the outer round, may be that of
+    /// the two nodes alone.
     Bounded,
     /// Split into pairs; the index of the first of them.
     Split(u32),

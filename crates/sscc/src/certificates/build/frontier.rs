@@ -12,7 +12,8 @@ pub(super) struct Frontier {
     pub(super) radius: f64,
     /// Pairs of which only a lower bound is known.
     pub(super) open: Vec<BoundedNodePair>,
-    /// Pairs of buckets whose radius is known, with the tolerance of the pair tree or a smaller one.
+    /// Pairs of buckets that need no further task. Their bounds have the tolerance of the pair tree or a smaller one, except
+    /// those of the outer round, which have none.
     pub(super) bounded: Vec<BoundedNodePair>,
 }
 

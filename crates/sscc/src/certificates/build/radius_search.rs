@@ -100,9 +100,9 @@ impl<'a> RadiusSearch<'a> {
         self.run()
     }
 
-    /// The radius, at most `cap`, of all triangle pairs between two nodes, with the error of the pair tree and without
-    /// subdivision. None if cancelled.
-    pub(crate) fn between_coarse(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
+    /// The radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is that of the pair
+    /// tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`]. None if cancelled.
+    pub(crate) fn between_without_subdivision(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::new(cap, Precision::Full));
         self.target =
             RefinementTarget { epsilon: self.epsilon.max(PAIR_TREE_EPSILON), subdivisions: 0, ..self.target };

@@ -55,7 +55,7 @@ pub(super) fn split(
             None if is_outer => {
                 let mut radius = right_or!(search.bound_nodes(nodes, limit), OuterPairUnbounded, limit);
                 if radius < OUTER_SEARCH_SHARE * limit {
-                    let searched = search.between_coarse(nodes, limit)?.radius;
+                    let searched = search.between_without_subdivision(nodes, limit)?.radius;
                     radius = right_or!(radius.max(searched), OuterSearchForgotten, limit);
                 }
                 pair.set_state(PairState::Bounded);
@@ -63,7 +63,7 @@ pub(super) fn split(
             }
             None => {
                 let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
-                let radius = search.between_coarse(nodes, cap)?.radius;
+                let radius = search.between_without_subdivision(nodes, cap)?.radius;
                 if radius < cap || cap == preparation.global_radius {
                     pair.set_state(PairState::Bounded);
                 }

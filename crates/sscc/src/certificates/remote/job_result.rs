@@ -13,7 +13,7 @@ const OPEN: u8 = 0;
 const BOUNDED: u8 = 1;
 const SPLIT: u8 = 2;
 
-/// What must be known of a task to read its result.
+/// The layout of a task's result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ResultLayout {
     /// The pair that is split.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::geometry::nearest_within;
 
-/// Core points of each hull. With 16 hulls are too loose; 64 hardly make them tighter.
+/// Core points of each hull. With 24, hulls leave more node pairs open; more points hardly make them tighter, and take longer
+/// (docs/notes/2026-11-24-moving-hulls.md).
 pub(super) const CORE_POINTS: usize = 32;
 
 /// Directions in which the first core points are extreme: the corners, edge midpoints and face centres of a cube, one
@@ -31,7 +32,8 @@ const TOLERANCE: f64 = 0.01;
 /// A distance that needs not be known more exactly.
 const CLOSE: f64 = TOLERANCE / 2.0;
 
-/// Rounding of a distance, as a share of the largest norm.
+/// Rounding of a distance, as a share of the largest norm: differences and sums of 32 products of numbers of at most 2, less
+/// than 300 eps.
 const ROUNDING: f64 = 1e-12;
 
 /// Core points, and how far any point may be from their hull.

@@ -39,7 +39,9 @@ pub(super) struct HullShape {
 /// Vertices nearly in a plane do not determine the gradient across it: this share of the trace keeps that part small.
 const REGULARIZATION: f64 = 1e-4;
 
-/// Rounding of a residual, relative to the terms of the map.
+/// Rounding of a residual, relative to the terms of the map: four products and their sums (7 eps), a difference, and the scaled
+/// mode (2 eps). That of positions and offsets is not part of it: the residual is that of the offsets as computed, and where
+/// these place a vertex is within the rounding bound of the shape.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl NodeHull {

@@ -20,7 +20,9 @@ pub(super) const VECTORS: usize = 3;
 /// Rounds of the search for the vectors.
 const ROUNDS: usize = 3;
 
-/// Rounding of residuals, vectors and remainders in double precision, relative to entries of at most 1.
+/// Rounding of remainders in double precision, for each mode. Entries are at most 1. Products with a vector, their sum and a
+/// difference add at most (r + 3) eps to an entry, for each vector; so the norm of r entries adds less than `3 r^1.5 eps`,
+/// plus a few eps for entries larger than 1 by rounding. That is below `1e-11 r` for any rank up to 1e8.
 const ROUNDING: f64 = 1e-11;
 
 /// The bound of a node's residuals.
@@ -69,7 +71,8 @@ impl Residuals {
             along[j] = up(most);
         }
         let largest = residuals.chunks_exact(rank).map(spectral_bound).fold(0.0, f64::max);
-        // The error of the residuals is at most 1 in units of e_k; of the mode's own error, that is.
+        // The residual of mode k may be wrong by error_k, so its H_v by error_k / e_k, and the remainder by the norm of all of
+        // these: the h_vj are those computed here.
         let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
         let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
         let remainder = right_or!(up(largest + error + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);

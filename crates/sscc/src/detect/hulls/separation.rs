@@ -73,7 +73,8 @@ fn extent<V: Vectors>(v: V, [x, y, z]: &Points, turned: Vec4) -> f32 {
     a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
 }
 
-/// Covers the rounding of the test: squares, products, a sum, a difference.
+/// Covers the rounding of the test: the squares, the length and the product add less than 8 u, which is 5e-7. That of the gap is
+/// part of the radii.
 const ROUND_UP: f32 = 1.0 + 1e-5;
 
 const _: () = assert!(CORE_POINTS.is_multiple_of(LANES));
@@ -88,7 +89,7 @@ const TOLERANCE: f32 = 1e-3;
 /// Whether a plane separates two sets of points by more than a distance, the first one below.
 ///
 /// The gap along the normal is compared with the distance times the normal's length, both squared. Squares are within the
-/// range of numbers: coordinates are below 1e5 and distances above 1e-15, by the bound of their errors
+/// range of numbers: coordinates are below 1e4 and distances above 1e-15, by the bound of their errors
 /// ([`HullMotion::error`](super::hull_motion::HullMotion)).
 pub(super) struct PlaneTest<'t, const E: usize> {
     pub(super) points: [MovedPoints<'t, E>; 2],

@@ -6,8 +6,9 @@ use super::hits::Hits;
 use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 
-/// Tests two triangles, and collects the hits. The discrete and the swept one are exact; the ball one compares AABBs.
-/// All methods share them, so that all give the same answers.
+/// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
+/// queries; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All methods share them, so that all give the same
+/// answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;

@@ -115,8 +115,9 @@ impl<'a> KineticQuery<'a> {
         Ok(self.query.pairs())
     }
 
-    /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last query,
-    /// and the region around it proves all pairs apart until `q_t1`, nothing is searched. Only pairs that come as close as
+    /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last
+    /// discrete query that the root's certificate did not answer, and the region around it proves all pairs free until `q_t1`,
+    /// nothing is searched. Only pairs that come as close as
     /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
     /// this query.
     ///
@@ -163,7 +164,7 @@ impl<'a> KineticQuery<'a> {
         let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);
         // The region is convex, and contains the start.
         let is_contained = self.region.contains(&context.scope.metric, t1);
-        if !(self.region_pairs.stays_safe(step) && right_or!(is_contained, MotionLeavesRegion, true)) {
+        if !(self.region_pairs.is_safe_for(step) && right_or!(is_contained, MotionLeavesRegion, true)) {
             return Ok(false);
         }
         let active = &self.region_pairs.active;
@@ -208,7 +209,7 @@ impl<'a> KineticQuery<'a> {
         }
         if had_region {
             let is_contained = self.region.contains(metric, configuration);
-            if !(self.region_pairs.lasts() && right_or!(is_contained, RegionNeverLeft, true)) {
+            if !(self.region_pairs.has_travel_left() && right_or!(is_contained, RegionNeverLeft, true)) {
                 self.region_pairs.leave_region();
                 self.control.end_region(self.region_pairs.steps);
             }
@@ -242,7 +243,7 @@ impl<'a> KineticQuery<'a> {
         let least = 2.0 * MIN_STEPS;
         let steps = (self.control.capsules.share * norm / step).max(least);
         let steps = self.history.straight_steps(metric, steps);
-        if steps >= least && !self.control.prefers_ball() {
+        if steps >= least && !self.control.is_ball_better() {
             if self.control.capsules.pause > 0 {
                 return false;
             }

@@ -111,7 +111,7 @@ impl RegionControl {
     }
 
     /// Whether a ball may cost less for each step than a capsule. Motions that return stay long in balls.
-    pub(super) fn prefers_ball(&self) -> bool {
+    pub(super) fn is_ball_better(&self) -> bool {
         let unknown = UNKNOWN_COST_PER_STEP * self.plain_cost as f64;
         self.balls.pause == 0
             && self.balls.cost_per_step.unwrap_or(unknown) < self.capsules.cost_per_step.unwrap_or(0.0)

@@ -98,12 +98,12 @@ impl RegionPairs {
     }
 
     /// Whether z has not travelled as far as the region lasts.
-    pub(super) fn lasts(&self) -> bool {
+    pub(super) fn has_travel_left(&self) -> bool {
         self.travelled < self.end
     }
 
     /// Whether the region lasts for a straight step from here, and all safe pairs stay within their safe distances.
-    pub(super) fn stays_safe(&self, step: f64) -> bool {
+    pub(super) fn is_safe_for(&self, step: f64) -> bool {
         let travelled = right_or!(up(self.travelled + step), StepOfMotionForgotten, self.travelled);
         travelled < self.end && self.safe.peek().is_none_or(|pair| pair.key > travelled)
     }
@@ -185,9 +185,9 @@ mod tests {
         assert_eq!(region_pairs.next_expired(), Some((0, 2)));
         region_pairs.advance(5.0);
         assert_eq!(region_pairs.next_expired(), Some((0, 1)));
-        assert!(region_pairs.has_region() && region_pairs.lasts());
+        assert!(region_pairs.has_region() && region_pairs.has_travel_left());
         region_pairs.advance(1.0);
-        assert!(!region_pairs.lasts());
+        assert!(!region_pairs.has_travel_left());
         // In the next region (8 to 12) one of the others is known to stay apart; one only up to 9.
         region_pairs.leave_region();
         region_pairs.begin_region(4.0);
