@@ -61,23 +61,27 @@ impl MinimumSearch<'_> {
     /// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
     /// rays.
     pub(super) fn search(&self, faces: Pair, random: &mut Random) -> Option<Collision> {
-        let found = self
-            .filter
-            .hulls(faces.0, faces.1)
-            .filter_map(|hulls| self.search_hulls(faces, &PointPairs { scaled: self.scaled, hulls }, random));
+        let found = self.filter.simplex_pairs(faces.0, faces.1).filter_map(|simplices| {
+            self.search_simplices(faces, &PointPairs { scaled: self.scaled, simplices }, random)
+        });
         found.reduce(|best, next| if next.norm < best.norm { next } else { best })
     }
 
     /// The offset from the centre of a q at which random points of two triangles meet; none where they are adjacent, or
     /// modes do not bring them together.
     pub(super) fn approach(&self, faces: Pair, random: &mut Random) -> Option<Vec<f64>> {
-        let hulls = self.filter.hulls(faces.0, faces.1).next()?;
-        let z = PointPairs { scaled: self.scaled, hulls }.solution(Weights::random(random));
+        let simplices = self.filter.simplex_pairs(faces.0, faces.1).next()?;
+        let z = PointPairs { scaled: self.scaled, simplices }.solution(Weights::random(random));
         let moves = z.iter().any(|z| *z != 0.0);
         moves.then(|| self.scope.metric.unscaled(&z[..self.model.rank()]))
     }
 
-    fn search_hulls(&self, faces: Pair, points: &PointPairs<'_>, random: &mut Random) -> Option<Collision> {
+    fn search_simplices(
+        &self,
+        faces: Pair,
+        points: &PointPairs<'_>,
+        random: &mut Random,
+    ) -> Option<Collision> {
         let best = minimize(points, random);
         if !best.radius.is_finite() {
             return self.search_along_rays(faces, points, random);

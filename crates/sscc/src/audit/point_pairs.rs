@@ -3,19 +3,19 @@
 use glam::{DMat3, DVec3};
 
 use super::random::Random;
-use crate::filter::Hulls;
+use crate::filter::SimplexPair;
 use crate::model::ScaledModel;
 
 /// Steps of the barycentric grid along each edge.
 pub(super) const GRID: usize = 6;
 
-/// Points of two hulls, given by barycentric weights.
+/// Points of two simplices, given by barycentric weights.
 pub(super) struct PointPairs<'a> {
     pub(super) scaled: &'a ScaledModel,
-    pub(super) hulls: Hulls<u32>,
+    pub(super) simplices: SimplexPair<u32>,
 }
 
-/// Barycentric weights of a point of each hull.
+/// Barycentric weights of a point of each simplex.
 #[derive(Clone, Copy)]
 pub(super) struct Weights {
     pub(super) a: DVec3,
@@ -55,7 +55,9 @@ impl PointPairs<'_> {
         let row_len = self.scaled.row_len;
         let mut difference = DVec3::ZERO;
         let mut relative = vec![DVec3::ZERO; row_len];
-        for (corners, weights, sign) in [(self.hulls.a, weights.a, -1.0), (self.hulls.b, weights.b, 1.0)] {
+        for (corners, weights, sign) in
+            [(self.simplices.a, weights.a, -1.0), (self.simplices.b, weights.b, 1.0)]
+        {
             for (&i, w) in corners.iter().zip(weights.to_array()) {
                 let modes = self.scaled.modes(i);
                 difference += self.scaled.positions[i as usize] * (w * sign);

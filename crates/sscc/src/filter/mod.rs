@@ -7,6 +7,6 @@ mod triangle_groups;
 mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair};
-pub(crate) use pair_filter::{Hulls, PairFilter, Relation};
+pub(crate) use pair_filter::{PairFilter, Relation, SimplexPair};
 pub use triangle_groups::TriangleGroups;
 pub(crate) use weld::{weld_classes, weld_classes_of_positions};

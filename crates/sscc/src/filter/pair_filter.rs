@@ -33,9 +33,9 @@ pub(crate) struct PairFilter {
     groups: Option<Arc<TriangleGroups>>,
 }
 
-/// Two hulls of three vertices each, one of triangle a and one of triangle b. An edge has one vertex twice.
+/// A simplex of triangle a and one of triangle b: the triangle itself or an edge of it, with one vertex twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Hulls<T> {
+pub(crate) struct SimplexPair<T> {
     pub(crate) a: [T; 3],
     pub(crate) b: [T; 3],
 }
@@ -189,34 +189,44 @@ impl PairFilter {
         }
     }
 
-    /// The hull pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
-    /// hull pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
+    /// The simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
+    /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
     /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
     /// two.
-    pub(crate) fn hulls(&self, a: u32, b: u32) -> impl Iterator<Item = Hulls<u32>> {
+    pub(crate) fn simplex_pairs(&self, a: u32, b: u32) -> impl Iterator<Item = SimplexPair<u32>> {
         let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
-        self.hulls_of_corners(a, b)
-            .map(move |corners| Hulls { a: corners.a.map(|i| face_a[i]), b: corners.b.map(|i| face_b[i]) })
+        self.simplex_pairs_of_corners(a, b).map(move |corners| SimplexPair {
+            a: corners.a.map(|i| face_a[i]),
+            b: corners.b.map(|i| face_b[i]),
+        })
     }
 
     /// The same, by the corners (0 to 2) of each triangle.
-    pub(crate) fn hulls_of_corners(&self, a: u32, b: u32) -> impl Iterator<Item = Hulls<usize>> {
+    pub(crate) fn simplex_pairs_of_corners(
+        &self,
+        a: u32,
+        b: u32,
+    ) -> impl Iterator<Item = SimplexPair<usize>> {
         let triangle = [0, 1, 2];
         let edge = |[i, j]: [usize; 2]| [i, j, j];
-        let hulls = match self.relation(a, b) {
+        let pairs = match self.relation(a, b) {
             Relation::Adjacent => [None, None],
-            Relation::NonAdjacent => [Some(Hulls { a: triangle, b: triangle }), None],
+            Relation::NonAdjacent => [Some(SimplexPair { a: triangle, b: triangle }), None],
             Relation::SharedVertex(class) => {
                 match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
                     (Some(edge_a), Some(edge_b)) => [
-                        Some(Hulls { a: edge(edge_a), b: triangle }),
-                        right_or!(Some(Hulls { a: triangle, b: edge(edge_b) }), OneHullOfTwo, None),
+                        Some(SimplexPair { a: edge(edge_a), b: triangle }),
+                        right_or!(
+                            Some(SimplexPair { a: triangle, b: edge(edge_b) }),
+                            OneSimplexPairOfTwo,
+                            None
+                        ),
                     ],
                     _ => [None, None],
                 }
             }
         };
-        hulls.into_iter().flatten()
+        pairs.into_iter().flatten()
     }
 
     /// The corners (0 to 2) of a face that are not of the class: two, or one twice.

@@ -69,7 +69,7 @@ mutants! {
     /// Pairs that collide at the centre are not tested.
     ExceptionsForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Of two triangles with a common vertex only one of the edges opposite to it is bounded.
-    OneHullOfTwo: CaughtBy("it neighbours::shared_vertex_pairs_are_found_on_request");
+    OneSimplexPairOfTwo: CaughtBy("it neighbours::shared_vertex_pairs_are_found_on_request");
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
     /// The separating-axis test uses half of its error bound.

@@ -145,8 +145,10 @@ impl Query<'_> {
         if self.context.detect.filter.is_excluded(x, y) {
             return f64::INFINITY;
         }
-        let hulls = self.context.detect.filter.hulls(x, y);
-        hulls.map(|hulls| line.advance(hulls.a, hulls.b, t, goal)).fold(f64::INFINITY, f64::min)
+        let simplices = self.context.detect.filter.simplex_pairs(x, y);
+        simplices
+            .map(|simplices| line.advance(simplices.a, simplices.b, t, goal))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 

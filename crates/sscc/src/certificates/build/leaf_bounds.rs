@@ -9,14 +9,14 @@ use glam::DVec3;
 use super::radius_search_context::RadiusSearchContext;
 use crate::Pair;
 use crate::bounds::{LeafPair, PairRefiner, RefinementTarget};
-use crate::filter::Hulls;
+use crate::filter::SimplexPair;
 use crate::hierarchy::NodePair;
 
 /// Directions along which all pairs are bounded, beside the first one.
 const MAX_SHARED_DIRECTIONS: usize = 3;
 
-/// Two hulls of a triangle pair and a lower bound. Where two triangles collide, at least one of their hull pairs does.
-struct HullPair {
+/// A simplex pair of a triangle pair, and a lower bound. Where two triangles collide, at least one of their simplex pairs does.
+struct BoundedSimplexPair {
     triangles: Pair,
     x: [u32; 3],
     y: [u32; 3],
@@ -36,12 +36,12 @@ pub(super) struct BoundedTriangles {
 pub(super) struct LeafBounds<'a> {
     context: RadiusSearchContext<'a>,
     leaves: LeafPair<'a>,
-    hulls: Vec<HullPair>,
+    pairs: Vec<BoundedSimplexPair>,
 }
 
 impl<'a> LeafBounds<'a> {
     pub(super) fn new(context: RadiusSearchContext<'a>) -> Self {
-        Self { context, leaves: LeafPair::new(context.model), hulls: Vec::new() }
+        Self { context, leaves: LeafPair::new(context.model), pairs: Vec::new() }
     }
 
     /// Takes the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. `dir`: a
@@ -53,13 +53,19 @@ impl<'a> LeafBounds<'a> {
         if let Some(dir) = dir {
             self.leaves.set_direction(dir);
         }
-        self.hulls.clear();
+        self.pairs.clear();
         for (i, &a) in x.iter().enumerate() {
             for &b in if n == m { &y[i + 1..] } else { y } {
-                for Hulls { a: x, b: y } in filter.hulls(a, b) {
+                for SimplexPair { a: x, b: y } in filter.simplex_pairs(a, b) {
                     let lower = dir.map_or(0.0, |_| self.leaves.bound_along_direction(x, y));
                     if lower < certified && !filter.is_excluded(a, b) {
-                        self.hulls.push(HullPair { triangles: (a, b), x, y, lower, is_refined: false });
+                        self.pairs.push(BoundedSimplexPair {
+                            triangles: (a, b),
+                            x,
+                            y,
+                            lower,
+                            is_refined: false,
+                        });
                     }
                 }
             }
@@ -74,12 +80,12 @@ impl<'a> LeafBounds<'a> {
         target: &mut RefinementTarget,
         certified: f64,
     ) -> Option<Pair> {
-        let Self { leaves, hulls, .. } = self;
+        let Self { leaves, pairs, .. } = self;
         let mut closest = None;
         let mut smallest_refined = certified;
         for round in 0.. {
             let goal = target.sufficient().min(smallest_refined);
-            let open = hulls.iter_mut().filter(|hull| !hull.is_refined && hull.lower < goal);
+            let open = pairs.iter_mut().filter(|pair| !pair.is_refined && pair.lower < goal);
             let Some(worst) = open.reduce(|a, b| if b.lower < a.lower { b } else { a }) else { break };
             worst.is_refined = true;
             let upper = target.upper;
@@ -89,30 +95,30 @@ impl<'a> LeafBounds<'a> {
             }
             smallest_refined = smallest_refined.min(worst.lower);
             let goal = target.sufficient().min(smallest_refined);
-            let is_open = |hull: &HullPair| !hull.is_refined && hull.lower < goal;
+            let is_open = |pair: &BoundedSimplexPair| !pair.is_refined && pair.lower < goal;
             if round < MAX_SHARED_DIRECTIONS
-                && hulls.iter().any(is_open)
+                && pairs.iter().any(is_open)
                 && let Some(dir) = refiner.best_direction()
             {
                 leaves.set_direction(dir);
-                hulls.iter_mut().for_each(|hull| {
-                    hull.lower = hull.lower.max(leaves.bound_along_direction(hull.x, hull.y))
+                pairs.iter_mut().for_each(|pair| {
+                    pair.lower = pair.lower.max(leaves.bound_along_direction(pair.x, pair.y))
                 });
             }
             if round == 0 {
-                for hull in hulls.iter_mut().filter(|hull| is_open(hull)) {
-                    hull.lower = hull.lower.max(leaves.bound_by_affine_map(hull.x, hull.y, goal));
+                for pair in pairs.iter_mut().filter(|pair| is_open(pair)) {
+                    pair.lower = pair.lower.max(leaves.bound_by_affine_map(pair.x, pair.y, goal));
                 }
             }
         }
         closest
     }
 
-    /// The triangle pairs with their bounds: the smallest of their hulls'.
+    /// The triangle pairs with their bounds: the smallest of their simplices'.
     pub(super) fn triangle_pairs(&self) -> impl Iterator<Item = BoundedTriangles> {
-        self.hulls.chunk_by(|a, b| a.triangles == b.triangles).map(|hulls| BoundedTriangles {
-            triangles: hulls[0].triangles,
-            lower: hulls.iter().map(|hull| hull.lower).fold(f64::INFINITY, f64::min),
+        self.pairs.chunk_by(|a, b| a.triangles == b.triangles).map(|pairs| BoundedTriangles {
+            triangles: pairs[0].triangles,
+            lower: pairs.iter().map(|pair| pair.lower).fold(f64::INFINITY, f64::min),
         })
     }
 }

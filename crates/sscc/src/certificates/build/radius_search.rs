@@ -15,7 +15,7 @@ use super::search_goal::{
     FULL_SUBDIVISIONS, PAIR_TREE_EPSILON, Precision, SearchGoal,
 };
 use crate::bounds::{NodePairScratch, PairRefiner, RefinementTarget};
-use crate::filter::Hulls;
+use crate::filter::SimplexPair;
 use crate::hierarchy::NodePair;
 use crate::min_heap::MinHeapEntry;
 use crate::{Pair, Progress};
@@ -223,7 +223,7 @@ impl<'a> RadiusSearch<'a> {
     fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
         let upper = self.target.upper;
         self.triangle_pairs_left = self.triangle_pairs_left.saturating_sub(1);
-        for Hulls { a: x, b: y } in self.context.filter.hulls(a, b) {
+        for SimplexPair { a: x, b: y } in self.context.filter.simplex_pairs(a, b) {
             // A larger bound than the certified radius would not change the result.
             let cap = self.target.cap.min(self.certified);
             let mut target = RefinementTarget { cap, ..self.target };

@@ -41,8 +41,8 @@ impl NarrowPhase<2> for SweptHits {
                     && filter.is_vertex_shared(class, pair, a_t1, b_t1) =>
             {
                 filter
-                    .hulls_of_corners(pair.0, pair.1)
-                    .filter_map(|hulls| time(&a.hull(hulls.a), &b.hull(hulls.b)))
+                    .simplex_pairs_of_corners(pair.0, pair.1)
+                    .filter_map(|simplices| time(&a.simplex(simplices.a), &b.simplex(simplices.b)))
                     .reduce(f64::min)
             }
             Relation::SharedVertex(_) => time(&a, &b),

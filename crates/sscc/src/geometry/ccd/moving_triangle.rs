@@ -26,8 +26,8 @@ impl MovingTriangle {
         Self { t0: corners(e_t0), t1: corners(e_t1) }
     }
 
-    /// The moving hull of some of the corners.
-    pub(crate) fn hull(&self, corners: [usize; 3]) -> Self {
+    /// The moving simplex of some of the corners.
+    pub(crate) fn simplex(&self, corners: [usize; 3]) -> Self {
         Self { t0: corners.map(|i| self.t0[i]), t1: corners.map(|i| self.t1[i]) }
     }
 

@@ -42,15 +42,16 @@ impl SafeDistances {
     pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
         let mut distance = self.largest;
-        for hulls in filter.hulls_of_corners(pair.0, pair.1) {
-            let modes = |which: usize, hull: [usize; 3]| hull.map(|i| self.model.modes(faces[which][i]));
+        for simplices in filter.simplex_pairs_of_corners(pair.0, pair.1) {
+            let modes =
+                |which: usize, simplex: [usize; 3]| simplex.map(|i| self.model.modes(faces[which][i]));
             let pair = PairCorners {
                 corners: TwoTriangles {
-                    a: hulls.a.map(|i| corners[0][i]),
-                    b: hulls.b.map(|j| corners[1][j]),
+                    a: simplices.a.map(|i| corners[0][i]),
+                    b: simplices.b.map(|j| corners[1][j]),
                 },
-                modes_a: modes(0, hulls.a),
-                modes_b: modes(1, hulls.b),
+                modes_a: modes(0, simplices.a),
+                modes_b: modes(1, simplices.b),
             };
             let differences = pair.differences();
             let Some(dir) = scale_direction(nearest_to_origin(&differences).point) else { return 0.0 };

@@ -1,6 +1,6 @@
 //! Separating directions of near triangle pairs, and the half-spaces in q-space in which they separate.
 //!
-//! At the current q the direction n between the closest points of two hulls separates them. With the scaled modes A of
+//! At the current q the direction n between the closest points of two simplices separates them. With the scaled modes A of
 //! their corners, the gap of corners i and j after a displacement s in z is `n.d_ij + (A_j - A_i)'n . s`, which is linear
 //! in s. So within the nine half-spaces "gap at least the margin" n separates the pair: these are its half-spaces. The
 //! rounding of positions is not covered, so every q must be checked.
@@ -14,14 +14,14 @@ use crate::Pair;
 use crate::geometry::nearest_to_origin;
 use crate::query::context::QueryContext;
 
-/// Corners of the two hulls of a pair: three of each.
+/// Corners of the two simplices of a pair: three of each.
 const CORNERS: usize = 6;
 
-/// Memory for the half-spaces of all pairs (bytes), and the largest number of hull pairs.
+/// Memory for the half-spaces of all pairs (bytes), and the largest number of simplex pairs.
 const MAX_BYTES: usize = 1 << 26;
 const MAX_SEPARATIONS: usize = 1 << 14;
 
-/// The separating direction of one pair of hulls.
+/// The separating direction of one pair of simplices.
 struct Separation {
     pair: Pair,
     /// Positions of the six corners along the direction, relative to the first one.
@@ -56,10 +56,10 @@ impl Separations {
     /// no direction separates it, as far as rounding tells, or there is no more room.
     pub(super) fn add(&mut self, context: &QueryContext<'_>, q: &[f64], pair: Pair, margin: f64) -> bool {
         let count = self.list.len();
-        for hulls in context.detect.filter.hulls(pair.0, pair.1) {
+        for simplices in context.detect.filter.simplex_pairs(pair.0, pair.1) {
             let vertices: [u32; CORNERS] =
-                std::array::from_fn(|i| if i < 3 { hulls.a[i] } else { hulls.b[i - 3] });
-            if !self.add_hulls(context, q, pair, vertices, margin) {
+                std::array::from_fn(|i| if i < 3 { simplices.a[i] } else { simplices.b[i - 3] });
+            if !self.add_simplices(context, q, pair, vertices, margin) {
                 self.list.truncate(count);
                 self.rates.truncate(count * CORNERS * self.rank);
                 return false;
@@ -69,7 +69,7 @@ impl Separations {
         self.list.len() > count
     }
 
-    fn add_hulls(
+    fn add_simplices(
         &mut self,
         context: &QueryContext<'_>,
         q: &[f64],
@@ -180,7 +180,7 @@ impl Separations {
 /// A half-space counts as violated beyond this share of the margin.
 const TOLERANCE: f64 = 1e-3;
 
-/// The corner of the first hull that is farthest along the direction, and the nearest one of the second hull.
+/// The corner of the first simplex that is farthest along the direction, and the nearest one of the second simplex.
 fn nearest_corners(positions: &[f64; CORNERS]) -> (usize, usize) {
     let i = (1..3).fold(0, |i, k| if positions[k] > positions[i] { k } else { i });
     let j = (4..6).fold(3, |j, k| if positions[k] < positions[j] { k } else { j });

@@ -175,8 +175,8 @@ impl WeightSweep<'_, '_> {
             if i.is_multiple_of(CANDIDATES_PER_CHECK) && query.context.detect.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            for hulls in filter.hulls(pair.0, pair.1) {
-                let [a, b] = [hulls.a, hulls.b].map(|vertices| line.moving(vertices));
+            for simplices in filter.simplex_pairs(pair.0, pair.1) {
+                let [a, b] = [simplices.a, simplices.b].map(|vertices| line.moving(vertices));
                 if end == start || !a.is_swept_aabb_overlapping(&b) {
                     continue;
                 }
@@ -229,9 +229,9 @@ impl WeightSweep<'_, '_> {
 
     /// Whether the triangles of a pair are, at the first end of the line, within the tolerance of continuous queries.
     fn is_within_tolerance(&self, pair: Pair) -> bool {
-        let mut hulls = self.query.context.detect.filter.hulls(pair.0, pair.1);
-        hulls.any(|hulls| {
-            let [a, b] = [hulls.a, hulls.b].map(|vertices| self.line.moving(vertices).t0);
+        let mut simplices = self.query.context.detect.filter.simplex_pairs(pair.0, pair.1);
+        simplices.any(|simplices| {
+            let [a, b] = [simplices.a, simplices.b].map(|vertices| self.line.moving(vertices).t0);
             let size = a.iter().chain(&b).map(|p| (*p - a[0]).abs().max_element()).fold(0.0, f64::max);
             let differences: [_; 9] = std::array::from_fn(|ij| (b[ij % 3] - a[ij / 3]) / size);
             nearest_to_origin(&differences).point.length() <= Impact::TOLERANCE

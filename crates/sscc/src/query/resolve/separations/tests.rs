@@ -23,7 +23,7 @@ fn displacements_within_the_half_spaces_are_free() {
         for a in 0..2 * half {
             for b in a + 1..2 * half {
                 let is_added = separations.add(&query.context, &start, (a, b), 1e-6);
-                let counts = query.context.detect.filter.hulls(a, b).next().is_some();
+                let counts = query.context.detect.filter.simplex_pairs(a, b).next().is_some();
                 assert!(is_added == counts && separations.contains((a, b)), "case {case}: {a} {b}");
             }
         }
