@@ -26,7 +26,7 @@ impl AabbF32 {
     /// Contains everything.
     pub(crate) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
 
-    /// The AABB of a triangle whose corners are at `E` ends of a motion.
+    /// The AABB of a triangle by its corners at `E` configurations.
     #[inline]
     pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {

@@ -38,7 +38,7 @@ pub(crate) struct Counters {
     pub(crate) triangle_tests: u64,
 }
 
-/// Volumes and scratch memory of searches with `E` ends.
+/// Volumes and scratch memory of searches at `E` configurations.
 #[derive(Clone)]
 pub(crate) struct BroadPhase<const E: usize> {
     pub(crate) volumes: NodeVolumes<E>,

@@ -8,7 +8,7 @@ use super::narrow_phase::NarrowPhase;
 use crate::geometry::Aabb;
 
 impl<const E: usize> BroadPhase<E> {
-    /// Tests all pairs of triangles, exceptions included, by the positions of vertices at each end. No hierarchy, no
+    /// Tests all pairs of triangles, exceptions included, by the positions of vertices at each configuration. No hierarchy, no
     /// certificates; only boxes of single triangles, compared exactly.
     pub(crate) fn brute_force<N: NarrowPhase<E>>(
         &mut self,

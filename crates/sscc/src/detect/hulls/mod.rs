@@ -16,7 +16,7 @@
 //! Every vertex lies within R of the hull of the X_i: `d_v = sum_i l_i D_i + delta` with convex weights and `|delta| <=
 //! eps`, so `x_v = sum_i l_i X_i + F delta + E_v y`. `residuals` bounds `|E_v y|`, `hull_motion` the error of single
 //! precision and of the computed shape. Between two configurations, a plane that separates the hulls at both ends
-//! separates the straight way, because each position there is a convex combination of positions at the ends.
+//! separates the motion on straight lines, because each position there is a convex combination of positions at the ends.
 //!
 //! The plane is found in any way, in any precision ([`separation`]). Only the last comparison must be safe.
 

@@ -142,7 +142,7 @@ impl<'a> KineticQuery<'a> {
             self.free_q.extend_from_slice(q_t1);
         }
         let Some(swept) = &self.query.swept else { return Ok(&[]) };
-        // Tests of the exceptions alone tell nothing of plain queries.
+        // The cost of exceptions alone is no estimate of a plain query's.
         if !self.query.statistics.root_certified {
             self.control.plain_cost = plain_cost(swept.counters());
         }

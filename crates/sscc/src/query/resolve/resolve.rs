@@ -1,6 +1,6 @@
 //! `Query::resolve`: a free configuration near a colliding one.
 //!
-//! The search begins at the last free configuration on the straight way from a free start to q, and steps back towards q.
+//! The search begins at the last free configuration on the straight line from a free start to q, and steps back towards q.
 //! Pairs that intersect have no separating direction. But at a free configuration every near pair has one, and the
 //! configurations at which this direction separates the pair are those in a few half-spaces
 //! ([`separations`](super::separations)). A step goes to the nearest point to q within the half-spaces of all pairs that
@@ -28,7 +28,7 @@ const MIN_GAIN: f64 = 1e-3;
 
 impl Query<'_> {
     /// A free configuration near q, in the metric of the scope: q itself where it is free. Else it is the end of a free
-    /// way from the start, and no farther from q than the last free configuration on the straight way from there. The
+    /// way from the start, and no farther from q than the last free configuration on the straight line from there. The
     /// search is local: a nearer one may exist. `docs/guarantees.md` has the promise in full.
     ///
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
