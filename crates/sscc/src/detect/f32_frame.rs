@@ -6,10 +6,11 @@ use crate::geometry::Aabb;
 
 /// A map from each coordinate to single precision.
 ///
-/// AABBs of exact positions need no error bound, because the map preserves the order of two coordinates along an axis: it subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and
-/// every one of these steps is monotone. So where one mapped box ends strictly before another one begins, the exact
-/// boxes do, too: "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap,
-/// far from the centre (a shape of size 1 at 1e8) or below the smallest normal numbers.
+/// AABBs of exact positions need no error bound, because the map preserves the order of two coordinates along an axis: it
+/// subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and every one of
+/// these steps is monotone. So where one mapped box ends strictly before another one begins, the exact boxes do, too:
+/// "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap, far from the centre (a
+/// shape of size 1 at 1e8) or below the smallest normal numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct F32Frame {
     center: DVec3,
