@@ -153,7 +153,7 @@ impl<'a> World<'a> {
         self.shortened_bodies
     }
 
-    /// Returns the skin: the distance that contacts keep between bodies (model unit).
+    /// Returns the skin: the distance below which surfaces are in contact (model unit).
     pub fn skin(&self) -> f64 {
         let smallest = || self.bodies.iter().map(|body| body.shape().radius()).fold(f64::INFINITY, f64::min);
         self.options.contact.skin.unwrap_or_else(|| 1e-3 * smallest())

@@ -11,13 +11,13 @@ use crate::sampling::{half_diagonal, largest_displacement, scaled};
 use crate::setup::Setup;
 
 /// Largest `|z|` of the motions, over the root's radius.
-const ROOT_RADII: [f64; 3] = [2.0, 4.0, 8.0];
+const TIMES_ROOT: [f64; 3] = [2.0, 4.0, 8.0];
 
 /// Duration of a motion, in periods of the first mode.
 const PERIODS: f64 = 10.0;
 
 /// Measures so many states of `q_k = a cos(omega_k t + phase_k) / omega_k`, evenly over ten periods of the first mode.
-/// Returns one record for each of [`ROOT_RADII`].
+/// Returns one record for each of [`TIMES_ROOT`].
 pub fn measure(
     name: &str,
     model: &CertifiedModel,
@@ -37,7 +37,7 @@ pub fn measure(
         let record = Record::new(format!("mixed/{name}"), share, model, &comparison, 1, None);
         Ok(Record { times_root: Some(times_root), ..record })
     };
-    ROOT_RADII.into_iter().map(record).collect()
+    TIMES_ROOT.into_iter().map(record).collect()
 }
 
 /// Returns so many states of the motion, scaled so that the largest norm of them is 1.
@@ -62,12 +62,11 @@ mod tests {
         let states = unit_motion(&Oscillators::new(frequencies.to_vec()), norm, 20_000);
         let largest = states.iter().map(|q| norm(q)).fold(0.0, f64::max);
         assert!((largest - 1.0).abs() < 1e-12, "{largest}");
-        for q in &states[..1000] {
-            let next = &states[2000 + states.iter().position(|x| x == q).unwrap()];
+        for (q, next) in states[..1000].iter().zip(&states[2000..]) {
             assert!((q[0] - next[0]).abs() < 1e-9, "the first mode is not periodic");
         }
-        let most = |k: usize| frequencies[k] * states.iter().map(|q| q[k].abs()).fold(0.0, f64::max);
-        let speeds = [0, 1, 2].map(most);
+        let largest_speed = |k: usize| frequencies[k] * states.iter().map(|q| q[k].abs()).fold(0.0, f64::max);
+        let speeds = [0, 1, 2].map(largest_speed);
         assert!(speeds.iter().all(|speed| (speed / speeds[0] - 1.0).abs() < 1e-4), "{speeds:?}");
     }
 }

@@ -87,7 +87,7 @@ impl<'m> LeafPair<'m> {
         self.instructions.run(BoundVertices { pair: self, dir });
     }
 
-    /// The bound of two triangles (or hulls of three of the vertices) along the direction.
+    /// The bound of two triangles (or simplices with these vertices) along the direction.
     pub(crate) fn bound_along_direction(&self, a: [u32; 3], b: [u32; 3]) -> f64 {
         // No bound is NaN.
         let smaller = |x: f64, y: f64| if y < x { y } else { x };

@@ -6,14 +6,14 @@ use crate::{ContactFilter, Metric};
 #[derive(Clone, Debug)]
 pub struct CertifyOptions {
     /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
-    /// radius that may be as small. Other radii may be smaller than that:
+    /// radius that may be as small. The tolerance of other radii depends on their kind:
     ///
     /// - the smallest radii of buckets and of pairs of buckets: tolerance `min(epsilon, 0.03)`, as far as a limited number of
     ///   subdivisions and triangle pairs suffices;
     /// - other pairs of buckets that the rounds before the outer one bound: `max(epsilon, 0.25)`, as far as no subdivision is
     ///   needed;
     /// - pairs of buckets that the outer round adds, up to 1.5 times the limit before it: lower bounds without a tolerance;
-    /// - radii of nodes that are searched apart: `max(epsilon, 0.4)`.
+    /// - radii of nodes that are searched on their own: `max(epsilon, 0.4)`.
     ///
     /// A radius at the cap, or one whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1: 0.1.
     pub epsilon: f64,

@@ -121,9 +121,9 @@ impl<const E: usize> BroadPhase<E> {
         }
     }
 
-    /// Counts a visit of a node, and checks now and then. False if the search is to end.
+    /// Counts a visit of a node, and checks for cancellation now and then. Returns false if the search is to end.
     #[inline]
-    pub(crate) fn can_continue<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
+    pub(crate) fn count_visit<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
         self.visits = self.visits.wrapping_add(1);
         if self.visits.is_multiple_of(VISITS_PER_CHECK) {
             self.check_cancelled(context, narrow);

@@ -45,7 +45,7 @@ impl<const E: usize> ExactPositions<E> {
         for (v, (x, mapped)) in self.exact.iter_mut().zip(&mut self.mapped).enumerate() {
             *x = motion.positions(layout, v as u32);
             *mapped = x.map(|x| self.frame.map(x));
-            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::may_contain(*x)));
+            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::can_contain(*x)));
         }
     }
 
@@ -56,7 +56,7 @@ impl<const E: usize> ExactPositions<E> {
         if self.searches[i] != self.search {
             self.exact[i] = motion.positions(layout, vertex);
             let mapped = self.exact[i].map(|x| self.frame.map(x));
-            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::may_contain(*x)));
+            debug_assert!(!M::HAS_ERROR_BOUND || mapped.iter().all(|x| F32Frame::can_contain(*x)));
             self.mapped[i] = mapped;
             self.searches[i] = self.search;
         }

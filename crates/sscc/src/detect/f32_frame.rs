@@ -44,7 +44,7 @@ impl F32Frame {
 
     /// Whether a mapped point can be the image of a point of the frame's box: the assumption of [`Self::error_bound`]. Images
     /// are in [-1, 1] up to rounding; where the box is only a few units in the last place wide, in [-2, 2].
-    pub(crate) fn may_contain(mapped: Vec4) -> bool {
+    pub(crate) fn can_contain(mapped: Vec4) -> bool {
         (mapped.abs().cmple(Vec4::splat(2.001)).bitmask() & 0b111) == 0b111
     }
 

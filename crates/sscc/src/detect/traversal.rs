@@ -50,7 +50,7 @@ impl<const E: usize> BroadPhase<E> {
         narrow: &mut N,
     ) -> Option<NodePair> {
         let next = self.stack.pop()?;
-        self.can_continue(context, narrow).then_some(next)
+        self.count_visit(context, narrow).then_some(next)
     }
 
     /// Whether the normal cones of the method, if it has any, cull a node.

@@ -108,7 +108,7 @@ mutants! {
     HullResidualForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The bound of residuals by a few vectors omits the remainder.
     HullRemainderForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
-    /// The bound of residuals by a few vectors omits what they bound.
+    /// The bound of residuals by a few vectors omits the part along the vectors.
     HullVectorsForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// Sums over the modes of residuals have no rounding error.
     HullSumsExact: CaughtBy("lib detect::hulls::tests::radii_cover_sums_that_cancel");
@@ -130,9 +130,9 @@ mutants! {
     HullNormalTakenAsUnit: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// The gap of two hulls is not rounded down.
     HullGapToNearest: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
-    /// Squares of the lengths of normals may be no normal numbers.
+    /// Planes are tested along normals whose squared length underflows.
     HullNormalOfAnyLength: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
-    /// In the units of a model, squares of displacements may underflow.
+    /// Displacements are squared before they are scaled to the frame, so that squares underflow.
     HullSlackUnscaled: CaughtBy("lib detect::hulls::hull_motion::tests::displacements_are_never_short_in_the_frame");
     /// A plane separates hulls at the start of a motion alone.
     HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
@@ -156,9 +156,9 @@ mutants! {
     CoarseSlackForgotten: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// A search that ends with open triangle pairs has their bounds, too.
     OpenTrianglesForgotten: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
-    /// A refused outer round leaves the limit as it was.
+    /// A refused outer round raises the limit.
     RefusedOuterRoundComplete: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
-    /// Pairs of the outer round are bounded.
+    /// Pairs of the outer round are free below the limit without a bound.
     OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
     /// Pairs of the outer round that are searched are free below the limit.
     OuterSearchForgotten: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");

@@ -52,7 +52,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     stack.clear();
     stack.push(Visit { nodes: (0, 0), entry: NODE });
     while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
-        if !broad.can_continue(context, narrow) {
+        if !broad.count_visit(context, narrow) {
             break;
         }
         let buckets = &broad.volumes.layout.buckets;

@@ -17,19 +17,19 @@ use crate::Error;
 use crate::hierarchy::Hierarchy;
 use crate::model::rounding::to_f32_down;
 
-/// Triangles of the mesh for each fine search of a bucket. Tests have small models.
+/// One bucket is searched again for every so many triangles of the mesh. Tests have small models.
 const TRIANGLES_PER_BUCKET: usize = if cfg!(test) { 64 } else { 1024 };
 
-/// Triangles of the mesh for each fine search of two buckets that touch.
+/// One pair of buckets that touch is searched again for every so many triangles.
 const TRIANGLES_PER_TOUCHING_PAIR: usize = if cfg!(test) { 32 } else { 128 };
 
-/// Triangles of the mesh for each fine search of two other buckets, which takes a tenth of the time.
+/// One other pair of buckets is searched again for every so many triangles: it takes a tenth of the time.
 const TRIANGLES_PER_PAIR: usize = 32;
 
 /// Pairs that a thread takes at once.
 const GRAIN: usize = 1;
 
-/// Searches the radii of pairs of buckets below a limit again, then pulls the new bounds up to all larger pairs.
+/// Searches the radii of pairs of buckets below a limit again, then pulls the new bounds up to all pairs above them in the BVTT.
 pub(super) fn refine_pairs(
     bvtt: &mut Bvtt,
     limit: f64,

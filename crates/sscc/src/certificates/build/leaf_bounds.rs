@@ -114,7 +114,7 @@ impl<'a> LeafBounds<'a> {
         closest
     }
 
-    /// The triangle pairs with their bounds: the smallest of their simplices'.
+    /// The triangle pairs with their bounds: the smallest of their simplex pairs'.
     pub(super) fn triangle_pairs(&self) -> impl Iterator<Item = BoundedTriangles> {
         self.pairs.chunk_by(|a, b| a.triangles == b.triangles).map(|pairs| BoundedTriangles {
             triangles: pairs[0].triangles,

@@ -32,8 +32,7 @@ const PAIRS_PER_ENTRY: usize = if cfg!(test) { 4 } else { 32 };
 /// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
 const MAX_PAIRS: usize = 1 << 31;
 
-/// The rounds before the outer one may use this fraction of the budget (one over it): the outer round adds two to three times
-/// as many entries.
+/// The rounds before the outer one may use the budget divided by this: the outer round adds two to three times as many entries.
 const INNER_DIVISOR: usize = 4;
 
 /// The outer limit is this many times the last one, at most the global radius.

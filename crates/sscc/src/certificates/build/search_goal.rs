@@ -30,8 +30,8 @@ pub(super) const FINE_EPSILON: f64 = 0.03;
 /// The maximum number of subdivisions of one triangle pair in fine searches.
 pub(super) const FINE_SUBDIVISIONS: usize = 8;
 
-/// The maximum number of triangle pairs that a fine search subdivides; within a bucket, that the search of each node does.
-/// Without it one search in twenty takes most of the time.
+/// The maximum number of triangle pairs that a fine search subdivides. In a search within a bucket the maximum holds for each
+/// node below it. Without it one search in twenty takes most of the time.
 pub(super) const FINE_TRIANGLE_PAIRS: usize = 32;
 
 /// The maximum number of subdivisions of one triangle pair in full searches. When they are used up the search takes the

@@ -33,7 +33,7 @@ const TOLERANCE: f64 = 0.01;
 const CLOSE: f64 = TOLERANCE / 2.0;
 
 /// Rounding of a distance, as a share of the largest norm: differences and sums of 32 products of numbers of at most 2, less
-/// than 300 eps.
+/// than 300 eps. Weights are at least 0, and their sum is 1 up to a few eps.
 const ROUNDING: f64 = 1e-12;
 
 /// Core points, and how far any point may be from their hull.

@@ -22,7 +22,7 @@ pub(super) struct HullMotion<const E: usize> {
     /// An upper bound of the distance of a core point from where exact arithmetic would place it, and of a vertex from
     /// the position of the shape. It also covers the evaluation of distances from a plane.
     pub(super) error: f32,
-    /// The relative error of sums over the modes, in units of the sum of magnitudes `t`: factors and products add 2 u, sums
+    /// The relative error of sums over the modes, in units of `sum_k t_k` (see `residuals`): factors and products add 2 u, sums
     /// (r + 1) u, vectors that are longer than 1 by rounding 2 u, and the root of the sum of squares less than all of these.
     /// Products with `g_j` and `rho` and their sums add 6 u. Twice (r + 16) u covers them all.
     pub(super) relative: f32,
@@ -49,8 +49,8 @@ impl<const E: usize> HullMotion<E> {
     /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds,
     ///   which are 30 times larger: they cover `q - configuration` and the units of the hulls, too.
     ///
-    /// The last number of the error covers underflow: squares of residuals below 1e-19, and products. The error is at least
-    /// 32 u times the terms of a coordinate, and at most 1 / 64, so coordinates are below 1e4.
+    /// The last number of the error covers underflow: squares of residuals and of entries of F below 1e-19, and products.
+    /// The error is at least 32 u times the terms of a coordinate, and at most 1 / 64, so coordinates are below 1e4.
     pub(super) fn begin(
         &mut self,
         hulls: &NodeHulls,

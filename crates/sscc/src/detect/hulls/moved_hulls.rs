@@ -183,6 +183,7 @@ impl MovedHulls<1> {
 ///
 /// An entry of F'F is wrong by at most 5 u times the largest one of the diagonal, also where its terms cancel. So the largest row
 /// sum, which is at least as large as that entry, is wrong by less than 20 u of itself, and its root by less than 1e-6.
+/// Underflow is part of [`HullMotion::error`].
 fn norm_bound(columns: &Mat3) -> f32 {
     let gram = columns.transpose() * *columns;
     let sum = |column: Vec3| column.abs().element_sum();

@@ -99,7 +99,8 @@ impl NodeHull {
                 residuals.push(*u - map);
             }
         }
-        // A mode that moves nothing has no error.
+        // Where the map is zero, the residual is the scaled mode itself. Its rounding is covered by `up` (e_k) and by the
+        // rounding of remainders.
         for (error, rows) in error.iter_mut().zip(&frame[1..]) {
             let is_still = rows[..3].iter().all(|row| *row == Vec4::ZERO);
             if is_still {

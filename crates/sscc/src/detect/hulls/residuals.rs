@@ -20,9 +20,10 @@ pub(super) const VECTORS: usize = 3;
 /// Rounds of the search for the vectors.
 const ROUNDS: usize = 3;
 
-/// Rounding of remainders in double precision, for each mode. Entries are at most 1. Products with a vector, their sum and a
-/// difference add at most (r + 3) eps to an entry, for each vector; so the norm of r entries adds less than `3 r^1.5 eps`,
-/// plus a few eps for entries larger than 1 by rounding. That is below `1e-11 r` for any rank up to 1e8.
+/// Rounding of remainders in double precision, for each mode. Entries of H_v are at most 1, so the norm of a row of H_v or L_v
+/// is at most about `sqrt(r)`. h_vj is used as computed, so only its product with w_j and the difference round, by at most
+/// `eps sqrt(r)` for each vector; the entries themselves add as much. The rounding of [`spectral_bound`] is less than what
+/// [`up`] adds, for ranks below 1e7.
 const ROUNDING: f64 = 1e-11;
 
 /// The bound of a node's residuals.

@@ -73,8 +73,8 @@ fn extent<V: Vectors>(v: V, [x, y, z]: &Points, turned: Vec4) -> f32 {
     a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
 }
 
-/// Covers the rounding of the test: the squares, the length and the product add less than 8 u, which is 5e-7. That of the gap is
-/// part of the radii.
+/// Covers the rounding of the test: squares, the squared length and products add at most 8 u, which is 5e-7. The rounding of the
+/// sum of radii is covered by the last factor in `MovedHulls::update`, that of the gap by the error in the radii.
 const ROUND_UP: f32 = 1.0 + 1e-5;
 
 const _: () = assert!(CORE_POINTS.is_multiple_of(LANES));

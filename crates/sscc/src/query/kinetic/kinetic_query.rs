@@ -117,7 +117,7 @@ impl<'a> KineticQuery<'a> {
 
     /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last
     /// discrete query that the root's certificate did not answer, and the region around it proves all pairs free until `q_t1`,
-    /// nothing is searched. Only pairs that come as close as
+    /// and there are no exceptions, only the active pairs are tested. Only pairs that come as close as
     /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
     /// this query.
     ///

@@ -19,7 +19,7 @@ pub struct Resolved {
     /// The distance of the answer from q in the metric, `|S (answer - q)|`, rounded up; infinite without an answer.
     pub change: f64,
     /// The distance from q of the last free configuration on the straight line from the start to q, found by continuous
-    /// queries: what stepping back along this way changes. 0 where q is free; infinite without an answer.
+    /// queries: what stepping back along this line changes. 0 where q is free; infinite without an answer.
     pub safe_scale_change: f64,
 }
 

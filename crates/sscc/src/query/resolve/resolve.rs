@@ -28,7 +28,7 @@ const MIN_GAIN: f64 = 1e-3;
 
 impl Query<'_> {
     /// A free configuration near q, in the metric of the scope: q itself where it is free. Else it is the end of a free
-    /// way from the start, and no farther from q than the last free configuration on the straight line from there. The
+    /// polyline from the start, and no farther from q than the last free configuration on the straight line from there. The
     /// search is local: a nearer one may exist. `docs/guarantees.md` has the promise in full.
     ///
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
