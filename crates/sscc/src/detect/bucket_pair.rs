@@ -11,10 +11,6 @@ use crate::filter::Relation;
 /// The pairs of lanes `(i, j)` with `j < i`, as in [`PacketPair`].
 const NOT_LATER: u64 = 0x7f3f_1f0f_0703_0100;
 
-/// The pairs of each lane with itself.
-#[cfg(all(feature = "mutants", debug_assertions))]
-const DIAGONAL: u64 = 0x8040_2010_0804_0201;
-
 /// A packet: its bucket and its lane there.
 #[derive(Clone, Copy)]
 struct BucketLane {
@@ -46,7 +42,8 @@ impl<const E: usize> BroadPhase<E> {
         let count = self.volumes.layout.buckets.packets(bucket).len();
         self.counters.box_tests += (LANES * count) as u64;
         let packets = self.volumes.packets(bucket);
-        let masked = right_or!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER | DIAGONAL);
+        let masked =
+            right_or!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked };
         for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });

@@ -182,7 +182,7 @@ mutants! {
     LastBucketPairForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Of a second packet, the triangles that are clear of the first one are tested.
     PacketColumnsSwapped: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
-    /// Kernels for AVX2 round a product and a sum once.
+    /// Kernels for AVX2 round a product and a sum once. Only a processor with AVX2 reaches it.
     MultiplyAddFused: CaughtBy("lib vectors::tests::bits_do_not_depend_on_the_instruction_set");
     /// A motion from one q to the next stays in the region and in safe distances if its start does.
     StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");

@@ -6,9 +6,8 @@ use super::bvtt::{Bvtt, BvttPair, PairState};
 use crate::certificates::pair_tree::{NO_PAIRS, PairEntry, PairTree};
 use crate::hierarchy::Hierarchy;
 
-/// The tree of all pairs below a limit, which is lowered until at most `budget` pairs are left.
-pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, limit: f64, budget: usize) -> PairTree {
-    let known_below = limit;
+/// The tree of all pairs below a limit: that below which all pairs are known, lowered until at most `budget` pairs are left.
+pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, known_below: f64, budget: usize) -> PairTree {
     let limit = fitting_limit(&bvtt.pairs, known_below, budget);
     if limit <= 0.0 {
         return PairTree::default();

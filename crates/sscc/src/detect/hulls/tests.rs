@@ -175,16 +175,17 @@ fn vertices_are_within_the_radius_of_their_hull() {
         let rank = model.rank();
         let sizes: Vec<f64> = (0..rank).map(|k| model.mode_displacement_bound(k, 1.0)).collect();
         let size = model.mesh().rest_positions().iter().map(|x| x.length()).fold(0.0, f64::max);
-        // For each axis the direction in q, in units of the modes' sizes, along which two random vertices separate fastest along
-        // that axis; its largest coordinate is 1.
-        let apart: Vec<Vec<f64>> = (0..4)
-            .map(|axis| {
+        // Directions in q, in units of the modes' sizes, along which two random vertices separate fastest along an axis; the
+        // largest coordinate is 1.
+        let apart: Vec<Vec<f64>> = (0..12)
+            .map(|i| {
+                let axis = i % 3;
                 let mut any = || {
                     let count = model.mesh().rest_positions().len() as f64;
                     (count * 0.999 * random.signed().abs()) as u32
                 };
                 let [v, w] = [any(), any()].map(|v| model.modes().of_vertex(v));
-                let along = |k: usize| (v[k] - w[k])[axis % 3] / sizes[k].max(f64::MIN_POSITIVE);
+                let along = |k: usize| (v[k] - w[k])[axis] / sizes[k].max(f64::MIN_POSITIVE);
                 let most = (0..rank).map(|k| along(k).abs()).fold(f64::MIN_POSITIVE, f64::max);
                 (0..rank).map(|k| along(k) / most).collect()
             })
@@ -195,11 +196,11 @@ fn vertices_are_within_the_radius_of_their_hull() {
         };
         let configuration = if case % 2 == 0 { vec![0.0; rank] } else { q(0.7) };
         let case_of = Case::new(model, &configuration);
-        for i in 0..24 {
+        for i in 0..28 {
             let most = [1e-9, 0.02, 0.3, 2.0][i % 4];
             let mut at = q(most);
             if i >= 16 {
-                let factors = apart[i % 4].iter().zip(&sizes);
+                let factors = apart[i - 16].iter().zip(&sizes);
                 let far = factors.map(|(x, s)| x * most * size / s.max(f64::MIN_POSITIVE));
                 at = far.collect();
             } else if i % 3 == 0 {
