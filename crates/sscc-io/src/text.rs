@@ -3,19 +3,30 @@
 use crate::FormatError;
 use crate::error::quoted;
 
-/// Iterator over the lines of a text file, each with its number from 1. Lines end with LF or CR LF; a byte order mark
-/// is skipped. Lines are bytes, because comments may have other encodings.
+/// Iterator over the lines of a text file, each with its number from 1. Lines end with LF or CR LF, in files without LF
+/// with CR; a byte order mark is skipped. Lines are bytes, because comments may have other encodings.
 pub(crate) struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
+    end: u8,
+}
+
+/// Returns the last byte of a line end of this text: LF, or CR in files without LF.
+pub(crate) fn line_end(bytes: &[u8]) -> u8 {
+    if !bytes.contains(&b'\n') && bytes.contains(&b'\r') { b'\r' } else { b'\n' }
 }
 
 impl<'a> Lines<'a> {
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
+        Self::with_end(bytes, line_end(bytes))
+    }
+
+    /// As [`Lines::new`], for lines that end with this byte.
+    pub fn with_end(bytes: &'a [u8], end: u8) -> Result<Self, FormatError> {
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(FormatError::whole("the file is UTF-16 text: save it as UTF-8"));
         }
-        Ok(Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 })
+        Ok(Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0, end })
     }
 }
 
@@ -26,7 +37,7 @@ impl<'a> Iterator for Lines<'a> {
         if self.rest.is_empty() {
             return None;
         }
-        let end = self.rest.iter().position(|b| *b == b'\n').unwrap_or(self.rest.len());
+        let end = self.rest.iter().position(|b| *b == self.end).unwrap_or(self.rest.len());
         let line = &self.rest[..end];
         self.rest = self.rest.get(end + 1..).unwrap_or_default();
         self.number += 1;
@@ -73,6 +84,11 @@ mod tests {
         let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\r\nb\n\nc").unwrap().collect();
         assert_eq!(lines, [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")]);
         assert!(Lines::new(b"\xff\xfev\0").is_err());
+        let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\rb\r\rc").unwrap().collect();
+        assert_eq!(lines, [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")]);
+        // A single CR within a file of other line ends is no line end.
+        let lines: Vec<_> = Lines::new(b"a\rb\nc\r").unwrap().collect();
+        assert_eq!(lines, [(1, &b"a\rb"[..]), (2, b"c")]);
     }
 
     #[test]

@@ -288,7 +288,7 @@ pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
 pub use geometry::{
     Aabb, Feature, Intersection, IntersectionPoint, MovingTriangle, Penetration, impact_edge_edge,
     impact_triangle_triangle, impact_vertex_face, intersect_shared_vertex_pair, intersect_triangle_triangle,
-    intersection_triangle_triangle, penetration_triangle_triangle,
+    intersection_triangle_triangle, orient2d, penetration_triangle_triangle,
 };
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape, SweptShape};

@@ -1,13 +1,11 @@
 //! Readers for triangle meshes: OBJ, OFF, PLY and STL.
 //!
 //! All vertices of the file are kept in its order, even unused ones, so that modes for the file's vertices fit.
-//! Polygons become fans of triangles around their first corner, in file order.
+//! A polygon becomes triangles in its place: the fan around its first corner where that triangulates it, else others.
 
 pub mod obj;
 pub mod off;
 pub mod ply;
-mod polygons;
-mod soup;
 pub mod stl;
 
 use std::path::Path;
@@ -15,9 +13,8 @@ use std::path::Path;
 use sscc::TriMesh;
 
 use crate::file::{ending, read_whole, unsupported};
+use crate::polygons::Soup;
 use crate::{FormatError, IoError};
-
-pub(crate) use soup::Soup;
 
 /// Endings that [`read_mesh`] supports.
 const SUPPORTED: &str = ".obj, .off, .ply, .stl";
@@ -30,6 +27,15 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, IoError> {
     read_soup(path)?.into_mesh().map_err(|error| error.of(path))
 }
 
+/// As [`read_mesh`], with lines about content whose meaning is not clear: polygons that are not plane or that cross
+/// themselves, binary STL files of an unusual size.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_with_warnings(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
+    read_soup(path)?.into_mesh_with_warnings().map_err(|error| error.of(path))
+}
+
 /// As [`read_mesh`], but the mesh may have no triangles.
 pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
     let Some(parse) = parser(path) else {
@@ -38,8 +44,8 @@ pub(crate) fn read_soup(path: &Path) -> Result<Soup, IoError> {
     parse(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// Whether the ending is that of a mesh file.
-pub(crate) fn is_mesh_name(path: &Path) -> bool {
+/// Whether the ending is that of a mesh file: `.obj`, `.off`, `.ply` or `.stl`.
+pub fn is_mesh_name(path: &Path) -> bool {
     parser(path).is_some()
 }
 

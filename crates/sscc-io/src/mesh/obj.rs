@@ -8,15 +8,14 @@ use std::borrow::Cow;
 use glam::DVec3;
 use sscc::TriMesh;
 
-use super::Soup;
-use super::polygons::Polygons;
 use crate::error::quoted;
 use crate::named_groups::{DEFAULT, GroupCollector, GroupsBy, NamedGroups};
+use crate::polygons::{Polygons, Soup};
 use crate::text::{Lines, decoded, number, split_word, without_comment};
 use crate::{FormatError, Place};
 
-/// Parses an OBJ file: `v` and `f` lines. Other lines (normals, texture coordinates, groups, materials, lines, points)
-/// are skipped.
+/// Parses an OBJ file: `v` and `f` lines, and the older word `fo` for `f`. Other lines (normals, texture coordinates,
+/// groups, materials, lines, points, curves) are skipped.
 ///
 /// A weight or colour after `v x y z` is skipped. Corners in `f` lines have the form `a`, `a/b`, `a//c` or `a/b/c`, where
 /// `a` counts from 1, or backwards from -1, the last vertex so far. A `v` or `f` line that ends in a backslash continues
@@ -24,7 +23,8 @@ use crate::{FormatError, Place};
 ///
 /// # Errors
 /// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there are no vertices or
-/// no faces, or [`TriMesh::new`] rejects the mesh.
+/// no faces, or [`TriMesh::new`] rejects the mesh; when a line makes a free-form surface or calls another file, whose
+/// faces would be missing.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -49,7 +49,7 @@ pub fn groups(bytes: &[u8], by: GroupsBy) -> Result<NamedGroups, FormatError> {
         }
         Ok(())
     })?;
-    collector.extend_to(soup.faces.len(), &name)?;
+    collector.extend_to(soup.fans.len(), &name)?;
     soup.into_mesh()?;
     Ok(collector.finish())
 }
@@ -76,7 +76,7 @@ fn read(
                 let statement = joined(text, &mut lines);
                 positions.push(position(decoded(arguments(&statement), line)?, line)?);
             }
-            b"f" => {
+            b"f" | b"fo" => {
                 let statement = joined(text, &mut lines);
                 corners.clear();
                 for word in decoded(arguments(&statement), line)?.split_ascii_whitespace() {
@@ -84,10 +84,22 @@ fn read(
                 }
                 polygons.push(&corners, Place::Line(line))?;
             }
+            b"surf" | b"bzp" | b"bsp" | b"cdp" => {
+                let cause = "free-form surfaces are not supported: convert them to polygons";
+                return Err(of_keyword(keyword, cause, line));
+            }
+            b"call" | b"csh" => {
+                let cause = "other files and commands are not read: put their lines into this file";
+                return Err(of_keyword(keyword, cause, line));
+            }
             _ => on_other(keyword, other, polygons.triangle_count())?,
         }
     }
     polygons.finish(positions)
+}
+
+fn of_keyword(keyword: &[u8], cause: &str, line: usize) -> FormatError {
+    FormatError::line(line, format!("{}: {cause}", quoted(&String::from_utf8_lossy(keyword))))
 }
 
 /// Returns a line with its continuation lines. Only `v` and `f` lines are joined: a comment or a path may end in a
@@ -187,6 +199,48 @@ mod tests {
             g a\nv 0 1 0\ns off\nl 1 2\nf 1 2 3";
         let mesh = parse(text).unwrap();
         assert_eq!((mesh.rest_positions().len(), mesh.faces()), (3, &[[0, 1, 2]][..]));
+    }
+
+    #[test]
+    fn every_line_with_faces_is_read_or_refused() {
+        assert_eq!(faces("f 1 2 3\nfo 1/1 3/3 \\\n 4\n"), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(message("fo 1 2"), "line 5: a face needs at least 3 corners, this one has 2");
+        for keyword in ["surf", "bzp", "bsp", "cdp"] {
+            let line = format!("f 1 2 3\n{keyword} 0 1 0 1 1 2 3 4\n");
+            let cause = "free-form surfaces are not supported: convert them to polygons";
+            assert_eq!(message(&line), format!("line 6: '{keyword}': {cause}"));
+        }
+        assert!(message("f 1 2 3\ncall more.obj 7\n").starts_with("line 6: 'call': other files"));
+        assert!(message("csh cat more.obj\nf 1 2 3\n").starts_with("line 5: 'csh': other files"));
+        // Curves have no faces.
+        assert_eq!(faces("cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\nf 1 2 3\n"), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn concave_polygons_are_cut_at_their_notch() {
+        // An arrow-shaped pentagon, and a triangle.
+        let text = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3\nf 1 2 3 4 5\nf 3 4 5\n";
+        let mesh = parse(text.as_bytes()).unwrap();
+        assert_eq!(mesh.faces().len(), 5);
+        assert_eq!((mesh.faces()[0], mesh.faces()[4]), ([0, 1, 2], [2, 3, 4]));
+        let area = |[a, b, c]: [u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|corner| mesh.rest_positions()[corner as usize]);
+            (b - a).cross(c - a).z / 2.0
+        };
+        let areas: Vec<f64> = mesh.faces()[1..4].iter().map(|face| area(*face)).collect();
+        assert!(areas.iter().all(|area| *area > 0.0) && areas.iter().sum::<f64>() == 10.0, "{areas:?}");
+        let by_group = groups(text.replace("f 3", "g last\nf 3").as_bytes(), GroupsBy::Group).unwrap();
+        assert_eq!(by_group.of_triangle, [0, 0, 0, 0, 1]);
+    }
+
+    #[test]
+    fn lines_may_end_with_cr_alone() {
+        let text = format!("{SQUARE}# a comment\nf 1 2 \\\n3\nf 1 3 5\n").replace('\n', "\r");
+        assert_eq!(
+            parse(text.as_bytes()).unwrap_err().to_string(),
+            "line 8: names vertex 5 (counted from 1), but there are 4"
+        );
+        assert_eq!(parse(text.replace("3 5", "3 4").as_bytes()).unwrap().faces(), [[0, 1, 2], [0, 2, 3]]);
     }
 
     #[test]

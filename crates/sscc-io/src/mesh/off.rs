@@ -3,15 +3,14 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
-use super::Soup;
-use super::polygons::Polygons;
 use crate::error::quoted;
+use crate::polygons::{Polygons, Soup};
 use crate::text::{Lines, count, decoded, number, without_comment};
 use crate::{FormatError, Place};
 
 /// Parses an OFF file: the word `OFF`, the counts of vertices, faces and edges (on the same line or the next), one line
 /// for each vertex, and one for each face (`n i_1 .. i_n`, from 0). Comments (`#`), colours, and the normals and texture
-/// coordinates of the variants `[ST][C][N]OFF` are skipped.
+/// coordinates of the variants `[ST][C][N]OFF` are skipped. There may be no blank between `OFF` and the counts.
 ///
 /// # Errors
 /// When the file is binary or has another dimension (`4OFF`, `nOFF`), the number of lines differs from the counts, a line
@@ -24,8 +23,12 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let mut lines = Statements(Lines::new(bytes)?);
     let (line, header) = lines.required("the header")?;
     let mut words = header.split_ascii_whitespace();
-    check_magic(words.next().unwrap_or_default(), line)?;
-    let mut words = words.peekable();
+    let magic = words.next().unwrap_or_default();
+    let (magic, count) = magic.split_at(magic.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+    check_magic(if magic.is_empty() { count } else { magic }, line)?;
+    // Some files have no blank between the word and the first count.
+    let first = Some(count).filter(|count| !count.is_empty());
+    let mut words = first.into_iter().chain(words).peekable();
     let (line, [vertices, faces]) = if words.peek().is_some() {
         (line, counts(words, line)?)
     } else {
@@ -146,6 +149,9 @@ mod tests {
         let square = parse(SQUARE.as_bytes()).unwrap();
         assert_eq!(square.faces(), [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(parse(SQUARE.replace("OFF # a comment\n", "OFF ").as_bytes()).unwrap(), square);
+        assert_eq!(parse(SQUARE.replace("OFF # a comment\n", "OFF").as_bytes()).unwrap(), square);
+        assert_eq!(parse(SQUARE.replace("OFF # a comment\n4 1 0", "COFF4 1").as_bytes()).unwrap(), square);
+        assert_eq!(parse(SQUARE.replace('\n', "\r").as_bytes()).unwrap(), square);
         let coloured = SQUARE.replace("OFF #", "COFF #").replace("1 0 0\n", "1 0 0 255 0 0 255\n");
         assert_eq!(parse(coloured.as_bytes()).unwrap(), square);
         assert_eq!(parse(SQUARE.replace("2 3\n", "2 3 0.5 0.5 0.5").as_bytes()).unwrap(), square);
@@ -156,6 +162,8 @@ mod tests {
     fn errors_name_the_line() {
         assert_eq!(message("PLY\n"), "line 1: an OFF file begins with 'OFF', not 'PLY'");
         assert_eq!(message("4OFF\n"), "line 1: the OFF variant '4OFF' is not supported");
+        assert_eq!(message("4OFF6 2 0\n"), "line 1: the OFF variant '4OFF' is not supported");
+        assert_eq!(message("OFFx 2 0\n"), "line 1: an OFF file begins with 'OFF', not 'OFFx'");
         assert_eq!(message("OFF BINARY\n"), "line 1: binary OFF is not supported: save it as text");
         assert_eq!(message("OFF\n"), "the file ends before the counts");
         assert_eq!(message("OFF\n3 x 0\n"), "line 2: 'x' is not a count");

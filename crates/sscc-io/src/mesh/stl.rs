@@ -9,8 +9,8 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
-use super::Soup;
 use crate::error::quoted;
+use crate::polygons::Soup;
 use crate::text::{Lines, decoded, number, split_word};
 use crate::{FormatError, Place};
 
@@ -24,17 +24,21 @@ const TRIANGLE: usize = 50;
 /// with `solid` and has no zero byte among the first 1,024. Normals, attribute bytes and names of solids are skipped. A
 /// text file can have several solids.
 ///
+/// Programs that do not follow the format write binary files of other sizes. These are read, too: data of the length that
+/// the attribute bytes declare after each triangle; fewer than 50 further bytes at the end; a count of 0 before whole
+/// triangles.
+///
 /// # Errors
-/// When the size of a binary file does not match its count; when a text file has unknown statements or facets without
+/// When the size of a binary file does not match its count in another way; when a text file has unknown statements or facets without
 /// exactly 3 corners, or ends early; when [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
 
 pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
-    let positions = match binary(bytes) {
-        Err(_) if is_text(bytes) => text(bytes)?,
-        positions => positions?,
+    let (positions, warning) = match binary(bytes) {
+        Err(_) if is_text(bytes) => (text(bytes)?, None),
+        read => read?,
     };
     let Ok(vertices) = u32::try_from(positions.len()) else {
         return Err(FormatError::whole(format!(
@@ -43,7 +47,7 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
         )));
     };
     let faces = (0..vertices / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    Ok(Soup { positions, faces })
+    Ok(Soup { warnings: warning.into_iter().collect(), ..Soup::of_triangles(positions, faces) })
 }
 
 fn is_text(bytes: &[u8]) -> bool {
@@ -51,26 +55,66 @@ fn is_text(bytes: &[u8]) -> bool {
     split_word(text).0.eq_ignore_ascii_case(b"solid") && !bytes[..bytes.len().min(1024)].contains(&0)
 }
 
-fn binary(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
+/// Parses a binary file; returns three corners for each triangle, and a warning.
+fn binary(bytes: &[u8]) -> Result<(Vec<DVec3>, Option<String>), FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         let cause = "not an STL file: it is shorter than a binary header, and does not begin with 'solid'";
         return Err(FormatError::whole(cause));
     };
     let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
     let size = u64::from(count) * TRIANGLE as u64;
-    if size != body.len() as u64 {
+    let found = body.len() as u64;
+    let (whole, rest) = body.as_chunks::<TRIANGLE>();
+    if size == found {
+        return Ok((corners(whole), None));
+    }
+    if size > found || count == 0 && !rest.is_empty() {
         let cause = format!(
-            "the header declares {count} triangles ({size} bytes), but {} bytes follow: is the file cut off?",
-            body.len()
+            "the header declares {count} triangles ({size} bytes), but {found} bytes follow: is the file cut off?"
         );
         return Err(FormatError::new(Place::Byte(80), cause));
     }
+    if count == 0 {
+        let warning = format!(
+            "the header declares 0 triangles, but data of {} follow, which are read: was the file not finished?",
+            whole.len()
+        );
+        return Ok((corners(whole), Some(warning)));
+    }
+    if let Some(triangles) = with_attributes(body, count) {
+        return Ok((corners(&triangles), None));
+    }
+    let more = found - size;
+    if more < TRIANGLE as u64 {
+        let warning = format!("{more} bytes after the last of the {count} triangles are skipped");
+        return Ok((corners(&whole[..count as usize]), Some(warning)));
+    }
+    let cause = format!(
+        "{more} bytes follow the {count} triangles that the header declares, which could be more triangles: correct the \
+         count at byte 80, or remove these bytes"
+    );
+    Err(FormatError::new(Place::Byte(HEADER + size as usize), cause))
+}
+
+/// Returns the triangles if each is followed by as many bytes as its two attribute bytes declare, up to the end.
+fn with_attributes(body: &[u8], count: u32) -> Option<Vec<[u8; TRIANGLE]>> {
+    let (mut triangles, mut rest) = (Vec::new(), body);
+    for _ in 0..count {
+        let (triangle, after) = rest.split_first_chunk::<TRIANGLE>()?;
+        let attributes = u16::from_le_bytes([triangle[48], triangle[49]]);
+        rest = after.get(usize::from(attributes)..)?;
+        triangles.push(*triangle);
+    }
+    rest.is_empty().then_some(triangles)
+}
+
+/// Returns the corners of triangles.
+fn corners(triangles: &[[u8; TRIANGLE]]) -> Vec<DVec3> {
     let corner = |bytes: &[u8; 12]| {
         let [x, y, z] = [0, 4, 8].map(|at| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
         DVec3::from_array([x, y, z].map(|axis| f32::from_le_bytes(axis).into()))
     };
-    let (triangles, _) = body.as_chunks::<TRIANGLE>();
-    Ok(triangles.iter().flat_map(|t| t[12..48].as_chunks().0).map(corner).collect())
+    triangles.iter().flat_map(|t| t[12..48].as_chunks().0).map(corner).collect()
 }
 
 /// Parses a text file; returns three corners for each facet.

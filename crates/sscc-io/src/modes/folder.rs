@@ -83,11 +83,15 @@ pub(crate) fn positions_like(
     if found != expected {
         return refused(format!("this {what} has {found} vertices, {other} has {expected}"));
     }
-    if !read.faces.is_empty() && read.faces != model.faces() {
-        let (found, expected) = (read.faces.len(), model.faces().len());
-        let cause = match read.faces.iter().zip(model.faces()).position(|(a, b)| a != b) {
-            Some(face) if found == expected => format!("triangle {face} (counted from 0) of this {what}"),
-            _ => format!("the number of triangles, {found} for {expected},"),
+    // Where the positions of this mesh would cut a polygon in another way, the triangles of the model stay.
+    if !read.fans.is_empty()
+        && let Err(face) = read.has_polygons_of(model.faces())
+    {
+        let (found, expected) = (read.fans.len(), model.faces().len());
+        let cause = if found == expected {
+            format!("triangle {face} (counted from 0) of this {what}")
+        } else {
+            format!("the number of triangles, {found} for {expected},")
         };
         return refused(format!("{cause} differs from {other}: are the vertices in the same order?"));
     }

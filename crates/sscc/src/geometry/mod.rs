@@ -34,6 +34,7 @@ pub use intersection::{
     penetration_triangle_triangle,
 };
 pub(crate) use nearest_point::{nearest_to_origin, nearest_within};
+pub use orientation::orient2d;
 pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_triangle::intersect_triangle_triangle;
 pub(crate) use two_triangles::TwoTriangles;

@@ -53,6 +53,8 @@ pub(super) struct Header {
     pub lines: usize,
     /// Offset of the first byte after the header.
     pub body: usize,
+    /// Last byte of a line end.
+    pub line_end: u8,
 }
 
 /// Maximum number of elements, and of properties of an element. Each name is compared with all others.
@@ -101,7 +103,8 @@ impl Header {
     pub fn parse(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
-        for (line, text) in Lines::new(bytes)? {
+        let line_end = first_line_end(bytes);
+        for (line, text) in Lines::with_end(bytes, line_end)? {
             let refused = |cause: String| Err(FormatError::line(line, cause));
             if line == 1 {
                 if text.trim_ascii_end() != b"ply" {
@@ -142,11 +145,13 @@ impl Header {
                     let Some(encoding) = encoding else {
                         return refused("the header has no line 'format'".into());
                     };
-                    // The line is a part of `bytes`, and ends with LF or with the file.
+                    // The line is a part of `bytes`, and ends with its line end or with the file.
                     let end = text.as_ptr_range().end as usize - bytes.as_ptr() as usize;
-                    let body =
-                        bytes[end..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |at| end + at + 1);
-                    return Ok(Self { encoding, elements, lines: line, body });
+                    let body = bytes[end..]
+                        .iter()
+                        .position(|b| *b == line_end)
+                        .map_or(bytes.len(), |at| end + at + 1);
+                    return Ok(Self { encoding, elements, lines: line, body, line_end });
                 }
                 _ => {
                     return refused(format!(
@@ -157,6 +162,16 @@ impl Header {
             }
         }
         Err(FormatError::whole("the file ends within the header"))
+    }
+}
+
+/// Returns the last byte of the first line end: CR if no LF follows it, else LF. The rows of binary files may contain any
+/// bytes.
+fn first_line_end(bytes: &[u8]) -> u8 {
+    let cr = bytes.iter().position(|b| matches!(b, b'\r' | b'\n')).filter(|at| bytes[*at] == b'\r');
+    match cr {
+        Some(at) if bytes.get(at + 1) != Some(&b'\n') => b'\r',
+        _ => b'\n',
     }
 }
 

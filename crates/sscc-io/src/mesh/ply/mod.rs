@@ -4,24 +4,33 @@
 //! and only coordinates and corners are kept. See `docs/notes/2026-11-23-parsers-of-other-crates.md`.
 
 mod header;
+mod rows;
+mod strips;
 mod values;
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-use self::header::{Element, Header, Kind};
+use self::header::{Element, Header, Kind, Property};
+use self::rows::{corner_list, read_numbers, read_row};
 use self::values::Values;
-use super::Soup;
-use super::polygons::Polygons;
 use crate::FormatError;
+use crate::error::quoted;
+use crate::polygons::{Polygons, Soup};
 
 /// Parses a PLY file: `x`, `y`, `z` of the element `vertex` (any numeric type), and the list `vertex_indices` or
-/// `vertex_index` of the element `face` (any integer types). Other elements and properties are skipped. Numbers in text
-/// files have their declared type, too, so a text file and a binary file with the same declarations give the same mesh.
+/// `vertex_index` of the elements `face` and `tristrips` (any integer types). Other elements and properties are skipped.
+/// Numbers in text files have their declared type, too, so a text file and a binary file with the same declarations give
+/// the same mesh.
+///
+/// In a list of strips, -1 ends a strip; of an unsigned type, the largest number does so where no vertex has it. Every other
+/// triangle of a strip is turned, so that all have the same side. Triangles with a repeated corner, which connect strips,
+/// are left out.
 ///
 /// # Errors
-/// When the header is malformed, lacks one of these, or declares more data than the file has; when bytes follow the last
-/// row; when an index names no vertex, or [`TriMesh::new`] rejects the mesh.
+/// When the header is malformed, lacks one of these, or declares more data than the file has; when another element has
+/// lists of vertex numbers, as faces have; when bytes follow the last row; when an index names no vertex, or
+/// [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -29,18 +38,26 @@ pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
 pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let header = Header::parse(bytes)?;
     let mut values = Values::new(bytes, &header);
+    let (positions, polygons) = elements(&header, &mut values).map_err(|error| values.cause_of(error))?;
+    polygons.finish(positions)
+}
+
+/// Reads all elements, up to the end of the file.
+fn elements(header: &Header, values: &mut Values<'_>) -> Result<(Vec<DVec3>, Polygons), FormatError> {
+    let vertices = header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
     let mut positions = Vec::new();
     let mut polygons = Polygons::new(0);
     for element in &header.elements {
         values.check_room(element)?;
         match element.name.as_str() {
-            "vertex" => read_vertices(element, &mut values, &mut positions)?,
-            "face" => read_faces(element, &mut values, &mut polygons)?,
-            _ => skip(element, &mut values)?,
+            "vertex" => read_vertices(element, values, &mut positions)?,
+            "face" => read_faces(element, values, &mut polygons)?,
+            "tristrips" => strips::read(element, values, vertices, &mut polygons)?,
+            _ => skip(element, values)?,
         }
     }
     values.finish()?;
-    polygons.finish(positions)
+    Ok((positions, polygons))
 }
 
 fn read_vertices(
@@ -57,19 +74,21 @@ fn read_vertices(
     };
     let axes = [axis("x")?, axis("y")?, axis("z")?];
     for _ in 0..element.count {
-        let mut position = DVec3::ZERO;
-        for (at, property) in element.properties.iter().enumerate() {
-            match property.kind {
-                Kind::Number(number) => {
-                    let value = values.number(number)?;
-                    if let Some(axis) = axes.iter().position(|a| *a == at) {
-                        position[axis] = value;
+        positions.push(values.row(|values| {
+            let mut position = DVec3::ZERO;
+            for (at, property) in element.properties.iter().enumerate() {
+                match property.kind {
+                    Kind::Number(number) => {
+                        let value = values.number(number)?;
+                        if let Some(axis) = axes.iter().position(|a| *a == at) {
+                            position[axis] = value;
+                        }
                     }
+                    Kind::List { count, item } => values.skip_list(count, item)?,
                 }
-                Kind::List { count, item } => values.skip_list(count, item)?,
             }
-        }
-        positions.push(position);
+            Ok(position)
+        })?);
     }
     Ok(())
 }
@@ -79,48 +98,50 @@ fn read_faces(
     values: &mut Values<'_>,
     polygons: &mut Polygons,
 ) -> Result<(), FormatError> {
-    let is_corners = |name: &str| matches!(name, "vertex_indices" | "vertex_index");
-    let Some(wanted) = element.properties.iter().position(|p| is_corners(&p.name)) else {
-        let cause = "the element 'face' has no list 'vertex_indices' or 'vertex_index'";
-        return Err(FormatError::line(element.line, cause));
-    };
+    let (wanted, item) = corner_list(element)?;
     let mut corners = Vec::new();
     for _ in 0..element.count {
         let place = values.place();
-        for (at, property) in element.properties.iter().enumerate() {
-            match property.kind {
-                Kind::List { count, item } if at == wanted => {
-                    corners.clear();
-                    for _ in 0..values.list(count, item)? {
-                        corners.push(values.integer(item)?);
-                    }
-                }
-                Kind::Number(_) if at == wanted => {
-                    let cause = format!("'{}' must be a list", property.name);
-                    return Err(FormatError::line(element.line, cause));
-                }
-                Kind::List { count, item } => values.skip_list(count, item)?,
-                Kind::Number(number) => drop(values.number(number)?),
-            }
-        }
+        corners.clear();
+        read_row(element, values, wanted, |values| {
+            corners.push(values.integer(item)?);
+            Ok(())
+        })?;
         polygons.push(&corners, place)?;
     }
     Ok(())
 }
 
+/// Elements whose lists of vertex numbers are lines.
+const LINES: [&str; 6] = ["edge", "edges", "line", "lines", "polyline", "polylines"];
+
 fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), FormatError> {
     if element.properties.is_empty() {
         return Ok(()); // rows without bytes can have any count
     }
-    for _ in 0..element.count {
-        for property in &element.properties {
-            match property.kind {
-                Kind::List { count, item } => values.skip_list(count, item)?,
-                Kind::Number(number) => drop(values.number(number)?),
-            }
+    check_without_faces(element)?;
+    let none = element.properties.len();
+    (0..element.count).try_for_each(|_| read_numbers(element, values, none, |_| Ok(())))
+}
+
+/// Returns an error if an element that is skipped may have faces: lists of integers whose name is that of vertex numbers.
+fn check_without_faces(element: &Element) -> Result<(), FormatError> {
+    let is_list = |p: &Property| match p.kind {
+        Kind::List { item, .. } => {
+            item.range().is_some() && (p.name.contains("vert") || p.name.contains("ind"))
         }
+        Kind::Number(_) => false,
+    };
+    if element.count == 0 || LINES.contains(&element.name.as_str()) || !element.properties.iter().any(is_list)
+    {
+        return Ok(());
     }
-    Ok(())
+    let cause = format!(
+        "the element {} has lists of vertex numbers, as faces have, but is not supported: convert it to an element 'face', or \
+         remove it",
+        quoted(&element.name)
+    );
+    Err(FormatError::line(element.line, cause))
 }
 
 #[cfg(test)]

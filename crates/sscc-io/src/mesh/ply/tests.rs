@@ -147,3 +147,129 @@ fn errors_in_rows_name_the_place() {
         with("uchar int vertex", "uchar float vertex").contains("vertex numbers must be of an integer type")
     );
 }
+
+const SIX: &str = "0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n2 1 1\n";
+
+/// A text file of six vertices and one further element.
+fn with_element(element: &str, rows: &str) -> String {
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+         {element}\nend_header\n{SIX}{rows}"
+    )
+}
+
+fn strips(types: &str, rows: &str) -> Result<Vec<[u32; 3]>, String> {
+    let element = format!("element tristrips 1\nproperty list {types} vertex_indices");
+    match parse(with_element(&element, rows).as_bytes()) {
+        Ok(mesh) => Ok(mesh.faces().to_vec()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[test]
+fn strips_are_faces() {
+    let all = [[0, 1, 2], [2, 1, 3], [3, 4, 5]];
+    for types in ["int int", "uchar int", "uchar char", "short short", "uint int"] {
+        assert_eq!(strips(types, "8 0 1 2 3 -1 3 4 5\n").unwrap(), all, "{types}");
+    }
+    for (types, end) in [("uchar uchar", "255"), ("int ushort", "65535"), ("int uint", "4294967295")] {
+        let rows = format!("9 0 1 2 3 {end} 3 4 5 {end}\n");
+        assert_eq!(strips(types, &rows).unwrap(), all, "{types}");
+    }
+    // Repeated corners connect strips; a strip of two corners has no triangle.
+    assert_eq!(strips("int int", "10 0 1 2 2 3 3 4 5 -1 1\n").unwrap(), [[0, 1, 2], [4, 3, 5]]);
+    let faces = "element face 1\nproperty list uchar int vertex_indices\nelement tristrips 1\n\
+        property list int int vertex_indices";
+    let mesh = parse(with_element(faces, "3 0 1 2\n4 3 4 5 -1\n").as_bytes()).unwrap();
+    assert_eq!(mesh.faces(), [[0, 1, 2], [3, 4, 5]]);
+
+    assert_eq!(strips("int int", "3 0 1 -2\n").unwrap_err(), "line 16: -2 is neither a vertex nor -1");
+    assert_eq!(
+        strips("int int", "3 0 1 6\n").unwrap_err(),
+        "line 16: names vertex 6 (counted from 0), but there are 6"
+    );
+    assert!(strips("int float", "3 0 1 2\n").unwrap_err().contains("of an integer type"));
+    assert!(strips("int int", "3 0 1\n").is_err());
+}
+
+#[test]
+fn binary_strips_are_faces() {
+    for big in [false, true] {
+        let format = if big { "binary_big_endian" } else { "binary_little_endian" };
+        let header = format!(
+            "ply\nformat {format} 1.0\nelement vertex 6\nproperty char x\nproperty char y\nproperty char z\n\
+             element tristrips 2\nproperty list ushort int vertex_index\nend_header\n"
+        );
+        let mut bytes = header.into_bytes();
+        bytes.extend([0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 255, 1, 1, 1, 2, 1, 1]);
+        for strip in [&[0, 1, 2, -1, 1, 3, 2, 4][..], &[3, 4, 5]] {
+            let count = strip.len() as u16;
+            bytes.extend(if big { count.to_be_bytes() } else { count.to_le_bytes() });
+            strip
+                .iter()
+                .for_each(|c: &i32| bytes.extend(if big { c.to_be_bytes() } else { c.to_le_bytes() }));
+        }
+        let faces = [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 4, 5]];
+        assert_eq!(parse(&bytes).unwrap().faces(), faces);
+        (0..bytes.len()).for_each(|len| assert!(parse(&bytes[..len]).is_err(), "{len}"));
+    }
+}
+
+#[test]
+fn elements_with_unknown_faces_are_refused() {
+    let message = |element: &str, rows: &str| {
+        parse(
+            with_element(&format!("{element}\nelement face 1\nproperty list uchar int vertex_indices"), rows)
+                .as_bytes(),
+        )
+        .map(|mesh| mesh.faces().len())
+        .map_err(|error| error.to_string())
+    };
+    for name in ["vertex_indices", "vertices", "indices", "vert_idx"] {
+        let element = format!("element patch 1\nproperty list uchar int {name}");
+        let refused = message(&element, "3 3 4 5\n3 0 1 2\n").unwrap_err();
+        assert!(
+            refused.starts_with("line 7: the element 'patch' has lists of vertex numbers, as faces have"),
+            "{refused}"
+        );
+    }
+    let grid = "element range_grid 1\nproperty list uchar int vertex_indices";
+    assert!(message(grid, "1 3\n3 0 1 2\n").unwrap_err().contains("'range_grid'"));
+    assert_eq!(message("element patch 0\nproperty list uchar int vertex_indices", "3 0 1 2\n"), Ok(1));
+    // Lines, numbers of other kinds.
+    assert_eq!(message("element edge 1\nproperty list uchar int vertex_indices", "2 3 4\n3 0 1 2\n"), Ok(1));
+    assert_eq!(
+        message("element edge 1\nproperty int vertex1\nproperty int vertex2", "3 4\n3 0 1 2\n"),
+        Ok(1)
+    );
+    assert_eq!(message("element a 1\nproperty list uchar float vertex_weights", "2 .5 .5\n3 0 1 2\n"), Ok(1));
+    let two = "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar int vertex_index";
+    let refused = parse(with_element(two, "3 0 1 2 3 3 4 5\n").as_bytes()).unwrap_err().to_string();
+    assert_eq!(refused, "line 7: the element 'face' has two lists of corners: remove one of them");
+}
+
+#[test]
+fn rows_of_another_length_name_their_line() {
+    let faces = "element face 2\nproperty list uchar int vertex_indices\nproperty uchar red";
+    let message = |rows: &str| parse(with_element(faces, rows).as_bytes()).unwrap_err().to_string();
+    let more = "this row has more values than the header declares";
+    assert_eq!(message("3 0 1 2 3 255 0 0\n3 3 4 5 3 255 0 0\n"), format!("line 17: {more}"));
+    assert_eq!(message("3 0 1 2 3\n3 3 4 5 3 9\n"), format!("line 18: {more}"));
+    assert_eq!(message("3 0 1 2\n3 3 4 5\n"), "line 17: this row has fewer values than the header declares");
+    // Rows in one line, and over several ones, are read where all numbers fit.
+    let rows = "3 0 1 2 3 3 3 4\n5 3\n";
+    assert_eq!(parse(with_element(faces, rows).as_bytes()).unwrap().faces(), [[0, 1, 2], [3, 4, 5]]);
+}
+
+#[test]
+fn lines_may_end_with_cr_alone() {
+    let mesh = parse(text().as_bytes()).unwrap();
+    assert_eq!(parse(text().replace('\n', "\r").as_bytes()).unwrap(), mesh);
+    let wrong = text().replace("4 0 1 2 3", "4 0 1 2 4").replace('\n', "\r");
+    assert_eq!(message(wrong.as_bytes()), "line 23: names vertex 4 (counted from 0), but there are 4");
+    for big in [false, true] {
+        let lf = header(if big { "binary_big_endian" } else { "binary_little_endian" }, 4);
+        let body = binary(big)[lf.len()..].to_vec();
+        assert_eq!(parse(&[lf.replace('\n', "\r").as_bytes(), &body].concat()).unwrap(), mesh);
+    }
+}

@@ -13,11 +13,22 @@ pub(super) struct Values<'a> {
     encoding: Encoding,
     /// Line of that byte, for text.
     line: usize,
+    /// Last byte of a line end.
+    line_end: u8,
+    /// The first row of a text file that is not a line of its own, and how it differs.
+    uneven: Option<(usize, &'static str)>,
 }
 
 impl<'a> Values<'a> {
     pub fn new(bytes: &'a [u8], header: &Header) -> Self {
-        Self { bytes, at: header.body, encoding: header.encoding, line: header.lines + 1 }
+        Self {
+            bytes,
+            at: header.body,
+            encoding: header.encoding,
+            line: header.lines + 1,
+            line_end: header.line_end,
+            uneven: None,
+        }
     }
 
     /// Returns the place of the next number.
@@ -28,6 +39,37 @@ impl<'a> Values<'a> {
                 Place::Line(self.line)
             }
             _ => Place::Byte(self.at),
+        }
+    }
+
+    /// Reads a row. In a text file, a row that is not a line of its own is remembered: errors of later rows have its cause.
+    pub fn row<T>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> Result<T, FormatError>,
+    ) -> Result<T, FormatError> {
+        if self.encoding != Encoding::Text || self.uneven.is_some() {
+            return read(self);
+        }
+        self.skip_space();
+        let line = self.line;
+        let value = read(self)?;
+        let rest = &self.bytes[self.at..];
+        let end = rest.iter().position(|b| !b.is_ascii_whitespace() || *b == self.line_end);
+        if self.line != line {
+            self.uneven = Some((line, "fewer"));
+        } else if end.is_some_and(|end| rest[end] != self.line_end) {
+            self.uneven = Some((line, "more"));
+        }
+        Ok(value)
+    }
+
+    /// Returns the cause of an error of the rows: the first row that is not a line of its own, if there is one.
+    pub fn cause_of(&self, error: FormatError) -> FormatError {
+        match self.uneven {
+            Some((line, what)) => {
+                FormatError::line(line, format!("this row has {what} values than the header declares"))
+            }
+            None => error,
         }
     }
 
@@ -72,14 +114,18 @@ impl<'a> Values<'a> {
     /// Reads the next number, an integer from 0.
     pub fn integer(&mut self, kind: Number) -> Result<u64, FormatError> {
         let place = self.place();
+        let value = self.signed_integer(kind)?;
+        u64::try_from(value).map_err(|_| FormatError::new(place, format!("{value} is negative")))
+    }
+
+    /// Reads the next number, an integer.
+    pub fn signed_integer(&mut self, kind: Number) -> Result<i64, FormatError> {
+        let place = self.place();
         let value = self.number(kind)?;
         if kind.range().is_none() {
             return Err(FormatError::new(place, "vertex numbers must be of an integer type"));
         }
-        if value < 0.0 {
-            return Err(FormatError::new(place, format!("{value} is negative")));
-        }
-        Ok(value as u64) // exact: integer types have at most 32 bits
+        Ok(value as i64) // exact: integer types have at most 32 bits
     }
 
     /// Reads the length of the next list, without its items.
@@ -103,7 +149,7 @@ impl<'a> Values<'a> {
     }
 
     /// Returns an error if bytes follow the last row (in text: other than white space).
-    pub fn finish(mut self) -> Result<(), FormatError> {
+    pub fn finish(&mut self) -> Result<(), FormatError> {
         let place = self.place();
         match self.bytes.len() - self.at {
             0 => Ok(()),
@@ -129,7 +175,7 @@ impl<'a> Values<'a> {
 
     fn skip_space(&mut self) {
         while let Some(byte) = self.bytes.get(self.at).filter(|b| b.is_ascii_whitespace()) {
-            self.line += usize::from(*byte == b'\n');
+            self.line += usize::from(*byte == self.line_end);
             self.at += 1;
         }
     }

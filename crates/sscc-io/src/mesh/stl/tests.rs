@@ -35,6 +35,7 @@ fn text_and_binary_give_the_same_mesh() {
         assert_eq!(parse(&binary_file(header, [0, 0])).unwrap(), mesh);
         assert_eq!(parse(&binary_file(header, [255, 1])).unwrap(), mesh);
     }
+    assert_eq!(parse(TEXT.replace('\n', "\r").as_bytes()).unwrap(), mesh);
     assert_eq!(parse(TEXT.replace('\n', "\r\n").as_bytes()).unwrap(), mesh);
     assert_eq!(parse(TEXT.to_uppercase().as_bytes()).unwrap(), mesh);
     assert_eq!(parse(format!("\u{feff}\n{TEXT} a name\n\n").as_bytes()).unwrap(), mesh);
@@ -50,13 +51,46 @@ fn truncations_and_extra_bytes_are_rejected() {
         for len in 0..bytes.len() {
             assert!(parse(&bytes[..len]).is_err(), "{len}");
         }
-        let extra = message([&bytes[..], b"\0"].concat());
-        assert!(extra.contains("2 triangles (100 bytes), but 101 bytes follow"), "{extra}");
+        let extra = message([&bytes[..], &[0; 50]].concat());
+        assert_eq!(
+            extra,
+            "byte 184: 50 bytes follow the 2 triangles that the header declares, which could be more triangles: correct the \
+             count at byte 80, or remove these bytes"
+        );
     }
     for len in 0..TEXT.len() {
         assert!(parse(&TEXT.as_bytes()[..len]).is_err(), "{len}");
     }
     assert_eq!(message(format!("{TEXT}\nx")), "line 18: 'solid' expected, not 'x'");
+}
+
+#[test]
+fn binary_files_of_other_sizes() {
+    let plain = binary_file(b"x", [0, 0]);
+    let mesh = parse(&plain).unwrap();
+    let read = |bytes: &[u8]| soup(bytes).unwrap().into_mesh_with_warnings().unwrap();
+    for extra in [1, 17, 49] {
+        let (found, warnings) = read(&[&plain[..], &vec![b'c'; extra]].concat());
+        assert_eq!(found, mesh);
+        assert_eq!(warnings, [format!("{extra} bytes after the last of the 2 triangles are skipped")]);
+    }
+    // Data of the length that the attribute bytes declare.
+    let attributes = binary_file(b"x", [60, 0]);
+    let payload = [1; 60];
+    let payloads = [&attributes[..134], &payload, &attributes[134..], &payload].concat();
+    assert_eq!(read(&payloads), (mesh.clone(), vec![]));
+    assert!(parse(&payloads[..payloads.len() - 1]).is_err());
+    // A count that was never set.
+    let mut unset = plain.clone();
+    unset[80..84].fill(0);
+    let (found, warnings) = read(&unset);
+    assert_eq!(found, mesh);
+    assert!(warnings[0].contains("declares 0 triangles, but data of 2 follow"), "{warnings:?}");
+    let cut = message(&unset[..unset.len() - 1]);
+    assert!(
+        cut.contains("declares 0 triangles (0 bytes), but 99 bytes follow: is the file cut off?"),
+        "{cut}"
+    );
 }
 
 #[test]

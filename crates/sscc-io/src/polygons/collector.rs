@@ -1,13 +1,15 @@
-//! Collects polygons as fans of triangles.
+//! Collects the polygons of a file.
 
 use glam::DVec3;
 
 use super::Soup;
+use super::triangulation::LargerPolygon;
 use crate::{FormatError, Place};
 
-/// Triangles of the polygons so far. OBJ allows indices before their vertices, so `finish` checks them.
-pub(super) struct Polygons {
+/// Polygons so far, as fans. OBJ allows indices before their vertices, so `finish` checks them.
+pub(crate) struct Polygons {
     triangles: Vec<[u32; 3]>,
+    larger: Vec<LargerPolygon>,
     /// Largest index, from 0, and its place.
     largest: Option<(u64, Place)>,
     /// Number of the first vertex in the format: 0 or 1. Only for messages.
@@ -16,7 +18,7 @@ pub(super) struct Polygons {
 
 impl Polygons {
     pub fn new(first: u64) -> Self {
-        Self { triangles: Vec::new(), largest: None, first }
+        Self { triangles: Vec::new(), larger: Vec::new(), largest: None, first }
     }
 
     /// The number of triangles so far.
@@ -24,7 +26,12 @@ impl Polygons {
         self.triangles.len()
     }
 
-    /// Adds one polygon (indices from 0), fanned from its first corner.
+    /// Returns all polygons as fans.
+    pub fn into_fans(self) -> Vec<[u32; 3]> {
+        self.triangles
+    }
+
+    /// Adds one polygon (indices from 0).
     pub fn push(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
         let (Some(&largest), [first, rest @ ..]) = (corners.iter().max(), corners) else {
             return Err(too_few(0, place));
@@ -35,12 +42,15 @@ impl Polygons {
         if self.largest.as_ref().is_none_or(|(known, _)| largest > *known) {
             self.largest = Some((largest, place));
         }
+        if rest.len() > 2 {
+            self.larger.push(LargerPolygon { start: self.triangles.len(), triangles: rest.len() - 1 });
+        }
         // An index beyond 32 bits is truncated here, but `largest` keeps it, and `finish` rejects it.
         self.triangles.extend(rest.windows(2).map(|pair| [*first as u32, pair[0] as u32, pair[1] as u32]));
         Ok(())
     }
 
-    /// Returns the triangles with the given vertices, after checking the indices.
+    /// Returns the polygons with the given vertices, after checking the indices.
     pub fn finish(self, positions: Vec<DVec3>) -> Result<Soup, FormatError> {
         if positions.is_empty() {
             return Err(FormatError::whole("the mesh has no vertices"));
@@ -52,7 +62,7 @@ impl Polygons {
                 let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
                 Err(FormatError::new(place, cause))
             }
-            _ => Ok(Soup { positions, faces: self.triangles }),
+            _ => Ok(Soup { positions, fans: self.triangles, larger: self.larger, warnings: Vec::new() }),
         }
     }
 }
@@ -68,9 +78,12 @@ mod tests {
     #[test]
     fn fans_go_around_the_first_corner() {
         let mut polygons = Polygons::new(0);
-        polygons.push(&[4, 1, 2, 3, 0], Place::Line(1)).unwrap();
+        polygons.push(&[4, 1, 2], Place::Line(1)).unwrap();
+        polygons.push(&[4, 1, 2, 3, 0], Place::Line(2)).unwrap();
         let soup = polygons.finish(vec![DVec3::ZERO; 5]).unwrap();
-        assert_eq!(soup.faces, [[4, 1, 2], [4, 2, 3], [4, 3, 0]]);
+        assert_eq!(soup.fans, [[4, 1, 2], [4, 1, 2], [4, 2, 3], [4, 3, 0]]);
+        assert_eq!(soup.larger, [LargerPolygon { start: 1, triangles: 3 }]);
+        assert_eq!(soup.into_mesh().unwrap().faces(), [[4, 1, 2], [4, 1, 2], [4, 2, 3], [4, 3, 0]]);
     }
 
     #[test]

@@ -1,0 +1,71 @@
+//! Whether the fan around the first corner triangulates a polygon.
+
+use glam::DVec2;
+use sscc::orient2d;
+
+/// Whether the fan around the first corner covers the polygon, and no point of the plane twice, apart from borders.
+///
+/// So it is if no two triangles of the fan turn in opposite directions, and the polygon turns around its first corner
+/// once at most. A polygon without area is the union of its fan's segments.
+pub(super) fn is_fan_a_triangulation(polygon: &[DVec2]) -> bool {
+    let [center, others @ ..] = polygon else { return true };
+    let mut turn = 0;
+    for edge in others.windows(2) {
+        let side = orient2d(*center, edge[0], edge[1]);
+        if side != 0 && side == -turn {
+            return false;
+        }
+        turn = if side == 0 { turn } else { side };
+    }
+    // The directions from the centre turn one way, by at most half a turn at each step. They have passed the first
+    // direction again if one is on its side after another was behind it.
+    let Some(start) = others.iter().find(|p| *p != center) else { return true };
+    let mut was_behind = false;
+    for point in others {
+        match orient2d(*center, *start, *point) * turn {
+            1 if was_behind => return false,
+            -1 => was_behind = true,
+            _ => {}
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_fan(points: &[(f64, f64)]) -> bool {
+        let points: Vec<DVec2> = points.iter().map(|(x, y)| DVec2::new(*x, *y)).collect();
+        let mirrored: Vec<DVec2> = points.iter().map(|p| DVec2::new(-p.x, p.y)).collect();
+        let found = is_fan_a_triangulation(&points);
+        assert_eq!(is_fan_a_triangulation(&mirrored), found);
+        found
+    }
+
+    #[test]
+    fn convex_and_star_shaped_polygons_are_fans() {
+        assert!(is_fan(&[(0., 0.), (4., 0.), (4., 4.), (0., 4.)]));
+        // A reflex first corner that sees everything; the same polygon from another corner.
+        let arrow = [(2., 1.), (0., 4.), (0., 0.), (4., 0.), (4., 4.)];
+        assert!(is_fan(&arrow));
+        let mut turned = arrow;
+        turned.rotate_left(2);
+        assert!(!is_fan(&turned));
+        // Corners on edges, repeated corners, no area.
+        assert!(is_fan(&[(0., 0.), (2., 0.), (4., 0.), (4., 4.), (2., 4.), (0., 4.), (0., 2.)]));
+        assert!(is_fan(&[(0., 0.), (0., 0.), (4., 0.), (4., 0.), (4., 4.), (0., 4.)]));
+        assert!(is_fan(&[(0., 0.), (2., 0.), (1., 0.), (3., 0.)]) && is_fan(&[(1., 1.); 5]));
+        assert!(is_fan(&[]) && is_fan(&[(0., 0.)]));
+    }
+
+    #[test]
+    fn crossing_and_twice_turning_polygons_are_no_fans() {
+        assert!(!is_fan(&[(0., 0.), (4., 4.), (4., 0.), (0., 4.)]));
+        // Around the first corner twice.
+        let ring = [(2., 0.), (0., 2.), (-2., 0.), (0., -2.), (3., 0.), (0., 3.), (-3., 0.), (0., -3.)];
+        let twice: Vec<_> = [(0., 0.)].into_iter().chain(ring).collect();
+        assert!(!is_fan(&twice));
+        assert!(is_fan(&twice[..5]));
+    }
+}
