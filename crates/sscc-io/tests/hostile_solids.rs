@@ -6,7 +6,7 @@
 use allocation_counter::measure;
 use proptest::prelude::*;
 use sscc_io::solid::{gmsh, medit, tetgen, vega};
-use sscc_io::{FormatError, parse_reduced_forces};
+use sscc_io::{FormatError, VolumeOrSurface, parse_reduced_forces};
 use sscc_solid::VolumeMesh;
 
 /// Checks the guarantees of every mesh, and that errors have one line.
@@ -29,10 +29,20 @@ fn check(result: Result<VolumeMesh, FormatError>) {
     }
 }
 
+fn check_any(result: Result<VolumeOrSurface, FormatError>) {
+    match result {
+        Ok(VolumeOrSurface::Volume(mesh)) => check(Ok(mesh)),
+        Ok(VolumeOrSurface::Surface { mesh, .. }) => assert!(!mesh.faces().is_empty()),
+        Err(error) => check(Err(error)),
+    }
+}
+
 fn parse_all(bytes: &[u8]) {
     check(medit::parse(bytes));
     check(vega::parse(bytes));
     check(gmsh::parse(bytes));
+    check_any(medit::parse_any(bytes));
+    check_any(gmsh::parse_any(bytes));
     match tetgen::parse_nodes(bytes) {
         Ok(nodes) => check(tetgen::parse(&nodes, ELE)),
         Err(error) => check(Err(error)),

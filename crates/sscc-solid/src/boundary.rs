@@ -4,7 +4,7 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh};
 
 use crate::element::{CUBE_FACES, TET_FACES};
-use crate::{Solid, SolidError};
+use crate::{Solid, SolidError, VolumeMesh, tets_within};
 
 /// Boundary of a solid.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,26 +22,7 @@ impl Solid {
     /// # Errors
     /// When three elements share a face, so that elements overlap.
     pub fn boundary(&self) -> Result<Boundary, SolidError> {
-        let tets = self.tets().iter().flat_map(|tet| TET_FACES.map(|f| f.map(|k| tet[k]).to_vec()));
-        let cubes = self.cubes().iter().flat_map(|cube| CUBE_FACES.map(|f| f.map(|k| cube[k]).to_vec()));
-        let faces: Vec<Vec<u32>> = tets.chain(cubes).collect();
-        let mut sorted: Vec<(Vec<u32>, usize)> = faces.iter().cloned().zip(0..).collect();
-        sorted.iter_mut().for_each(|(corners, _)| corners.sort_unstable());
-        sorted.sort_unstable();
-        let mut outer = Vec::new();
-        for same in sorted.chunk_by(|a, b| a.0 == b.0) {
-            match same {
-                [one] => outer.push(one.1),
-                [_, _] => {}
-                _ => return Err(SolidError::OverlappingElements { face: same[0].0.clone() }),
-            }
-        }
-        outer.sort_unstable();
-        let triangles = outer.into_iter().flat_map(|at| {
-            let face = &faces[at];
-            (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])
-        });
-        let triangles: Vec<[u32; 3]> = triangles.collect();
+        let triangles = outer_triangles(self.tets(), self.cubes())?;
         let mut used = vec![false; self.vertices().len()];
         triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
         let vertices: Vec<u32> = (0..used.len() as u32).filter(|v| used[*v as usize]).collect();
@@ -50,6 +31,46 @@ impl Solid {
         let triangles = triangles.iter().map(|t| t.map(number)).collect();
         Ok(Boundary { mesh: TriMesh::new(positions, triangles)?, vertices })
     }
+}
+
+impl VolumeMesh {
+    /// Returns the surface of the elements with all vertices of the file. Elements may be flat, inverted or overlap;
+    /// tetrahedra outside of the surface that the file lists are left out. Triangles are in the order of
+    /// [`Solid::boundary`].
+    ///
+    /// # Errors
+    /// When three elements share a face.
+    pub fn surface_mesh(&self) -> Result<TriMesh, SolidError> {
+        let within = tets_within(self.tets(), self.surface());
+        let tets: Vec<[u32; 4]> =
+            self.tets().iter().zip(within).filter(|(_, within)| *within).map(|(tet, _)| *tet).collect();
+        Ok(TriMesh::new(self.vertices().to_vec(), outer_triangles(&tets, self.cubes())?)?)
+    }
+}
+
+/// Returns the faces of exactly one element as triangles, in the order of the elements, outward where an element is not
+/// inverted.
+fn outer_triangles(tets: &[[u32; 4]], cubes: &[[u32; 8]]) -> Result<Vec<[u32; 3]>, SolidError> {
+    let tets = tets.iter().flat_map(|tet| TET_FACES.map(|f| f.map(|k| tet[k]).to_vec()));
+    let cubes = cubes.iter().flat_map(|cube| CUBE_FACES.map(|f| f.map(|k| cube[k]).to_vec()));
+    let faces: Vec<Vec<u32>> = tets.chain(cubes).collect();
+    let mut sorted: Vec<(Vec<u32>, usize)> = faces.iter().cloned().zip(0..).collect();
+    sorted.iter_mut().for_each(|(corners, _)| corners.sort_unstable());
+    sorted.sort_unstable();
+    let mut outer = Vec::new();
+    for same in sorted.chunk_by(|a, b| a.0 == b.0) {
+        match same {
+            [one] => outer.push(one.1),
+            [_, _] => {}
+            _ => return Err(SolidError::OverlappingElements { face: same[0].0.clone() }),
+        }
+    }
+    outer.sort_unstable();
+    let triangles = outer.into_iter().flat_map(|at| {
+        let face = &faces[at];
+        (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])
+    });
+    Ok(triangles.collect())
 }
 
 impl Boundary {
@@ -71,7 +92,7 @@ impl Boundary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Material;
+    use crate::{Material, NamedMaterial, VolumeMeshParts};
 
     #[test]
     fn the_boundary_of_a_cube_is_closed_and_overlaps_are_rejected() {
@@ -104,6 +125,29 @@ mod tests {
             Material::default(),
         );
         assert!(matches!(overlapping.unwrap().boundary(), Err(SolidError::OverlappingElements { .. })));
+    }
+
+    #[test]
+    fn the_surface_of_a_volume_mesh_has_the_vertices_of_the_file() {
+        let corners = [[9, 9, 9], [0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [1, 1, 1], [2, 2, 2]];
+        let parts = VolumeMeshParts {
+            vertices: corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec(),
+            // Vertex 0 belongs to no element, vertex 5 is inside, and the last element is flat.
+            tets: vec![[1, 3, 2, 5], [1, 2, 4, 5], [2, 3, 4, 5], [1, 4, 3, 5], [1, 2, 3, 6]],
+            materials: vec![NamedMaterial { unsupported: Some("x".into()), ..NamedMaterial::default() }],
+            element_material: vec![0; 5],
+            ..VolumeMeshParts::default()
+        };
+        let mesh = VolumeMesh::new(parts.clone()).unwrap().surface_mesh().unwrap();
+        assert_eq!((mesh.rest_positions(), mesh.faces().len()), (&parts.vertices[..], 6));
+        assert!(mesh.faces().as_flattened().iter().all(|v| ![0, 5].contains(v)));
+        let three = VolumeMeshParts {
+            tets: vec![[1, 2, 3, 4], [1, 2, 3, 5], [1, 2, 3, 6]],
+            element_material: vec![0; 3],
+            ..parts
+        };
+        let refused = VolumeMesh::new(three).unwrap().surface_mesh();
+        assert!(matches!(refused, Err(SolidError::OverlappingElements { .. })));
     }
 
     #[test]

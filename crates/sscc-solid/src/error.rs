@@ -115,6 +115,17 @@ pub enum SolidError {
     /// A property of a material is outside its range.
     #[error(transparent)]
     Material(#[from] MaterialError),
+    /// A material of elements has a stiffness that is not computed.
+    #[error(
+        "the material {name} is of the kind {kind}, whose stiffness is not computed: state both numbers of an isotropic \
+         stiffness instead, as in --material youngs=1e6,poisson=0.4"
+    )]
+    UnsupportedMaterial {
+        /// Name in the file.
+        name: String,
+        /// Kind in the file.
+        kind: String,
+    },
     /// The size of the stiffness does not fit the number of modes.
     #[error(
         "the stiffness has {found} entries, but {rank} modes need {rank} x {rank}: pass U'KU of these modes"

@@ -29,6 +29,9 @@ pub struct NamedMaterial {
     pub name: String,
     /// Properties in the file's units: SI in all files of VegaFEM.
     pub stated: PartialMaterial,
+    /// Kind of a material whose stiffness is not computed, such as an orthotropic one. A solid needs another stiffness for
+    /// it.
+    pub unsupported: Option<String>,
 }
 
 /// A property of a material is outside its range.

@@ -22,7 +22,8 @@ impl VolumeMesh {
     /// Properties of materials are those in `given`, then those of the mesh, then those of the default material.
     ///
     /// # Errors
-    /// As [`Solid::new`], and when a property of a material is outside its range.
+    /// As [`Solid::new`]; when a property of a material is outside its range; when an element has a material whose stiffness
+    /// is not computed, and `given` does not replace all of its stiffness.
     pub fn solid(&self, given: &PartialMaterial) -> Result<MeshedSolid, SolidError> {
         let within = tets_within(self.tets(), self.surface());
         let kept: Vec<usize> = (0..within.len()).filter(|t| within[*t]).collect();
@@ -48,8 +49,14 @@ impl VolumeMesh {
         // A file may define materials without elements.
         let mut is_used = vec![false; self.materials().len()];
         element_material.iter().for_each(|at| is_used[*at as usize] = true);
-        let named = self.materials().iter().zip(is_used);
-        let stated = named.filter(|(_, used)| *used).map(|(named, _)| named.stated).collect();
+        let used =
+            || self.materials().iter().zip(&is_used).filter(|(_, used)| **used).map(|(named, _)| named);
+        let is_stiffness_given = given.youngs_modulus.is_some() && given.poisson_ratio.is_some();
+        let unsupported = used().find_map(|named| Some((named.name.clone(), named.unsupported.clone()?)));
+        if let Some((name, kind)) = unsupported.filter(|_| !is_stiffness_given) {
+            return Err(SolidError::UnsupportedMaterial { name, kind });
+        }
+        let stated = used().map(|named| named.stated).collect();
         let materials: Result<_, _> =
             self.materials().iter().map(|named| Material::new(&given.or(&named.stated))).collect();
         let solid = Solid::new(
@@ -72,6 +79,7 @@ mod tests {
         NamedMaterial {
             name: name.into(),
             stated: PartialMaterial { youngs_modulus, ..PartialMaterial::default() },
+            unsupported: None,
         }
     }
 
@@ -111,6 +119,31 @@ mod tests {
         assert_eq!((found.solid.tets(), found.outside), (&[[0, 1, 2, 3]][..], 1));
         assert_eq!(found.vertices, [Some(0), Some(1), Some(2), Some(3), None]);
         assert_eq!(found.stated, [PartialMaterial::default()]);
+    }
+
+    #[test]
+    fn materials_whose_stiffness_is_not_computed_need_another_one() {
+        let unsupported = |at: usize| {
+            let mesh = mesh(&[]);
+            let mut materials = mesh.materials().to_vec();
+            materials[at].unsupported = Some("ORTHOTROPIC".into());
+            let of_element = mesh.element_material().to_vec();
+            mesh.with_materials(materials, of_element).unwrap()
+        };
+        let default = PartialMaterial::default();
+        let refused = unsupported(2).solid(&default).unwrap_err();
+        assert_eq!(
+            refused,
+            SolidError::UnsupportedMaterial { name: "silent".into(), kind: "ORTHOTROPIC".into() }
+        );
+        assert!(refused.to_string().contains("as in --material youngs=1e6,poisson=0.4"));
+        let youngs = PartialMaterial { youngs_modulus: Some(2.0), ..default };
+        assert!(unsupported(0).solid(&youngs).is_err(), "Poisson's ratio is missing");
+        let both = PartialMaterial { poisson_ratio: Some(0.3), ..youngs };
+        let found = unsupported(0).solid(&both).unwrap();
+        assert_eq!(found.solid.element(0).material.youngs_modulus(), 2.0);
+        // A material without elements.
+        assert!(unsupported(1).solid(&default).is_ok());
     }
 
     #[test]

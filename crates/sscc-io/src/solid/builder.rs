@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use sscc_solid::{NamedMaterial, VolumeMesh, VolumeMeshParts};
+use sscc_solid::{NamedMaterial, SolidError, VolumeMesh, VolumeMeshParts};
 
+use super::volume_or_surface::VolumeOrSurface;
+use crate::polygons::Polygons;
 use crate::{FormatError, Place};
 
 /// Name of the material of elements without a material.
@@ -15,6 +17,9 @@ pub(super) struct Builder {
     parts: VolumeMeshParts,
     cube_material: Vec<u32>,
     by_name: BTreeMap<String, u32>,
+    faces: Polygons,
+    /// Faces of a kind that is not read, and the cause. A solid does not need them.
+    unread_faces: Option<FormatError>,
     /// Largest index, from 0, and its place.
     largest: Option<(u64, Place)>,
     /// Number of the first vertex in the file: 0 or 1. Only for messages.
@@ -27,6 +32,8 @@ impl Builder {
             parts: VolumeMeshParts::default(),
             cube_material: Vec::new(),
             by_name: BTreeMap::new(),
+            faces: Polygons::new(first),
+            unread_faces: None,
             largest: None,
             first,
         }
@@ -85,10 +92,14 @@ impl Builder {
 
     /// Adds a face of 3 or 4 corners, from 0.
     pub fn face<const N: usize>(&mut self, corners: [u64; N], place: Place) -> Result<(), FormatError> {
-        self.check(&corners, place)?;
-        let corners = corners.map(|c| c as u32);
-        self.parts.surface.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
-        Ok(())
+        self.check(&corners, place.clone())?;
+        self.faces.push(&corners, place)
+    }
+
+    /// Notes faces of a kind that is not read: an error if the file has no solid elements.
+    pub fn unread_faces(&mut self, kind: &str, place: Place) {
+        let cause = format!("{kind} is not supported: only triangles and quadrilaterals of first order are");
+        self.unread_faces.get_or_insert_with(|| FormatError::new(place, cause));
     }
 
     /// Stored indices are truncated to 32 bits; `largest` keeps the true value, which `finish` rejects.
@@ -107,8 +118,13 @@ impl Builder {
         Ok(())
     }
 
-    /// Returns the mesh if all its indices are valid.
-    pub fn finish(mut self) -> Result<VolumeMesh, FormatError> {
+    /// Returns the solid.
+    pub fn finish(self) -> Result<VolumeMesh, FormatError> {
+        self.finish_any()?.into_volume()
+    }
+
+    /// Returns the solid, or the surface of a file without solid elements, if all its indices are valid.
+    pub fn finish_any(mut self) -> Result<VolumeOrSurface, FormatError> {
         let vertices = self.parts.vertices.len();
         match self.largest {
             Some((index, place)) if vertices > 0 && index >= vertices as u64 => {
@@ -118,8 +134,19 @@ impl Builder {
             }
             _ => {}
         }
+        if self.elements() == 0 && vertices > 0 {
+            if let Some(error) = self.unread_faces {
+                return Err(error);
+            }
+            if self.faces.triangle_count() == 0 {
+                return Err(SolidError::NoElements.into());
+            }
+            let (mesh, warnings) = self.faces.finish(self.parts.vertices)?.into_mesh_with_warnings()?;
+            return Ok(VolumeOrSurface::Surface { mesh, warnings });
+        }
         self.parts.element_material.append(&mut self.cube_material);
-        Ok(VolumeMesh::new(self.parts)?)
+        self.parts.surface = self.faces.into_fans();
+        Ok(VolumeOrSurface::Volume(VolumeMesh::new(self.parts)?))
     }
 }
 
@@ -150,6 +177,30 @@ mod tests {
         let mut builder = with_vertices(4);
         builder.face([0, 1, 4], Place::Line(8)).unwrap();
         assert_eq!(*builder.finish().unwrap_err().place(), Place::Line(8));
+    }
+
+    #[test]
+    fn faces_without_elements_are_a_surface() {
+        let mut builder = with_vertices(6);
+        builder.face([0, 1, 2], Place::Whole).unwrap();
+        builder.face([2, 1, 4, 5], Place::Whole).unwrap();
+        let VolumeOrSurface::Surface { mesh, .. } = builder.finish_any().unwrap() else {
+            panic!("a surface")
+        };
+        assert_eq!((mesh.rest_positions().len(), mesh.faces()), (6, &[[0, 1, 2], [2, 1, 4], [2, 4, 5]][..]));
+        let mut builder = with_vertices(6);
+        builder.face([0, 1, 2], Place::Whole).unwrap();
+        builder.unread_faces("'TrianglesP2'", Place::Line(3));
+        let refused = builder.finish_any().unwrap_err().to_string();
+        assert!(
+            refused.starts_with("line 3: 'TrianglesP2' is not supported: only triangles and"),
+            "{refused}"
+        );
+        let mut builder = with_vertices(4);
+        builder.unread_faces("'TrianglesP2'", Place::Line(3));
+        builder.tet([0, 1, 2, 3], 0, Place::Whole).unwrap();
+        builder.material("a");
+        assert!(builder.finish().is_ok(), "a solid needs no faces");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use glam::DVec3;
 use sscc_solid::VolumeMesh;
 
 use super::builder::Builder;
+use super::volume_or_surface::VolumeOrSurface;
 use super::words::Words;
 use crate::FormatError;
 use crate::error::quoted;
@@ -13,6 +14,9 @@ const VERSIONS: std::ops::RangeInclusive<i64> = 1..=4;
 
 /// Beginnings of the names of unsupported solid elements, such as `TetrahedraP2` of higher order.
 const UNSUPPORTED_ELEMENTS: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "Pentahedra"];
+
+/// Beginnings of the names of faces of higher order, such as `TrianglesP2`.
+const HIGHER_FACES: [&str; 2] = ["Triangles", "Quadrilaterals"];
 
 /// Parses a Medit file: `MeshVersionFormatted` 1 to 4, `Dimension 3`, then sections in any order. `Vertices`,
 /// `Tetrahedra`, `Hexahedra`, `Triangles` and `Quadrilaterals` are read, all others are skipped. Comments
@@ -25,6 +29,14 @@ const UNSUPPORTED_ELEMENTS: [&str; 5] = ["Tetrahedra", "Hexahedra", "Prisms", "P
 /// When the version or dimension is not supported, a section is shorter than its count or repeated, solid elements have
 /// another kind, or text follows `End`; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
+    parse_any(bytes)?.into_volume()
+}
+
+/// As [`parse`]; of a file without tetrahedra and cubes, returns the surface of its faces.
+///
+/// # Errors
+/// As [`parse`]; when such a file has faces of higher order.
+pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
     let mut words = Words::new(bytes, true)?;
     header(&mut words)?;
     let mut builder = Builder::new(1);
@@ -56,13 +68,13 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
                 None => break,
             },
             _ => {
-                skip(keyword, &mut words)?;
+                skip(keyword, &mut words, &mut builder)?;
                 continue; // skipped sections may be repeated
             }
         }
         seen.push(keyword);
     }
-    builder.finish()
+    builder.finish_any()
 }
 
 fn header(words: &mut Words) -> Result<(), FormatError> {
@@ -120,7 +132,7 @@ fn corners<const N: usize>(words: &mut Words) -> Result<[u64; N], FormatError> {
 }
 
 /// Skips an unsupported section, up to a word that begins with a letter.
-fn skip(keyword: &str, words: &mut Words) -> Result<(), FormatError> {
+fn skip(keyword: &str, words: &mut Words, builder: &mut Builder) -> Result<(), FormatError> {
     let is_name = |word: &str| word.starts_with(|c: char| c.is_ascii_alphabetic());
     if !is_name(keyword) {
         return words.refused(format!("the name of a section was expected, not {}", quoted(keyword)));
@@ -129,6 +141,10 @@ fn skip(keyword: &str, words: &mut Words) -> Result<(), FormatError> {
         let cause =
             format!("{} is not supported: only Tetrahedra and Hexahedra of first order are", quoted(keyword));
         return words.refused(cause);
+    }
+    let has_faces = HIGHER_FACES.iter().any(|start| keyword.starts_with(start));
+    if has_faces && words.peek()? != Some("0") {
+        builder.unread_faces(&quoted(keyword), words.place());
     }
     while words.peek()?.is_some_and(|word| !is_name(word)) {
         words.next_word()?;
@@ -165,6 +181,24 @@ mod tests {
     }
 
     #[test]
+    fn files_without_elements_are_surfaces() {
+        let text = &TETS[..TETS.find("Tetrahedra").unwrap()];
+        let surface = |text: &str| parse_any(text.as_bytes()).map(|found| found.into_surface().unwrap().0);
+        let mesh = surface(text).unwrap();
+        assert_eq!((mesh.rest_positions().len(), mesh.faces()), (5, &[[0, 1, 2]][..]));
+        let refused = message(text);
+        assert_eq!(
+            refused,
+            "the mesh has no elements: it is a surface of 1 triangles; add tetrahedra or hexahedra"
+        );
+        let higher = surface(&format!("{text}TrianglesP2 1\n1 2 3 4 5 1 0\n")).unwrap_err().to_string();
+        assert!(higher.starts_with("line 14: 'TrianglesP2' is not supported"), "{higher}");
+        assert!(surface(&format!("{text}TrianglesP2 0\n")).is_ok());
+        assert_eq!(surface(TETS).unwrap().faces().len(), 6);
+        assert_eq!(surface(&TETS.replace('\n', "\r")).unwrap(), surface(TETS).unwrap());
+    }
+
+    #[test]
     fn errors_name_the_line() {
         let with = |from, to| message(&TETS.replace(from, to));
         assert_eq!(message("OFF\n"), "line 1: a Medit file begins with 'MeshVersionFormatted', not 'OFF'");
@@ -192,6 +226,7 @@ mod tests {
         assert!(with("Ridges", "TetrahedraP2").contains("'TetrahedraP2' is not supported"));
         assert_eq!(with("End", "End\n7"), "line 21: text follows 'End'");
         assert!(with("Tetrahedra", "Edges").contains("the mesh has no elements"));
+        assert!(with("Tetrahedra", "Edges").contains("a surface of 1 triangles"));
         assert_eq!(with("Vertices 5", "Vertices 99999999999"), "line 11: 'Triangles' is not a number");
         assert_eq!(
             message("MeshVersionFormatted 1\nDimension 3\nVertices 9"),

@@ -12,6 +12,7 @@ pub mod medit;
 mod statements;
 pub mod tetgen;
 pub mod vega;
+mod volume_or_surface;
 mod words;
 
 use std::path::Path;
@@ -20,6 +21,8 @@ use sscc_solid::VolumeMesh;
 
 use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
+
+pub use volume_or_surface::VolumeOrSurface;
 
 /// Endings that [`read_volume_mesh`] supports.
 const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
@@ -32,14 +35,27 @@ const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .
 /// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is duplicated or
 /// is neither a 4-node tetrahedron nor an 8-node hexahedron, or there is no element.
 pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
+    read_volume_or_surface(path)?.into_volume().map_err(|error| error.of(path))
+}
+
+/// As [`read_volume_mesh`]; of a Medit or gmsh file without tetrahedra and cubes, returns the surface of its faces.
+///
+/// # Errors
+/// As [`read_volume_mesh`], but an element may be missing if there are faces; then when a face is of higher order.
+pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
     let parse = match ending(path).as_str() {
-        "mesh" => medit::parse,
-        "msh" => gmsh::parse,
-        "veg" => return vega::read(path),
-        "node" | "ele" => return tetgen::read(path),
+        "mesh" => medit::parse_any,
+        "msh" => gmsh::parse_any,
+        "veg" => return vega::read(path).map(VolumeOrSurface::Volume),
+        "node" | "ele" => return tetgen::read(path).map(VolumeOrSurface::Volume),
         _ => return Err(unsupported(path, "volumetric mesh", SUPPORTED)),
     };
     parse(&read_whole(path)?).map_err(|error| error.of(path))
+}
+
+/// Whether the ending is that of a solid.
+pub fn is_solid_name(path: &Path) -> bool {
+    matches!(ending(path).as_str(), "mesh" | "veg" | "msh" | "node" | "ele")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Words and bytes of formats in which line ends have no meaning.
 
 use crate::error::quoted;
-use crate::text::{Lines, count, decoded, number};
+use crate::text::{Lines, count, decoded, line_end, number};
 use crate::{FormatError, Place};
 
 /// Position in a file, from which words or bytes are read.
@@ -12,6 +12,8 @@ pub(super) struct Words<'a> {
     /// Line of the last word, from 1. Line ends within bytes are not counted.
     line: usize,
     comments: bool,
+    /// Last byte of a line end.
+    line_end: u8,
     /// Whether places are byte offsets (binary files).
     pub binary: bool,
 }
@@ -21,7 +23,7 @@ impl<'a> Words<'a> {
     pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
         Lines::new(bytes)?; // an error for UTF-16
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Ok(Self { bytes, at, line: 1, comments, binary: false })
+        Ok(Self { bytes, at, line: 1, comments, line_end: line_end(bytes), binary: false })
     }
 
     /// Returns the line of the last word; in binary files, the offset of the next byte.
@@ -38,7 +40,7 @@ impl<'a> Words<'a> {
         let mut comment = false;
         while let Some(byte) = self.bytes.get(self.at) {
             match byte {
-                b'\n' => {
+                end if *end == self.line_end => {
                     self.line += 1;
                     comment = false;
                 }
@@ -101,7 +103,7 @@ impl<'a> Words<'a> {
     /// Returns the rest of the line, without its end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
-        let line = &rest[..rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len())];
+        let line = &rest[..rest.iter().position(|b| *b == self.line_end).unwrap_or(rest.len())];
         self.at += line.len();
         if self.at < self.bytes.len() {
             self.at += 1;
@@ -133,6 +135,9 @@ mod tests {
             found.push((word, words.place()));
         }
         assert_eq!(found, [("a", Place::Line(1)), ("b", Place::Line(1)), ("e", Place::Line(3))]);
+        let mut words = Words::new(b"a # b\rc", true).unwrap();
+        assert_eq!((words.next_word().unwrap(), words.next_word().unwrap()), (Some("a"), Some("c")));
+        assert_eq!(words.place(), Place::Line(2));
         assert_eq!(Words::new(b"a#b", false).unwrap().next_word().unwrap(), Some("a#b"));
         assert!(Words::new(b"\xff\xfea\0", false).is_err());
     }
@@ -145,5 +150,9 @@ mod tests {
         assert_eq!(words.take::<2>("xy").unwrap(), *b"xy");
         assert!(words.take::<7>("more").unwrap_err().to_string().starts_with("byte 6: the file ends before"));
         assert!(words.skip_past_line("$End") && !words.skip_past_line("$End"));
+        let mut words = Words::new(b"a b\rc\r$End\r", false).unwrap();
+        words.word("a").unwrap();
+        assert_eq!(words.rest_of_line(), b" b");
+        assert!(words.skip_past_line("$End"));
     }
 }

@@ -18,6 +18,8 @@ enum Kind {
     Quadrilateral,
     /// Not part of the volume; has this number of nodes.
     Skipped(u64),
+    /// A face of higher order, with its number in gmsh and its number of nodes.
+    HigherFace(i64, u64),
 }
 
 /// Returns the kind of an element by its number in gmsh; None for unsupported solid elements.
@@ -34,11 +36,10 @@ fn kind(number: i64) -> Option<Kind> {
         26 => Kind::Skipped(4),
         27 => Kind::Skipped(5),
         28 => Kind::Skipped(6),
-        9 => Kind::Skipped(6),
-        16 => Kind::Skipped(8),
-        10 => Kind::Skipped(9),
-        20 => Kind::Skipped(9),
-        21 => Kind::Skipped(10),
+        9 => Kind::HigherFace(number, 6),
+        16 => Kind::HigherFace(number, 8),
+        10 | 20 => Kind::HigherFace(number, 9),
+        21 => Kind::HigherFace(number, 10),
         _ => return None,
     })
 }
@@ -152,6 +153,10 @@ impl Reader<'_, '_> {
             Kind::Quadrilateral => {
                 let corners = self.corners::<4>()?;
                 self.builder.face(corners, self.numbers.place())
+            }
+            Kind::HigherFace(number, nodes) => {
+                self.builder.unread_faces(&format!("element type {number}"), self.numbers.place());
+                (0..nodes).try_for_each(|_| self.node().map(drop))
             }
             Kind::Skipped(nodes) => (0..nodes).try_for_each(|_| self.node().map(drop)),
         }

@@ -17,6 +17,7 @@ mod version;
 use sscc_solid::VolumeMesh;
 
 use super::builder::Builder;
+use super::volume_or_surface::VolumeOrSurface;
 use super::words::Words;
 use crate::FormatError;
 use crate::error::quoted;
@@ -36,6 +37,14 @@ use version::Version;
 /// end, solid elements have another kind, or tags of nodes are repeated or unknown; else as
 /// [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
+    parse_any(bytes)?.into_volume()
+}
+
+/// As [`parse`]; of a file without tetrahedra and hexahedra, returns the surface of its faces.
+///
+/// # Errors
+/// As [`parse`]; when such a file has faces of higher order.
+pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
     let mut words = Words::new(bytes, false)?;
     let (version, mut numbers) = header(&mut words)?;
     let mut builder = Builder::new(0);
@@ -51,8 +60,16 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
         let second = || format!("the section {} is repeated", quoted(section));
         numbers.words.rest_of_line();
         match (name, &nodes) {
-            ("Nodes", Some(_)) => return refused(second()),
-            ("Nodes", None) => nodes = Some(Nodes::read(&mut numbers, version, &mut builder)?),
+            ("Nodes" | "ParametricNodes", Some(_)) => return refused(second()),
+            ("ParametricNodes", None) if numbers.words.binary => {
+                return refused(
+                    "binary parametric nodes are not supported: save the file as text, or as 4.1".into(),
+                );
+            }
+            ("Nodes" | "ParametricNodes", None) => {
+                let parametric = name == "ParametricNodes";
+                nodes = Some(Nodes::read(&mut numbers, version, parametric, &mut builder)?);
+            }
             ("Elements", _) if elements => return refused(second()),
             ("Elements", None) => return refused("$Elements before $Nodes".into()),
             ("Elements", Some(nodes)) => {
@@ -74,7 +91,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     if !elements {
         return Err(FormatError::whole("the file has no section $Elements"));
     }
-    builder.finish()
+    builder.finish_any()
 }
 
 /// Parses `$MeshFormat`: version, whether the file is binary, width of sizes; then for binary files the integer 1.

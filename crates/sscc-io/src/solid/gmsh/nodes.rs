@@ -16,7 +16,13 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    pub fn read(numbers: &mut Numbers, version: Version, builder: &mut Builder) -> Result<Self, FormatError> {
+    /// Reads the section; `parametric` nodes of version 2 have further numbers.
+    pub fn read(
+        numbers: &mut Numbers,
+        version: Version,
+        parametric: bool,
+        builder: &mut Builder,
+    ) -> Result<Self, FormatError> {
         let mut tags = Vec::new();
         match version {
             Version::V2 => {
@@ -25,6 +31,9 @@ impl Nodes {
                 for _ in 0..count {
                     tags.push(numbers.tag(LAST_NODE)?);
                     vertex(numbers, builder)?;
+                    if parametric {
+                        numbers.words.rest_of_line();
+                    }
                 }
             }
             Version::V4 => {

@@ -75,8 +75,27 @@ fn all_dialects_give_the_same_mesh() {
         }
     }
     check(&parse(V4.replace('\n', "\r\n").as_bytes()).unwrap());
+    check(&parse(V2.replace('\n', "\r").as_bytes()).unwrap());
     let other = "$Comments\nanything $Nodes\n$EndComments\n";
     check(&parse(V2.replace("$Nodes", &format!("{other}$Nodes")).as_bytes()).unwrap());
+}
+
+#[test]
+fn parametric_nodes_of_version_2() {
+    let nodes = "$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n7 1 1 1\n$EndNodes\n";
+    assert!(V2.contains(nodes));
+    let parametric = "$ParametricNodes\n5\n10 0 0 0 0 1\n20 1 0 0 3 1 .1 .1 .1\n30 0 1 0 2 1 .5 .5\n40 0 0 1 1 1 0.5\n\
+        7 1 1 1 3 1 0 0 0\n$EndParametricNodes\n";
+    let text = V2.replace(nodes, parametric);
+    check(&parse(text.as_bytes()).unwrap());
+    check(&parse(text.replace('\n', "\r").as_bytes()).unwrap());
+    assert_eq!(message(&text.replace("30 0 1 0 2", "30 0 1 x 2")), "line 13: 'x' is not a number");
+    assert_eq!(
+        message(&text.replace("$Elements", &format!("{nodes}$Elements"))),
+        "line 17: the section '$Nodes' is repeated"
+    );
+    let binary = "$MeshFormat\n2.2 1 8\n\u{1}\0\0\0\n$EndMeshFormat\n$ParametricNodes\n5\n";
+    assert!(message(binary).contains("binary parametric nodes are not supported: save the file as text"));
 }
 
 #[test]
@@ -87,6 +106,25 @@ fn cubes_and_elements_without_a_group() {
     assert_eq!((mesh.cubes(), mesh.materials().len()), (&[[0, 1, 2, 3, 4, 5, 6, 7]][..], 1));
     assert_eq!((mesh.materials()[0].name.as_str(), mesh.element_material()), ("default", &[0][..]));
     assert_eq!(mesh.surface(), [[0, 3, 2], [0, 2, 1]]);
+}
+
+#[test]
+fn files_without_elements_are_surfaces() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n9 9 9 9\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 0\n$EndNodes\n\
+        $Elements\n2\n1 2 0 2 3 4\n2 3 0 5 2 3 4\n$EndElements\n";
+    let surface = |text: &str| parse_any(text.as_bytes()).map(|found| found.into_surface().unwrap().0);
+    let mesh = surface(text).unwrap();
+    assert_eq!(mesh.faces(), [[1, 2, 3], [4, 1, 2], [4, 2, 3]]);
+    assert_eq!(mesh.rest_positions().len(), 5);
+    assert!(message(text).starts_with("the mesh has no elements: it is a surface of 3 triangles"));
+    let higher = text.replace("2 3 0 5 2 3 4\n", "2 9 0 5 2 3 4 9 9\n");
+    let refused = surface(&higher).unwrap_err().to_string();
+    assert!(refused.starts_with("line 15: element type 9 is not supported: only triangles"), "{refused}");
+    // A solid needs no faces; its surface is that of its elements.
+    assert_eq!(
+        surface(&V2.replace("2 2 2 1 1 10 20 30", "2 9 2 1 1 10 20 30 40 7 10")).unwrap().faces().len(),
+        6
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ use sscc_solid::VolumeMesh;
 
 use super::parser::Parser;
 use crate::error::{cut, quoted};
-use crate::file::read_whole;
+use crate::file::{check_exists, read_whole};
 use crate::solid::statements::statements;
 use crate::{FormatError, IoError, Place};
 
@@ -70,6 +70,10 @@ impl Reader<'_> {
             let path = self.check(file, depth).map_err(|cause| within(FormatError::line(line, cause)))?;
             self.seen.push(path.clone());
             let path = main.parent().unwrap_or(Path::new("")).join(path);
+            if check_exists(&path).is_err() {
+                let cause = format!("includes {}, which does not exist", quoted(file));
+                return Err(within(FormatError::line(line, cause)));
+            }
             self.feed(&read_whole(&path)?, Some(file), depth + 1)?;
         }
         Ok(())

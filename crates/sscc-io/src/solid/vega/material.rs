@@ -2,10 +2,10 @@
 
 use sscc_solid::{NamedMaterial, PartialMaterial};
 
-use crate::error::quoted;
+use crate::error::{cut, quoted};
 use crate::solid::statements::value;
 
-/// Parses `type, density, values`.
+/// Parses `type, density, values`. Of a type other than those with an isotropic stiffness, only the density is read.
 pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, String> {
     let mut fields = text.split(',').map(str::trim_ascii);
     let kind = fields.next().unwrap_or_default();
@@ -20,11 +20,7 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
     let stiffness = match kind {
         "ENU" => Some((next("Young's modulus")?, next("Poisson's ratio")?)),
         "MOONEYRIVLIN" => Some(at_rest(next("mu01")?, next("mu10")?, next("v1")?)?),
-        _ if kind.starts_with("ORTHOTROPIC") => None,
-        _ => {
-            let known = "ENU, MOONEYRIVLIN, ORTHOTROPIC";
-            return Err(format!("a material of type {} is not supported: only {known} are", quoted(kind)));
-        }
+        _ => None,
     };
     if let Some((e, nu)) = stiffness
         && !(e > 0.0 && e.is_finite() && nu > -1.0 && nu < 0.5)
@@ -33,7 +29,7 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
     }
     let (youngs_modulus, poisson_ratio) = stiffness.unzip();
     let stated = PartialMaterial { density: Some(density), youngs_modulus, poisson_ratio };
-    Ok(NamedMaterial { name, stated })
+    Ok(NamedMaterial { name, stated, unsupported: stiffness.is_none().then(|| cut(kind, 40)) })
 }
 
 /// Returns Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is `mu01 (I2' - 3) + mu10 (I1' -
@@ -61,9 +57,12 @@ mod tests {
         let material = parse_material("a".into(), "ENU, 1000, 1e9 ,0.45").unwrap();
         let stated =
             PartialMaterial { density: Some(1000.0), youngs_modulus: Some(1e9), poisson_ratio: Some(0.45) };
-        assert_eq!(material, NamedMaterial { name: "a".into(), stated });
-        let orthotropic = parse_material("a".into(), "ORTHOTROPIC_N1,900,1,2,3,0.4").unwrap().stated;
-        assert_eq!((orthotropic.density, orthotropic.youngs_modulus), (Some(900.0), None));
+        assert_eq!(material, NamedMaterial { name: "a".into(), stated, unsupported: None });
+        for kind in ["ORTHOTROPIC", "ORTHOTROPIC_N1", "WOOD"] {
+            let other = parse_material("a".into(), &format!("{kind},900,1,2,3,0.4")).unwrap();
+            assert_eq!((other.stated.density, other.stated.youngs_modulus), (Some(900.0), None));
+            assert_eq!(other.unsupported.as_deref(), Some(kind));
+        }
         // E = 2 G (1 + nu) = 3 K (1 - 2 nu), for G = 2 (1 + 3) and K = 2 * 12.
         let rubber = parse_material("a".into(), "MOONEYRIVLIN,900,1,3,12").unwrap().stated;
         let (e, nu) = (rubber.youngs_modulus.unwrap(), rubber.poisson_ratio.unwrap());
@@ -80,6 +79,6 @@ mod tests {
         assert!(message("ENU, 1, -1, 0.4").starts_with("E = -1, nu = 0.4: "));
         assert!(message("MOONEYRIVLIN, 1, 1, -1, 1").contains("must be above 0"));
         assert!(message("MOONEYRIVLIN, 1, 1e308, 1e308, 1e308").starts_with("E = "));
-        assert!(message("WOOD, 1").starts_with("a material of type 'WOOD'"));
+        assert_eq!(message("WOOD, x"), "'x' is not a number");
     }
 }

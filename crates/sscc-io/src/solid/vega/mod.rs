@@ -19,7 +19,7 @@
 //! | --- | --- | --- |
 //! | `ENU, density, E, nu` | as given | as given |
 //! | `MOONEYRIVLIN, density, mu01, mu10, v1` | as given | those of the same stiffness at rest |
-//! | `ORTHOTROPIC..., density, ...` | as given | none: it is not isotropic |
+//! | `ORTHOTROPIC..., density, ...`, other types | as given | none: a solid of them needs a stiffness from the caller |
 
 mod count;
 mod include;

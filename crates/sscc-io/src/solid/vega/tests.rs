@@ -137,7 +137,9 @@ fn files_are_included() {
     assert_eq!((mesh.vertices().len(), mesh.tets()), (4, &[[0, 1, 2, 3]][..]));
     assert!(parse(main.as_bytes()).unwrap_err().to_string().starts_with("line 2: *INCLUDE refers to a file"));
     let error = |main: &str, others: &[(&str, &str)]| read_files(main, others).unwrap_err();
-    assert_eq!(error(main, &files[..1]), "a.ele: not found");
+    assert_eq!(error(main, &files[..1]), "main.veg: line 5: includes './a.ele', which does not exist");
+    let nested = error("*INCLUDE a\n", &[("a", "# a\n\n*INCLUDE b\n")]);
+    assert_eq!(nested, "main.veg: a: line 3: includes 'b', which does not exist");
     let bad = [files[0], ("a.ele", "1 4 0\n1 1 2 3 x\n")];
     assert_eq!(error(main, &bad), "main.veg: ./a.ele: line 2: 'x' is not a number of a vertex or element");
     let late = [files[0], ("a.ele", "1 4 0\n1 1 2 3 9\n")];
