@@ -7,12 +7,15 @@ use std::path::Path;
 use crate::part_file::PartFile;
 use crate::{FormatError, IoError};
 
+/// Beginning of the text that Git LFS stores in place of a file.
+const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
 /// Reads a whole file.
 ///
 /// Pipes and devices are rejected, because they have no size that bounds the bytes read.
 ///
 /// # Errors
-/// When the file does not exist, is not a regular file, is empty, does not fit into memory, or the system reports an
+/// When the file does not exist, is not a regular file, is empty, is a Git LFS pointer, does not fit into memory, or the system reports an
 /// error.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
     let refused = |cause| read_error(path, cause);
@@ -27,7 +30,17 @@ pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
     if bytes.is_empty() {
         return Err(FormatError::whole("the file is empty").of(path));
     }
+    check_content(&bytes).map_err(|error| error.of(path))?;
     Ok(bytes)
+}
+
+/// Returns an error if these first bytes of a file are those of a Git LFS pointer, which stands for the file.
+pub(crate) fn check_content(start: &[u8]) -> Result<(), FormatError> {
+    if start.starts_with(LFS_POINTER) {
+        let cause = "a Git LFS pointer, not the file itself: run 'git lfs pull' in its repository";
+        return Err(FormatError::whole(cause));
+    }
+    Ok(())
 }
 
 /// Opens a regular file, and returns its size in bytes.

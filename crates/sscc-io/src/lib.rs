@@ -39,7 +39,7 @@
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
-//! | the mesh of any file, without modes | [`load_mesh`] |
+//! | the mesh of any file, without modes; the surface of a solid | [`load_mesh`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
@@ -75,6 +75,7 @@ pub mod npy;
 pub mod npz;
 mod numbers;
 mod part_file;
+mod polygons;
 mod pose;
 pub mod solid;
 mod text;
@@ -87,8 +88,11 @@ pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};
 pub use forces::{parse_reduced_forces, read_reduced_forces};
 pub use groups::{read_base_groups, read_group_numbers, read_groups};
-pub use load::{LoadOptions, LoadedModel, load_mesh, load_model, load_model_with, splits_vertices};
-pub use mesh::read_mesh;
+pub use load::{
+    LoadOptions, LoadedMesh, LoadedModel, load_mesh, load_mesh_with_warnings, load_model, load_model_with,
+    splits_vertices,
+};
+pub use mesh::{read_mesh, read_mesh_with_warnings};
 pub use mesh_modes::read_modes_for;
 pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
 pub use named_groups::{GroupsBy, NamedGroups};
@@ -96,6 +100,6 @@ pub use npy::write_npy;
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
-pub use solid::read_volume_mesh;
+pub use solid::{VolumeOrSurface, read_volume_mesh, read_volume_or_surface};
 pub use vertex_numbers::read_vertex_numbers;
 pub use wav::{WavFormat, wav_to_bytes, write_wav};

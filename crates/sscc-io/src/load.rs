@@ -4,10 +4,14 @@ use std::path::Path;
 
 use sscc::{Modes, ReducedModel, TriMesh};
 
-use crate::file::{check_exists, ending};
-use crate::{
-    IoError, ModelInfo, NamedModes, NpzModel, gltf, read_mesh, read_model, read_modes_for, read_npz_model,
-};
+use crate::file::{check_exists, ending, unsupported};
+use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
+use crate::solid::{is_solid_name, read_volume_or_surface};
+use crate::{IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model};
+
+/// Endings of the files that have a mesh.
+const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf; models: .npz, \
+                         .model.safetensors";
 
 /// Cause of the error for a mesh without modes.
 const NO_MODES: &str = "a mesh has no modes: add --modes FILE, or compute modes with sscc modes; sscc check without a \
@@ -44,6 +48,18 @@ pub struct LoadedModel {
     pub mode_names: Vec<String>,
     /// One number per mode from a `.npz` file (r), such as variances.
     pub mode_weights: Option<Vec<f64>>,
+    /// Lines about content of the mesh whose meaning is not clear ([`read_mesh_with_warnings`]).
+    pub warnings: Vec<String>,
+}
+
+/// A mesh with lines about its file.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct LoadedMesh {
+    /// The mesh.
+    pub mesh: TriMesh,
+    /// Lines about content whose meaning is not clear ([`read_mesh_with_warnings`]).
+    pub warnings: Vec<String>,
 }
 
 /// Loads a model with modes alone and returns the model with its units and provenance: see [`load_model_with`].
@@ -56,7 +72,7 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
 }
 
 /// Loads a model from a `*.model.safetensors` file, from a `.glb` or `.gltf` file with morph targets, from a complete
-/// `.npz` file, or from a mesh file with its modes ([`read_modes_for`]). The metric is that of the file, else
+/// `.npz` file, or from a mesh file or a solid with its modes ([`read_modes_for`]). The metric is that of the file, else
 /// displacement.
 ///
 /// # Errors
@@ -74,7 +90,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
     match (format.as_str(), options.modes) {
         ("safetensors", None) => {
             let (model, info) = read_model(path)?;
-            Ok(LoadedModel { model, info, default_q: None, mode_names: Vec::new(), mode_weights: None })
+            Ok(loaded(model, info, Vec::new()))
         }
         ("glb" | "gltf", None) => {
             let read = gltf::read(path, options.mesh_name)?;
@@ -92,35 +108,49 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         }
         (_, None) => {
             // A missing or malformed mesh is reported before missing modes.
-            read_mesh(path)?;
+            load_mesh(path, None)?;
             Err(refused(NO_MODES))
         }
         (_, Some(modes_path)) => {
-            let mesh = read_mesh(path)?;
+            let LoadedMesh { mesh, warnings } = load_mesh_with_warnings(path, None)?;
             let NamedModes { modes, names } = read_modes_for(modes_path, &mesh, path)?;
             let provenance = format!("mesh {}, modes {}", name(path), name(modes_path));
-            assemble(modes_path, mesh, modes, provenance, names)
+            Ok(LoadedModel { warnings, ..assemble(modes_path, mesh, modes, provenance, names)? })
         }
     }
 }
 
 /// Loads a mesh at rest from a file of any format: a mesh file, a `.glb` or `.gltf` file
-/// ([`gltf::read_base_mesh`]), or a model without its modes.
+/// ([`gltf::read_base_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
+/// vertices of the file, in a Medit or gmsh file without elements that of the faces.
 ///
 /// # Errors
 /// When a mesh is named for a file other than glTF, the file cannot be read or is malformed, or has no triangles.
 pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoError> {
+    load_mesh_with_warnings(path, mesh_name).map(|loaded| loaded.mesh)
+}
+
+/// As [`load_mesh`], with lines about content of the file whose meaning is not clear.
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<LoadedMesh, IoError> {
     let format = ending(path);
     if mesh_name.is_some() && !matches!(format.as_str(), "glb" | "gltf") {
         check_exists(path)?;
         return Err(named_mesh_error(path));
     }
-    match format.as_str() {
-        "glb" | "gltf" => gltf::read_base_mesh(path, mesh_name),
-        "safetensors" => Ok(read_model(path)?.0.mesh().clone()),
-        "npz" => Ok(read_npz_model(path)?.mesh),
-        _ => read_mesh(path),
-    }
+    let (mesh, warnings) = match format.as_str() {
+        "glb" | "gltf" => (gltf::read_base_mesh(path, mesh_name)?, Vec::new()),
+        "safetensors" => (read_model(path)?.0.mesh().clone(), Vec::new()),
+        "npz" => (read_npz_model(path)?.mesh, Vec::new()),
+        _ if is_mesh_name(path) => read_mesh_with_warnings(path)?,
+        _ if is_solid_name(path) => {
+            read_volume_or_surface(path)?.into_surface().map_err(|error| error.of(path))?
+        }
+        _ => return Err(unsupported(path, "mesh", SUPPORTED)),
+    };
+    Ok(LoadedMesh { mesh, warnings })
 }
 
 /// Returns the error for a named mesh of a file that has only one.
@@ -145,8 +175,12 @@ fn assemble(
 ) -> Result<LoadedModel, IoError> {
     let model = ReducedModel::new(mesh, modes)
         .map_err(|error| IoError::Request { path: at.to_owned(), cause: error.to_string() })?;
-    let info = ModelInfo::new("", provenance);
-    Ok(LoadedModel { model, info, default_q: None, mode_names, mode_weights: None })
+    Ok(loaded(model, ModelInfo::new("", provenance), mode_names))
+}
+
+/// Returns a model without further data.
+fn loaded(model: ReducedModel, info: ModelInfo, mode_names: Vec<String>) -> LoadedModel {
+    LoadedModel { model, info, default_q: None, mode_names, mode_weights: None, warnings: Vec::new() }
 }
 
 fn name(path: &Path) -> String {
@@ -234,6 +268,30 @@ mod tests {
             std::fs::write(path(own), "x").unwrap();
             assert!(refused().ends_with("leave out --modes"));
         }
+        // The surface of a solid has all vertices of its file, so its modes fit.
+        let solid = "MeshVersionFormatted 1\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra 1\n1 2 3 4 0\n";
+        std::fs::write(path("s.mesh"), solid).unwrap();
+        write_npy(&path("s.npy"), &[4, 3], &[0.5; 12]).unwrap();
+        assert_eq!(load("s.mesh", "s.npy").model.mesh(), &load_mesh(&path("s.mesh"), None).unwrap());
+        assert_eq!(load("s.mesh", "s.npy").model.mesh().faces().len(), 4);
+        let no_modes = message("s.mesh", LoadOptions::default());
+        assert!(no_modes.contains("s.mesh: a mesh has no modes: add --modes FILE"), "{no_modes}");
+        std::fs::write(path("a.fbx"), "x").unwrap();
+        for refused in [
+            message("a.fbx", LoadOptions::default()),
+            load_mesh(&path("a.fbx"), None).unwrap_err().to_string(),
+        ] {
+            assert!(
+                [".stl", ".msh", ".gltf", ".npz"].iter().all(|ending| refused.contains(ending)),
+                "{refused}"
+            );
+        }
+        let bent = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n";
+        std::fs::write(path("bent.obj"), bent).unwrap();
+        write_npy(&path("bent.npy"), &[4, 3], &[0.5; 12]).unwrap();
+        let warned = load("bent.obj", "bent.npy").warnings;
+        assert_eq!(load_mesh_with_warnings(&path("bent.obj"), None).unwrap().warnings, warned);
+        assert!(warned[0].contains("are not plane") && warned[0].ends_with("(faces, counted from 0: 0)"));
         for mesh in ["a.obj", "a.STL"] {
             assert_eq!(load_mesh(&path(mesh), None).unwrap(), *first.model.mesh());
         }
@@ -241,5 +299,35 @@ mod tests {
         assert!(named.ends_with("leave out --mesh-name"), "{named}");
         assert!(splits_vertices(Path::new("a.STL")) && splits_vertices(Path::new("a.glb")));
         assert!(!splits_vertices(Path::new("a.obj")));
+    }
+
+    #[test]
+    fn git_lfs_pointers_are_named() {
+        let directory = tempfile::tempdir().unwrap();
+        let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12345\n";
+        for name in [
+            "a.obj",
+            "a.off",
+            "a.ply",
+            "a.stl",
+            "a.npy",
+            "a.npz",
+            "a.glb",
+            "a.msh",
+            "a.veg",
+            "a.model.safetensors",
+        ] {
+            let path = directory.path().join(name);
+            std::fs::write(&path, pointer).unwrap();
+            let message = load_mesh(&path, None).unwrap_err().to_string();
+            let is_named = message
+                .ends_with("a Git LFS pointer, not the file itself: run 'git lfs pull' in its repository");
+            assert!(is_named || name == "a.npy", "{message}");
+        }
+        let mesh = crate::mesh::obj::parse(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let frames = crate::FrameReader::open(&directory.path().join("a.npy"), &mesh, "m.obj".as_ref());
+        assert!(frames.err().unwrap().to_string().contains("a.npy: a Git LFS pointer"));
+        let modes = crate::read_modes(&directory.path().join("a.npy"), 3).unwrap_err().to_string();
+        assert!(modes.contains("a.npy: a Git LFS pointer"), "{modes}");
     }
 }

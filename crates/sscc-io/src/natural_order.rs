@@ -2,8 +2,8 @@
 
 use std::cmp::Ordering;
 
-/// Compares two names. Runs of digits are compared by value, all else by bytes; names that differ in leading zeros only
-/// are compared by bytes.
+/// Compares two names. Runs of digits are compared by value, all else by bytes, letters of ASCII in any case; names that
+/// differ in case and leading zeros only are compared by bytes.
 pub(crate) fn compare(a: &[u8], b: &[u8]) -> Ordering {
     let (mut rest_a, mut rest_b) = (a, b);
     loop {
@@ -12,7 +12,7 @@ pub(crate) fn compare(a: &[u8], b: &[u8]) -> Ordering {
             match (rest_a.split_first(), rest_b.split_first()) {
                 (Some((x, left_a)), Some((y, left_b))) => {
                     (rest_a, rest_b) = (left_a, left_b);
-                    x.cmp(y)
+                    x.to_ascii_lowercase().cmp(&y.to_ascii_lowercase())
                 }
                 (None, None) => return a.cmp(b),
                 (x, y) => return x.is_some().cmp(&y.is_some()),
@@ -50,13 +50,14 @@ mod tests {
             "9.obj",
             "10.obj",
             "99999999999999999999999.obj",
-            "B1.obj",
             "a",
             "a1b2.obj",
             "a1b10.obj",
             "a2b1.obj",
             "a2b1.off",
             "b",
+            "B1.obj",
+            "b2.obj",
         ];
         let mut names = sorted;
         names.reverse();

@@ -13,6 +13,7 @@ use crate::npy::Array;
 /// | (3V, r) | `[3 v + c, k]` |
 /// | (V, 3, r) | `[v, c, k]` |
 /// | (r, V, 3) | `[k, v, c]` |
+/// | (V, 3) | `[v, c]`, one mode |
 /// | (3V) | `[3 v + c]`, one mode |
 ///
 /// Only V = 3 and r = 3 match two lines, (V, 3, r) and (r, V, 3); then the former applies.
@@ -32,6 +33,7 @@ pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> 
         [rank, n, 3] if n == vertices => {
             Modes::from_matrix(vertices, rank, |row, k| array.at([k, row / 3, row % 3]))
         }
+        [n, 3] if n == vertices => Modes::from_matrix(vertices, 1, |row, _| array.at([row / 3, row % 3])),
         [n] if n == rows => Modes::from_matrix(vertices, 1, |row, _| array.at([row])),
         [_, n] if n == rows => {
             let cause = format!("shape {:?} has the modes in rows: transpose it to (3V, r)", array.shape());
@@ -41,7 +43,7 @@ pub fn from_array(array: &Array, vertices: usize) -> Result<Modes, FormatError> 
         [n, 3, _] | [_, n, 3] => return Err(mesh_mismatch(n.saturating_mul(3), vertices)),
         _ => {
             let cause = format!(
-                "shape {:?} is none of (3V, r), (V, 3, r), (r, V, 3) for V = {vertices} vertices",
+                "shape {:?} is none of (3V, r), (V, 3, r), (r, V, 3), (V, 3) for V = {vertices} vertices",
                 array.shape()
             );
             return Err(FormatError::whole(cause));
@@ -97,6 +99,9 @@ mod tests {
         assert_eq!(mode_1_of_vertex_1(&[4, 2, 3]), DVec3::new(9.0, 10.0, 11.0));
         let one = from_array(&array(&[6]), 2).unwrap();
         assert_eq!((one.rank(), one.of_vertex(1)[0]), (1, DVec3::new(3.0, 4.0, 5.0)));
+        assert_eq!(from_array(&array(&[2, 3]), 2).unwrap(), one);
+        // Three modes of one vertex: its rows are the first form.
+        assert_eq!(from_array(&array(&[3, 3]), 1).unwrap().rank(), 3);
     }
 
     #[test]
@@ -131,7 +136,9 @@ mod tests {
         }
         assert!(message(&[7, 4], 5).contains("7 rows (no multiple of 3)"));
         assert!(message(&[4, 15], 5).contains("transpose it to (3V, r)"));
-        assert!(message(&[5, 4, 4], 5).contains("is none of (3V, r), (V, 3, r), (r, V, 3) for V = 5"));
+        assert!(
+            message(&[5, 4, 4], 5).contains("is none of (3V, r), (V, 3, r), (r, V, 3), (V, 3) for V = 5")
+        );
         assert!(message(&[], 5).contains("is none of"));
         assert_eq!(message(&[15, 0], 5), "the array of shape [15, 0] is empty");
         assert_eq!(message(&[0, 9], 0), "the array of shape [0, 9] is empty");

@@ -33,7 +33,7 @@ enum Source {
 
 impl FrameReader {
     /// Opens the frames of a mesh:
-    /// - a `.npy` file of float64 or float32, of shape (T, V, 3), or (V, 3) for one frame;
+    /// - a `.npy` file of floats or integers, of shape (T, V, 3), or (V, 3) for one frame;
     /// - a folder of meshes with the same faces or none, in the natural order of their names (`9.obj` before `10.obj`), as
     ///   of [`read_frames`](crate::read_frames).
     ///

@@ -6,7 +6,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use super::folder::{mesh_files, positions_like};
-use crate::{IoError, natural_order, read_mesh};
+use crate::{IoError, natural_order, read_mesh_with_warnings};
 
 /// Frames of an animation.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,10 +18,12 @@ pub struct Frames {
     pub positions: Vec<Vec<DVec3>>,
     /// File name of each frame.
     pub paths: Vec<PathBuf>,
+    /// Lines about content of the first frame whose meaning is not clear.
+    pub warnings: Vec<String>,
 }
 
-/// Reads every mesh file of a folder, in the natural order of their names, so `9.obj` comes before `10.obj`. Other
-/// files, folders and hidden files are skipped.
+/// Reads every mesh file of a folder, in the natural order of their names without endings, so `9.obj` comes before
+/// `10.obj`, and `walk.obj` before `walk-1.obj`. Other files, folders and hidden files are skipped.
 ///
 /// # Errors
 /// When the folder cannot be read, or has no mesh in it or more than 10,000; when a mesh cannot be read, has another
@@ -29,22 +31,26 @@ pub struct Frames {
 /// large.
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     let paths = frame_files(folder)?;
-    let mesh = read_mesh(&paths[0])?;
+    let (mesh, warnings) = read_mesh_with_warnings(&paths[0])?;
     let first = format!("the first one ({})", paths[0].file_name().unwrap_or_default().display());
     let mut positions = vec![mesh.rest_positions().to_vec()];
     for path in &paths[1..] {
         positions.push(positions_like(path, &mesh, "frame", &first)?);
     }
-    Ok(Frames { mesh, positions, paths })
+    Ok(Frames { mesh, positions, paths, warnings })
 }
 
 /// Returns the mesh files of a folder, in natural order; at least one.
 pub(super) fn frame_files(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
     let mut paths = mesh_files(folder, None, "frame")?;
-    fn name(path: &Path) -> &[u8] {
-        path.file_name().unwrap_or_default().as_encoded_bytes()
+    // Endings are compared last, so that `walk.obj` comes before `walk-1.obj`.
+    fn parts(path: &Path) -> [&[u8]; 2] {
+        [path.file_stem(), path.file_name()].map(|part| part.unwrap_or_default().as_encoded_bytes())
     }
-    paths.sort_by(|a, b| natural_order::compare(name(a), name(b)));
+    paths.sort_by(|a, b| {
+        let ([stem_a, name_a], [stem_b, name_b]) = (parts(a), parts(b));
+        natural_order::compare(stem_a, stem_b).then_with(|| natural_order::compare(name_a, name_b))
+    });
     Ok(paths)
 }
 
@@ -69,6 +75,48 @@ mod tests {
         let second: Vec<DVec3> = frames.positions.iter().map(|frame| frame[1]).collect();
         assert_eq!(second, [DVec3::new(1.0, 2.0, 0.0), DVec3::X, DVec3::X * 2.0, DVec3::X * 3.0]);
         assert_eq!(frames.paths, ["a.off", "b.obj", "c9.obj", "c10.obj"].map(|name| folder.join(name)));
+    }
+
+    #[test]
+    fn usual_numbering_schemes_are_in_order() {
+        let schemes: [&[&str]; 10] = [
+            &["walk.obj", "walk-1.obj", "walk-2.obj", "walk-10.obj"],
+            &["frame_1.obj", "frame_2.obj", "frame_9.obj", "frame_10.obj", "frame_100.obj"],
+            &["001.obj", "002.obj", "010.obj", "100.obj"],
+            &["a.obj", "a-1.obj", "a-2.obj", "a-11.obj"],
+            &["a.obj", "a(1).obj", "a(2).obj", "a(10).obj"],
+            &["a.obj", "a (1).obj", "a (2).obj", "a (10).obj"],
+            &["a.obj", "a.1.obj", "a.2.obj", "a.10.obj", "a.010.obj.obj"],
+            &["Walk_1.obj", "walk_2.OBJ", "WALK_10.obj", "walk_11.obj"],
+            &["a1.obj", "a1.off", "a2.obj", "b1.obj"],
+            &["mesh 1 of 20.obj", "mesh 2 of 20.obj", "mesh 12 of 20.obj"],
+        ];
+        for names in schemes {
+            let directory = tempfile::tempdir().unwrap();
+            names.iter().rev().for_each(|name| std::fs::write(directory.path().join(name), FRAME).unwrap());
+            let found: Vec<String> = frame_files(directory.path())
+                .unwrap()
+                .iter()
+                .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
+                .collect();
+            assert_eq!(found, names);
+        }
+    }
+
+    /// A frame in which the fan of a polygon would do keeps the triangles of the first frame.
+    #[test]
+    fn frames_keep_the_triangles_of_the_first_one() {
+        let directory = tempfile::tempdir().unwrap();
+        let frame =
+            |notch: &str| format!("v 0 0 0\nv 4 0 0\nv 4 4 0\nv {notch} 0\nv 0 4 0\nf 1 2 3 4 5\nf 1 2 3\n");
+        std::fs::write(directory.path().join("1.obj"), frame("2 1")).unwrap();
+        std::fs::write(directory.path().join("2.obj"), frame("2 5")).unwrap();
+        let frames = read_frames(directory.path()).unwrap();
+        assert_eq!(frames.positions[1][3], DVec3::new(2.0, 5.0, 0.0));
+        let other = frame("2 5").replace("f 1 2 3 4 5", "f 1 2 3 5 4");
+        std::fs::write(directory.path().join("2.obj"), other).unwrap();
+        let message = read_frames(directory.path()).unwrap_err().to_string();
+        assert!(message.contains("2.obj: triangle 0 (counted from 0) of this frame differs"), "{message}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::header::{Class, Header, Item, NumberKind};
 use crate::{FormatError, Place};
 
-/// An array of numbers: f64 or f32, widened to f64; or integers, widened to i64.
+/// An array of numbers: f64, narrower floats and integers, all as f64; or integers, as i64.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<T = f64> {
     shape: Vec<usize>,
@@ -12,10 +12,15 @@ pub struct Array<T = f64> {
     pub(super) data: Vec<T>,
 }
 
-/// Parses a `.npy` file, versions 1 to 3, with numbers of type f8 or f4 in either byte order, in C or Fortran order.
+/// Integers up to this one have the same value as f64.
+const MAX_EXACT_INTEGER: u64 = 1 << 53;
+
+/// Parses a `.npy` file, versions 1 to 3, with numbers of type f8, f4 or f2, or integers, in either byte order, in C
+/// or Fortran order.
 ///
 /// # Errors
-/// When the header is malformed or has another type, or the length of the data differs from the header.
+/// When the header is malformed or has another type, or the length of the data differs from the header; when an integer is
+/// beyond 2^53.
 pub fn parse(bytes: &[u8]) -> Result<Array, FormatError> {
     array(bytes, NumberKind::Floats, floats)
 }
@@ -117,16 +122,40 @@ fn strides(shape: &[usize], fortran: bool) -> Vec<usize> {
     strides
 }
 
-/// Decodes floats.
+/// Decodes floats, and integers as floats.
 pub(super) fn floats(item: Item, bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    if item.class != Class::Float {
+        let exact = |value: i64| match value.unsigned_abs() {
+            ..=MAX_EXACT_INTEGER => Ok(value as f64),
+            _ => Err(FormatError::whole(format!(
+                "the integer {value} is beyond 2^53: save the array as float64"
+            ))),
+        };
+        return integers(item, bytes)?.into_iter().map(exact).collect();
+    }
+    let twos = || bytes.as_chunks::<2>().0.iter().copied();
     let eights = || bytes.as_chunks::<8>().0.iter().copied();
     let fours = || bytes.as_chunks::<4>().0.iter().copied();
     Ok(match (item.size, item.big) {
         (8, false) => eights().map(f64::from_le_bytes).collect(),
         (8, true) => eights().map(f64::from_be_bytes).collect(),
+        (2, false) => twos().map(|b| half(u16::from_le_bytes(b))).collect(),
+        (2, true) => twos().map(|b| half(u16::from_be_bytes(b))).collect(),
         (_, false) => fours().map(|b| f32::from_le_bytes(b).into()).collect(),
         (_, true) => fours().map(|b| f32::from_be_bytes(b).into()).collect(),
     })
+}
+
+/// Returns the value of a float of 16 bits: a sign, 5 bits of exponent, 10 of mantissa.
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
+    let (exponent, mantissa) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
+    sign * match exponent {
+        0 => libm::ldexp(mantissa, -24),
+        31 if mantissa == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => libm::ldexp(mantissa + 1024.0, exponent - 25),
+    }
 }
 
 fn integers(item: Item, bytes: &[u8]) -> Result<Vec<i64>, FormatError> {

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::array::{check_size, floats, parse};
 use super::header::{Header, Item, NumberKind};
-use crate::file::{open_regular, read_error, read_whole};
+use crate::file::{check_content, open_regular, read_error, read_whole};
 use crate::{FormatError, IoError};
 
 /// Headers are read in full up to this size; NumPy writes at most a few hundred bytes for arrays of numbers.
@@ -41,6 +41,7 @@ impl Blocks {
         let mut start = Vec::new();
         let read = (&mut file).take(MAX_HEADER.min(size)).read_to_end(&mut start);
         read.map_err(|cause| read_error(path, cause))?;
+        check_content(&start).map_err(|error| error.of(path))?;
         let header = Header::parse(&start, NumberKind::Floats).map_err(|error| error.of(path))?;
         let Header { item, fortran, shape, body } = header;
         check_size(&shape, item, body, size - body as u64).map_err(|error| error.of(path))?;

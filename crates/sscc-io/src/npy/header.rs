@@ -20,12 +20,12 @@ pub(super) enum Class {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item {
     pub class: Class,
-    /// Size of one entry: 4 or 8 for floats; 1, 2, 4 or 8 for integers.
+    /// Size of one entry: 2, 4 or 8 for floats; 1, 2, 4 or 8 for integers.
     pub size: usize,
     pub big: bool,
 }
 
-/// Kind of numbers that a reader accepts.
+/// Kind of numbers that a reader accepts; one of floats also accepts integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NumberKind {
     Floats,
@@ -45,7 +45,7 @@ pub(super) struct Header {
 impl NumberKind {
     fn advice(self) -> &'static str {
         match self {
-            Self::Floats => "save the array as float64 or float32",
+            Self::Floats => "save the array as float64",
             Self::Integers => "save the array as integers",
         }
     }
@@ -57,9 +57,9 @@ impl Item {
             return None;
         };
         let (class, sizes) = match (kind, wanted) {
-            (b'f', NumberKind::Floats) => (Class::Float, &b"48"[..]),
-            (b'i', NumberKind::Integers) => (Class::Signed, &b"1248"[..]),
-            (b'u', NumberKind::Integers) => (Class::Unsigned, &b"1248"[..]),
+            (b'f', NumberKind::Floats) => (Class::Float, &b"248"[..]),
+            (b'i', _) => (Class::Signed, &b"1248"[..]),
+            (b'u', _) => (Class::Unsigned, &b"1248"[..]),
             _ => return None,
         };
         let order_fits = match order {

@@ -5,13 +5,13 @@
 //! | array | names | shape |
 //! | --- | --- | --- |
 //! | rest positions | `mean`, `mean_`, `vertices`, `v_template`, `rest_positions` | (V, 3) or (3V) |
-//! | modes | `modes`, `shapedirs`, `U`, `basis` | (3V, r), (V, 3, r), (r, V, 3) or (3V) |
+//! | modes | `modes`, `shapedirs`, `U`, `basis` | (3V, r), (V, 3, r), (r, V, 3), (V, 3) or (3V) |
 //! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r) or (V, 3, r) |
 //! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
 //! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
 //!
-//! If a shape fits two forms, the one further left applies. Two names for one part are an error. Arrays are float64 or
-//! float32, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
+//! If a shape fits two forms, the one further left applies. Two names for one part are an error. Arrays are floats or
+//! integers, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
 //! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB.
 //!
 //! [`write_npz`] writes arrays of any names.

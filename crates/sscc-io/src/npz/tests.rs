@@ -138,7 +138,7 @@ fn errors_name_the_array() {
     assert!(
         message(&with("modes", numbers(&[15, 2]))).contains("the modes are for 5 vertices, the mesh has 4")
     );
-    assert!(message(&with("modes", faces("<i4", &[0; 12]))).contains("save the array as float64"));
+    assert!(message(&with("modes", faces("<c8", &[0; 12]))).contains("save the array as float64"));
     assert!(
         message(&with("faces", numbers(&[2, 3])))
             .contains("array 'faces': byte 10: header: the array has numbers of type '<f8'")

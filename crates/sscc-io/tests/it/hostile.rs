@@ -62,7 +62,39 @@ fn seeds() -> Vec<Vec<u8>> {
         GLTF.as_bytes().to_vec(),
         npz(zip::CompressionMethod::Stored),
         npz(zip::CompressionMethod::Deflated),
+        CONCAVE.to_vec(),
+        CONCAVE.iter().map(|byte| if *byte == b'\n' { b'\r' } else { *byte }).collect(),
+        strips(false),
+        strips(true),
+        [&[b'x'; 80][..], &[1, 0, 0, 0], &[0; 48], &[3, 0], b"abc"].concat(),
+        [&[b'x'; 80][..], &[0; 4], &[0; 50]].concat(),
+        npy::to_bytes(&[3, 3], &[0.5; 9]).unwrap(),
+        half_floats(),
     ]
+}
+
+/// Concave, bent and crossing polygons, some with repeated corners.
+const CONCAVE: &[u8] =
+    b"v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nv 2 2 5\nfo 1 2 3 4 5\nf 1 3 2 5\nf 1 2 2 3 6 4 4\n\
+    f 2 3 4 5 1 2 6 3\n";
+
+/// Strips of triangles as text or in binary.
+fn strips(is_binary: bool) -> Vec<u8> {
+    let header = "element vertex 4\nproperty char x\nproperty char y\nproperty char z\nelement tristrips 1\n\
+        property list uchar char vertex_index\nend_header\n";
+    if is_binary {
+        let bytes = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 6, 0, 1, 2, 3, 255, 0];
+        return [b"ply\nformat binary_big_endian 1.0\n", header.as_bytes(), &bytes].concat();
+    }
+    format!("ply\nformat ascii 1.0\n{header}0 0 0\n1 0 0\n0 1 0\n0 0 1\n6 0 1 2 3 -1 0\n").into_bytes()
+}
+
+fn half_floats() -> Vec<u8> {
+    let mut bytes = npy::to_bytes(&[3, 3], &[0.0; 9]).unwrap();
+    let descr = bytes.windows(3).position(|w| w == b"<f8").unwrap();
+    bytes[descr..descr + 3].copy_from_slice(b"<f2");
+    bytes.truncate(bytes.len() - 54);
+    bytes
 }
 
 /// A triangle with a plain and a sparse target.
@@ -98,6 +130,10 @@ fn seeds_are_valid() {
     assert!(stl::parse(&seeds[7]).is_ok() && stl::parse(&seeds[8]).is_ok());
     assert_eq!(gltf::parse(&seeds[9], None).unwrap().modes.rank(), 2);
     assert!(npz::parse_model(&seeds[10]).is_ok() && npz::parse_model(&seeds[11]).is_ok());
+    assert_eq!(obj::parse(&seeds[12]).unwrap(), obj::parse(&seeds[13]).unwrap());
+    assert_eq!(ply::parse(&seeds[14]).unwrap(), ply::parse(&seeds[15]).unwrap());
+    assert!(stl::parse(&seeds[16]).is_ok() && stl::parse(&seeds[17]).is_ok());
+    assert!(npy::parse(&seeds[18]).is_ok() && npy::parse(&seeds[19]).is_ok());
 }
 
 /// A valid glTF file with exchanged numbers, which is still valid JSON.
@@ -135,7 +171,35 @@ fn swapped_gltf() -> impl Strategy<Value = String> {
     })
 }
 
+/// The corners of random polygons: a few points of a small grid, so that corners repeat, lie on edges and edges cross.
+fn random_polygon() -> impl Strategy<Value = Vec<[i8; 3]>> {
+    prop::collection::vec(prop::array::uniform3(0_i8..4), 4..12)
+}
+
 proptest! {
+    /// Every polygon becomes two triangles less than it has corners, of its corners, with its border.
+    #[test]
+    fn random_polygons(polygon in random_polygon(), is_flat: bool, scale in prop::sample::select(vec![1.0, 1e-300, 1e59])) {
+        let mut text = String::new();
+        for [x, y, z] in &polygon {
+            let [x, y, z] = [*x, *y, if is_flat { 0 } else { *z }].map(|number| f64::from(number) * scale);
+            text += &format!("v {x:e} {y:e} {z:e}\n");
+        }
+        let corners: Vec<String> = (1..=polygon.len()).map(|corner| corner.to_string()).collect();
+        text += &format!("f {}\n", corners.join(" "));
+        let mesh = obj::parse(text.as_bytes()).unwrap();
+        prop_assert_eq!(mesh.faces().len(), polygon.len() - 2);
+        let mut edges: Vec<[u32; 2]> =
+            mesh.faces().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let inner: Vec<[u32; 2]> = edges.iter().copied().filter(|[a, b]| edges.contains(&[*b, *a])).collect();
+        edges.retain(|edge| !inner.contains(edge));
+        edges.sort_unstable();
+        let count = polygon.len() as u32;
+        let mut border: Vec<[u32; 2]> = (0..count).map(|corner| [corner, (corner + 1) % count]).collect();
+        border.sort_unstable();
+        prop_assert_eq!(edges, border);
+    }
+
     #[test]
     fn exchanged_numbers(text in swapped_gltf()) {
         one_line(&gltf::parse(text.as_bytes(), None));
@@ -151,7 +215,7 @@ proptest! {
     fn random_words(
         words in prop::collection::vec(
             prop::sample::select(vec![
-                "v", "f", "OFF", "ply", "format", "ascii", "1.0", "element", "vertex", "face", "property", "list",
+                "v", "f", "fo", "surf", "OFF", "OFF3", "tristrips", "ply", "format", "ascii", "1.0", "element", "vertex", "face", "property", "list",
                 "float", "int", "uchar", "x", "y", "z", "vertex_index", "end_header", "0", "1", "2", "3", "-1", "1/2",
                 "18446744073709551615", "1e999", "solid", "facet", "outer", "endloop", "endfacet", "endsolid", "nan", "\\", "#", "\n", "\n", "\n", "\r\n", "\u{e9}",
             ]),
@@ -164,7 +228,7 @@ proptest! {
 
     #[test]
     fn damaged_files(
-        seed in 0_usize..12,
+        seed in 0_usize..20,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         cut in any::<prop::sample::Index>(),
         whole: bool,
